@@ -1,0 +1,72 @@
+# `make run` and `make test` set up all they need from a fresh clone; see `make help`.
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+
+VENV := .venv
+BIN := $(VENV)/bin
+# Two installs into one environment: running must not wait for the tools of the tests.
+RUN_STAMP := $(VENV)/.installed-run
+DEV_STAMP := $(VENV)/.installed-dev
+
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+# One version of each package for every platform and Python, with the hashes of all its files,
+# and not a word on where they came from.
+COMPILE := $(BIN)/uv pip compile --quiet --universal --fork-strategy fewest --python-version 3.11 \
+	--generate-hashes --no-header --no-config --no-emit-index-url --no-emit-find-links
+
+.PHONY: help
+help: ## Show this list
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
+
+.PHONY: run
+run: $(RUN_STAMP) ## Serve the dashboard; options by ARGS="--port 9000 --share"
+	$(BIN)/hexapods serve $(ARGS)
+
+.PHONY: venv
+venv: $(DEV_STAMP) ## Make or update .venv with everything a developer needs
+
+.PHONY: test
+test: $(DEV_STAMP) ## Run every check; this is the gate
+	$(BIN)/ruff format --check
+	$(BIN)/ruff check
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/python tests/install_browser.py
+	$(BIN)/python -m pytest
+
+.PHONY: format
+format: $(DEV_STAMP) ## Format the code and apply the linter's safe fixes
+	$(BIN)/ruff check --fix-only
+	$(BIN)/ruff format
+
+.PHONY: bench
+bench: $(RUN_STAMP) ## Measure speed; JSON by ARGS=--json
+	$(BIN)/hexapods bench $(ARGS)
+
+.PHONY: lock
+lock: $(DEV_STAMP) ## Pin the newest versions that pyproject.toml allows
+	$(COMPILE) --upgrade pyproject.toml --group build --output-file requirements.lock
+	$(COMPILE) --upgrade pyproject.toml --group dev --constraint requirements.lock \
+		--output-file requirements-dev.lock
+
+.PHONY: clean
+clean: ## Remove the environment and every cache
+	rm -rf $(VENV) build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	find app tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(RUN_STAMP): requirements.lock pyproject.toml .ci/find-python
+	@if ! $(BIN)/python -c 'import pip' 2>/dev/null; then \
+		python=$$(sh .ci/find-python) || exit 1; \
+		echo "Making $(VENV) with $$python"; \
+		"$$python" -m venv --clear $(VENV) || exit 1; \
+	fi
+	@echo "Installing what the app needs into $(VENV)"
+	@$(INSTALL) --require-hashes --requirement requirements.lock
+	@$(INSTALL) --no-deps --no-build-isolation --editable .
+	@touch $@
+
+$(DEV_STAMP): requirements-dev.lock $(RUN_STAMP)
+	@echo "Installing what the checks need into $(VENV)"
+	@$(INSTALL) --require-hashes --requirement requirements-dev.lock
+	@touch $@
