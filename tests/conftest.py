@@ -1,0 +1,48 @@
+"""Fixtures for every test: a real browser, with WebGL2 in software."""
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from tests.install_browser import HOW_TO_GET_ONE, find_browser
+
+# `--use-gl=swiftshader` is left out on purpose: with it there is no WebGL at all.
+_CHROMIUM_OPTIONS = [
+    "--no-sandbox",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Browser tests come last.
+
+    Playwright's synchronous interface keeps an event loop running in the main thread for as long
+    as it is open, and in that time no other test can `asyncio.run` there.
+    """
+    items.sort(key=lambda item: "browser" in getattr(item, "fixturenames", ()))
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """Chromium with a fresh profile. Having none is a failure: these tests are never skipped."""
+    path = find_browser()
+    if path is None:
+        pytest.fail(HOW_TO_GET_ONE, pytrace=False)
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(
+            executable_path=path, headless=True, args=_CHROMIUM_OPTIONS
+        )
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def page(browser: Browser) -> Iterator[Page]:
+    """An empty tab with cookies and storage of its own."""
+    with browser.new_context() as context:
+        yield context.new_page()

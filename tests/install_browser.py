@@ -1,0 +1,119 @@
+"""Find a browser for the tests, or install one: `python tests/install_browser.py`.
+
+Debian's Chromium where apt-get may install it, else Playwright's own. A browser counts only if it
+starts, because Ubuntu's `chromium` may be a stub that asks for snap, and Playwright's own may
+lack system libraries.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+ENVIRONMENT_NAME = "HEXAPODS_TEST_BROWSER"
+
+HOW_TO_GET_ONE = (
+    "The browser tests need Chromium, and none was found. Install it (on Debian: "
+    "apt-get install chromium), or run '.venv/bin/python -m playwright install chromium', "
+    f"or set {ENVIRONMENT_NAME} to the path of one."
+)
+
+_ASK_PLAYWRIGHT = """
+from playwright.sync_api import sync_playwright
+with sync_playwright() as playwright:
+    print(playwright.chromium.executable_path)
+"""
+
+
+def find_browser() -> Path | None:
+    """The browser that the tests use: the one that is asked for, Debian's, or Playwright's own."""
+    asked_for = os.environ.get(ENVIRONMENT_NAME)
+    if asked_for:
+        # No fallback: who names a browser wants the tests to run in that one.
+        return Path(asked_for) if _starts(asked_for) else None
+    for candidate in (shutil.which("chromium"), _playwrights_own()):
+        if candidate and _starts(candidate):
+            return Path(candidate)
+    return None
+
+
+def main() -> int:
+    """Print the path of a browser that starts, after installing one where there is none."""
+    browser = find_browser()
+    if browser is None and os.environ.get(ENVIRONMENT_NAME):
+        print(f"{ENVIRONMENT_NAME} names no browser that starts.", file=sys.stderr)
+        return 1
+    for install in (_install_debians, _install_playwrights_own):
+        if browser is None:
+            install()
+            browser = find_browser()
+    if browser is None:
+        print(HOW_TO_GET_ONE, file=sys.stderr)
+        return 1
+    print(f"Browser for the tests: {browser}")
+    return 0
+
+
+def _install_debians() -> None:
+    as_root = _as_root()
+    if shutil.which("apt-get") is None or as_root is None:
+        print("No browser found, and apt-get cannot be used here (no root, no passwordless sudo).")
+        return
+    print("No browser found: installing Debian's chromium with apt-get")
+    # The lists may be missing or old. If updating fails, the install says what is wrong.
+    _run([*as_root, "apt-get", "update", "--quiet"])
+    _run(
+        [
+            *as_root,
+            "env",
+            "DEBIAN_FRONTEND=noninteractive",
+            "apt-get",
+            *("--option", "DPkg::Lock::Timeout=300"),
+            *("install", "--yes", "--quiet", "--no-install-recommends", "chromium"),
+        ]
+    )
+
+
+def _install_playwrights_own() -> None:
+    print("Still no browser: installing Playwright's own Chromium")
+    _run([sys.executable, "-m", "playwright", "install", "--no-shell", "chromium"])
+
+
+def _as_root() -> list[str] | None:
+    """What to put before a command that needs root; None where root cannot be had."""
+    if os.geteuid() == 0:
+        return []
+    if shutil.which("sudo") and _succeeds(["sudo", "--non-interactive", "true"]):
+        return ["sudo", "--non-interactive"]
+    return None
+
+
+def _playwrights_own() -> str | None:
+    asked = subprocess.run(
+        [sys.executable, "-c", _ASK_PLAYWRIGHT], capture_output=True, text=True, check=False
+    )
+    return asked.stdout.strip() or None
+
+
+def _starts(browser: str) -> bool:
+    return _succeeds([browser, "--version"])
+
+
+def _succeeds(command: Sequence[str]) -> bool:
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=60, check=False)
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+    return done.returncode == 0
+
+
+def _run(command: Sequence[str]) -> None:
+    """Run a command in view. Its failure shows in the end, by there being no browser."""
+    print("$", " ".join(command), flush=True)
+    subprocess.run(command, check=False)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
