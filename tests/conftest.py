@@ -1,11 +1,16 @@
-"""Fixtures for every test: a real browser, with WebGL2 in software."""
+"""What every test shares: a real browser, with WebGL2 in software."""
 
 from collections.abc import Iterator
 
+import hypothesis
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from tests.install_browser import HOW_TO_GET_ONE, find_browser
+
+# One commit gives one verdict, and a busy machine is no failure.
+hypothesis.settings.register_profile("gate", derandomize=True, deadline=None)
+hypothesis.settings.load_profile("gate")
 
 # `--use-gl=swiftshader` is left out on purpose: with it there is no WebGL at all.
 _CHROMIUM_OPTIONS = [

@@ -1,0 +1,30 @@
+FROM python:3.13-slim AS build
+RUN python -m venv /venv
+WORKDIR /source
+# The dependencies first: this layer lasts until the lock changes.
+COPY requirements.lock .
+RUN /venv/bin/pip install --no-cache-dir --require-hashes --requirement requirements.lock
+COPY pyproject.toml README.md LICENSE ./
+COPY app app
+COPY models models
+COPY static static
+RUN /venv/bin/pip install --no-cache-dir --no-deps --no-build-isolation .
+
+FROM python:3.13-slim
+# A fixed number, so that a data folder mounted from the host can be given to it.
+RUN useradd --uid 10001 --user-group --home-dir /data --no-create-home hexapods \
+    && install --directory --owner hexapods --group hexapods /data
+COPY --from=build /venv /venv
+ENV PATH=/venv/bin:$PATH \
+    PYTHONUNBUFFERED=1 \
+    HEXAPODS_HOST=0.0.0.0 \
+    HEXAPODS_PORT=8000 \
+    HEXAPODS_DATA=/data
+USER hexapods
+WORKDIR /data
+VOLUME /data
+EXPOSE 8000
+HEALTHCHECK --interval=15s --timeout=5s --start-period=30s \
+    CMD ["python", "-c", "import os, urllib.request as r; r.urlopen(f'http://127.0.0.1:{os.environ[\"HEXAPODS_PORT\"]}/healthz', timeout=4)"]
+ENTRYPOINT ["hexapods"]
+CMD ["serve"]

@@ -1,0 +1,46 @@
+"""The lock files pin everything, fit pyproject.toml, and say nothing about who made them."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+
+CHECKOUT = Path(__file__).parent.parent
+RUN_LOCK = CHECKOUT / "requirements.lock"
+DEV_LOCK = CHECKOUT / "requirements-dev.lock"
+
+
+def pinned_versions(lock: Path) -> dict[str, str]:
+    return dict(re.findall(r"^([a-z0-9-]+)==([^ ]+) ", lock.read_text(), flags=re.MULTILINE))
+
+
+@pytest.mark.parametrize("lock", [RUN_LOCK, DEV_LOCK], ids=lambda lock: lock.name)
+def test_every_package_is_pinned_by_hash_and_names_no_place(lock: Path) -> None:
+    text = lock.read_text()
+
+    assert "/" not in text  # neither an address nor a path
+    packages = re.findall(r"^[^ #].*\n(.*)", text, flags=re.MULTILINE)
+    assert len(packages) == len(pinned_versions(lock))
+    assert all(line.startswith("    --hash=sha256:") for line in packages)
+
+
+def test_what_runs_is_what_is_tested() -> None:
+    assert pinned_versions(RUN_LOCK).items() <= pinned_versions(DEV_LOCK).items()
+
+
+@pytest.mark.parametrize(
+    ("lock", "groups"), [(RUN_LOCK, ["build"]), (DEV_LOCK, ["build", "dev"])], ids=["run", "dev"]
+)
+def test_the_lock_is_current(lock: Path, groups: list[str]) -> None:
+    project = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())
+    wanted = [*project["project"]["dependencies"], *project["build-system"]["requires"]]
+    for group in groups:
+        wanted += [item for item in project["dependency-groups"][group] if isinstance(item, str)]
+
+    pinned = pinned_versions(lock)
+    for requirement in map(Requirement, wanted):
+        assert requirement.specifier.contains(pinned[requirement.name]), (
+            f"run `make lock`: {wanted}"
+        )
