@@ -31,7 +31,7 @@ test: $(DEV_STAMP) ## Run every check; this is the gate
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
 	$(BIN)/mypy
-	$(BIN)/lint-imports
+	$(BIN)/lint-imports --no-logo
 	$(BIN)/python tests/install_browser.py
 	$(BIN)/python -m pytest
 
