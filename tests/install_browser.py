@@ -1,4 +1,4 @@
-"""Find a browser for the tests, or install one: `python tests/install_browser.py`.
+"""Find a browser for the tests, or install one: `.venv/bin/python tests/install_browser.py`.
 
 Debian's Chromium where apt-get may install it, else Playwright's own. A browser counts only if it
 starts, because Ubuntu's `chromium` may be a stub that asks for snap, and Playwright's own may
@@ -20,6 +20,16 @@ HOW_TO_GET_ONE = (
     f"or set {ENVIRONMENT_NAME} to the path of one."
 )
 
+WHAT_PLAYWRIGHT_NEEDS = (
+    "Playwright, which drives the browser of the tests, does not start; it says why above. "
+    "On Debian: apt-get install libatomic1."
+)
+
+# Playwright's driver needs libatomic, which a slim Debian has not.
+_DEBIAN_PACKAGES = ["chromium", "libatomic1"]
+
+_PLAYWRIGHT_VERSION = [sys.executable, "-m", "playwright", "--version"]
+
 _ASK_PLAYWRIGHT = """
 from playwright.sync_api import sync_playwright
 with sync_playwright() as playwright:
@@ -33,7 +43,8 @@ def find_browser() -> Path | None:
     if asked_for:
         # No fallback: who names a browser wants the tests to run in that one.
         return Path(asked_for) if _starts(asked_for) else None
-    for candidate in (shutil.which("chromium"), _playwrights_own()):
+    for search in (_debians, _playwrights_own):
+        candidate = search()
         if candidate and _starts(candidate):
             return Path(candidate)
     return None
@@ -43,41 +54,43 @@ def main() -> int:
     """Print the path of a browser that starts, after installing one where there is none."""
     browser = find_browser()
     if browser is None and os.environ.get(ENVIRONMENT_NAME):
-        print(f"{ENVIRONMENT_NAME} names no browser that starts.", file=sys.stderr)
-        return 1
-    for install in (_install_debians, _install_playwrights_own):
-        if browser is None:
-            install()
-            browser = find_browser()
+        return _give_up(f"{ENVIRONMENT_NAME} names no browser that starts.")
+    if browser is None or not _succeeds(_PLAYWRIGHT_VERSION):
+        _install_debian_packages()
+        browser = find_browser()
+    if not _succeeds(_PLAYWRIGHT_VERSION):
+        _run(_PLAYWRIGHT_VERSION)
+        return _give_up(WHAT_PLAYWRIGHT_NEEDS)
     if browser is None:
-        print(HOW_TO_GET_ONE, file=sys.stderr)
-        return 1
+        _install_playwrights_own()
+        browser = find_browser()
+    if browser is None:
+        return _give_up(HOW_TO_GET_ONE)
     print(f"Browser for the tests: {browser}")
     return 0
 
 
-def _install_debians() -> None:
+def _give_up(why: str) -> int:
+    print(why, file=sys.stderr)
+    return 1
+
+
+def _install_debian_packages() -> None:
+    print(f"The browser tests need {' and '.join(_DEBIAN_PACKAGES)}.")
     as_root = _as_root()
     if shutil.which("apt-get") is None or as_root is None:
-        print("No browser found, and apt-get cannot be used here (no root, no passwordless sudo).")
+        print("apt-get cannot install them: it is not here, or needs root or passwordless sudo.")
         return
-    print("No browser found: installing Debian's chromium with apt-get")
     # The lists may be missing or old. If updating fails, the install says what is wrong.
     _run([*as_root, "apt-get", "update", "--quiet"])
-    _run(
-        [
-            *as_root,
-            "env",
-            "DEBIAN_FRONTEND=noninteractive",
-            "apt-get",
-            *("--option", "DPkg::Lock::Timeout=300"),
-            *("install", "--yes", "--quiet", "--no-install-recommends", "chromium"),
-        ]
-    )
+    install = ["install", "--yes", "--quiet", "--no-install-recommends", *_DEBIAN_PACKAGES]
+    wait_for_others = ["--option", "DPkg::Lock::Timeout=300"]
+    ask_nothing = ["env", "DEBIAN_FRONTEND=noninteractive"]
+    _run([*as_root, *ask_nothing, "apt-get", *wait_for_others, *install])
 
 
 def _install_playwrights_own() -> None:
-    print("Still no browser: installing Playwright's own Chromium")
+    print("Still no browser: installing Playwright's own Chromium.")
     _run([sys.executable, "-m", "playwright", "install", "--no-shell", "chromium"])
 
 
@@ -88,6 +101,10 @@ def _as_root() -> list[str] | None:
     if shutil.which("sudo") and _succeeds(["sudo", "--non-interactive", "true"]):
         return ["sudo", "--non-interactive"]
     return None
+
+
+def _debians() -> str | None:
+    return shutil.which("chromium")
 
 
 def _playwrights_own() -> str | None:

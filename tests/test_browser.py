@@ -30,6 +30,16 @@ def test_a_browser_that_is_asked_for_is_not_replaced(
     assert install_browser.ENVIRONMENT_NAME in capsys.readouterr().err
 
 
+def test_a_playwright_that_does_not_start_is_said_clearly(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(install_browser, "_PLAYWRIGHT_VERSION", ["false"])
+    monkeypatch.setattr(install_browser, "_install_debian_packages", lambda: None)
+
+    assert install_browser.main() == 1
+    assert "libatomic1" in capfd.readouterr().err
+
+
 def test_no_browser_to_be_had_is_said_clearly(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
