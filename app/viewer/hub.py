@@ -1,0 +1,236 @@
+"""The hub: one connection to viser, shown to every browser.
+
+viser encodes anew for each client and has no notion of who may do what. So it has one client, this
+one, on loopback, and browsers get the bytes it gets, on the app's own port. They cannot say
+anything to viser: the hub listens to nothing but which robot they want to follow.
+"""
+
+import asyncio
+import contextlib
+import logging
+from collections.abc import Callable, Collection
+from types import TracebackType
+from typing import Self
+
+from starlette.websockets import WebSocket
+from websockets.asyncio.client import connect
+from websockets.exceptions import WebSocketException
+from websockets.typing import Subprotocol
+
+from app.viewer import follow, wire
+from app.viewer.session import Counters, Session
+from app.viewer.snapshot import UNWANTED, Snapshot
+
+_RETRY_S = 0.5
+_GOODBYE_S = 1.0
+
+_PROTOCOL_ERROR = 1002
+_GOING_AWAY = 1001
+_SERVICE_RESTART = 1012
+_TRY_AGAIN_LATER = 1013
+
+_logger = logging.getLogger(__name__)
+
+
+class Hub:
+    """Relays viser's stream to many browsers, read-only.
+
+    `async with hub:` keeps it connected; all of it runs on that event loop.
+    """
+
+    def __init__(
+        self,
+        port: int,
+        *,
+        follow_position: follow.FollowPosition | None = None,
+        follow_frame: str = "/world",
+        max_viewers: int = 300,
+        allowed_origins: Collection[str] = (),
+        on_viewers_changed: Callable[[int], None] | None = None,
+    ) -> None:
+        """Connect to nothing yet.
+
+        Args:
+            port: viser's, on 127.0.0.1.
+            follow_position: Where the robots are that can be followed; without it, none can.
+            follow_frame: The scene node that everything is drawn under.
+            max_viewers: Further ones are asked to try again later.
+            allowed_origins: Origins beside the one that a request's own Host names, for a proxy
+                that changes the Host.
+            on_viewers_changed: Called with how many watch when that changes.
+        """
+        self.port = port
+        """May be changed; counts from the next time that viser is lost and found."""
+        self.counters = Counters()
+        self._follow_position = follow_position
+        self._follow_frame = follow_frame
+        self._max_viewers = max_viewers
+        self._allowed_origins = frozenset(allowed_origins)
+        self._on_viewers_changed = on_viewers_changed
+        self._sessions: set[Session] = set()
+        self._snapshot = Snapshot()
+        self._packed: wire.Frame | None = None
+        self._timestamp_s = 0.0
+        self._live = False
+        self._upstream: asyncio.Task[None] | None = None
+
+    async def __aenter__(self) -> Self:
+        self.start()
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        await self.stop()
+
+    def start(self) -> None:
+        """Connect to viser, now and whenever it comes back. Needs a running event loop."""
+        if self._upstream is None:
+            self._upstream = asyncio.create_task(self._stay_connected())
+
+    async def stop(self) -> None:
+        """Close every viewer, in about a second at most, and disconnect. May be called twice."""
+        upstream, self._upstream = self._upstream, None
+        if upstream is None:
+            return
+        upstream.cancel()
+        sessions = list(self._sessions)
+        for session in sessions:
+            session.close(_GOING_AWAY, "the server stops")
+        await asyncio.gather(*(session.closed(_GOODBYE_S) for session in sessions))
+        with contextlib.suppress(asyncio.CancelledError):
+            await upstream
+
+    async def serve(self, websocket: WebSocket) -> None:
+        """Serve one browser until it leaves: the endpoint of the websocket route.
+
+        The query's `view` is what it follows at first; see `follow.chosen_view` for later.
+        """
+        if not self._is_same_origin(websocket):
+            # Before accepting: answered with HTTP 403.
+            await websocket.close()
+            return
+        offered = websocket.scope["subprotocols"]
+        if refusal := self._refusal(offered):
+            # A browser learns the reason only from a connection that was accepted.
+            await websocket.accept(subprotocol=offered[0] if offered else None)
+            await websocket.close(*refusal)
+            return
+        await websocket.accept(subprotocol=wire.SUBPROTOCOL)
+        view = follow.valid_view(websocket.query_params.get("view")) or follow.FREE
+        session = Session(websocket, view, self.counters)
+        self._add(session)
+        try:
+            await session.run(self._show_view)
+        finally:
+            self._remove(session)
+
+    def _refusal(self, offered: list[str]) -> tuple[int, str] | None:
+        if wire.SUBPROTOCOL not in offered:
+            return _PROTOCOL_ERROR, "reload"
+        if self._upstream is None:
+            return _GOING_AWAY, "the server stops"
+        if len(self._sessions) >= self._max_viewers:
+            return _TRY_AGAIN_LATER, "full"
+        return None
+
+    def _is_same_origin(self, websocket: WebSocket) -> bool:
+        origin = websocket.headers.get("origin")
+        if origin is None or origin in self._allowed_origins:
+            # Only browsers send an Origin, and only they carry someone else's cookies.
+            return True
+        return origin.partition("://")[2] == websocket.headers.get("host")
+
+    def _add(self, session: Session) -> None:
+        self._sessions.add(session)
+        self._count_viewers()
+        if self._live:
+            self._show_all(session)
+
+    def _remove(self, session: Session) -> None:
+        self._sessions.discard(session)
+        self._count_viewers()
+
+    def _count_viewers(self) -> None:
+        self.counters.viewers = len(self._sessions)
+        if self._on_viewers_changed is not None:
+            self._on_viewers_changed(len(self._sessions))
+
+    async def _stay_connected(self) -> None:
+        while True:
+            try:
+                await self._relay()
+            except (OSError, WebSocketException) as error:
+                if self._live:
+                    _logger.warning("lost viser, trying again: %s", error)
+            except Exception:
+                # A fault of ours in one frame must not end the show for good.
+                _logger.exception("relaying failed, beginning anew")
+            self._live = False
+            await asyncio.sleep(_RETRY_S)
+
+    async def _relay(self) -> None:
+        async with connect(
+            f"ws://127.0.0.1:{self.port}/",
+            subprotocols=[Subprotocol(wire.SUBPROTOCOL)],
+            compression=None,
+            max_size=None,
+            ping_interval=None,
+            proxy=None,
+        ) as upstream:
+            self._snapshot = Snapshot()
+            while True:
+                raw = await upstream.recv(decode=False)
+                self._take(wire.parse(raw).without(UNWANTED))
+
+    def _take(self, frame: wire.Frame) -> None:
+        self._snapshot.apply(frame)
+        self._packed = None
+        self._timestamp_s = frame.timestamp_s
+        if self._live:
+            if frame.messages:
+                self._fan_out(frame)
+        elif self._snapshot.complete:
+            self._live = True
+            self._begin()
+
+    def _begin(self) -> None:
+        for session in self._sessions:
+            if session.started:
+                # Its page still has the old scene; reconnecting is what clears it.
+                session.close(_SERVICE_RESTART, "resync")
+                self.counters.resyncs += 1
+            else:
+                self._show_all(session)
+
+    def _fan_out(self, frame: wire.Frame) -> None:
+        by_view: dict[str, wire.Frame] = {}
+        for session in self._sessions:
+            if session.view not in by_view:
+                by_view[session.view] = self._centred(frame, session.view)
+            session.push(by_view[session.view])
+
+    def _show_all(self, session: Session) -> None:
+        if self._packed is None:
+            self._packed = self._snapshot.pack()
+        session.push(self._centred(self._packed, session.view))
+        session.started = True
+
+    def _show_view(self, session: Session) -> None:
+        message = self._centring(session.view)
+        if message is not None and session.started:
+            session.push(wire.pack([message], (), self._timestamp_s))
+
+    def _centred(self, frame: wire.Frame, view: str) -> wire.Frame:
+        # In the same frame, so that no browser draws the robot moved but not yet centred.
+        message = self._centring(view)
+        return frame if message is None else frame.extended(message)
+
+    def _centring(self, view: str) -> wire.Message | None:
+        if view == follow.FREE or self._follow_position is None:
+            return None
+        position = self._follow_position(view)
+        return None if position is None else follow.centring(self._follow_frame, position)

@@ -1,0 +1,90 @@
+// Runs before viser's client on the page /viewer/, and makes it a part of the dashboard around it.
+//
+//   from the parent   {type: "hexapods:show", view?: "leader" | "1" … "8" | "free", theme?: "light" | "dark"}
+//   to the parent     {type: "hexapods:status", status: "connected" | "reconnecting" | "full"}
+//                     {type: "hexapods:key", key, code, shiftKey}
+(() => {
+  "use strict";
+
+  const root = document.documentElement;
+  const query = new URLSearchParams(location.search);
+  let view = query.get("view") ?? "leader";
+  let socketWorker = null;
+
+  const tellParent = (message) => {
+    if (parent !== window) parent.postMessage(message, location.origin);
+  };
+
+  // ---- what the parent asks for
+  const setTheme = (theme) => {
+    if (theme === "light" || theme === "dark") root.dataset.theme = theme;
+  };
+  const setView = (wanted) => {
+    if (typeof wanted !== "string") return;
+    view = wanted;
+    sendView();
+  };
+  addEventListener("message", ({ origin, source, data }) => {
+    if (origin !== location.origin || source !== parent) return;
+    if (data?.type !== "hexapods:show") return;
+    setTheme(data.theme);
+    setView(data.view);
+  });
+  setTheme(query.get("theme"));
+  if (query.has("playbackPath")) root.dataset.playback = "";
+
+  // ---- viser's socket lives in a worker, which sends for us what its client never says
+  const sendView = () =>
+    socketWorker?.postMessage({ type: "send", message: { type: "FollowMessage", view } });
+
+  const socketAddress = () => {
+    const address = new URL(location.pathname, location.href);
+    address.protocol = location.protocol.replace("http", "ws");
+    address.searchParams.set("view", view);
+    return address.href;
+  };
+
+  const onSocket = ({ data }) => {
+    if (data.type === "connected") {
+      // The address has the view of the first time; it may have changed since.
+      sendView();
+      tellParent({ type: "hexapods:status", status: "connected" });
+    } else if (data.type === "closed") {
+      if (data.versionMismatch) reloadOnce();
+      const status = data.closeReason === "full" ? "full" : "reconnecting";
+      tellParent({ type: "hexapods:status", status });
+    }
+  };
+
+  // The server has been upgraded under this page; but never reload in a loop.
+  const reloadOnce = () => {
+    const last = Number(sessionStorage.getItem("hexapods:reloaded"));
+    if (Date.now() - last < 60_000) return;
+    sessionStorage.setItem("hexapods:reloaded", String(Date.now()));
+    location.reload();
+  };
+
+  window.Worker = class extends Worker {
+    postMessage(message, ...rest) {
+      if (message?.type !== "set_server") return super.postMessage(message, ...rest);
+      socketWorker = this;
+      this.addEventListener("message", onSocket);
+      // Whatever the page's query says: a stream from elsewhere could run scripts here.
+      return super.postMessage({ ...message, server: socketAddress() }, ...rest);
+    }
+  };
+
+  // ---- the client reconnects only while it has the focus, which an iframe may never get
+  document.hasFocus = () => !document.hidden;
+  document.addEventListener("visibilitychange", () => dispatchEvent(new Event("focus")));
+
+  // ---- the dashboard's shortcuts work while the viewer has the focus
+  addEventListener("keydown", (event) => {
+    const { key, code, shiftKey } = event;
+    if (event.ctrlKey || event.altKey || event.metaKey || event.repeat) return;
+    if (event.target.closest?.("input, textarea, select, [contenteditable]")) return;
+    if (key.length === 1 || key === "Escape") {
+      tellParent({ type: "hexapods:key", key, code, shiftKey });
+    }
+  });
+})();

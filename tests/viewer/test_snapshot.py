@@ -1,0 +1,170 @@
+"""A snapshot says the same as all the frames it was made of, and no more."""
+
+from collections.abc import Callable
+
+import pytest
+import viser
+
+from app.viewer import wire
+from app.viewer.snapshot import Backlog, Snapshot
+from tests.viewer.serving import Robots, Viewer, array, says
+
+Record = Callable[[], list[wire.Frame]]
+
+
+@pytest.fixture
+def record(stage: viser.ViserServer) -> Record:
+    """Every frame that viser has sent since the test began, up to now."""
+    viewer = Viewer(f"ws://127.0.0.1:{stage.get_port()}/")
+    frames = viewer.frames_until(says("ReplayDoneMessage"))
+
+    def so_far() -> list[wire.Frame]:
+        stage.scene.set_up_direction("-y")
+        mark = says("SetOrientationMessage", name="")
+        frames.extend(viewer.frames_until(mark))
+        return frames
+
+    return so_far
+
+
+def folded(frames: list[wire.Frame], *, keep_removals: bool = False) -> wire.Frame:
+    snapshot = Snapshot(keep_removals=keep_removals)
+    for frame in frames:
+        snapshot.apply(frame)
+    # What goes over the wire, rather than what we believe it to be.
+    return wire.parse(snapshot.pack().raw)
+
+
+def about(frame: wire.Frame, name: str) -> list[str]:
+    return [message["type"] for message in frame.messages if message.get("name") == name]
+
+
+def test_only_the_newest_pose_is_kept(
+    stage: viser.ViserServer, robots: Robots, record: Record
+) -> None:
+    frame_of_robot = stage.scene.add_frame("/world/frame")
+    for place in range(10):
+        robots.stand_at(place)
+        frame_of_robot.position = (place, 0, 0)
+
+    all_in_one = folded(record())
+
+    positions = array(all_in_one, Robots.NAME, "batched_positions")
+    assert positions is not None
+    assert positions.tolist() == [9] * 12
+    assert about(all_in_one, Robots.NAME).count("SceneNodeUpdateMessage") == 1
+    assert about(all_in_one, "/world/frame").count("SetPositionMessage") == 1
+    assert says("SetPositionMessage", name="/world/frame", position=[9.0, 0.0, 0.0])(all_in_one)
+
+
+def test_a_thing_is_made_before_it_is_changed(stage: viser.ViserServer, record: Record) -> None:
+    label = stage.scene.add_label("/world/plate", "one")
+    label.text = "two"
+    label.visible = False
+
+    types = about(folded(record()), "/world/plate")
+
+    assert types[0] == "LabelMessage"
+    assert set(types[1:]) >= {"SceneNodeUpdateMessage", "SetSceneNodeVisibilityMessage"}
+
+
+def test_what_is_gone_is_forgotten(stage: viser.ViserServer, record: Record) -> None:
+    parent = stage.scene.add_frame("/world/ghost")
+    child = stage.scene.add_label("/world/ghost/name", "gone")
+    child.text = "still gone"
+    folder = stage.gui.add_folder("folder")
+    with folder:
+        slider = stage.gui.add_slider("speed", 0, 1, 0.1, 0.5)
+    slider.visible = False
+    before = record()[:]
+    parent.remove()
+    folder.remove()
+
+    now = folded([*before, *record()])
+
+    assert about(now, "/world/ghost") == about(now, "/world/ghost/name") == []
+    assert not {"GuiFolderMessage", "GuiSliderMessage", "GuiUpdateMessage", "GuiRemoveMessage"} & {
+        message["type"] for message in now.messages
+    }
+
+
+def test_who_saw_it_is_told_that_it_is_gone(stage: viser.ViserServer, record: Record) -> None:
+    ghost = stage.scene.add_frame("/world/ghost")
+    seen = len(record())
+    ghost.position = (1, 2, 3)
+    ghost.remove()
+
+    news = folded(record()[seen:], keep_removals=True)
+
+    assert about(news, "/world/ghost") == ["RemoveSceneNodeMessage"]
+
+
+def test_a_successor_comes_after_the_removal(stage: viser.ViserServer, record: Record) -> None:
+    ghost = stage.scene.add_frame("/world/ghost")
+    seen = len(record())
+    ghost.remove()
+    record()
+    stage.scene.add_label("/world/ghost", "another")
+
+    types = about(folded(record()[seen:], keep_removals=True), "/world/ghost")
+
+    assert types[:2] == ["RemoveSceneNodeMessage", "LabelMessage"]
+
+
+def test_a_replacement_takes_the_old_ones_changes_with_it(
+    stage: viser.ViserServer, record: Record
+) -> None:
+    stage.scene.add_label("/world/plate", "old").font_screen_scale = 7
+    stage.scene.add_label("/world/plate", "new")
+
+    now = folded(record())
+
+    assert "font_screen_scale" not in str([m for m in now.messages if "updates" in m])
+    assert about(now, "/world/plate").count("LabelMessage") == 1
+
+
+def test_it_ends_with_the_word_that_viser_s_client_waits_for(record: Record) -> None:
+    frames = record()
+
+    assert folded(frames).messages[-1] == {"type": "ReplayDoneMessage"}
+    assert not says("ReplayDoneMessage")(folded(frames[-1:]))
+
+
+def test_folding_snapshots_is_folding_all(robots: Robots, record: Record) -> None:
+    for place in range(4):
+        robots.stand_at(place)
+    frames = record()
+
+    halves = [folded(frames[:3], keep_removals=True), folded(frames[3:], keep_removals=True)]
+
+    assert folded(halves).messages == folded(frames).messages
+    assert folded(halves).buffers == folded(frames).buffers
+
+
+def test_a_short_backlog_is_handed_on_as_it_came(record: Record) -> None:
+    frames = (record() * Backlog.LIMIT)[: Backlog.LIMIT]
+    backlog = Backlog()
+    for frame in frames:
+        backlog.push(frame)
+
+    assert backlog.take() == frames
+    assert backlog.take() == []
+    assert backlog.merged == 0
+
+
+def test_a_long_backlog_becomes_one_frame(robots: Robots, record: Record) -> None:
+    backlog = Backlog()
+    for place in range(1, 20):
+        robots.stand_at(place)
+        record()
+    frames = record()
+    for frame in frames:
+        backlog.push(frame)
+
+    [merged] = backlog.take()
+
+    positions = array(wire.parse(merged.raw), Robots.NAME, "batched_positions")
+    assert positions is not None
+    assert positions.tolist() == [19] * 12
+    assert backlog.merged == len(frames) >= 20
+    assert backlog.take() == []
