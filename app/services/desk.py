@@ -1,0 +1,122 @@
+"""What a job's process does between two steps: report, obey, and keep its pace."""
+
+import queue
+import time
+from collections.abc import Callable
+from typing import Any, Literal
+
+from app.agents.protocol import Tunable
+from app.runs.recording import NEWEST_STEPS
+from app.runs.records import RaceRecord, StepTaken, TrainingRecord
+from app.services.orders import Batch, Changed, Message, Word
+
+BATCHES_PER_S = 30
+
+
+class Desk:
+    """Stands between a loop and the server.
+
+    Attributes:
+        stopped: whether the job was told to stop.
+        changes: what was changed while it ran, each with the steps that were done before.
+    """
+
+    def __init__(self, send: Callable[[Message], None], words: "queue.SimpleQueue[Word]") -> None:
+        self.stopped = False
+        self.changes: list[dict[str, Any]] = []
+        self.send = send
+        self._words = words
+        self._paused = False
+        self._pace: float | Literal["max"] = "max"
+        self._step_s = 0.0
+        self._due_s = time.monotonic()
+        self._records: list[TrainingRecord | RaceRecord] = []
+        self._done = 0
+        self._sent_s = 0.0
+
+    def keep_pace(self, pace: float | Literal["max"], step_s: float) -> None:
+        """Let a step take as long as it would at `pace` times real time."""
+        self._pace, self._step_s = pace, step_s
+        self._due_s = time.monotonic()
+
+    def report(self, record: TrainingRecord | RaceRecord, done: int) -> None:
+        """Send a record, together with others if they come fast."""
+        self._records.append(record)
+        self._done = done
+        if time.monotonic() - self._sent_s >= 1 / BATCHES_PER_S:
+            self.flush()
+
+    def flush(self) -> None:
+        """Send what was not sent yet."""
+        if self._records:
+            self.send(Batch(_worth_sending(self._records), self._done))
+        self._records = []
+        self._sent_s = time.monotonic()
+
+    def go_on(self, step: int, agent: object = None) -> bool:
+        """Obey what there is to obey, and wait until the next step is due.
+
+        Args:
+            step: how many steps are done.
+            agent: whose rates may be changed.
+
+        Returns:
+            False if the job is to stop.
+        """
+        while True:
+            wait_s = self._wait_s()
+            if wait_s is None or wait_s > 1 / BATCHES_PER_S:
+                self.flush()
+            try:
+                if wait_s is not None and wait_s <= 0:
+                    word = self._words.get_nowait()
+                else:
+                    word = self._words.get(timeout=wait_s)
+            except queue.Empty:
+                self._set_due()
+                return True
+            self._obey(word, step, agent)
+            if self.stopped:
+                return False
+
+    def _wait_s(self) -> float | None:
+        """Until the next step is due; None for as long as it is paused."""
+        if self._paused:
+            return None
+        return 0.0 if self._pace == "max" else self._due_s - time.monotonic()
+
+    def _set_due(self) -> None:
+        """The next step begins now; when the one after it is due follows from that."""
+        if self._pace != "max":
+            # From when it was due, or the time that a step takes to compute would add up.
+            began = max(self._due_s, time.monotonic() - self._step_s / self._pace)
+            self._due_s = began + self._step_s / self._pace
+
+    def _obey(self, word: Word, step: int, agent: object) -> None:
+        if word.verb == "stop":
+            self.stopped = True
+        elif word.verb == "tune":
+            self._tune(word, step, agent)
+        else:
+            self._paused = word.verb == "pause"
+            self._due_s = time.monotonic()
+
+    def _tune(self, word: Word, step: int, agent: object) -> None:
+        changes = dict(word.changes)
+        rates = {name: value for name, value in changes.items() if name != "pace"}
+        if rates and isinstance(agent, Tunable):
+            agent.tune(**rates)
+        if "pace" in changes:
+            self.keep_pace(changes["pace"], self._step_s)
+        self.changes.append({"step": step, **changes})
+        self.send(Changed(word.token, step, changes))
+
+
+def _worth_sending(
+    records: list[TrainingRecord | RaceRecord],
+) -> tuple[TrainingRecord | RaceRecord, ...]:
+    """All but those steps of practice that the recording would drop in the same moment."""
+    if len(records) <= NEWEST_STEPS:
+        return tuple(records)
+    early = (r for r in records[:-NEWEST_STEPS] if not isinstance(r, StepTaken))
+    return (*early, *records[-NEWEST_STEPS:])

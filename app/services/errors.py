@@ -1,0 +1,27 @@
+"""What can go wrong with runs, beside bad input."""
+
+from app.domain.errors import HexapodError
+
+
+class NotFound(HexapodError):
+    """There is no such thing (any more)."""
+
+
+class Conflict(HexapodError):
+    """It cannot be done in the run's present state, which is `state`."""
+
+    def __init__(self, message: str, state: str) -> None:
+        super().__init__(message)
+        self.state = state
+
+
+class Busy(HexapodError):
+    """Too much is waiting; worth another try after `retry_after_s`."""
+
+    def __init__(self, message: str, retry_after_s: int) -> None:
+        super().__init__(message)
+        self.retry_after_s = retry_after_s
+
+
+class JobFailed(HexapodError):
+    """A job's process ended without a result; the message says how."""

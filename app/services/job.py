@@ -1,0 +1,197 @@
+"""A job while it runs: what its process says becomes the run's state, recording and events."""
+
+import threading
+import time
+from collections import deque
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from typing import Any
+
+from app.domain.robot import as_mapping
+from app.runs.config import RaceConfig
+from app.runs.recording import LaneRecording
+from app.runs.records import Evaluated, Reference
+from app.runs.results import race_result
+from app.services.bus import EventBus
+from app.services.orders import (
+    Batch,
+    Began,
+    Changed,
+    Ended,
+    Failed,
+    Message,
+    Order,
+    RaceOrder,
+    Saved,
+    Word,
+)
+from app.services.process import Child
+from app.services.recordings import Recordings
+from app.services.store import LIVE, TABLE, Run, RunStore, State
+from app.services.views import run_view
+
+EVENTS_PER_S = 10
+_ETA_WINDOW_S = 5.0
+
+
+class Job:
+    """One run that a process works on.
+
+    Attributes:
+        run_id: of the run.
+        is_race: what kind of run it is.
+        paused: whether it was told to wait.
+        stopping: whether it was told to stop.
+        shared: whether another job ran at the same time.
+        ended: set when the run's last state is in the store.
+        gone: set when its process is no more, and all have been told.
+    """
+
+    def __init__(
+        self, run: Run, order: Order, store: RunStore, recordings: Recordings, bus: EventBus
+    ) -> None:
+        self.run_id, self.is_race = run.id, run.kind == "race"
+        self.paused = self.stopping = self.shared = False
+        self.ended, self.gone = threading.Event(), threading.Event()
+        self.child = Child(f"{run.kind} {run.id}", order, self._take)
+        self._run, self._order = run, order
+        self._store, self._recordings, self._bus = store, recordings, bus
+        self._answers: dict[int, threading.Event] = {}
+        self._published_s = 0.0
+        self._progress: deque[tuple[float, int]] = deque()
+
+    def pause(self) -> None:
+        """Wait after the present step."""
+        self.paused = True
+        self.child.send(Word("pause"))
+
+    def resume(self) -> None:
+        """Go on."""
+        self.paused = False
+        self._progress.clear()
+        self.child.send(Word("resume"))
+
+    def stop(self) -> None:
+        """End after the present step, with what has come of it so far."""
+        self.stopping = True
+        self.child.send(Word("stop"))
+
+    def tune(self, changes: Mapping[str, Any]) -> threading.Event:
+        """Change rates or pace after the present step; the event is set once that is done."""
+        token, answer = len(self._answers), threading.Event()
+        self._answers[token] = answer
+        self.child.send(Word("tune", token, changes))
+        return answer
+
+    def end(self, state: State, error: str | None = None, result: Any = None) -> None:
+        """Give the run its last state, if it has none yet."""
+        if self.ended.is_set():
+            return
+        now = datetime.now(UTC)
+        run = self._store.change(
+            self.run_id, LIVE, state, error=error, result=result, ended_at=now, eta_s=None
+        )
+        self.ended.set()
+        self._publish(run)
+
+    def _take(self, message: Message) -> None:
+        """Take in a message of the process; called from its thread."""
+        if isinstance(message, Batch):
+            self._take_records(message)
+        elif isinstance(message, Began):
+            self._begin(message)
+        elif isinstance(message, Changed):
+            self._take_change(message)
+        elif isinstance(message, Saved):
+            self._store.put_artifact(self.run_id, TABLE, message.table)
+        elif isinstance(message, Ended):
+            self._take_end(message)
+        elif isinstance(message, Failed):
+            self.end("failed", f"The {self._run.kind} failed: {message.reason}")
+
+    def _begin(self, began: Began) -> None:
+        config = self._run.config
+        if isinstance(config, RaceConfig):
+            poses = zip(config.lanes, began.rest_qpos, strict=True)
+            lanes = [LaneRecording(lane.agent, pose) for lane, pose in poses]
+            self._recordings.begin_race(self.run_id, lanes)
+        else:
+            self._recordings.begin_training(self.run_id, began.rest_qpos[0])
+
+    def _take_records(self, batch: Batch) -> None:
+        evaluated = [r for r in batch.records if isinstance(r, Evaluated)]
+        rows = [
+            {"step": r.step, "distance_m": r.distance_m, "epsilon": r.epsilon} for r in evaluated
+        ]
+        if rows:
+            self._store.append_evaluations(self.run_id, rows)
+        for record in batch.records:
+            self._recordings.add(self.run_id, record)
+            if isinstance(record, Reference):
+                distance = record.greedy_distance_m
+                self._store.update(self.run_id, greedy_distance_m=distance)
+                self._tell("reference", greedy_distance_m=distance)
+        for row in rows:
+            self._tell("evaluation", **row)
+        run = self._store.update_progress(self.run_id, batch.done, self._eta_s(batch.done))
+        if time.monotonic() - self._published_s >= 1 / EVENTS_PER_S:
+            self._publish(run)
+
+    def _take_change(self, changed: Changed) -> None:
+        change = {"step": changed.step, **changed.changes}
+        done = self._store.get(self.run_id).changes
+        run = self._store.update(self.run_id, changes=(*done, change))
+        self._progress.clear()
+        self._tell("rates", **change)
+        self._publish(run)
+        self._answers[changed.token].set()
+
+    def _take_end(self, ended: Ended) -> None:
+        lanes = self._recordings.race(self.run_id)
+        if lanes is None:
+            self.end(ended.outcome, result=ended.result)
+            return
+        result = self._race_result(lanes)
+        failures = [lane.failure for lane in lanes if lane.failure]
+        if ended.outcome == "finished" and len(failures) == len(lanes):
+            self.end("failed", f"No lane could finish the race: {failures[0]}", result)
+        else:
+            self.end(ended.outcome, result=result)
+
+    def _race_result(self, lanes: list[LaneRecording]) -> dict[str, Any]:
+        config = self._run.config
+        assert isinstance(config, RaceConfig)
+        result = race_result(lanes, config.steps)
+        robots = _trained_robots(config, self._order)
+        numbered = zip(result["lanes"], self._run.lane_training_ids, robots, strict=True)
+        result["lanes"] = [
+            {"agent": lane["agent"], "training_id": training, "trained_robot": robot, **lane}
+            for lane, training, robot in numbered
+        ]
+        return {**result, "shared_machine": self.shared}
+
+    def _eta_s(self, done: int) -> float | None:
+        """From the newest seconds, since pace and machine change."""
+        now = time.monotonic()
+        self._progress.append((now, done))
+        while self._progress[0][0] < now - _ETA_WINDOW_S:
+            self._progress.popleft()
+        began, before = self._progress[0]
+        if done == before:
+            return None
+        return round((self._run.total - done) * (now - began) / (done - before), 1)
+
+    def _tell(self, event: str, **data: Any) -> None:
+        self._bus.publish(event, {"run_id": self.run_id, **data}, self.run_id)
+
+    def _publish(self, run: Run) -> None:
+        self._published_s = time.monotonic()
+        self._bus.publish("run", run_view(run), self.run_id)
+
+
+def _trained_robots(config: RaceConfig, order: Order) -> list[Any]:
+    """For each lane the robot that its table was learned on, where that is another one."""
+    assert isinstance(order, RaceOrder)
+    here = as_mapping(config.robot)
+    learned = [table and table.meta["config"]["robot"] for table in order.tables]
+    return [None if robot == here else robot for robot in learned]

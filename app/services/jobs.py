@@ -1,0 +1,310 @@
+"""Jobs: what is to run, what runs, and the words that change it."""
+
+import logging
+import os
+import threading
+import time
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+from typing import Any
+
+from app.agents import registry
+from app.domain.errors import HexapodError, InvalidInput
+from app.services.bus import EventBus
+from app.services.entries import (
+    Entry,
+    RaceStart,
+    TrainingStart,
+    race_entries,
+    training_entry,
+)
+from app.services.errors import Busy, Conflict
+from app.services.ids import RunIds
+from app.services.job import Job
+from app.services.recordings import Recordings
+from app.services.store import LIVE, PAUSED, QUEUED, RUNNING, Run, RunStore, State
+from app.services.views import run_view
+
+MAX_QUEUED = 32
+MAX_PAUSED = 16
+RETRY_AFTER_S = 10
+STOP_GRACE_S = 10.0
+_ANSWER_S = 5.0
+_CLOSING_S = 2.0
+_logger = logging.getLogger(__name__)
+
+
+class Jobs:
+    """Starts runs in order, as many at once as there are cores, and tells them what to do.
+
+    Every verb may be called from any thread. A paused job needs no core and gives its place away.
+    """
+
+    def __init__(
+        self,
+        store: RunStore,
+        recordings: Recordings,
+        bus: EventBus,
+        on_start: Callable[[str], None] | None = None,
+        cores: int | None = None,
+    ) -> None:
+        """Start nothing yet.
+
+        Args:
+            store: where runs are kept.
+            recordings: where their motion goes.
+            bus: who wants to know.
+            on_start: called with a run's id when it starts to run.
+            cores: how many jobs run at once; the machine's by default.
+        """
+        self._store, self._recordings, self._bus = store, recordings, bus
+        self._on_start = on_start
+        self.cores = cores or os.cpu_count() or 1
+        self._new_id = RunIds()
+        self._queue: list[Entry] = []
+        self._jobs: dict[str, Job] = {}
+        self._closing = False
+        self._changed = threading.Condition()
+        """Guards the queue and the jobs; notified when something may be started."""
+        # The kernel ends a child with the thread that started it, so that one thread starts all.
+        self._starter = threading.Thread(target=self._keep_starting, name="jobs", daemon=True)
+
+    def open(self) -> None:
+        """Begin to start what is queued."""
+        self._starter.start()
+
+    def close(self) -> None:
+        """End every process, and start no more. What ran is `interrupted`."""
+        with self._changed:
+            self._closing = True
+            self._changed.notify_all()
+            jobs = list(self._jobs.values())
+        for job in jobs:
+            job.child.kill()
+        deadline = time.monotonic() + _CLOSING_S
+        for job in jobs:
+            job.gone.wait(max(0.0, deadline - time.monotonic()))
+        if self._starter.is_alive():
+            self._starter.join(_CLOSING_S)
+
+    def train(self, start: TrainingStart) -> Run:
+        """Queue a training.
+
+        Raises:
+            InvalidInput, Conflict: if it cannot be.
+            Busy: if too many runs are waiting.
+        """
+        return self._enqueue([training_entry(start, self._store, self._new_id)])
+
+    def race(self, start: RaceStart) -> Run:
+        """Queue a race, and before it the trainings that it brings along.
+
+        Raises:
+            InvalidInput, Conflict: if it cannot be.
+            Busy: if too many runs are waiting.
+        """
+        return self._enqueue(race_entries(start, self._store, self._new_id))
+
+    def pause(self, run_id: str) -> Run:
+        """Let a running job wait.
+
+        Raises:
+            NotFound: if there is no such run.
+            Conflict: if it does not run, or too many are paused.
+        """
+        with self._changed:
+            job = self._live(run_id, RUNNING, "paused")
+            if sum(other.paused for other in self._jobs.values()) >= MAX_PAUSED:
+                raise Conflict(f"{MAX_PAUSED} runs are paused; stop or resume one", "running")
+            run = self._store.change(run_id, RUNNING, "paused", eta_s=None)
+            job.pause()
+            self._changed.notify_all()
+        self._publish(run)
+        return run
+
+    def resume(self, run_id: str) -> Run:
+        """Let a paused job go on.
+
+        Raises:
+            NotFound: if there is no such run.
+            Conflict: if it is not paused.
+        """
+        with self._changed:
+            job = self._live(run_id, PAUSED, "resumed")
+            run = self._store.change(run_id, PAUSED, "running")
+            job.resume()
+            self._note_company()
+        self._publish(run)
+        return run
+
+    def stop(self, run_id: str) -> Run:
+        """End a run with what has come of it, and wait until it has ended.
+
+        Raises:
+            NotFound: if there is no such run.
+            Conflict: if it has ended, or someone else is stopping it.
+        """
+        with self._changed:
+            run = self._store.get(run_id)
+            if run.state == "queued":
+                return self._stop_queued(run)
+            job = self._live(run_id, LIVE, "stopped")
+            job.stop()
+        if not job.ended.wait(STOP_GRACE_S):
+            job.child.kill()
+            job.ended.wait(_CLOSING_S)
+        return self._store.get(run_id)
+
+    def change(self, run_id: str, changes: Mapping[str, Any]) -> Run:
+        """Change the rates or the pace of a training, and wait until that is obeyed.
+
+        Raises:
+            NotFound: if there is no such run.
+            Conflict: if it neither runs nor is paused.
+            InvalidInput: if its agent has no rates.
+        """
+        with self._changed:
+            job = self._live(run_id, LIVE, "changed")
+            agent = getattr(self._store.get(run_id).config, "agent", "")
+            if set(changes) - {"pace"} and not hasattr(registry.find(agent), "tune"):
+                raise InvalidInput(f"{agent} has no rates that could be changed; give pace only")
+            answer = job.tune(changes)
+        answer.wait(_ANSWER_S)
+        return self._store.get(run_id)
+
+    def delete(self, run_id: str) -> None:
+        """Forget a run that has ended.
+
+        Raises:
+            NotFound: if there is no such run.
+            Conflict: if it has not ended, or a race that waits needs it.
+        """
+        with self._changed:
+            for entry in self._queue:
+                if run_id in entry.run.lane_training_ids and run_id != entry.run.id:
+                    state = self._store.get(run_id).state
+                    raise Conflict(f"race {entry.run.id} waits, and needs its table", state)
+            self._store.delete(run_id)
+        self._recordings.discard(run_id)
+        self._bus.publish("run-deleted", {"id": run_id}, run_id)
+
+    def _enqueue(self, entries: list[Entry]) -> Run:
+        with self._changed:
+            free = self.cores - sum(not job.paused for job in self._jobs.values())
+            if len(self._queue) + len(entries) > MAX_QUEUED + max(0, free):
+                raise Busy(
+                    f"{len(self._queue)} runs are waiting, the most is {MAX_QUEUED}; "
+                    "wait for one to end, or stop one",
+                    RETRY_AFTER_S,
+                )
+            self._store.create(*(entry.run for entry in entries))
+            self._queue += entries
+            for entry in entries:
+                self._publish(entry.run)
+            self._changed.notify_all()
+        return entries[-1].run
+
+    def _live(self, run_id: str, states: frozenset[State], what: str) -> Job:
+        """The job of a run in one of these states, that nobody is stopping."""
+        run = self._store.get(run_id)
+        job = self._jobs.get(run_id)
+        if run.state not in states or job is None:
+            choices = " or ".join(sorted(states))
+            raise Conflict(
+                f"{run.kind} {run_id} is {run.state}; it can be {what} while it is {choices}",
+                run.state,
+            )
+        if job.stopping:
+            raise Conflict(f"{run.kind} {run_id} is {run.state} and being stopped", run.state)
+        return job
+
+    def _stop_queued(self, run: Run) -> Run:
+        """A race takes the trainings along that were made for it."""
+        stopped = self._drop(run, "stopped", None)
+        for training in run.waiting_for:
+            job = self._jobs.get(training)
+            if job is not None and not job.stopping:
+                job.stop()
+        for entry in [entry for entry in self._queue if entry.run.id in run.waiting_for]:
+            self._drop(entry.run, "stopped", f"Stopped together with race {run.id}.")
+        return stopped
+
+    def _drop(self, run: Run, state: State, error: str | None) -> Run:
+        """End a run that waits; and with it those that wait for it."""
+        now = datetime.now(UTC)
+        self._queue = [entry for entry in self._queue if entry.run.id != run.id]
+        run = self._store.change(run.id, QUEUED, state, error=error, ended_at=now)
+        self._publish(run)
+        self._settle(run)
+        return run
+
+    def _settle(self, run: Run) -> None:
+        """Tell those that wait for a run how it ended."""
+        for entry in [entry for entry in self._queue if run.id in entry.waits_for]:
+            if run.state == "finished":
+                entry.waits_for.discard(run.id)
+                left = tuple(i for i in entry.run.waiting_for if i in entry.waits_for)
+                self._publish(self._store.update(entry.run.id, waiting_for=left))
+            elif run.state == "failed":
+                why = f"Its training {run.id} failed: {run.error}"
+                self._drop(entry.run, "failed", why)
+            else:
+                self._drop(entry.run, "stopped", f"Its training {run.id} was stopped.")
+
+    def _keep_starting(self) -> None:
+        with self._changed:
+            while not self._closing:
+                entry = self._next()
+                if entry is None:
+                    self._changed.wait()
+                else:
+                    self._start(entry)
+
+    def _next(self) -> Entry | None:
+        running = sum(not job.paused for job in self._jobs.values())
+        if running >= self.cores:
+            return None
+        return next((entry for entry in self._queue if not entry.waits_for), None)
+
+    def _start(self, entry: Entry) -> None:
+        """Take a run out of the queue and into a process."""
+        self._queue.remove(entry)
+        run_id, now = entry.run.id, datetime.now(UTC)
+        run = self._store.change(run_id, QUEUED, "running", started_at=now, waiting_for=())
+        try:
+            job = Job(run, entry.make_order(), self._store, self._recordings, self._bus)
+            job.child.start(lambda how: self._process_ended(job, how))
+        except (HexapodError, OSError) as error:
+            why = f"The {run.kind} could not be started: {error}"
+            run = self._store.change(run_id, LIVE, "failed", error=why, ended_at=now)
+            self._publish(run)
+            self._settle(run)
+            return
+        self._jobs[run_id] = job
+        self._note_company()
+        self._publish(run)
+        if self._on_start is not None:
+            self._on_start(run_id)
+
+    def _note_company(self) -> None:
+        """Decisions are measured in wall time, so a race says if it had the machine to itself."""
+        running = [job for job in self._jobs.values() if not job.paused]
+        for job in running:
+            job.shared |= len(running) > 1
+
+    def _process_ended(self, job: Job, how: str) -> None:
+        if self._closing:
+            job.end("interrupted", "The server was stopped while it ran.")
+        elif job.stopping:
+            job.end("stopped", f"It did not answer when it was to stop, so {how}.")
+        else:
+            job.end("failed", f"The job ended before it was done: {how}.")
+        with self._changed:
+            del self._jobs[job.run_id]
+            if not self._closing:
+                self._settle(self._store.get(job.run_id))
+            self._changed.notify_all()
+        job.gone.set()
+
+    def _publish(self, run: Run) -> None:
+        self._bus.publish("run", run_view(run), run.id)

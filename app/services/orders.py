@@ -1,0 +1,90 @@
+"""What goes through the pipe between the server and a job's process: all of it picklable."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.runs.config import RaceConfig, TrainingConfig
+from app.runs.records import RaceRecord, TrainingRecord
+from app.runs.tables import Checkpoint
+
+# Down: an order first, then words.
+
+
+@dataclass(frozen=True)
+class TrainingOrder:
+    """Train, from what a table holds if one is given."""
+
+    config: TrainingConfig
+    table: Checkpoint | None = None
+
+
+@dataclass(frozen=True)
+class RaceOrder:
+    """Race, each lane with its table if it has one."""
+
+    config: RaceConfig
+    tables: tuple[Checkpoint | None, ...]
+
+
+Order = TrainingOrder | RaceOrder
+
+
+class Word(NamedTuple):
+    """Something to obey between two steps."""
+
+    verb: Literal["pause", "resume", "stop", "tune"]
+    token: int = 0
+    """By which the answer to `tune` is known."""
+    changes: Mapping[str, Any] = {}
+    """For `tune`: any of alpha, gamma, epsilon, pace."""
+
+
+# Up.
+
+
+class Began(NamedTuple):
+    """All is built, and the robots stand at rest in these poses, one for each lane."""
+
+    rest_qpos: tuple[NDArray[np.float32], ...]
+
+
+class Batch(NamedTuple):
+    """What happened since the last one."""
+
+    records: tuple[TrainingRecord | RaceRecord, ...]
+    done: int
+    """Steps so far, of all lanes together."""
+
+
+class Changed(NamedTuple):
+    """A `tune` was obeyed after this many steps."""
+
+    token: int
+    step: int
+    changes: Mapping[str, Any]
+
+
+class Saved(NamedTuple):
+    """The table as it is now, as a file."""
+
+    table: bytes
+
+
+class Ended(NamedTuple):
+    """The job is done, or was stopped; the result is a training's."""
+
+    outcome: Literal["finished", "stopped"]
+    result: dict[str, Any] | None
+
+
+class Failed(NamedTuple):
+    """The job cannot go on, for a reason that fits a sentence."""
+
+    reason: str
+
+
+Message = Began | Batch | Changed | Saved | Ended | Failed

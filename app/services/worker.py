@@ -1,0 +1,106 @@
+"""A job, in its own process: builds what the order names, runs the loop, and reports.
+
+Ends when the job does or when the server does, however that ends.
+"""
+
+import ctypes
+import logging
+import os
+import queue
+import signal
+import sys
+import threading
+import time
+from contextlib import suppress
+from multiprocessing.connection import Connection
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.assembly import build_learner, build_walkers, finish_training
+from app.domain.errors import HexapodError
+from app.runs.racing import race
+from app.runs.records import LaneStep, StepTaken
+from app.runs.tables import snapshot, to_bytes
+from app.runs.training import train
+from app.runs.walker import Walker
+from app.services.desk import Desk
+from app.services.orders import Began, Ended, Failed, Order, RaceOrder, Saved, TrainingOrder, Word
+
+NICENESS = 15
+_PR_SET_PDEATHSIG = 1
+_logger = logging.getLogger(__name__)
+
+
+def main(order: Order, pipe: Connection) -> None:
+    """Work on an order until it is done, and end the process."""
+    _be_modest()
+    words: queue.SimpleQueue[Word] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(pipe, words), daemon=True).start()
+    desk = Desk(pipe.send, words)
+    try:
+        if isinstance(order, TrainingOrder):
+            _train(order, desk)
+        else:
+            _race(order, desk)
+    except HexapodError as error:
+        desk.send(Failed(str(error)))
+    except Exception as error:
+        _logger.exception("a job failed")
+        desk.send(Failed(f"something in it broke ({type(error).__name__}: {error})"))
+    pipe.close()
+    sys.stderr.flush()
+    # Nothing is left to be done, and taking MuJoCo's threads down takes a while.
+    os._exit(0)
+
+
+def _train(order: TrainingOrder, desk: Desk) -> None:
+    config = order.config
+    learner = build_learner(config, order.table, threads=0)
+    walker = learner.walker
+    desk.send(Began((_pose(walker),)))
+    desk.keep_pace(config.pace, config.robot.step_s)
+    for record in train(learner, config, record=True):
+        desk.report(record, learner.step)
+        if isinstance(record, StepTaken) and not desk.go_on(learner.step, walker.agent):
+            break
+    desk.flush()
+    result = finish_training(learner, config)
+    desk.send(Saved(to_bytes(snapshot(learner, config, changes=desk.changes))))
+    desk.send(Ended("stopped" if desk.stopped else "finished", result))
+
+
+def _race(order: RaceOrder, desk: Desk) -> None:
+    walkers = build_walkers(order.config, order.tables)
+    desk.send(Began(tuple(_pose(walker) for walker in walkers)))
+    done = 0
+    for record in race(walkers, order.config.steps, time.perf_counter):
+        done += isinstance(record, LaneStep)
+        desk.report(record, done)
+        if not desk.go_on(done):
+            break
+    desk.flush()
+    desk.send(Ended("stopped" if desk.stopped else "finished", None))
+
+
+def _pose(walker: Walker) -> NDArray[np.float32]:
+    return walker.simulator.pose(walker.state).astype(np.float32)
+
+
+def _be_modest() -> None:
+    """Let the server go first, and end with it."""
+    with suppress(OSError):
+        os.nice(NICENESS)
+    # Ctrl-C reaches every process of a terminal; the server says what becomes of its jobs.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def _listen(pipe: Connection, words: "queue.SimpleQueue[Word]") -> None:
+    """Take in words until there is nobody to send any."""
+    try:
+        while True:
+            words.put(pipe.recv())
+    except (EOFError, OSError):
+        os._exit(1)

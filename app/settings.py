@@ -1,0 +1,152 @@
+"""Settings of a server: from the environment, overruled by options, checked before anything starts.
+
+Every name is `HEXAPODS_…`; an empty variable counts as none, since that is how compose files
+leave one out.
+"""
+
+import ipaddress
+import os
+import re
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, get_args
+from urllib.parse import urlsplit
+
+import platformdirs
+
+from app.domain.errors import InvalidInput, UnknownName
+
+Spectators = Literal["public", "token"]
+
+PREFIX = "HEXAPODS_"
+_TOKEN = re.compile(r"[\x21-\x7e]{8,200}")
+_HOST_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9_]([a-z0-9_-]*[a-z0-9_])?(\.[a-z0-9_-]+)*")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """What a server is told before it starts.
+
+    Attributes:
+        host: address to bind, by number or name.
+        port: to bind; 0 lets the system choose.
+        data: the data folder; made if it is not there.
+        token: makes its bearer an operator; None makes everyone one, which is only allowed on
+            loopback.
+        spectators: `public` lets anyone watch, `token` only who has the token.
+        public_url: where a proxy offers the server, such as `https://hexapods.example`.
+        allowed_hosts: further host names by which the server may be called.
+    """
+
+    host: str = "127.0.0.1"
+    port: int = 8000
+    data: Path
+    token: str | None = None
+    spectators: Spectators = "public"
+    public_url: str | None = None
+    allowed_hosts: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if isinstance(self.port, bool) or not 0 <= self.port <= 65535:
+            raise InvalidInput(f"the port must be from 0 to 65535, not {self.port}")
+        if self.token is not None and not _TOKEN.fullmatch(self.token):
+            raise InvalidInput(
+                f"{PREFIX}TOKEN must have 8 to 200 printable ASCII characters and no spaces"
+            )
+        if self.spectators not in get_args(Spectators):
+            raise UnknownName(f"{PREFIX}SPECTATORS", self.spectators, get_args(Spectators))
+        if self.public_url is not None:
+            _check_url(self.public_url)
+        for name in self.allowed_hosts:
+            if not _HOST_NAME.fullmatch(name):
+                raise InvalidInput(
+                    f"{PREFIX}ALLOWED_HOSTS must be host names separated by commas, without "
+                    f"scheme, port or star; {name!r} is none"
+                )
+        if self.token is None and not is_loopback(self.host):
+            raise InvalidInput(
+                f"refusing to listen on {self.host} without a token, since anyone there could "
+                f"start and delete runs: set {PREFIX}TOKEN, use --share, or bind 127.0.0.1"
+            )
+
+    @property
+    def public_host(self) -> str | None:
+        """The host name in `public_url`, in lower case."""
+        return None if self.public_url is None else urlsplit(self.public_url).hostname
+
+    @property
+    def public_origin(self) -> str | None:
+        """The origin of `public_url`, as browsers send it."""
+        if self.public_url is None:
+            return None
+        parts = urlsplit(self.public_url)
+        return f"{parts.scheme}://{parts.netloc.lower()}"
+
+    def prepare_data(self) -> None:
+        """Make the data folder, and make sure that it can be written.
+
+        Raises:
+            InvalidInput: if it cannot.
+        """
+        try:
+            self.data.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=self.data):
+                pass
+        except OSError as error:
+            raise InvalidInput(
+                f"cannot write to the data folder {self.data} ({error.strerror}); choose one "
+                f"that can be written with --data or {PREFIX}DATA"
+            ) from error
+
+
+def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Settings:
+    """The settings of an environment; an option that is not None goes before its variable.
+
+    Args:
+        environ: the environment.
+        options: `host`, `port`, `data`, `token`, `spectators`, `public_url`, `allowed_hosts`.
+
+    Raises:
+        InvalidInput: for a value that cannot be, or a refusal to start with it.
+    """
+    names = ("host", "port", "data", "token", "spectators", "public_url", "allowed_hosts")
+    given: dict[str, Any] = {name: environ.get(PREFIX + name.upper()) or None for name in names}
+    given |= {name: value for name, value in options.items() if value is not None}
+    given = {name: value for name, value in given.items() if value is not None}
+    if isinstance(given.get("port"), str):
+        given["port"] = _port(given["port"])
+    if isinstance(given.get("allowed_hosts"), str):
+        hosts = given["allowed_hosts"].lower().split(",")
+        given["allowed_hosts"] = tuple(host.strip() for host in hosts if host.strip())
+    data = given.pop("data", None) or platformdirs.user_data_path("racing-hexapods", False)
+    return Settings(data=Path(data).expanduser().absolute(), **given)
+
+
+def is_loopback(host: str) -> bool:
+    """Whether only this machine can reach what listens there."""
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return False
+
+
+def _port(text: str) -> int:
+    if not text.isascii() or not text.isdigit():
+        raise InvalidInput(f"the port must be from 0 to 65535, not {text!r}")
+    return int(text)
+
+
+def _check_url(url: str) -> None:
+    try:
+        parts = urlsplit(url)
+        good = parts.scheme in ("http", "https") and parts.hostname and parts.port != 0
+    except ValueError:
+        good = False
+    if not good or parts.username or parts.path.strip("/") or parts.query or parts.fragment:
+        raise InvalidInput(
+            f"{PREFIX}PUBLIC_URL must look like https://hexapods.example, without path, not {url!r}"
+        )
