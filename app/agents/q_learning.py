@@ -1,0 +1,128 @@
+"""Tabular Q-learning with an ε-greedy policy (paper, Algorithm 1)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.agents.protocol import AgentState, Problem, Transition
+from app.agents.q_table import QTable
+from app.domain.types import Action, Cells, FloatArray
+
+
+@dataclass(frozen=True)
+class EpsilonSchedule:
+    """ε falls linearly over the episodes: start + (end − start) · e / max(1, n − 1)."""
+
+    start: float = 1.0
+    end: float = 0.0
+    episodes: int = 1
+
+    def __call__(self, episode: int) -> float:
+        """The ε of an episode, counted from 0; episodes past the last keep its ε."""
+        last = max(1, self.episodes - 1)
+        return self.start + (self.end - self.start) * min(episode, last) / last
+
+
+class QLearning:
+    """Learns the value of each action in each state from nothing but what it sees.
+
+    Args:
+        rng: decides when to explore, where to, and between equals.
+        problem: sizes the table.
+        explore: if False the policy is greedy in the table, whatever the schedule says.
+        alpha: learning rate in (0, 1].
+        gamma: discount in [0, 1).
+        epsilon_start, epsilon_end: of the schedule over the episodes.
+        steps: how many steps it will learn, which gives the number of episodes.
+        steps_per_episode: ε stays the same so long.
+    """
+
+    def __init__(
+        self,
+        rng: np.random.Generator,
+        problem: Problem,
+        *,
+        explore: bool = True,
+        alpha: float = 0.3,
+        gamma: float = 0.9,
+        epsilon_start: float = 1.0,
+        epsilon_end: float = 0.0,
+        steps: int = 500,
+        steps_per_episode: int = 50,
+    ) -> None:
+        self.table = QTable(len(problem.pairs), len(problem.cells_m))
+        self._rng, self._explore = rng, explore
+        self._alpha, self._gamma = alpha, gamma
+        self._schedule = EpsilonSchedule(epsilon_start, epsilon_end, -(-steps // steps_per_episode))
+        self._steps_per_episode = steps_per_episode
+        self._learned = 0
+        self._fixed_epsilon: float | None = None
+
+    @property
+    def epsilon(self) -> float:
+        """The probability of a random action at the next step."""
+        if not self._explore:
+            return 0.0
+        if self._fixed_epsilon is not None:
+            return self._fixed_epsilon
+        return self._schedule(self._learned // self._steps_per_episode)
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        """ε-greedy; ties are broken at random."""
+        epsilon = self.epsilon
+        if epsilon > 0 and self._rng.random() < epsilon:
+            return legal[int(self._rng.integers(len(legal)))]
+        row = self.table.q[self.table.index(observation)].tolist()
+        values = [row[self.table.column(action)] for action in legal]
+        highest = max(values)
+        best = [action for action, value in zip(legal, values, strict=True) if value == highest]
+        return best[0] if len(best) == 1 else best[int(self._rng.integers(len(best)))]
+
+    def learn(self, transition: Transition) -> None:
+        """Q(s, a) ← (1 − α) Q(s, a) + α (r + γ max Q(s′, ·)). The walk never ends."""
+        observation, action, reward, after, legal = transition
+        table = self.table
+        row = table.q[table.index(after)].tolist()
+        sample = reward + self._gamma * max(row[table.column(a)] for a in legal)
+        here = table.index(observation), table.column(action)
+        table.q[here] = (1 - self._alpha) * table.q[here] + self._alpha * sample
+        table.n[here] += 1
+        self._learned += 1
+
+    def tune(
+        self,
+        alpha: float | None = None,
+        gamma: float | None = None,
+        epsilon: float | None = None,
+    ) -> None:
+        """Change rates from the next step on; a given epsilon replaces the schedule."""
+        self._alpha = self._alpha if alpha is None else alpha
+        self._gamma = self._gamma if gamma is None else gamma
+        self._fixed_epsilon = self._fixed_epsilon if epsilon is None else epsilon
+
+    def values(self, observation: Cells) -> FloatArray:
+        """(pairs, cells) values of the actions in this state, NaN where illegal."""
+        return self.table.values(observation)
+
+    def visits(self, observation: Cells) -> FloatArray:
+        """(pairs, cells) visits of the actions in this state, NaN where illegal."""
+        return self.table.visits(observation)
+
+    def state(self) -> AgentState:
+        """Values, visits, rates and the place in the schedule."""
+        fixed = np.nan if self._fixed_epsilon is None else self._fixed_epsilon
+        progress = np.array([self._learned], np.int64)
+        rates = np.array([self._alpha, self._gamma, fixed])
+        return {**self.table.dump(), "learned": progress, "rates": rates}
+
+    def load(self, state: AgentState) -> None:
+        """Go on exactly where `state` was taken; the generator is the caller's."""
+        self.table.load(state)
+        self._learned = int(state["learned"][0])
+        self._alpha, self._gamma, fixed = state["rates"].tolist()
+        self._fixed_epsilon = None if np.isnan(fixed) else fixed
+
+    def continue_from(self, state: AgentState) -> None:
+        """Take over values and visits only: the rates are the new run's, ε restarts."""
+        self.table.load(state)

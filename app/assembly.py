@@ -1,0 +1,144 @@
+"""From a config to concrete parts: which simulator, which agents, put together.
+
+The one place that knows all of them; loops and commands take what comes out of here.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from app.agents import registry
+from app.agents.protocol import Problem
+from app.agents.q_learning import QLearning
+from app.domain.kinematic import KinematicSimulator
+from app.domain.observation import Observation
+from app.domain.simulator import Simulator
+from app.physics.mujoco_simulator import MujocoSimulator
+from app.runs.config import RaceConfig, TrainingConfig, Walk
+from app.runs.seeding import LEARNING, RACING, generator
+from app.runs.tables import Checkpoint, agent_state, check_fits, continue_from
+from app.runs.training import Learner, evaluate, refer
+from app.runs.walker import Foresight, Walker
+
+
+def build_simulator(walk: Walk, threads: int = 1) -> Simulator[Any]:
+    """The simulator that a config names.
+
+    Args:
+        walk: the walking problem.
+        threads: of look-ahead in MuJoCo; 0 is one for each core.
+
+    Raises:
+        Unreachable: if the robot's legs cannot reach the grid.
+    """
+    gait, grid = walk.resolved_gait, walk.grid
+    if walk.simulator == "kinematic":
+        return KinematicSimulator(walk.robot, gait, grid)
+    return MujocoSimulator(walk.robot, gait, grid, threads)
+
+
+def build_learner(
+    config: TrainingConfig, table: Checkpoint | None = None, threads: int = 1
+) -> Learner:
+    """A learner at rest, with what `table` holds if one is given.
+
+    Raises:
+        UnknownName, InvalidInput: if the agent cannot be had.
+        TableMismatch: if the table is of another problem.
+        Unreachable: if the robot's legs cannot reach the grid.
+    """
+    simulator, settings = build_simulator(config, threads), asdict(config)
+    rng = generator(config.seed, LEARNING)
+    walker = _walker(
+        simulator, config.agent, config.observation, rng=rng, settings=settings, explore=True
+    )
+
+    def contender(chance: np.random.Generator) -> Walker:
+        copy = _walker(
+            simulator,
+            config.agent,
+            config.observation,
+            rng=chance,
+            settings=settings,
+            explore=False,
+        )
+        copy.agent.load(walker.agent.state())
+        return copy
+
+    def rival() -> Walker:
+        return _walker(simulator, "greedy", "measured", rng=rng, settings={}, explore=False)
+
+    learner = Learner(walker, rng, contender, rival)
+    if table is not None:
+        check_fits(table, config, config.observation)
+        continue_from(learner, table)
+    return learner
+
+
+def build_walkers(
+    config: RaceConfig, tables: Sequence[Checkpoint | None], threads: int = 0
+) -> list[Walker]:
+    """The lanes of a race, at rest.
+
+    Args:
+        config: the race.
+        tables: for each lane what it has learned, or None.
+        threads: of look-ahead in MuJoCo; 0 is one for each core.
+
+    Raises:
+        TableMismatch: if a table is of another problem than the race.
+    """
+    simulator = build_simulator(config, threads)
+    walkers = []
+    for number, (lane, table) in enumerate(zip(config.lanes, tables, strict=True)):
+        settings: Mapping[str, Any] = {}
+        if table is not None:
+            check_fits(table, config, lane.observation)
+            settings = table.meta["config"]
+        rng = generator(config.seed, RACING, number)
+        walker = _walker(
+            simulator, lane.agent, lane.observation, rng=rng, settings=settings, explore=False
+        )
+        if table is not None:
+            walker.agent.load(agent_state(table))
+        walkers.append(walker)
+    return walkers
+
+
+def finish_training(learner: Learner, config: TrainingConfig) -> dict[str, Any]:
+    """The result of a training, as it stands: how far it walks now, and the table's hash."""
+    distance = evaluate(learner, config, learner.epsilon).distance_m
+    if learner.greedy_distance_m is None:
+        refer(learner)
+    agent = learner.walker.agent
+    return {
+        "distance_m": distance,
+        "greedy_distance_m": learner.greedy_distance_m,
+        "q_table_sha256": agent.table.sha256() if isinstance(agent, QLearning) else None,
+    }
+
+
+def _walker(
+    simulator: Simulator[Any],
+    agent_name: str,
+    observation: Observation,
+    *,
+    rng: np.random.Generator,
+    settings: Mapping[str, Any],
+    explore: bool,
+) -> Walker:
+    """A walker whose agent gets what it asks for; one that does not ask for `expand` is blind."""
+    agent_class = registry.find(agent_name)
+    foresight = None
+    if "expand" in registry.asks_for(agent_class):
+        foresight = Foresight(simulator, observation)
+    offered = {
+        **settings,
+        "rng": rng,
+        "problem": Problem(simulator.gait.pairs, simulator.grid.cells),
+        "explore": explore,
+        "expand": foresight,
+    }
+    return Walker(simulator, registry.build(agent_class, offered), observation, foresight)

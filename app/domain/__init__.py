@@ -1,0 +1,1 @@
+"""The walking problem itself: feet, gaits, legs, steps. NumPy only, no input or output."""

@@ -1,0 +1,86 @@
+"""The foot grid: the few places, around its home position, to which a foot may go (paper §4)."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from app.domain.errors import InvalidInput
+from app.domain.types import FloatArray, IntArray
+
+MIN_DIVISIONS, MAX_DIVISIONS = 2, 8
+MIN_SIDE_M = 0.005
+
+
+@dataclass(frozen=True)
+class FootGrid:
+    """Displacements from home on a square centred on home, in the robot frame (y forward).
+
+    `divisions` × `divisions` evenly spaced points, and home where they miss it. Cell 0 is home;
+    the others go row by row from front to back, each from left to right.
+    The grid is closed under x → −x.
+    """
+
+    side_m: float = 0.04
+    """Length of the square's side [m]."""
+    divisions: int = 2
+    """Points along a side."""
+
+    def __post_init__(self) -> None:
+        if not MIN_DIVISIONS <= self.divisions <= MAX_DIVISIONS:
+            raise InvalidInput(
+                f"divisions must be from {MIN_DIVISIONS} to {MAX_DIVISIONS}, not {self.divisions}"
+            )
+        if not (np.isfinite(self.side_m) and self.side_m >= MIN_SIDE_M):
+            raise InvalidInput(
+                f"grid_side_m must be at least {MIN_SIDE_M} m and finite, not {self.side_m}"
+            )
+
+    @property
+    def half_side_m(self) -> float:
+        """Half the side, the h in which distances are compared across grids [m]."""
+        return self.side_m / 2
+
+    @cached_property
+    def cells(self) -> FloatArray:
+        """Displacement of each cell from home [m], (cells, 2): x right, y forward."""
+        last = self.divisions - 1  # whole numbers first, so that the middle is exactly 0
+        ticks = self.half_side_m * (2 * np.arange(self.divisions) - last) / last
+        points = [(x, y) for y in ticks[::-1] for x in ticks if (x, y) != (0.0, 0.0)]
+        cells = np.array([(0.0, 0.0), *points])
+        cells.flags.writeable = False
+        return cells
+
+    def __len__(self) -> int:
+        return self.divisions**2 + (self.divisions % 2 == 0)
+
+    @cached_property
+    def mirror(self) -> IntArray:
+        """For each cell, the cell at (−x, y), (cells,)."""
+        return self.nearest(self.cells * (-1.0, 1.0))
+
+    def nearest(self, offsets: FloatArray) -> IntArray:
+        """The cell nearest to each offset from home; a tie goes to home, then the lower index.
+
+        Args:
+            offsets: (..., 2) in the robot frame [m].
+
+        Returns:
+            (...) indices of cells.
+        """
+        dx = offsets[..., 0, None] - self.cells[:, 0]  # (..., cells)
+        dy = offsets[..., 1, None] - self.cells[:, 1]
+        squared = dx * dx + dy * dy
+        # Offsets that tie on paper differ in their last bits; argmax takes the first that ties.
+        tie = 1e-9 * self.side_m * self.side_m
+        nearest: IntArray = (squared <= squared.min(axis=-1, keepdims=True) + tie).argmax(axis=-1)
+        return nearest
+
+    def name(self, cell: int) -> str:
+        """A cell in words: "home", "front left", or its displacement in millimetres."""
+        if cell == 0:
+            return "home"
+        x, y = self.cells[cell]
+        if self.divisions == 2:
+            return f"{'front' if y > 0 else 'back'} {'left' if x < 0 else 'right'}"
+        return f"{1000 * x:+.0f} mm right, {1000 * y:+.0f} mm forward"

@@ -1,0 +1,98 @@
+"""The kinematic simulator: the law of a step without slip (`app.domain.feet`), exact and quick."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.domain.feet import Feet
+from app.domain.gait import Gait
+from app.domain.grid import FootGrid
+from app.domain.kinematics import check_reach
+from app.domain.motion import StepMotion, StepPlan, ease, recorded_substeps
+from app.domain.robot import Robot
+from app.domain.simulator import Expansion, Motion, Step
+from app.domain.types import Action, Cells, FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class KinematicState:
+    """Where the feet are, and how far the body came."""
+
+    feet: Feet
+    distance_m: float = 0.0
+    steps: int = 0
+
+    @property
+    def commanded(self) -> Cells:
+        """The cell that each pair was last sent to."""
+        return self.feet.commanded
+
+
+class KinematicSimulator:
+    """Implements `Simulator` by the kinematic law; rewards need no physics."""
+
+    def __init__(self, robot: Robot, gait: Gait, grid: FootGrid) -> None:
+        check_reach(robot, gait, grid)
+        self.robot, self.gait, self.grid = robot, gait, grid
+        self._motion = StepMotion(robot, gait, grid)
+
+    def rest(self) -> KinematicState:
+        return KinematicState(self._motion.at_home())
+
+    def step(
+        self, state: KinematicState, action: Action, record: bool = False
+    ) -> Step[KinematicState]:
+        plan = self._motion.plan(state.feet, action)
+        distance = state.distance_m + plan.advance_m
+        after = KinematicState(plan.end, distance, state.steps + 1)
+        motion = self._record(plan, state.distance_m) if record else None
+        return Step(after, plan.advance_m, motion)
+
+    def expand(
+        self, states: Sequence[KinematicState], actions: Sequence[Action]
+    ) -> Expansion[KinematicState]:
+        steps = [self.step(s, a) for s, a in zip(states, actions, strict=True)]
+        return Expansion([s.state for s in steps], np.array([s.reward_m for s in steps]))
+
+    def pair_offsets(self, state: KinematicState) -> FloatArray:
+        return np.array((state.feet.lateral_m, state.feet.forward_m)).T
+
+    def pose(self, state: KinematicState) -> FloatArray:
+        feet = np.zeros((len(self.robot.legs), 3))
+        for pair, (leader, partner) in enumerate(self.gait.pairs):
+            x, y = state.feet.lateral_m[pair], state.feet.forward_m[pair]
+            feet[leader - 1, :2], feet[partner - 1, :2] = (x, y), (-x, y)
+        angles = self._motion.legs.joint_angles(feet)
+        pose: FloatArray = self._qpos(np.array([state.distance_m]), angles.reshape(1, -1))[0]
+        return pose
+
+    def dump(self, state: KinematicState) -> dict[str, FloatArray]:
+        return {
+            "feet": state.feet.as_array(),
+            "travel": np.array([state.distance_m, state.steps]),
+        }
+
+    def load(self, arrays: dict[str, FloatArray]) -> KinematicState:
+        distance, steps = arrays["travel"].tolist()
+        return KinematicState(Feet.from_array(arrays["feet"]), distance, int(steps))
+
+    def _record(self, plan: StepPlan, distance_m: float) -> Motion:
+        robot = self.robot
+        angles = self._motion.joint_targets([plan])[0]  # (substeps, 3 · legs)
+        phase = np.arange(1, robot.shift_substeps + 1) / robot.shift_substeps
+        place = np.full(len(angles), distance_m)
+        place[robot.swing_substeps :] += plan.advance_m * ease(phase)
+        kept = recorded_substeps(robot)
+        time_s, qpos = (kept + 1) * robot.dt_s, self._qpos(place[kept], angles[kept])
+        return Motion(time_s.astype(np.float32), qpos.astype(np.float32))
+
+    def _qpos(self, distance_m: FloatArray, angles: FloatArray) -> FloatArray:
+        """(k, 7 + 3 · legs): upright, forward along the track, at body height over the feet."""
+        qpos = np.zeros((len(distance_m), 7 + angles.shape[1]))
+        qpos[:, 1] = distance_m
+        qpos[:, 2] = self.robot.body_height_m + self.robot.foot_radius_m
+        half = np.deg2rad(90 - self.gait.forward_deg) / 2
+        qpos[:, 3], qpos[:, 6] = np.cos(half), np.sin(half)
+        qpos[:, 7:] = angles
+        return qpos

@@ -1,0 +1,42 @@
+"""What an agent sees: one cell per leg pair, read in one of two ways.
+
+After each step the body re-centres over the feet, so a foot's true offset from home drifts off
+the cell it was sent to. The paper does not say which of the two its state holds.
+"""
+
+from functools import lru_cache
+from typing import Literal, get_args
+
+from app.domain.errors import UnknownName
+from app.domain.simulator import S, Simulator
+from app.domain.types import Action, Cells
+
+Observation = Literal["measured", "commanded"]
+"""`measured`: the cell nearest to where the pair's feet are, by forward kinematics.
+`commanded`: the cell that the pair was last sent to; aliased, so not Markov."""
+
+OBSERVATIONS: tuple[Observation, ...] = get_args(Observation)
+
+
+def check_observation(name: str) -> None:
+    """Raise `UnknownName` unless this is a way to read the state."""
+    if name not in OBSERVATIONS:
+        raise UnknownName("observation", name, OBSERVATIONS)
+
+
+def observe(simulator: Simulator[S], state: S, how: Observation) -> Cells:
+    """The cells that an agent sees in this state."""
+    if how == "commanded":
+        return state.commanded
+    return tuple(simulator.grid.nearest(simulator.pair_offsets(state)).tolist())
+
+
+@lru_cache(maxsize=1 << 16)
+def legal_actions(cells: Cells, cell_count: int) -> tuple[Action, ...]:
+    """Every (pair, cell) but the cell that the pair is seen on, pair by pair."""
+    return tuple(
+        Action(pair, cell)
+        for pair, present in enumerate(cells)
+        for cell in range(cell_count)
+        if cell != present
+    )

@@ -1,0 +1,88 @@
+"""From a `Robot` to a MuJoCo model: a torso with as many copies of one leg as it has mounts."""
+
+from functools import lru_cache
+
+import mujoco
+import numpy as np
+
+from app.assets import models_dir
+from app.domain.kinematics import JOINT_LIMITS_RAD
+from app.domain.robot import Robot
+
+LINKS = ("coxa", "femur", "tibia")
+VISIBLE_GROUP = 1
+"""The geoms of this group are what a robot looks like."""
+
+
+@lru_cache(maxsize=32)
+def compile_model(robot: Robot) -> mujoco.MjModel:
+    """The robot alone on flat ground, upright over the origin; treat it as read-only.
+
+    Its names explain themselves: body, joint and actuator `leg1_femur`, geom `leg1_foot`.
+    """
+    return robot_spec(robot).compile()
+
+
+def robot_spec(robot: Robot) -> mujoco.MjSpec:
+    """The robot as an editable specification."""
+    spec = mujoco.MjSpec.from_file(str(models_dir() / "torso.xml"))
+    spec.option.timestep = robot.dt_s
+    torso = spec.body("torso")
+    torso.pos = [0, 0, robot.body_height_m + robot.foot_radius_m]
+    _shape_torso(spec, robot)
+    for number, mount in enumerate(robot.legs, start=1):
+        azimuth = np.deg2rad(mount.azimuth_deg)
+        frame = torso.add_frame(
+            pos=[mount.radius_m * np.cos(azimuth), mount.radius_m * np.sin(azimuth), 0],
+            quat=[np.cos(azimuth / 2), 0, 0, np.sin(azimuth / 2)],
+        )
+        spec.attach(_leg_spec(robot), prefix=f"leg{number}_", frame=frame)
+    return spec
+
+
+def _shape_torso(spec: mujoco.MjSpec, robot: Robot) -> None:
+    """Scale every geom of the torso file to the robot's radius and half-height."""
+    drawn = spec.geom("torso")
+    wide = robot.torso_radius_m / drawn.size[0]
+    high = robot.torso_half_height_m / drawn.size[1]
+    for geom in spec.body("torso").geoms:
+        if geom.type == mujoco.mjtGeom.mjGEOM_ELLIPSOID:
+            geom.size = geom.size * [wide, wide, high]
+        else:
+            geom.size = geom.size * [wide, high, 1]
+        geom.pos = geom.pos * [wide, wide, high]
+    spec.geom("torso").mass = robot.torso_kg
+
+
+def _leg_spec(robot: Robot) -> mujoco.MjSpec:
+    """A leg of this robot's lengths, masses, servos and friction."""
+    spec = mujoco.MjSpec.from_file(str(models_dir() / "leg.xml"))
+    ends = {"coxa": "femur", "femur": "tibia", "tibia": "foot"}
+    for link in LINKS:
+        length: float = getattr(robot, f"{link}_m")
+        end = spec.body(ends[link])
+        _stretch(spec.body(link), length / end.pos[0])
+        end.pos = [length, 0, 0]
+        spec.geom(link).mass = getattr(robot, f"{link}_kg")
+        _set_servo(spec, link, robot)
+    foot = spec.geom("foot")
+    foot.mass, foot.size = robot.foot_kg, [robot.foot_radius_m, 0, 0]
+    foot.friction = [robot.friction, *foot.friction[1:]]
+    return spec
+
+
+def _stretch(body: mujoco.MjsBody, factor: float) -> None:
+    """Move what hangs on a link along it; thickness stays."""
+    for geom in body.geoms:
+        geom.pos = geom.pos * [factor, 1, 1]
+        if np.isfinite(geom.fromto[0]):
+            geom.fromto = geom.fromto * [factor, 1, 1, factor, 1, 1]
+
+
+def _set_servo(spec: mujoco.MjSpec, link: str, robot: Robot) -> None:
+    joint, servo = spec.joint(link), spec.actuator(link)
+    joint.armature, joint.range = robot.joint_armature, JOINT_LIMITS_RAD[link]
+    joint.damping = np.array([robot.joint_damping, 0, 0])[: np.size(joint.damping)]
+    servo.gainprm[0] = robot.servo_kp
+    servo.biasprm[1:3] = -robot.servo_kp, -robot.servo_kv
+    servo.forcerange = [-robot.servo_torque_nm, robot.servo_torque_nm]

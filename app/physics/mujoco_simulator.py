@@ -1,0 +1,193 @@
+"""The MuJoCo simulator: the same step on real physics, one at a time or a whole layer at once."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from mujoco.batch import Batch
+
+from app.domain.errors import Diverged
+from app.domain.feet import Feet
+from app.domain.gait import Gait
+from app.domain.grid import FootGrid
+from app.domain.kinematics import check_reach
+from app.domain.motion import StepMotion, recorded_substeps
+from app.domain.robot import Robot
+from app.domain.simulator import Expansion, Motion, Step
+from app.domain.types import Action, Cells, FloatArray
+from app.physics.mjcf import compile_model
+
+SETTLE_S = 1.0
+"""How long the robot stands before a run, so that its servos carry it and its feet press down."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MujocoState:
+    """A robot in the middle of nowhere but between two steps.
+
+    Attributes:
+        row: the full mjSTATE_INTEGRATION vector; anything less diverges when it goes on.
+        feet: where they are if nothing slipped; the next step is planned from there.
+        distance_m: displacement of the torso's centre along the track (world +y).
+        steps: taken since rest.
+    """
+
+    row: FloatArray
+    feet: Feet
+    distance_m: float = 0.0
+    steps: int = 0
+
+    @property
+    def commanded(self) -> Cells:
+        """The cell that each pair was last sent to."""
+        return self.feet.commanded
+
+
+class MujocoSimulator:
+    """Implements `Simulator` on MuJoCo.
+
+    The robot starts over the world's origin, facing world +y. Not to be shared by threads.
+
+    Args:
+        robot, gait, grid: the walking problem.
+        threads: for `expand`; 0 is one for each core. Results do not depend on it.
+    """
+
+    def __init__(self, robot: Robot, gait: Gait, grid: FootGrid, threads: int = 1) -> None:
+        check_reach(robot, gait, grid)
+        self.robot, self.gait, self.grid = robot, gait, grid
+        self.model = compile_model(robot)
+        self._motion = StepMotion(robot, gait, grid)
+        self._substeps = robot.swing_substeps + robot.shift_substeps
+        self._kept = recorded_substeps(robot)
+        self._threads = threads
+        self._single = Batch(self.model, 1, 1)
+        self._many = self._single
+        forward = np.deg2rad(gait.forward_deg)
+        self._forward = float(np.cos(forward)), float(np.sin(forward))
+        self._joints = slice(8, 8 + self.model.nu)  # of a row: time, torso's place and attitude
+
+    def rest(self) -> MujocoState:
+        return self._rest
+
+    @cached_property
+    def _rest(self) -> MujocoState:
+        """Standing still with every foot at home, settled, over the origin."""
+        standing = self._motion.legs.joint_angles(np.zeros((len(self.robot.legs), 3))).ravel()
+        half = np.deg2rad(90 - self.gait.forward_deg) / 2
+        batch = Batch(self.model, 1, 1)
+        qpos = batch.bind("qpos")[0]
+        qpos[:7] = 0, 0, self.robot.body_height_m + self.robot.foot_radius_m, 1, 0, 0, 0
+        qpos[3], qpos[6] = np.cos(half), np.sin(half)
+        qpos[7:] = standing
+        batch.rollout(round(SETTLE_S / self.robot.dt_s), standing[None, None], record=())
+        self._check(batch, [0])
+        batch.bind("time")[0] = 0
+        qpos[:2] = 0
+        return MujocoState(_frozen(batch.state[0]), self._motion.at_home())
+
+    def step(self, state: MujocoState, action: Action, record: bool = False) -> Step[MujocoState]:
+        expansion, motions = self._advance(self._single, [state], [action], record)
+        motion = None
+        if record:
+            kept = motions[0, self._kept].astype(np.float32)
+            motion = Motion(((self._kept + 1) * self.robot.dt_s).astype(np.float32), kept)
+        return Step(expansion.states[0], float(expansion.rewards_m[0]), motion)
+
+    def expand(
+        self, states: Sequence[MujocoState], actions: Sequence[Action]
+    ) -> Expansion[MujocoState]:
+        if len(states) > self._many.nsim:
+            self._many = Batch(self.model, len(states), self._threads)
+        return self._advance(self._many, states, actions, record=False)[0]
+
+    def _advance(
+        self,
+        batch: Batch,
+        states: Sequence[MujocoState],
+        actions: Sequence[Action],
+        record: bool,
+    ) -> tuple[Expansion[MujocoState], FloatArray]:
+        """Plan and carry out a step from each state; qpos of every substep where recorded."""
+        plans = [self._motion.plan(s.feet, a) for s, a in zip(states, actions, strict=True)]
+        ids = None if len(states) == batch.nsim else np.arange(len(states))
+        before = np.array([s.row for s in states])
+        batch.state[: len(states)] = before
+        recorded = batch.rollout(
+            self._substeps,
+            self._motion.joint_targets(plans),
+            record=("qpos",) if record else (),
+            ids=ids,
+        )
+        self._check(batch, [s.steps + 1 for s in states])
+        after = _frozen(batch.state[: len(states)])
+        ends = [
+            MujocoState(row, plan.end, float(row[2]), state.steps + 1)
+            for row, plan, state in zip(after, plans, states, strict=True)
+        ]
+        rewards = np.array([self._reward(b, a) for b, a in zip(before, after, strict=True)])
+        return Expansion(ends, rewards), recorded.get("qpos", np.empty(0))
+
+    def _reward(self, before: FloatArray, after: FloatArray) -> float:
+        """Displacement along the robot's horizontal forward direction at the start [m].
+
+        In plain floats: for the one row of a step that is much quicker than arrays.
+        """
+        from_x, from_y, _, w, x, y, z = before[1:8].tolist()
+        to_x, to_y = after[1:3].tolist()
+        cos, sin = self._forward
+        ahead_x = (1 - 2 * (y * y + z * z)) * cos + 2 * (x * y - w * z) * sin
+        ahead_y = 2 * (x * y + w * z) * cos + (1 - 2 * (x * x + z * z)) * sin
+        along = (to_x - from_x) * ahead_x + (to_y - from_y) * ahead_y
+        return float(along / math.sqrt(ahead_x * ahead_x + ahead_y * ahead_y))
+
+    def _check(self, batch: Batch, steps: Sequence[int]) -> None:
+        """Raise `Diverged` if any simulation met a number that is none.
+
+        MuJoCo only counts a warning then, and resets the robot to where it never was.
+        """
+        finite = np.isfinite(batch.state[: len(steps)])
+        if batch.warning.any() or not finite.all():
+            bad = (batch.warning[: len(steps), :, 1].sum(axis=1) > 0) | ~finite.all(axis=1)
+            batch.warning[...] = 0
+            step = steps[int(bad.argmax())]
+            raise Diverged(
+                f"the physics diverged at step {step}; try a smaller robot.dt_s, a lower servo_kp "
+                "or heavier links"
+            )
+
+    def pair_offsets(self, state: MujocoState) -> FloatArray:
+        feet = self._motion.legs.foot_offsets(state.row[self._joints].tolist())
+        offsets = []
+        for leader, partner in self.gait.pairs:
+            (x, y, _), (mirrored_x, partner_y, _) = feet[leader - 1], feet[partner - 1]
+            offsets.append(((x - mirrored_x) / 2, (y + partner_y) / 2))
+        return np.array(offsets)
+
+    def pose(self, state: MujocoState) -> FloatArray:
+        return state.row[1 : 1 + self.model.nq].copy()
+
+    def dump(self, state: MujocoState) -> dict[str, FloatArray]:
+        return {
+            "row": state.row.copy(),
+            "feet": state.feet.as_array(),
+            "travel": np.array([state.distance_m, state.steps]),
+        }
+
+    def load(self, arrays: dict[str, FloatArray]) -> MujocoState:
+        distance, steps = arrays["travel"].tolist()
+        return MujocoState(
+            _frozen(arrays["row"]),
+            Feet.from_array(arrays["feet"]),
+            distance,
+            int(steps),
+        )
+
+
+def _frozen(array: FloatArray) -> FloatArray:
+    """A copy that nobody can change."""
+    copy = array.copy()
+    copy.flags.writeable = False
+    return copy

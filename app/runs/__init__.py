@@ -1,0 +1,1 @@
+"""The two loops, train and race, and what they need: clocks, recordings, checkpoints."""

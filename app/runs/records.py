@@ -1,0 +1,98 @@
+"""What the two loops yield: frozen records of what happened, in order."""
+
+from dataclasses import dataclass
+
+from app.domain.simulator import Motion
+from app.domain.types import Action, Cells, FloatArray
+
+
+@dataclass(frozen=True)
+class Knowledge:
+    """What a learner expects in the state in which it is about to act."""
+
+    values: FloatArray
+    """(pairs, cells) expected return [m], NaN where illegal."""
+    visits: FloatArray
+    """(pairs, cells) how often it tried, NaN where illegal."""
+
+
+@dataclass(frozen=True)
+class StepTaken:
+    """One step of practice."""
+
+    step: int
+    """Counted from 1."""
+    episode: int
+    """Counted from 0."""
+    epsilon: float
+    observation: Cells
+    """What the agent saw before it acted."""
+    action: Action
+    reward_m: float
+    distance_m: float
+    """Along the track since the training started."""
+    motion: Motion | None
+    knowledge: Knowledge | None
+    """Before the step."""
+
+
+@dataclass(frozen=True)
+class EpisodeEnded:
+    """ε changes after this."""
+
+    episode: int
+    step: int
+    epsilon: float
+    reward_m: float
+    """Sum over the episode."""
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What the one-step look-ahead agent covers in 50 steps on the same robot: the line to beat."""
+
+    greedy_distance_m: float
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """50 steps from rest at ε = 0, on a copy of what was learned after `step` steps."""
+
+    step: int
+    epsilon: float
+    """Of the practice at that step."""
+    distance_m: float
+    motion: Motion | None
+
+
+@dataclass(frozen=True)
+class LaneStep:
+    """One step of one lane of a race."""
+
+    lane: int
+    step: int
+    """Counted from 1."""
+    observation: Cells
+    action: Action
+    reward_m: float
+    distance_m: float
+    transitions: int
+    """Simulated to decide on this step; carrying it out does not count."""
+    decision_s: float
+    """Measured by the timer that the race was given."""
+    motion: Motion
+    knowledge: Knowledge | None
+
+
+@dataclass(frozen=True)
+class LaneFailed:
+    """A lane that cannot go on: its agent raised, or its physics diverged."""
+
+    lane: int
+    step: int
+    """The step that could not be done, counted from 1."""
+    reason: str
+
+
+TrainingRecord = StepTaken | EpisodeEnded | Reference | Evaluated
+RaceRecord = LaneStep | LaneFailed

@@ -1,0 +1,131 @@
+"""The training loop (paper, Algorithm 1), and the evaluation of what was learned."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.agents.protocol import Transition
+from app.domain.simulator import Motion
+from app.runs.config import RACE_STEPS, TrainingConfig
+from app.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
+from app.runs.seeding import EVALUATION, generator
+from app.runs.walker import Walker
+
+
+@dataclass
+class Learner:
+    """All that a training changes. Between two records it may be saved, tuned, or left.
+
+    Attributes:
+        walker: the robot that practises, with its agent.
+        rng: the generator that the agent learns with.
+        contender: makes a walker at rest that does its best with what was learned so far, and
+            learns nothing; its chance comes from the generator that it is given.
+        rival: makes the walker of the one-step look-ahead agent on the same robot.
+        step: how many steps it has learned.
+        episode_reward_m: earned since the episode began.
+    """
+
+    walker: Walker
+    rng: np.random.Generator
+    contender: Callable[[np.random.Generator], Walker]
+    rival: Callable[[], Walker]
+    step: int = 0
+    episode_reward_m: float = 0.0
+    greedy_distance_m: float | None = None
+
+    @property
+    def epsilon(self) -> float:
+        """The probability of a random action at the next step; 0 for agents without one."""
+        return float(getattr(self.walker.agent, "epsilon", 0.0))
+
+
+def train(
+    learner: Learner, config: TrainingConfig, record: bool = False
+) -> Iterator[TrainingRecord]:
+    """Practise until `config.steps` steps are learned, from wherever the learner is.
+
+    With `record`, steps and evaluations carry their motion and what the agent knew.
+    The last record but one is the reference if it has not come before, the last an evaluation,
+    unless `config.evaluate_every` is 0.
+
+    Raises:
+        Diverged: if the physics breaks.
+    """
+    while learner.step < config.steps:
+        epsilon, episode = learner.epsilon, learner.step // config.steps_per_episode
+        yield _practise(learner, episode, epsilon, record)
+        if learner.step % config.steps_per_episode == 0 or learner.step == config.steps:
+            yield EpisodeEnded(episode, learner.step, epsilon, learner.episode_reward_m)
+            learner.episode_reward_m = 0.0
+        if _is_due(learner.step, config):
+            if learner.greedy_distance_m is None:
+                yield refer(learner)
+            yield evaluate(learner, config, epsilon, record)
+
+
+def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> StepTaken:
+    """One step: act, see what comes of it, learn."""
+    walker = learner.walker
+    seen, knowledge = walker.seen, walker.knowledge() if record else None
+    action = walker.decide()
+    step = walker.carry_out(action, record)
+    walker.agent.learn(Transition(seen, action, step.reward_m, walker.seen, walker.legal))
+    learner.step += 1
+    learner.episode_reward_m += step.reward_m
+    distance = walker.state.distance_m
+    return StepTaken(
+        learner.step,
+        episode,
+        epsilon,
+        seen,
+        action,
+        step.reward_m,
+        distance,
+        step.motion,
+        knowledge,
+    )
+
+
+def refer(learner: Learner) -> Reference:
+    """Walk the one-step look-ahead agent once, and remember how far it came."""
+    distance, _ = walk(learner.rival(), record=False)
+    learner.greedy_distance_m = distance
+    return Reference(distance)
+
+
+def evaluate(
+    learner: Learner, config: TrainingConfig, epsilon: float, record: bool = False
+) -> Evaluated:
+    """50 steps from rest at ε = 0 on a copy of the table; the learner is not disturbed.
+
+    Chance comes from a generator of this step's own, so a result does not depend on how many
+    evaluations came before it.
+    """
+    contender = learner.contender(generator(config.seed, EVALUATION, learner.step))
+    distance, motion = walk(contender, record)
+    return Evaluated(learner.step, epsilon, distance, motion)
+
+
+def walk(walker: Walker, record: bool) -> tuple[float, Motion | None]:
+    """Take 50 steps: the distance [m], and the whole motion where it was asked for."""
+    motions: list[Motion] = []
+    for taken in range(RACE_STEPS):
+        step = walker.carry_out(walker.decide(), record)
+        if step.motion:
+            start = taken * walker.simulator.robot.step_s
+            motions.append(Motion(step.motion.time_s + np.float32(start), step.motion.qpos))
+    distance: float = walker.state.distance_m
+    return distance, _joined(motions) if motions else None
+
+
+def _joined(motions: list[Motion]) -> Motion:
+    columns: tuple[Any, ...] = tuple(zip(*motions, strict=True))
+    return Motion(*(np.concatenate(column) for column in columns))
+
+
+def _is_due(step: int, config: TrainingConfig) -> bool:
+    every = config.evaluate_every
+    return every > 0 and (step % every == 0 or step == config.steps)
