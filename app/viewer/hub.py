@@ -74,6 +74,11 @@ class Hub:
         self._live = False
         self._upstream: asyncio.Task[None] | None = None
 
+    @property
+    def live(self) -> bool:
+        """Whether viser is there, and has told all it had."""
+        return self._live
+
     async def __aenter__(self) -> Self:
         self.start()
         return self

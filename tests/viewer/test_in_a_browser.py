@@ -1,0 +1,291 @@
+"""The page in a real browser, in an iframe of a dashboard, over a real server and a real viser."""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import viser
+from playwright.sync_api import Browser, ConsoleMessage, Frame, Page
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, Response
+from starlette.routing import Route
+
+from app.viewer import follow, wire
+from app.viewer.hub import Hub
+from tests.viewer.serving import Address, eventually, serving, start_viser
+
+DASHBOARD = """
+<!doctype html>
+<script>
+  window.heard = [];
+  addEventListener("message", ({ data }) => heard.push(data));
+  const show = (wanted) =>
+    document.querySelector("iframe").contentWindow
+      .postMessage({ type: "hexapods:show", ...wanted }, location.origin);
+</script>
+<iframe src="viewer/?view=1&theme=dark" width="480" height="270"></iframe>
+"""
+
+POSITIONS: dict[str, follow.Position] = {"1": (1.0, 0.5, 0.0), "2": (2.0, 0.0, 0.0)}
+
+
+class Recording:
+    """What the server has of a race that was, in viser's own format."""
+
+    data = b""
+
+    def send(self, _: Request) -> Response:
+        return Response(self.data)
+
+
+@pytest.fixture
+def recording() -> Recording:
+    return Recording()
+
+
+@pytest.fixture
+def address(stage: viser.ViserServer, recording: Recording) -> Iterator[Address]:
+    stage.scene.add_box("/world/box", color=(255, 255, 255), dimensions=(2, 2, 2))
+    more_routes = [
+        Route("/", lambda _: HTMLResponse(DASHBOARD)),
+        Route("/api/v1/races/{id}/recording", recording.send),
+    ]
+    hub = Hub(stage.get_port(), follow_position=POSITIONS.get)
+    with serving(hub, more_routes=more_routes) as address:
+        yield address
+
+
+@pytest.fixture
+def dashboard(page: Page, address: Address) -> Page:
+    page.goto(f"http://{address.host}/")
+    page.wait_for_function("heard.some((message) => message.status === 'connected')")
+    return page
+
+
+@pytest.fixture
+def viewer(dashboard: Page) -> Frame:
+    frame = dashboard.frames[1]
+    has(frame, "/world/box")
+    return frame
+
+
+def has(frame: Frame | Page, name: str) -> None:
+    """Wait until viser's client has that scene node."""
+    frame.wait_for_function("name => window.__viserSceneTree?.getState()[name]?.message", arg=name)
+
+
+def is_centred_on(frame: Frame, x: float, y: float) -> None:
+    frame.wait_for_function(
+        """([x, y]) => {
+            const [a, b] = __viserMutable.nodePoseData["/world"].position;
+            return a === -x && b === -y;
+        }""",
+        arg=[x, y],
+    )
+
+
+def drawn_pixels(frame: Frame | Page) -> int:
+    """How much of the picture the box takes, read from the canvas itself."""
+    return int(
+        frame.evaluate(
+            """async () => {
+                const canvas = document.querySelector("canvas[data-engine]");
+                // What is drawn can be read only until the browser has put it on screen.
+                await new Promise(requestAnimationFrame);
+                __viserMutable.requestRender();
+                await new Promise(requestAnimationFrame);
+                const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+                copy.drawImage(canvas, 0, 0);
+                const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+                let opaque = 0;
+                for (let i = 3; i < data.length; i += 4) opaque += data[i] > 0;
+                return opaque;
+            }"""
+        )
+    )
+
+
+def heard(dashboard: Page, type_: str) -> list[dict[str, Any]]:
+    return [message for message in dashboard.evaluate("heard") if message.get("type") == type_]
+
+
+def socket_addresses(page: Page) -> list[str]:
+    """Grows by each websocket that viser's client opens; Playwright sees none in a worker."""
+    addresses: list[str] = []
+    announcement = re.compile(r"Connecting to: (\S+) with protocol")
+
+    def note(message: ConsoleMessage) -> None:
+        if found := announcement.match(message.text):
+            addresses.append(found[1])
+
+    page.on("console", note)
+    return addresses
+
+
+def test_the_picture_changes_with_the_scene(viewer: Frame, stage: viser.ViserServer) -> None:
+    eventually(lambda: drawn_pixels(viewer) > 0)
+    before = drawn_pixels(viewer)
+
+    stage.scene.add_box("/world/box", color=(255, 255, 255), dimensions=(4, 4, 4))
+
+    eventually(lambda: drawn_pixels(viewer) > 2 * before)
+
+
+def test_only_the_picture_is_shown(viewer: Frame) -> None:
+    shown = viewer.evaluate(
+        """() => [...document.querySelectorAll("#root *, body > *")]
+            .filter((element) => element.checkVisibility() && element.innerText?.trim())
+            .map((element) => element.outerHTML.slice(0, 200))"""
+    )
+
+    assert shown == []
+    assert viewer.locator("[title='About Viser']").is_hidden()
+
+
+def test_the_view_changes_without_a_reload(
+    dashboard: Page, viewer: Frame, address: Address
+) -> None:
+    is_centred_on(viewer, 1, 0.5)
+    viewer.evaluate("window.sameDocument = true")
+
+    dashboard.evaluate("show({ view: '2' })")
+
+    is_centred_on(viewer, 2, 0)
+    assert viewer.evaluate("window.sameDocument")
+    assert address.hub.counters.viewers == 1
+
+
+def test_the_view_outlives_a_lost_connection(
+    dashboard: Page, viewer: Frame, stage: viser.ViserServer
+) -> None:
+    dashboard.evaluate("show({ view: '2' })")
+    is_centred_on(viewer, 2, 0)
+    viewer.evaluate("__viserMutable.nodePoseData['/world'].position = [9, 9, 9]")
+    dashboard.evaluate("heard.length = 0")
+
+    # viser drops the hub, the hub then sends its viewers back to the door.
+    stage._websock_server.disconnect_all_clients()
+
+    dashboard.wait_for_function("heard.some((message) => message.status === 'connected')")
+    is_centred_on(viewer, 2, 0)
+    statuses = [message["status"] for message in heard(dashboard, "hexapods:status")]
+    assert statuses[0] == "reconnecting"
+
+
+def test_the_theme_is_the_dashboards(dashboard: Page, viewer: Frame) -> None:
+    def background() -> str:
+        return str(viewer.evaluate("getComputedStyle(document.documentElement).backgroundColor"))
+
+    assert background() == "rgb(11, 15, 20)"
+
+    dashboard.evaluate("show({ theme: 'light' })")
+
+    eventually(lambda: background() == "rgb(238, 241, 245)")
+    opaque = viewer.evaluate(
+        """() => {
+            const opaque = [];
+            for (let e = document.querySelector("canvas"); e !== document.documentElement;
+                 e = e.parentElement)
+                if (getComputedStyle(e).backgroundColor !== "rgba(0, 0, 0, 0)") opaque.push(e.id);
+            return opaque;
+        }"""
+    )
+    assert opaque == []
+
+
+def test_shortcuts_reach_the_dashboard(dashboard: Page, viewer: Frame) -> None:
+    dashboard.locator("iframe").click()
+    for key in (" ", "r", "3", "?", "Control+y", "ArrowUp", "Shift", "Escape"):
+        dashboard.keyboard.press(key)
+
+    dashboard.wait_for_function("heard.some((message) => message.key === 'Escape')")
+    keys = heard(dashboard, "hexapods:key")
+    assert [message["key"] for message in keys] == [" ", "r", "3", "?", "Escape"]
+    assert keys[2] == {"type": "hexapods:key", "key": "3", "code": "Digit3", "shiftKey": False}
+
+
+def test_a_page_of_another_version_reloads_once(
+    page: Page, address: Address, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loads: list[str] = []
+    page.on("load", lambda loaded: loads.append(loaded.url))
+    attempts = socket_addresses(page)
+    eventually(lambda: address.hub.live)
+    monkeypatch.setattr(wire, "SUBPROTOCOL", "viser-v999")
+
+    page.goto(address.page)
+    while len(loads) < 2 or len(attempts) < 4:
+        page.wait_for_timeout(10)
+
+    assert len(loads) == 2
+
+
+def test_a_full_house_is_told_to_the_dashboard(page: Page, stage: viser.ViserServer) -> None:
+    root = Route("/", lambda _: HTMLResponse(DASHBOARD))
+    with serving(Hub(stage.get_port(), max_viewers=0), more_routes=[root]) as address:
+        page.goto(f"http://{address.host}/")
+
+        page.wait_for_function("heard.some((message) => message.status === 'full')")
+
+
+def test_other_pages_change_nothing(
+    dashboard: Page, viewer: Frame, address: Address, browser: Browser
+) -> None:
+    # Embedded by another origin: the same server, by another name.
+    port = address.port
+    with browser.new_context() as context:
+        foreign = context.new_page()
+        foreign.goto(f"http://{address.host}/")
+        foreign.evaluate(
+            f"document.querySelector('iframe').src = 'http://localhost:{port}/viewer/'"
+        )
+        [_, inner] = foreign.frames
+        inner.wait_for_url(f"http://localhost:{port}/viewer/*")
+        has(inner, "/world/box")
+        foreign.evaluate(
+            """document.querySelector("iframe").contentWindow
+                .postMessage({ type: "hexapods:show", theme: "light" }, "*")"""
+        )
+        # Messages arrive in order, so once this one is there, so was the other.
+        inner.evaluate("addEventListener('message', () => { window.told = true; })")
+        foreign.evaluate("document.querySelector('iframe').contentWindow.postMessage(0, '*')")
+        inner.wait_for_function("window.told")
+
+        assert inner.evaluate("document.documentElement.dataset.theme") is None
+
+
+def test_nothing_comes_from_elsewhere(page: Page, address: Address) -> None:
+    asked: list[str] = []
+    errors: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    sockets = socket_addresses(page)
+    page.on("pageerror", lambda error: errors.append(str(error)))
+
+    page.goto(f"{address.page}?websocket=ws://evil.example&playbackPath=https://evil.example/x")
+    has(page, "/world/box")
+
+    own = (f"http://{address.host}/", f"blob:http://{address.host}/", "data:")
+    assert [url for url in asked if not url.startswith(own)] == []
+    assert sockets == [f"ws://{address.host}/viewer/?view=leader"]
+    assert errors == []
+    page.reload()
+    has(page, "/world/box")
+
+
+def test_a_recording_plays_with_its_transport_bar(
+    page: Page, address: Address, recording: Recording
+) -> None:
+    stage = start_viser()
+    serializer = stage.get_scene_serializer()
+    for step in range(10):
+        stage.scene.add_box("/world/step", dimensions=(step + 1, 1, 1))
+        serializer.insert_sleep(0.1)
+    recording.data = serializer.serialize()
+    stage.stop()
+
+    page.goto(f"{address.page}?playbackPath=/api/v1/races/7/recording")
+
+    has(page, "/world/step")
+    page.wait_for_selector(".mantine-Slider-root", state="visible")
+    assert address.hub.counters.viewers == 0
