@@ -1,0 +1,62 @@
+"""What hangs over a robot: a pin in its agent's colour with a plate, and a flag at its end."""
+
+import numpy as np
+import viser
+
+from app.services.frames import LaneView, Role
+from app.viewer.colormap import rgb
+from app.viewer.shapes import flag
+
+_HEIGHT_M = 0.20
+_FLAG_M = 0.22
+
+
+def plate_text(role: Role, lane: LaneView) -> str:
+    """Two short lines: who, and what it does."""
+    if lane.failure is not None:
+        return f"{role.name}\ncannot go on"
+    if lane.step == 0:
+        return role.name
+    if lane.thinking:
+        futures = f" {lane.futures} of {lane.futures_total}" if lane.futures else "…"
+        return f"{role.name}  {_metres(lane.distance_m)}\nstep {lane.step}: thinking{futures}"
+    where = "marching on the spot" if lane.marching else f"step {lane.step}"
+    return f"{role.name}  {_metres(lane.distance_m)}\n{'done' if lane.done else where}"
+
+
+class Plate:
+    """Of one lane."""
+
+    def __init__(self, server: viser.ViserServer, root: str, role: Role, x_m: float) -> None:
+        self._role, self._x_m = role, x_m
+        self._label = server.scene.add_label(
+            f"{root}/plate", role.name, anchor="bottom-center", font_screen_scale=1.35
+        )
+        shape = flag(_FLAG_M)
+        self._flag = server.scene.add_mesh_simple(
+            f"{root}/flag",
+            shape.vertices,
+            shape.faces,
+            color=rgb(role.color),
+            side="double",
+            visible=False,
+        )
+        self._place: tuple[float, float, float] | None = None
+
+    def draw(self, lane: LaneView) -> None:
+        """Go along with the robot, and say what it does."""
+        x, y, z = lane.qpos[:3].tolist()
+        place = (x + self._x_m, y, z + _HEIGHT_M)
+        if place != self._place:
+            self._label.position = self._place = place
+        text = plate_text(self._role, lane)
+        if text != self._label.text:
+            self._label.text = text
+        finished = lane.done and lane.failure is None
+        if finished != self._flag.visible:
+            self._flag.position = np.array([place[0] + 0.17, y + 0.05, 0.0])
+            self._flag.visible = finished
+
+
+def _metres(distance_m: float) -> str:
+    return f"{distance_m + 0.0:.2f} m".replace("-0.00", "0.00")

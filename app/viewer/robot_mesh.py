@@ -1,0 +1,87 @@
+"""What a robot looks like: the visible geoms of its MJCF, joined to one mesh for each link."""
+
+from collections.abc import Iterable
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from app.domain.robot import Robot
+from app.domain.types import FloatArray, IntArray
+from app.physics.mjcf import VISIBLE_GROUP, compile_model
+from app.viewer.shapes import Shape, geom_shape, joined
+
+_DARK = ("servo", "hip", "knee", "belly", "deck", "foot", "bracket")
+"""Words in the names of geoms that are not painted in the agent's colour."""
+
+
+class Part(NamedTuple):
+    """One shape, and all the links of the robot that look so."""
+
+    shape: Shape
+    """In the frame of the link."""
+    painted: bool
+    """Whether it has the agent's colour."""
+    links: IntArray
+    """Bodies of the model."""
+
+
+class RobotMesh:
+    """Draws robots of one kind: from joint positions to where each part is."""
+
+    def __init__(self, robot: Robot) -> None:
+        self._model = compile_model(robot)
+        self._data = mujoco.MjData(self._model)
+        self.parts = _parts(self._model)
+
+    @property
+    def standing(self) -> FloatArray:
+        """The pose in which the model is written down, (7 + joints,)."""
+        pose: FloatArray = self._model.qpos0
+        return pose
+
+    def place(self, qpos: NDArray[np.floating[Any]]) -> tuple[FloatArray, FloatArray]:
+        """Places (bodies, 3) [m] and attitudes (bodies, 4) wxyz of all links; copies."""
+        self._data.qpos[:] = qpos
+        mujoco.mj_kinematics(self._model, self._data)
+        return self._data.xpos.copy(), self._data.xquat.copy()
+
+
+def _parts(model: mujoco.MjModel) -> list[Part]:
+    """Links that look alike become one part, however many legs there are."""
+    links: dict[tuple[int, bool], list[Shape]] = {}
+    for geom in np.flatnonzero(model.geom_group == VISIBLE_GROUP):
+        link, shape = _on_link(model, int(geom))
+        name = model.geom(geom).name
+        painted = not any(word in name for word in _DARK)
+        links.setdefault((link, painted), []).append(shape)
+    alike: dict[tuple[bytes, bool], tuple[Shape, list[int]]] = {}
+    for (link, painted), shapes in links.items():
+        shape = joined(shapes)
+        key = ((shape.vertices.round(5) + 0.0).tobytes(), painted)  # + 0.0, since −0 is not 0 here
+        alike.setdefault(key, (shape, []))[1].append(link)
+    return [Part(shape, painted, np.array(on)) for (_, painted), (shape, on) in alike.items()]
+
+
+def _on_link(model: mujoco.MjModel, geom: int) -> tuple[int, Shape]:
+    """The body that moves a geom, and the geom's shape in that body's frame."""
+    body, shape = int(model.geom_bodyid[geom]), geom_shape(model, geom)
+    shape = shape.moved(_matrix(model.geom_quat[geom]), model.geom_pos[geom])
+    while body != model.body_weldid[body]:
+        shape = shape.moved(_matrix(model.body_quat[body]), model.body_pos[body])
+        body = int(model.body_parentid[body])
+    return body, shape
+
+
+def _matrix(wxyz: Iterable[float]) -> FloatArray:
+    flat = np.empty(9)
+    mujoco.mju_quat2Mat(flat, np.array(wxyz, float))
+    return flat.reshape(3, 3)
+
+
+@lru_cache(maxsize=4)
+def robot_mesh(robot: Robot) -> RobotMesh:
+    """The mesh of a robot; used by one thread at a time."""
+    return RobotMesh(robot)

@@ -1,0 +1,134 @@
+"""Triangle meshes of the few shapes that the stage is made of.
+
+Sharp edges share no vertices, since viser's client smooths over those that do.
+"""
+
+from typing import Any, NamedTuple
+
+import mujoco
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+from app.domain.types import FloatArray
+
+_ROUND = 20
+"""Corners of what should look round."""
+
+
+class Shape(NamedTuple):
+    """Triangles."""
+
+    vertices: NDArray[np.float32]
+    """(v, 3) [m]"""
+    faces: NDArray[np.uint32]
+    """(f, 3) rows of `vertices`."""
+
+    def moved(self, rotation: FloatArray, place: FloatArray) -> "Shape":
+        """Turned by a matrix (3, 3), then put elsewhere, (3,) [m]."""
+        vertices = self.vertices @ rotation.T + place
+        return Shape(vertices.astype(np.float32), self.faces)
+
+
+def joined(shapes: list[Shape]) -> Shape:
+    """Several shapes as one."""
+    sizes = np.cumsum([0, *(len(shape.vertices) for shape in shapes)])[:-1]
+    faces = [shape.faces + np.uint32(start) for shape, start in zip(shapes, sizes, strict=True)]
+    return Shape(np.concatenate([s.vertices for s in shapes]), np.concatenate(faces))
+
+
+def geom_shape(model: mujoco.MjModel, geom: int) -> Shape:
+    """What a geom looks like, in its own frame.
+
+    Raises:
+        ValueError: if it is of a type that no robot of ours is made of.
+    """
+    kind, size = model.geom_type[geom], model.geom_size[geom]
+    types = mujoco.mjtGeom
+    if kind == types.mjGEOM_BOX:
+        return box(size)
+    if kind == types.mjGEOM_CYLINDER:
+        return cylinder(size[0], size[1])
+    if kind == types.mjGEOM_CAPSULE:
+        return _capsule(size[0], size[1])
+    if kind in (types.mjGEOM_SPHERE, types.mjGEOM_ELLIPSOID):
+        radii = size if kind == types.mjGEOM_ELLIPSOID else np.full(3, size[0])
+        ball = trimesh.creation.icosphere(subdivisions=2)
+        return _smooth(ball.vertices * radii, ball.faces)
+    raise ValueError(f"geom {geom} is of type {kind}, which the stage cannot draw")
+
+
+def box(half: FloatArray) -> Shape:
+    """Centred on the origin; half its edges, (3,) [m]."""
+    sides = []
+    for axis in range(3):
+        across, up = (axis + 1) % 3, (axis + 2) % 3
+        for sign in (1.0, -1.0):
+            corners = np.zeros((4, 3))
+            corners[:, axis] = sign
+            corners[:, across] = sign * np.array([-1, 1, 1, -1])
+            corners[:, up] = [-1, -1, 1, 1]
+            sides.append(_smooth(corners * half, np.array([[0, 1, 2], [0, 2, 3]])))
+    return joined(sides)
+
+
+def cylinder(radius: float, half_height: float) -> Shape:
+    """Around z, centred on the origin."""
+    around = 2 * np.pi * np.arange(_ROUND) / _ROUND
+    rim = radius * np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)
+    up = np.array([0.0, 0.0, half_height])
+    here, there = np.arange(_ROUND), (np.arange(_ROUND) + 1) % _ROUND
+    quads = [[here, there, _ROUND + there], [here, _ROUND + there, _ROUND + here]]
+    side = np.concatenate([np.stack(quad, axis=1) for quad in quads])
+    top, flipped = disc(radius), np.diag([1.0, -1.0, -1.0])
+    wall = _smooth(np.concatenate([rim - up, rim + up]), side)
+    return joined([wall, top.moved(np.eye(3), up), top.moved(flipped, -up)])
+
+
+def disc(radius: float, corners: int = _ROUND) -> Shape:
+    """Flat on the ground, facing up."""
+    around = 2 * np.pi * np.arange(corners) / corners
+    rim = radius * np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)
+    vertices = np.concatenate([[[0.0, 0.0, 0.0]], rim])
+    here = np.arange(corners)
+    faces = np.stack([0 * here, 1 + here, 1 + (here + 1) % corners], axis=1)
+    return _smooth(vertices, faces)
+
+
+def ring(inner: float, outer: float, corners: int = _ROUND) -> Shape:
+    """Flat on the ground, facing up."""
+    around = 2 * np.pi * np.arange(corners) / corners
+    unit = np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)
+    here, there = np.arange(corners), (np.arange(corners) + 1) % corners
+    faces = np.concatenate(
+        [
+            np.stack([here, corners + here, corners + there], axis=1),
+            np.stack([here, corners + there, there], axis=1),
+        ]
+    )
+    return _smooth(np.concatenate([inner * unit, outer * unit]), faces)
+
+
+def strip(width: float, depth: float) -> Shape:
+    """A rectangle flat on the ground, facing up, x by y, centred on the origin."""
+    x, y = width / 2, depth / 2
+    corners = np.array([[-x, -y, 0], [x, -y, 0], [x, y, 0], [-x, y, 0]])
+    return _smooth(corners, np.array([[0, 1, 2], [0, 2, 3]]))
+
+
+def flag(height: float) -> Shape:
+    """A pole on the ground with a pennant towards +x."""
+    pole = cylinder(0.02 * height, height / 2).moved(np.eye(3), np.array([0, 0, height / 2]))
+    top, low, out = height, 0.62 * height, 0.55 * height
+    cloth = np.array([[0, 0, top], [0, 0, low], [out, 0, (top + low) / 2]])
+    return joined([pole, _smooth(cloth, np.array([[0, 1, 2], [0, 2, 1]]))])
+
+
+def _capsule(radius: float, half_length: float) -> Shape:
+    mesh = trimesh.creation.capsule(radius=radius, height=2 * half_length, count=[_ROUND, 12])
+    centre = mesh.bounds.mean(axis=0)
+    return _smooth(mesh.vertices - centre, mesh.faces)
+
+
+def _smooth(vertices: FloatArray, faces: NDArray[np.integer[Any]]) -> Shape:
+    return Shape(vertices.astype(np.float32), faces.astype(np.uint32))

@@ -1,0 +1,85 @@
+"""The track: ground with a horizon, squares of half a metre, start and finish with a word."""
+
+import numpy as np
+import viser
+
+from app.runs.clocks import FINISH_LINE_M
+from app.viewer.colormap import Rgb
+from app.viewer.shapes import strip
+
+WORLD = "/world"
+"""The frame that everything is drawn under, for the follow camera."""
+
+SQUARE_M, TICK_M = 0.5, 0.05
+_BEFORE_M, _BEYOND_M = -0.5, 2.0
+_GROUND: Rgb = (112, 128, 150)
+_LINE: Rgb = (120, 138, 164)
+_TICK: Rgb = (150, 165, 188)
+_GREEN: Rgb = (46, 160, 67)
+_RED: Rgb = (218, 54, 51)
+
+
+def draw_ground(server: viser.ViserServer) -> None:
+    """What stays whatever is on stage: ground, lights, where a camera begins.
+
+    The ground is half transparent and fades out, so that it takes the page's light or dark
+    background for its sky: the theme is each viewer's own, and the scene is everyone's.
+    """
+    scene = server.scene
+    scene.set_up_direction("+z")
+    scene.world_axes.visible = False
+    scene.add_frame(WORLD, show_axes=False)
+    scene.add_grid(
+        f"{WORLD}/ground",
+        cell_size=SQUARE_M,
+        section_size=SQUARE_M,
+        cell_color=_LINE,
+        section_color=_LINE,
+        cell_thickness=0.0,
+        section_thickness=1.2,
+        infinite_grid=True,
+        fade_distance=9.0,
+        fade_strength=1.3,
+        plane_color=_GROUND,
+        plane_opacity=0.28,
+        shadow_opacity=0.45,
+    )
+    camera = server.initial_camera
+    camera.position, camera.look_at = (0.42, -1.28, 0.86), (0.0, 0.06, 0.03)
+    camera.fov = np.deg2rad(45)
+
+
+def draw_lanes(server: viser.ViserServer, root: str, xs: list[float], width: float) -> None:
+    """Lanes of the same width [m] around these x, with ticks, start and finish line."""
+    scene, left, right = server.scene, xs[0] - width / 2, xs[-1] + width / 2
+    borders = [x - width / 2 for x in xs] + [right]
+    scene.add_line_segments(
+        f"{root}/borders",
+        np.array([[(x, _BEFORE_M, 0.001), (x, _BEYOND_M, 0.001)] for x in borders]),
+        _TICK,
+        thickness=0.006,
+    )
+    marks = np.arange(_BEFORE_M, _BEYOND_M + TICK_M / 2, TICK_M)
+    ticks = [[(x, y, 0.001), (x + 0.03, y, 0.001)] for x in borders[:-1] for y in marks]
+    ticks += [[(right - 0.03, y, 0.001), (right, y, 0.001)] for y in marks]
+    scene.add_line_segments(f"{root}/ticks", np.array(ticks), _TICK, thickness=0.003)
+    middle, across = (left + right) / 2, right - left
+    lines = (("start", "Start", 0.0, _GREEN), ("finish", "Finish", FINISH_LINE_M, _RED))
+    for name, word, y, color in lines:
+        line = strip(across, 0.022)
+        scene.add_mesh_simple(
+            f"{root}/{name}",
+            line.vertices,
+            line.faces,
+            color=color,
+            cast_shadow=False,
+            receive_shadow=False,
+            position=(middle, y, 0.002),
+        )
+        scene.add_label(
+            f"{root}/{name}/word",
+            word,
+            position=(across / 2 + 0.04, 0.0, 0.0),
+            anchor="center-left",
+            font_screen_scale=1.25,
+        )
