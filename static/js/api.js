@@ -1,0 +1,80 @@
+// The REST interface: one function a thing one can ask for, problem documents as errors.
+
+const BASE = new URL("api/v1/", document.baseURI);
+
+/** A refusal. `message` is fit to be shown; `fields` says which of the form's fields it is about. */
+export class ApiError extends Error {
+  constructor(status, problem) {
+    super(problem.detail || problem.title || `The server answered ${status}.`);
+    this.status = status;
+    this.fields = (problem.errors ?? []).map(fieldOf).filter(Boolean);
+  }
+}
+
+/** Nobody answered: the server is away, or the network is. */
+export class Unreachable extends Error {
+  constructor() {
+    super("The server does not answer. Nothing was changed; try again once the page says live.");
+    this.status = 0;
+    this.fields = [];
+  }
+}
+
+const fieldOf = (error) => {
+  const place = error.field ?? error.loc ?? error.pointer ?? "";
+  return String(Array.isArray(place) ? place.at(-1) : place.split(/[./]/).at(-1));
+};
+
+async function call(method, path, body) {
+  const response = await fetch(new URL(path, BASE), {
+    method,
+    headers: body === undefined ? {} : { "Content-Type": "application/json" },
+    body: body === undefined ? undefined : JSON.stringify(body),
+  }).catch(() => {
+    throw new Unreachable();
+  });
+  const text = await response.text();
+  if (!response.ok) throw new ApiError(response.status, parse(text) ?? {});
+  return parse(text);
+}
+
+const parse = (text) => {
+  try {
+    return JSON.parse(text);
+  } catch {
+    return null;
+  }
+};
+
+const collection = (kind) => `${kind}s`;
+const address = ({ kind, id }) => `${collection(kind)}/${encodeURIComponent(id)}`;
+
+export const getOptions = () => call("GET", "options");
+export const getRun = (run) => call("GET", address(run));
+export const listRuns = (kind, cursor) =>
+  call("GET", `${collection(kind)}?limit=50${cursor ? `&cursor=${encodeURIComponent(cursor)}` : ""}`);
+
+export const startTraining = (body) => call("POST", "trainings", body);
+export const startRace = (body) => call("POST", "races", body);
+export const tuneTraining = (id, changes) => call("PATCH", address({ kind: "training", id }), changes);
+
+/** `verb` is stop, pause or resume. */
+export const tell = (run, verb) => call("POST", `${address(run)}/${verb}`);
+export const deleteRun = (run) => call("DELETE", address(run));
+
+export const getCurve = (id) => call("GET", `${address({ kind: "training", id })}/curve`);
+export const getTimeline = (id, clock) =>
+  call("GET", `${address({ kind: "race", id })}/timeline?clock=${clock}`);
+
+export const putStage = (changes) => call("PUT", "stage", changes);
+
+/** What of a run can be taken away: [label, address]. */
+export function downloads(run) {
+  const at = (rest) => new URL(`${address(run)}/${rest}`, BASE).href;
+  if (run.kind === "race") return [["Recording", at("recording")]];
+  return [
+    ["Curve (CSV)", at("curve?format=csv")],
+    ["Q-table (CSV)", at("q-table?format=csv")],
+    ["Q-table (npz)", at("q-table?format=npz")],
+  ];
+}

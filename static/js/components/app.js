@@ -1,0 +1,30 @@
+// The page: header, the two views, and what lies over them.
+import { announcement } from "../outcome.js";
+import { html } from "../html.js";
+import { place } from "../page.js";
+import { Header } from "./header.js";
+import { HelpDialog } from "./help.js";
+import { RaceView } from "./race-view.js";
+import { Runs } from "./runs.js";
+import { Toast } from "./toast.js";
+
+export function App() {
+  const inRuns = place.value === "runs";
+  return html`
+    <a class="skip" href="#main" onClick=${skip}>Skip to the page</a>
+    <${Header} />
+    <main id="main" tabindex="-1">
+      <${RaceView} isHidden=${inRuns} />
+      ${inRuns && html`<${Runs} />`}
+    </main>
+    <${HelpDialog} />
+    <${Toast} />
+    <p class="sr-only" role="status">${announcement}</p>
+  `;
+}
+
+/** The hash names the view, so the link moves the focus itself. */
+function skip(event) {
+  event.preventDefault();
+  document.getElementById("main").focus();
+}

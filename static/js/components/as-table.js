@@ -1,0 +1,23 @@
+// The numbers behind a picture.
+import { html } from "../html.js";
+import { useState } from "preact/hooks";
+
+export function AsTable({ caption, columns, rows }) {
+  const [isOpen, setOpen] = useState(false);
+  return html`
+    <details class="as-table" onToggle=${({ target }) => setOpen(target.open)}>
+      <summary>As a table</summary>
+      ${isOpen && html`
+        <div class="scroller" tabindex="0" role="region" aria-label=${caption}>
+          <table>
+            <caption class="sr-only">${caption}</caption>
+            <thead><tr>${columns.map((title) => html`<th scope="col">${title}</th>`)}</tr></thead>
+            <tbody>
+              ${rows.map(([first, ...others]) => html`<tr><th scope="row">${first}</th>${others.map((one) => html`<td>${one}</td>`)}</tr>`)}
+            </tbody>
+          </table>
+        </div>
+      `}
+    </details>
+  `;
+}

@@ -1,0 +1,139 @@
+// What one can do next: one primary button, and what runs already.
+import {
+  canStart, doNext, nextDeed, otherDeeds, pause, pending, resume, showOnStage, stop,
+} from "../actions.js";
+import { form } from "../form.js";
+import { count } from "../format.js";
+import { html } from "../html.js";
+import { isNarrow } from "../page.js";
+import { progress } from "../progress.js";
+import { agentOf, isOperator, myWork, offStage, shownRun, work } from "../selectors.js";
+import { options } from "../store.js";
+import { Icon } from "./icon.js";
+import { Problem } from "./problem.js";
+import { Settings } from "./settings.js";
+
+export function Controls() {
+  if (!isOperator.value) return html`<${WatchOnly} />`;
+  const deeds = html`<${Deeds} />`;
+  return html`
+    <section class="panel controls" aria-label="Train and race">
+      ${isNarrow.value
+        ? html`${deeds}<${FoldedSettings} />`
+        : html`<${Settings} />${deeds}`}
+    </section>
+  `;
+}
+
+/** On a phone the button comes first, and the settings in one line. */
+function FoldedSettings() {
+  const { gait, steps, alpha, gamma } = form.value;
+  const chosen = options.value?.gaits?.find(({ name }) => name === gait);
+  return html`
+    <details class="folded">
+      <summary>
+        <span>Settings</span>
+        <span class="dim">${chosen?.title ?? gait}, ${count(steps, "step")}, α ${alpha}, γ ${gamma}</span>
+      </summary>
+      <${Settings} />
+    </details>
+  `;
+}
+
+function Deeds() {
+  const isBusy = Boolean(myWork.value) || pending.value.start;
+  const label = isBusy ? busyLabel() : nextDeed.value.label;
+  return html`
+    <div class="deeds">
+      <button class="primary" aria-disabled=${canStart.value && !isBusy ? undefined : "true"} onClick=${doNext}>
+        ${!isBusy && html`<${Icon} name="play" />`}${label}
+      </button>
+      <${Problem} at="start" />
+      ${work.value ? html`<${Running} />` : html`<${Others} />`}
+      <${Progress} />
+      <${Problem} at="work" />
+      <${Problem} at="tune" />
+      <${OffStage} />
+      <${Failure} />
+    </div>
+  `;
+}
+
+const busyLabel = () => {
+  const { asked, now } = myWork.value ?? {};
+  if (!now) return "Starting…";
+  if (now.state === "paused") return "Paused";
+  if (now.kind === "training") return asked === now ? "Practising…" : "Practising, then racing…";
+  return "Racing…";
+};
+
+const Others = () => html`
+  <div class="row">
+    ${otherDeeds.value.map(([label, deed]) => html`
+      <button class="secondary" onClick=${deed} aria-disabled=${canStart.value ? undefined : "true"}>${label}</button>
+    `)}
+  </div>
+`;
+
+function Running() {
+  const { now } = work.value;
+  const isPaused = now.state === "paused";
+  return html`
+    <div class="row">
+      <button class="secondary" onClick=${isPaused ? resume : pause} disabled=${now.state === "queued"}>
+        <${Icon} name=${isPaused ? "play" : "pause"} />${isPaused ? "Resume" : "Pause"}
+      </button>
+      <button class="secondary" onClick=${stop}><${Icon} name="stop" />Stop</button>
+    </div>
+  `;
+}
+
+function Progress() {
+  const shown = progress.value;
+  if (!shown) return null;
+  const percent = Math.round(100 * shown.share);
+  return html`
+    <div class="progress">
+      <p><span>${shown.label}</span><span class="dim">${shown.left}</span></p>
+      <div class="bar" role="progressbar" aria-label=${shown.label} aria-valuenow=${percent} aria-valuemin="0" aria-valuemax="100">
+        <i style=${{ width: `${100 * shown.share}%` }}></i>
+      </div>
+    </div>
+  `;
+}
+
+function OffStage() {
+  const run = offStage.value;
+  if (!run) return null;
+  return html`
+    <div class="notice">
+      <p>Another run is live on the stage, so yours goes on without a picture.</p>
+      <button class="secondary" onClick=${() => showOnStage(run)}>Show on stage</button>
+      <${Problem} at=${run.id} />
+    </div>
+  `;
+}
+
+function Failure() {
+  const run = shownRun.value;
+  if (run?.state !== "failed" && run?.state !== "interrupted") return null;
+  return html`
+    <div class="notice bad">
+      <p><b>The ${run.kind} ${run.state === "failed" ? "failed" : "was interrupted"}.</b> ${run.error}</p>
+      <p>Change what it names, or start it again: everything else goes on.</p>
+    </div>
+  `;
+}
+
+/** What a spectator has in place of the controls. */
+function WatchOnly() {
+  const shown = progress.value;
+  const names = (shownRun.value?.config?.lanes ?? []).map(({ agent }) => agentOf(agent).title);
+  return html`
+    <section class="panel controls" aria-label="What is happening">
+      <h2>You are watching</h2>
+      <p class="dim">${names.length ? `${names.join(", ")} race. ` : ""}The camera is yours; who has the operator's link runs the show.</p>
+      ${shown && html`<${Progress} />`}
+    </section>
+  `;
+}

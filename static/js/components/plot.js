@@ -1,0 +1,87 @@
+// A chart by uPlot that follows its place, the theme and its data; a table says the same in numbers.
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
+import uPlot from "uplot";
+import { html } from "../html.js";
+import { shownTheme } from "../theme.js";
+import { lineLabels } from "./line-labels.js";
+
+const HEIGHT = 212;
+
+/**
+ * @param label what the picture shows, in a sentence
+ * @param series [{color, dash?, width?, points?}] as many as `data` has lines
+ * @param data as uPlot has it: [xs, ys…]
+ * @param x, y {min, max, label}
+ * @param labels [{text, color, x, y}] written at the ends of lines
+ */
+export function Plot(props) {
+  const host = useRef(null);
+  const plot = useRef(null);
+  const newest = useRef(props);
+  newest.current = props;
+  const shape = JSON.stringify(props.series);
+
+  useLayoutEffect(() => {
+    plot.current = new uPlot(optionsOf(host.current, newest), props.data, host.current);
+    const watcher = new ResizeObserver(([{ contentRect }]) => {
+      if (contentRect.width > 0) plot.current.setSize({ width: contentRect.width, height: HEIGHT });
+    });
+    watcher.observe(host.current);
+    return () => {
+      watcher.disconnect();
+      plot.current.destroy();
+    };
+  }, [shape, shownTheme.value]);
+
+  useEffect(() => plot.current.setData(props.data), [props.data, props.x.max, props.y.max]);
+
+  return html`<div class="plot" role="img" aria-label=${props.label} ref=${host}></div>`;
+}
+
+function optionsOf(host, newest) {
+  const colour = coloursOf(host);
+  const axis = (name, more) => ({
+    stroke: colour("--dim"),
+    font: "12px system-ui, sans-serif",
+    grid: { stroke: colour("--line"), width: 1 },
+    ticks: { show: false },
+    ...more,
+  });
+  const range = (name) => () => [newest.current[name].min ?? 0, newest.current[name].max];
+  return {
+    width: host.clientWidth || 300,
+    height: HEIGHT,
+    padding: [12, 92, 0, 0],
+    legend: { show: false },
+    cursor: { show: false },
+    select: { show: false },
+    scales: { x: { time: false, range: range("x") }, y: { range: range("y") } },
+    axes: [
+      axis("x", { size: 28, gap: 6, space: 56, grid: { show: false } }),
+      axis("y", { size: 40, gap: 8, space: 34, values: (_, splits) => splits.map((v) => v.toFixed(1)) }),
+    ],
+    series: [
+      {},
+      ...newest.current.series.map(({ color, dash, width = 2.5, points }) => ({
+        stroke: color.startsWith("--") ? colour(color) : color,
+        width,
+        dash,
+        spanGaps: true,
+        points: { show: Boolean(points), size: 6, fill: color, stroke: color },
+      })),
+    ],
+    plugins: [lineLabels(() => newest.current.labels, () => newest.current.marks ?? [], colour)],
+  };
+}
+
+/** A colour as the canvas wants it: custom properties are not resolved there. */
+function coloursOf(host) {
+  const probe = document.createElement("span");
+  return (name) => {
+    host.append(probe);
+    probe.style.color = `var(${name})`;
+    const found = getComputedStyle(probe).color;
+    probe.remove();
+    return found;
+  };
+}

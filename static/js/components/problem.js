@@ -1,0 +1,17 @@
+// What went wrong, beside the control that caused it.
+import { forget, problems } from "../actions.js";
+import { html } from "../html.js";
+
+export function Problem({ at }) {
+  const error = problems.value[at];
+  return html`
+    <div role="alert">
+      ${error && html`
+        <p class="problem">
+          <span>${error.message}</span>
+          <button class="quiet square small" aria-label="Dismiss" onClick=${() => forget(at)}>✕</button>
+        </p>
+      `}
+    </div>
+  `;
+}

@@ -1,0 +1,24 @@
+// What happens, who is winning and why, and what one can do next.
+import { html } from "../html.js";
+import { Controls } from "./controls.js";
+import { Knowledge } from "./knowledge-table.js";
+import { LearningChart } from "./learning-chart.js";
+import { RaceChart } from "./race-chart.js";
+import { Scoreboard } from "./scoreboard.js";
+import { Stage } from "./stage.js";
+
+/** Hidden rather than gone while another view is open, so that the stage goes on. */
+export const RaceView = ({ isHidden }) => html`
+  <div class="race-view" hidden=${isHidden}>
+    <${Stage} />
+    <div class="side">
+      <${Controls} />
+      <${Scoreboard} />
+    </div>
+    <div class="below">
+      <${LearningChart} />
+      <${RaceChart} />
+      <${Knowledge} />
+    </div>
+  </div>
+`;

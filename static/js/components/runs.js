@@ -1,0 +1,71 @@
+// Every run that there is: filter, show, take away, delete.
+import { useState } from "preact/hooks";
+import { listRuns } from "../api.js";
+import { html } from "../html.js";
+import { newestFirst } from "../selectors.js";
+import { keepRun } from "../store.js";
+import { RunRow } from "./run-row.js";
+
+const KINDS = [["all", "All"], ["training", "Trainings"], ["race", "Races"]];
+const STATES = ["any state", "running", "paused", "queued", "finished", "stopped", "failed", "interrupted"];
+
+export function Runs() {
+  const [kind, setKind] = useState("all");
+  const [state, setState] = useState("any state");
+  const all = newestFirst.value;
+  const shown = all.filter(
+    (run) => (kind === "all" || run.kind === kind) && (state === "any state" || run.state === state),
+  );
+  return html`
+    <section class="panel runs" aria-labelledby="runs-title">
+      <div class="runs-head">
+        <h2 id="runs-title">Runs</h2>
+        <div class="segments" role="group" aria-label="Kind">
+          ${KINDS.map(([name, title]) => html`
+            <button aria-pressed=${kind === name ? "true" : "false"} onClick=${() => setKind(name)}>${title}</button>
+          `)}
+        </div>
+        <label class="choice">
+          <span class="sr-only">State</span>
+          <select onChange=${({ target }) => setState(target.value)}>
+            ${STATES.map((one) => html`<option selected=${one === state}>${one}</option>`)}
+          </select>
+        </label>
+      </div>
+      ${shown.length === 0
+        ? html`<${NoRuns} isFiltered=${all.length > 0} />`
+        : html`<ul class="run-list">${shown.map((run) => html`<${RunRow} key=${run.id} run=${run} />`)}</ul>`}
+      <${Older} count=${all.length} />
+    </section>
+  `;
+}
+
+const NoRuns = ({ isFiltered }) => html`
+  <div class="no-runs">
+    ${isFiltered
+      ? html`<p>No run is of this kind and state.</p>`
+      : html`<p><b>Nothing has run.</b></p><p>Every training and race is kept here, with its curve, its table and its recording. <a href="#">Start the first one</a>.</p>`}
+  </div>
+`;
+
+/** The snapshot has the newest fifty; the rest comes when asked for. */
+function Older({ count }) {
+  const [cursors, setCursors] = useState({ training: "", race: "" });
+  const [note, setNote] = useState("");
+  if (count < 50 || Object.values(cursors).every((cursor) => cursor === null)) return null;
+  const load = async () => {
+    setNote("");
+    try {
+      const next = { ...cursors };
+      for (const kind of ["training", "race"].filter((one) => cursors[one] !== null)) {
+        const { items, next_cursor } = await listRuns(kind, cursors[kind]);
+        items.forEach(keepRun);
+        next[kind] = next_cursor ?? null;
+      }
+      setCursors(next);
+    } catch (error) {
+      setNote(error.message);
+    }
+  };
+  return html`<div class="older"><button class="secondary" onClick=${load}>Show older runs</button><p role="alert">${note}</p></div>`;
+}

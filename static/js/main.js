@@ -1,0 +1,37 @@
+// Starts the page: what can be chosen, what happens, and what is drawn of it.
+import { render } from "preact";
+import { getOptions } from "./api.js";
+import { App } from "./components/app.js";
+import { followCurves } from "./curves.js";
+import { openEvents } from "./events.js";
+import { readAddress, useDefaults, writeAddress } from "./form.js";
+import { html } from "./html.js";
+import { listenForKeys } from "./keys.js";
+import { announceOutcomes } from "./outcome.js";
+import { applyEvent, connection, options } from "./store.js";
+import { followTheme } from "./theme.js";
+import { followTimeline } from "./timeline.js";
+
+async function loadOptions(attempt = 0) {
+  try {
+    options.value = await getOptions();
+  } catch {
+    setTimeout(loadOptions, Math.min(500 * 2 ** attempt, 5000), attempt + 1);
+    return;
+  }
+  useDefaults(options.value);
+  readAddress();
+  writeAddress();
+}
+
+followTheme();
+followCurves();
+followTimeline();
+announceOutcomes();
+listenForKeys();
+openEvents(applyEvent, (state) => (connection.value = state));
+loadOptions();
+
+const root = document.getElementById("app");
+root.replaceChildren();
+render(html`<${App} />`, root);

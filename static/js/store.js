@@ -1,0 +1,57 @@
+// What the page knows of the server, as signals. Only `applyEvent` and `keepRun` write to it.
+import { batch, signal } from "@preact/signals";
+
+/** "connecting", "live" or "reconnecting". */
+export const connection = signal("connecting");
+export const version = signal(null);
+/** Null until the snapshot says; then "operator" or "spectator". */
+export const role = signal(null);
+export const viewers = signal(null);
+export const options = signal(null);
+/** Every run that was heard of, by id. */
+export const runs = signal(new Map());
+/** What everyone is shown, as GET /stage has it. */
+export const stage = signal(null);
+/** What everyone sees right now, about five times a second. */
+export const scene = signal(null);
+/** Evaluations that came in while the page was open: run id → [{step, distance_m, epsilon}]. */
+export const evaluations = signal({});
+/** Run id → how far greedy gets on the same robot [m]. */
+export const references = signal({});
+/** Run id → the newest rates and pace that someone set while it ran. */
+export const rates = signal({});
+
+const put = (map, key, value) => (map.value = { ...map.value, [key]: value });
+
+const handlers = {
+  snapshot(data) {
+    version.value = data.version ?? null;
+    role.value = data.role ?? "operator";
+    viewers.value = data.viewers ?? null;
+    runs.value = new Map((data.runs ?? []).map((run) => [run.id, run]));
+    stage.value = data.stage ?? null;
+    scene.value = data.scene ?? null;
+  },
+  run: (data) => keepRun(data),
+  "run-deleted"({ id }) {
+    const left = new Map(runs.value);
+    left.delete(id);
+    runs.value = left;
+  },
+  evaluation({ run_id, ...evaluation }) {
+    put(evaluations, run_id, [...(evaluations.value[run_id] ?? []), evaluation]);
+  },
+  reference: ({ run_id, greedy_distance_m }) => put(references, run_id, greedy_distance_m),
+  rates: ({ run_id, ...changed }) =>
+    put(rates, run_id, { ...rates.value[run_id], ...changed }),
+  stage: (data) => (stage.value = data),
+  viewers: ({ count }) => (viewers.value = count),
+  scene: (data) => (scene.value = data),
+};
+
+export const applyEvent = (name, data) => batch(() => handlers[name]?.(data));
+
+/** Take in a run as an answer or an event has it. */
+export function keepRun(run) {
+  runs.value = new Map(runs.value).set(run.id, run);
+}
