@@ -10,6 +10,7 @@ from typing import Any
 
 from app.agents import registry
 from app.domain.errors import HexapodError, InvalidInput
+from app.runs.config import TrainingConfig
 from app.services.bus import EventBus
 from app.services.entries import (
     Entry,
@@ -22,7 +23,7 @@ from app.services.errors import Busy, Conflict
 from app.services.ids import RunIds
 from app.services.job import Job
 from app.services.recordings import Recordings
-from app.services.store import LIVE, PAUSED, QUEUED, RUNNING, Run, RunStore, State
+from app.services.store import LIVE, PAUSED, QUEUED, RUNNING, TABLE, Run, RunStore, State
 from app.services.views import run_view
 
 MAX_QUEUED = 32
@@ -45,7 +46,7 @@ class Jobs:
         store: RunStore,
         recordings: Recordings,
         bus: EventBus,
-        on_start: Callable[[str], None] | None = None,
+        on_queued: Callable[[str], object] | None = None,
         cores: int | None = None,
     ) -> None:
         """Start nothing yet.
@@ -54,11 +55,11 @@ class Jobs:
             store: where runs are kept.
             recordings: where their motion goes.
             bus: who wants to know.
-            on_start: called with a run's id when it starts to run.
+            on_queued: called with the id of what someone has asked for.
             cores: how many jobs run at once; the machine's by default.
         """
         self._store, self._recordings, self._bus = store, recordings, bus
-        self._on_start = on_start
+        self._on_queued = on_queued
         self.cores = cores or os.cpu_count() or 1
         self._new_id = RunIds()
         self._queue: list[Entry] = []
@@ -68,6 +69,11 @@ class Jobs:
         """Guards the queue and the jobs; notified when something may be started."""
         # The kernel ends a child with the thread that started it, so that one thread starts all.
         self._starter = threading.Thread(target=self._keep_starting, name="jobs", daemon=True)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether what is queued will be started."""
+        return self._starter.is_alive() and not self._closing
 
     def open(self) -> None:
         """Begin to start what is queued."""
@@ -104,6 +110,27 @@ class Jobs:
             Busy: if too many runs are waiting.
         """
         return self._enqueue(race_entries(start, self._store, self._new_id))
+
+    def adopt(
+        self, config: TrainingConfig, name: str, steps: int, result: dict[str, Any], table: bytes
+    ) -> Run:
+        """Keep a table from elsewhere as a training that is finished."""
+        run = Run(
+            id=self._new_id(),
+            kind="training",
+            name=name,
+            state="finished",
+            config=config,
+            done=steps,
+            total=steps,
+            greedy_distance_m=result["greedy_distance_m"],
+            result=result,
+            ended_at=datetime.now(UTC),
+        )
+        self._store.create(run)
+        self._store.put_artifact(run.id, TABLE, table)
+        self._publish(run)
+        return run
 
     def pause(self, run_id: str) -> Run:
         """Let a running job wait.
@@ -202,7 +229,10 @@ class Jobs:
             for entry in entries:
                 self._publish(entry.run)
             self._changed.notify_all()
-        return entries[-1].run
+        run = entries[-1].run
+        if self._on_queued is not None:
+            self._on_queued(run.id)
+        return run
 
     def _live(self, run_id: str, states: frozenset[State], what: str) -> Job:
         """The job of a run in one of these states, that nobody is stopping."""
@@ -283,8 +313,6 @@ class Jobs:
         self._jobs[run_id] = job
         self._note_company()
         self._publish(run)
-        if self._on_start is not None:
-            self._on_start(run_id)
 
     def _note_company(self) -> None:
         """Decisions are measured in wall time, so a race says if it had the machine to itself."""

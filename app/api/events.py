@@ -1,0 +1,66 @@
+"""Server-sent events: how everything is, and then what changes."""
+
+import json
+from collections.abc import AsyncIterator
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Header, Query
+from fastapi.sse import EventSourceResponse, ServerSentEvent
+
+from app import __version__
+from app.api.deps import Given, Services, Who
+from app.api.sentences import VALID
+from app.services.views import run_view
+
+NEWEST_RUNS = 50
+RETRY_MS = 1000
+
+router = APIRouter(prefix="/events", tags=["events"])
+
+
+def _known_run(
+    services: Given,
+    run_id: Annotated[str | None, Query(max_length=64, description=VALID["run_id"])] = None,
+) -> str | None:
+    """The run to listen to, checked while the answer may still be 404."""
+    return None if run_id is None else services.store.get(run_id).id
+
+
+@router.get("", summary="What happens, as it happens", response_class=EventSourceResponse)
+async def get_events(
+    services: Given,
+    role: Who,
+    run_id: Annotated[str | None, Depends(_known_run)],
+    last_event_id: Annotated[str | None, Header()] = None,
+) -> AsyncIterator[ServerSentEvent]:
+    """A `snapshot` first, then changes; with `run_id` those of one run only."""
+    # Listening before looking: what happens in between comes twice rather than never.
+    subscription = services.bus.subscribe(run_id, _event_id(last_event_id))
+    snapshot_id = str(services.bus.last_id)
+    data = json.dumps(_snapshot(services, role, run_id), allow_nan=False)
+    yield ServerSentEvent(event="snapshot", id=snapshot_id, raw_data=data, retry=RETRY_MS)
+    async for event in subscription:
+        yield ServerSentEvent(event=event.event, id=str(event.id), raw_data=event.data)
+
+
+def _snapshot(services: Services, role: str, run_id: str | None) -> dict[str, Any]:
+    store = services.store
+    runs = store.list(limit=NEWEST_RUNS).items if run_id is None else [store.get(run_id)]
+    shown: dict[str, Any] = {
+        "version": __version__,
+        "role": role,
+        "viewers": services.viewers(),
+        "runs": [run_view(run) for run in runs],
+        "stage": services.stage.state(),
+        "scene": services.stage.scene(),
+    }
+    if run_id is not None:
+        shown["evaluations"] = store.evaluations(run_id)
+    return shown
+
+
+def _event_id(header: str | None) -> int | None:
+    """Ours are whole numbers; whatever else is sent counts as none."""
+    if header is None or not header.isascii() or not header.isdigit():
+        return None
+    return int(header[:18])

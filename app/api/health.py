@@ -1,0 +1,25 @@
+"""Whether the server lives, and whether it is ready to work."""
+
+from fastapi import APIRouter
+from starlette.responses import JSONResponse, Response
+
+from app import __version__
+from app.api.deps import Given
+from app.api.problems import problem
+
+router = APIRouter(tags=["health"])
+
+
+@router.get("/healthz", summary="Whether the server lives")
+async def get_health() -> Response:
+    """Answers as long as the server can answer at all."""
+    return JSONResponse({"status": "ok", "version": __version__})
+
+
+@router.get("/readyz", summary="Whether the server is ready to work")
+def get_readiness(services: Given) -> Response:
+    """503 with the reason while something that runs need is away."""
+    trouble = services.ready()
+    if trouble is not None:
+        return problem(503, trouble, headers={"Retry-After": "1"})
+    return JSONResponse({"status": "ready", "version": __version__})

@@ -1,0 +1,103 @@
+"""Errors as RFC 9457 problem documents: the one place where they meet HTTP."""
+
+import json
+import logging
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.exceptions import RequestValidationError
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.api.sentences import in_sentences
+from app.domain.errors import HexapodError, InvalidInput
+from app.services.errors import Busy, Conflict, NotFound
+
+MEDIA_TYPE = "application/problem+json"
+MAX_DETAIL = 1000
+_logger = logging.getLogger(__name__)
+
+_DETAILS = {
+    HTTPStatus.NOT_FOUND: "There is nothing at {path}; /docs lists what there is.",
+    HTTPStatus.METHOD_NOT_ALLOWED: "{method} is not possible at {path}; possible: {allow}.",
+    HTTPStatus.REQUEST_ENTITY_TOO_LARGE: "The request's body is larger than the limit here.",
+    HTTPStatus.BAD_REQUEST: "The request's body could not be read; send valid JSON.",
+}
+
+
+def problem(
+    status: int,
+    detail: str,
+    errors: Sequence[Mapping[str, Any]] | None = None,
+    headers: Mapping[str, str] | None = None,
+    **more: Any,
+) -> Response:
+    """A problem document.
+
+    Args:
+        status: of the response.
+        detail: one sentence or two for the user, naming what is valid.
+        errors: the fields that are wrong: `field` and `detail`.
+        headers: of the response.
+        more: further members of the document.
+    """
+    body = {
+        "type": "about:blank",
+        "title": HTTPStatus(status).phrase,
+        "status": status,
+        "detail": detail if len(detail) <= MAX_DETAIL else detail[: MAX_DETAIL - 1] + "…",
+        **more,
+    }
+    if errors is not None:
+        body["errors"] = list(errors)
+    # Escaped to ASCII, because a message may quote what is no valid Unicode.
+    return Response(json.dumps(body), status, headers, MEDIA_TYPE)
+
+
+def install(app: FastAPI) -> None:
+    """Let every error of the app become a problem document."""
+    app.add_exception_handler(HexapodError, _hexapod_error)
+    app.add_exception_handler(RequestValidationError, _validation_error)
+    app.add_exception_handler(HTTPException, _http_error)
+    app.add_exception_handler(Exception, _unexpected)
+
+
+async def _hexapod_error(request: Request, error: Exception) -> Response:
+    message = str(error)
+    sentence = message[:1].upper() + message[1:] + ("" if message.endswith((".", "!")) else ".")
+    match error:
+        case InvalidInput():
+            return problem(422, sentence)
+        case NotFound():
+            return problem(404, sentence)
+        case Conflict(state=state):
+            return problem(409, sentence, state=state)
+        case Busy(retry_after_s=seconds):
+            return problem(429, sentence, headers={"Retry-After": str(seconds)})
+    return await _unexpected(request, error)
+
+
+async def _validation_error(request: Request, error: Exception) -> Response:
+    del request
+    raw = error.errors() if isinstance(error, RequestValidationError) else []
+    errors = in_sentences(raw)
+    return problem(422, " ".join(e["detail"] for e in errors[:3]), errors)
+
+
+async def _http_error(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    headers = dict(error.headers or {})
+    template = _DETAILS.get(HTTPStatus(error.status_code), str(error.detail))
+    words = {"path": request.url.path, "method": request.method, "allow": headers.get("Allow", "")}
+    return problem(error.status_code, template.format_map(words), headers=headers)
+
+
+async def _unexpected(request: Request, error: Exception) -> Response:
+    _logger.error("%s %s failed", request.method, request.url.path, exc_info=error)
+    detail = "Something broke in the server; its log says what. Other runs go on."
+    # Answered outside of the middleware that adds these to everything else.
+    headers = {"X-Content-Type-Options": "nosniff", "Content-Security-Policy": "default-src 'none'"}
+    return problem(500, detail, headers=headers)

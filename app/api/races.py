@@ -1,0 +1,64 @@
+"""Races: start, and what there is to replay."""
+
+from typing import Annotated, Literal
+
+from fastapi import Query, Request
+from starlette.responses import JSONResponse, Response, StreamingResponse
+
+from app.api.deps import Given, Services
+from app.api.formats import attachment, chosen
+from app.api.runs import RunPath, accepted, find, run_routes
+from app.api.schemas import RaceBody
+from app.runs.clocks import Clock
+from app.runs.config import RaceConfig
+from app.runs.recording import LaneRecording
+from app.services import replays
+from app.services.errors import Conflict
+from app.services.store import Run
+from app.services.timeline import timeline
+
+router = run_routes("race")
+
+
+@router.post("", status_code=202, summary="Start a race, and the practice that it needs")
+def start_race(services: Given, request: Request, body: RaceBody) -> Response:
+    """Queue the trainings of its lanes and then the race, and answer with the race's run."""
+    run = services.jobs.race(body.start(services.agents))
+    return accepted(request, run)
+
+
+@router.get("/{run_id}/recording", summary="What a replay needs; also as .npz and for viser")
+def get_recording(
+    services: Given,
+    request: Request,
+    run_id: RunPath,
+    format: Annotated[Literal["json", "npz", "viser"] | None, Query()] = None,  # noqa: A002
+) -> Response:
+    """Joint positions over time; `viser` is for `/viewer/?playbackPath=…`."""
+    run, config, lanes = _recorded(services, run_id)
+    kind = chosen(request, format, ("json", "npz"))
+    if kind == "viser":
+        film = services.film(config, lanes)
+        return attachment(film, "application/octet-stream", f"race-{run_id}.viser")
+    if kind == "npz":
+        return attachment(replays.as_npz(lanes), "application/x-npz", f"race-{run_id}.npz")
+    chunks = replays.as_json(lanes, run.lane_training_ids, config.steps)
+    return StreamingResponse(chunks, media_type="application/json")
+
+
+@router.get("/{run_id}/timeline", summary="Distance over time under one clock")
+def get_timeline(
+    services: Given, run_id: RunPath, clock: Annotated[Clock, Query()] = "paper"
+) -> Response:
+    """When each lane thinks and walks; flat parts of its points are thinking."""
+    run, config, lanes = _recorded(services, run_id)
+    return JSONResponse(timeline(lanes, run.lane_training_ids, config.steps, clock))
+
+
+def _recorded(services: Services, run_id: str) -> tuple[Run, RaceConfig, list[LaneRecording]]:
+    run = find(services, "race", run_id)
+    lanes = services.recordings.race(run_id)
+    if lanes is None:
+        raise Conflict(f"race {run_id} is {run.state} and has no recording (yet)", run.state)
+    assert isinstance(run.config, RaceConfig)
+    return run, run.config, lanes

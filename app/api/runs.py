@@ -1,0 +1,92 @@
+"""What trainings and races have in common: list, look, stop, pause, resume, delete."""
+
+from collections.abc import Callable
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Path, Query, Request
+from starlette.responses import JSONResponse, Response
+
+from app.api.deps import Given, Services
+from app.api.sentences import MAX_PAGE, VALID
+from app.services.errors import NotFound
+from app.services.jobs import Jobs
+from app.services.store import Kind, Run, State
+from app.services.views import run_view
+
+RunPath = Annotated[str, Path(description="of the run")]
+
+
+def find(services: Services, kind: Kind, run_id: str) -> Run:
+    """A run of this kind.
+
+    Raises:
+        NotFound: if there is none.
+    """
+    try:
+        run = services.store.get(run_id)
+    except NotFound:
+        run = None
+    if run is None or run.kind != kind:
+        raise NotFound(f"there is no {kind} {run_id!r}; GET /api/v1/{kind}s lists all")
+    return run
+
+
+def accepted(request: Request, run: Run) -> Response:
+    """The answer to who started a run."""
+    location = request.url_for(f"get_{run.kind}", run_id=run.id).path
+    return JSONResponse(run_view(run), 202, {"Location": location})
+
+
+def run_routes(kind: Kind) -> APIRouter:
+    """The routes that every kind of run has."""
+    router = APIRouter(prefix=f"/{kind}s", tags=[f"{kind}s"])
+
+    @router.get("", summary=f"The {kind}s, newest first", name=f"list_{kind}s")
+    def list_runs(
+        services: Given,
+        state: Annotated[State | None, Query(description=VALID["state"])] = None,
+        limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 50,
+        cursor: Annotated[str | None, Query(max_length=64, description=VALID["cursor"])] = None,
+    ) -> Response:
+        page = services.store.list(kind, state, limit, cursor)
+        items = [run_view(run) for run in page.items]
+        return JSONResponse({"items": items, "next_cursor": page.next_cursor})
+
+    @router.get("/{run_id}", summary=f"A {kind}", name=f"get_{kind}")
+    def get_run(services: Given, run_id: RunPath) -> Response:
+        return JSONResponse(run_view(find(services, kind, run_id)))
+
+    @router.delete(
+        "/{run_id}", status_code=204, summary=f"Delete a {kind} that has ended", name=f"del_{kind}"
+    )
+    def delete_run(services: Given, run_id: RunPath) -> None:
+        find(services, kind, run_id)
+        services.jobs.delete(run_id)
+
+    for verb, summary in _VERBS.items():
+        router.add_api_route(
+            f"/{{run_id}}/{verb}",
+            _command(kind, verb),
+            methods=["POST"],
+            status_code=202,
+            summary=summary.format(kind),
+            name=f"{verb}_{kind}",
+        )
+    return router
+
+
+_VERBS = {
+    "stop": "End a {} with what has come of it",
+    "pause": "Let a {} wait",
+    "resume": "Let a paused {} go on",
+}
+
+
+def _command(kind: Kind, verb: str) -> Callable[..., Any]:
+    act = {"stop": Jobs.stop, "pause": Jobs.pause, "resume": Jobs.resume}[verb]
+
+    def command(services: Given, run_id: RunPath) -> Response:
+        find(services, kind, run_id)
+        return JSONResponse(run_view(act(services.jobs, run_id)), 202)
+
+    return command

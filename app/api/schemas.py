@@ -1,0 +1,255 @@
+"""What requests may say. The only Pydantic models; services get frozen dataclasses."""
+
+import unicodedata
+from collections.abc import Collection
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
+
+from app.api.sentences import MAX_NAME, VALID
+from app.domain.errors import InvalidInput, UnknownName
+from app.domain.gait import GaitSpec, Symmetry
+from app.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, MIN_SIDE_M
+from app.domain.observation import Observation
+from app.domain.robot import robot
+from app.runs.clocks import Clock
+from app.runs.config import (
+    MAX_LANES,
+    MAX_STEPS,
+    RACE_STEPS,
+    SimulatorName,
+    TrainingConfig,
+    Walk,
+)
+from app.services.entries import LaneStart, RaceStart, TrainingStart
+
+
+def _printable(text: str) -> str:
+    if any(unicodedata.category(character) in ("Cc", "Cs") for character in text):
+        raise ValueError("control character")
+    return text.strip()
+
+
+def _number(**limits: Any) -> Any:
+    return Field(strict=True, allow_inf_nan=False, **limits)
+
+
+Name = Annotated[
+    str,
+    Field(max_length=MAX_NAME, description=VALID["name"]),
+    AfterValidator(_printable),
+]
+RunId = Annotated[str, Field(min_length=1, max_length=64)]
+Steps = Annotated[int, Field(strict=True, ge=1, le=MAX_STEPS, description=VALID["steps"])]
+Seed = Annotated[int, Field(strict=True, ge=0, description=VALID["seed"])]
+Alpha = Annotated[float, _number(gt=0, le=1, description=VALID["alpha"])]
+Gamma = Annotated[float, _number(ge=0, lt=1, description=VALID["gamma"])]
+Epsilon = Annotated[float, _number(ge=0, le=1, description=VALID["epsilon"])]
+Pace = Literal["max"] | Annotated[float, _number(ge=0.01, le=1000)]
+
+
+class Body(BaseModel):
+    """A JSON object without a field that nobody knows."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _know_all_fields(cls, value: Any) -> Any:
+        unknown = [n for n in value if n not in cls.model_fields] if isinstance(value, dict) else []
+        if unknown:
+            message = str(UnknownName("field", unknown[0][:MAX_NAME], cls.model_fields))
+            # As a value and not as a template: a name may have braces in it.
+            raise PydanticCustomError("unknown_field", "{message}", {"message": message})
+        return value
+
+
+class GaitBody(Body):
+    """A gait of one's own."""
+
+    right_leg: Annotated[int, Field(strict=True)]
+    left_leg: Annotated[int, Field(strict=True)]
+    symmetry: Symmetry | None = None
+    pairs: list[tuple[Annotated[int, Field(strict=True)], Annotated[int, Field(strict=True)]]] | (
+        None
+    ) = None
+
+    def spec(self) -> GaitSpec:
+        """As the domain says it."""
+        pairs = None if self.pairs is None else tuple(self.pairs)
+        return GaitSpec(self.right_leg, self.left_leg, self.symmetry, pairs)
+
+
+def _gait_tag(value: Any) -> str:
+    return "its name" if isinstance(value, str) else "its parts"
+
+
+Gait = Annotated[
+    Annotated[str, Tag("its name")] | Annotated[GaitBody, Tag("its parts")],
+    Discriminator(_gait_tag),
+    Field(description=VALID["gait"]),
+]
+
+
+class WalkBody(Body):
+    """Which robot walks how, on which foot grid, in which simulator."""
+
+    gait: Gait
+    robot: Annotated[
+        str | dict[str, Any], Field(description=VALID["robot"], examples=["stiff"])
+    ] = "stiff"
+    simulator: SimulatorName = Walk.simulator
+    divisions: Annotated[int, Field(strict=True, ge=MIN_DIVISIONS, le=MAX_DIVISIONS)] = (
+        Walk.divisions
+    )
+    grid_side_m: Annotated[float, _number(ge=MIN_SIDE_M)] = Walk.grid_side_m
+
+    def walk(self) -> Walk:
+        """As the loops know it.
+
+        Raises:
+            InvalidInput: for a gait or robot that cannot be.
+        """
+        return Walk(
+            gait=self.gait.spec() if isinstance(self.gait, GaitBody) else self.gait,
+            robot=robot(self.robot),
+            simulator=self.simulator,
+            divisions=self.divisions,
+            grid_side_m=self.grid_side_m,
+        )
+
+
+class PracticeBody(Body):
+    """How to practise: what a race's lane may say of its training."""
+
+    name: Name | None = None
+    steps: Steps = TrainingConfig.steps
+    seed: Annotated[Seed | None, Field(description="0 by default; a lane takes the race's")] = None
+    observation: Observation = TrainingConfig.observation
+    alpha: Alpha = TrainingConfig.alpha
+    gamma: Gamma = TrainingConfig.gamma
+    epsilon_start: Epsilon = TrainingConfig.epsilon_start
+    epsilon_end: Epsilon = TrainingConfig.epsilon_end
+    steps_per_episode: Steps = TrainingConfig.steps_per_episode
+    evaluate_every: Annotated[int, Field(strict=True, ge=0, le=MAX_STEPS)] = (
+        TrainingConfig.evaluate_every
+    )
+    pace: Pace = TrainingConfig.pace
+    continue_from: Annotated[RunId | None, Field(description=VALID["continue_from"])] = None
+
+    def practice(self, walk: Walk, agent: str, seed: int = 0) -> TrainingStart:
+        """The training of an agent, with this seed where none is given."""
+        if self.continue_from is not None and self.seed is not None:
+            raise InvalidInput(
+                "a training that continues another goes on with its generator: leave out seed, "
+                "or leave out continue_from"
+            )
+        own = {name: getattr(self, name) for name in _OWN_FIELDS}
+        chosen = seed if self.seed is None else self.seed
+        config = TrainingConfig(**vars(walk), **own, seed=chosen, agent=agent)
+        return TrainingStart(config, self.name or None, self.continue_from)
+
+
+_OWN_FIELDS = tuple(
+    name for name in PracticeBody.model_fields if name not in ("name", "seed", "continue_from")
+)
+
+
+class TrainingBody(PracticeBody, WalkBody):
+    """A training. Everything but the gait has the paper's value by default."""
+
+    agent: str = TrainingConfig.agent
+
+    def start(self, agents: Collection[str]) -> TrainingStart:
+        """What the service is asked to start.
+
+        Raises:
+            InvalidInput: for what cannot be.
+        """
+        _check_agent(self.agent, agents)
+        return self.practice(self.walk(), self.agent)
+
+
+class LaneBody(Body):
+    """A lane; one that learns has either `training_id` or `training`."""
+
+    agent: str
+    training_id: Annotated[RunId | None, Field(description=VALID["training_id"])] = None
+    training: Annotated[PracticeBody | None, Field(description=VALID["training"])] = None
+
+    def start(self, walk: Walk, seed: int, agents: Collection[str]) -> LaneStart:
+        """What the service is asked to start."""
+        _check_agent(self.agent, agents)
+        if self.training is None:
+            return LaneStart(self.agent, self.training_id)
+        training = self.training.practice(walk, self.agent, seed)
+        return LaneStart(self.agent, self.training_id, training)
+
+
+def _papers_lanes() -> list[LaneBody]:
+    learner = LaneBody(agent="q-learning", training=PracticeBody())
+    return [learner, LaneBody(agent="greedy"), LaneBody(agent="two-step")]
+
+
+class RaceBody(WalkBody):
+    """A race, by default of the paper's three lanes; the learner practises first."""
+
+    name: Name | None = None
+    steps: Steps = RACE_STEPS
+    seed: Seed = 0
+    lanes: Annotated[
+        list[LaneBody], Field(min_length=1, max_length=MAX_LANES, description=VALID["lanes"])
+    ] = Field(default_factory=_papers_lanes)
+
+    def start(self, agents: Collection[str]) -> RaceStart:
+        """What the service is asked to start.
+
+        Raises:
+            InvalidInput: for what cannot be.
+        """
+        walk = self.walk()
+        lanes = [lane.start(walk, self.seed, agents) for lane in self.lanes]
+        return RaceStart(walk, lanes, self.steps, self.seed, self.name or None)
+
+
+class ChangeBody(Body):
+    """What may be changed while a training runs."""
+
+    pace: Pace | None = None
+    alpha: Alpha | None = None
+    gamma: Gamma | None = None
+    epsilon: Epsilon | None = None
+
+    @model_validator(mode="after")
+    def _say_something(self) -> "ChangeBody":
+        if not self.changes():
+            raise PydanticCustomError("says_all", "Give one of pace, alpha, gamma, epsilon")
+        return self
+
+    def changes(self) -> dict[str, Any]:
+        """What is given."""
+        return self.model_dump(exclude_none=True)
+
+
+class StageBody(Body):
+    """What everyone is to be shown; what is left out stays as it is."""
+
+    run_id: RunId | None = None
+    time_s: Annotated[float, _number(ge=0)] | None = None
+    playing: Annotated[bool, Field(strict=True)] | None = None
+    speed: Literal["time-lapse"] | Annotated[float, _number(ge=0.25, le=64)] | None = None
+    clock: Clock | None = None
+
+
+def _check_agent(name: str, agents: Collection[str]) -> None:
+    if name not in agents:
+        raise UnknownName("agent", name, agents)

@@ -1,0 +1,104 @@
+"""Trainings: start, change, import, and what they learned."""
+
+from typing import Annotated, Literal
+
+from fastapi import Query, Request
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import ClientDisconnect
+from starlette.responses import JSONResponse, Response, StreamingResponse
+
+from app.api.deps import Given
+from app.api.formats import attachment, chosen
+from app.api.runs import RunPath, accepted, find, run_routes
+from app.api.schemas import ChangeBody, Name, TrainingBody
+from app.domain.errors import InvalidInput
+from app.runs import tables
+from app.services import curves, imports
+from app.services.entries import load_table
+from app.services.errors import Conflict
+from app.services.store import TABLE
+from app.services.views import run_view
+
+# Before the routes that all runs have: `import` is no run's id.
+router = run_routes("training")
+
+
+@router.post("", status_code=202, summary="Start a training")
+def start_training(services: Given, request: Request, body: TrainingBody) -> Response:
+    """Queue a training, and answer with its run."""
+    run = services.jobs.train(body.start(services.agents))
+    return accepted(request, run)
+
+
+@router.post(
+    "/import",
+    status_code=201,
+    summary="Add a training out of a Q-table's file",
+    openapi_extra={
+        "requestBody": {
+            "content": {"application/octet-stream": {"schema": {"type": "string"}}},
+            "required": True,
+        }
+    },
+)
+async def import_training(
+    services: Given, request: Request, name: Annotated[Name | None, Query()] = None
+) -> Response:
+    """Take the `.npz` that a training's q-table gives, or `hexapods train` wrote, as the body."""
+    try:
+        data = await request.body()
+    except ClientDisconnect:
+        return Response(status_code=400)
+    if not data:
+        raise InvalidInput("send the .npz file of a Q-table as the request's body")
+    run = await run_in_threadpool(imports.adopt, services.jobs, data, services.agents, name)
+    location = request.url_for("get_training", run_id=run.id).path
+    return JSONResponse(run_view(run), 201, {"Location": location})
+
+
+@router.patch("/{run_id}", summary="Change pace or rates while it runs")
+def change_training(services: Given, run_id: RunPath, body: ChangeBody) -> Response:
+    """Obeyed between two steps, and kept with the step's number in `changes`."""
+    find(services, "training", run_id)
+    return JSONResponse(run_view(services.jobs.change(run_id, body.changes())))
+
+
+@router.get("/{run_id}/curve", summary="The learning curve; also as CSV")
+def get_curve(
+    services: Given,
+    request: Request,
+    run_id: RunPath,
+    format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
+) -> Response:
+    """The evaluations so far, and the distance of the one-step look-ahead agent to compare with."""
+    run = find(services, "training", run_id)
+    rows = services.store.evaluations(run_id)
+    if chosen(request, format, ("json", "csv")) == "csv":
+        return attachment(curves.as_csv(rows), "text/csv; charset=utf-8", f"curve-{run_id}.csv")
+    return JSONResponse({"evaluations": rows, "greedy_distance_m": run.greedy_distance_m})
+
+
+@router.get("/{run_id}/q-table", summary="What was learned; also as .npz and CSV")
+def get_table(
+    services: Given,
+    request: Request,
+    run_id: RunPath,
+    format: Annotated[Literal["json", "npz", "csv"] | None, Query()] = None,  # noqa: A002
+) -> Response:
+    """The values of all legal actions in all states; as `.npz` all that is needed to go on."""
+    run = find(services, "training", run_id)
+    table = load_table(services.store, run_id)
+    kind = chosen(request, format, ("json", "npz", "csv"))
+    if kind == "npz":
+        data = services.store.artifact(run_id, TABLE)
+        return attachment(data, tables.MEDIA_TYPE, f"q-table-{run_id}.npz")
+    try:
+        values = tables.table_of(table)
+    except InvalidInput as error:
+        raise Conflict(f"{error}; take it as ?format=npz", run.state) from error
+    if kind == "csv":
+        rows = curves.table_as_csv(values)
+        return attachment(rows, "text/csv; charset=utf-8", f"q-table-{run_id}.csv")
+    return StreamingResponse(
+        curves.table_as_json(values, table.meta), media_type="application/json"
+    )

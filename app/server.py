@@ -1,0 +1,191 @@
+"""The server: everything is built here, once, by `create_app`; nothing at import."""
+
+import asyncio
+import contextlib
+import errno
+import logging
+import socket
+import sys
+from collections.abc import AsyncIterator
+from types import FrameType
+
+import uvicorn
+from fastapi import APIRouter, FastAPI
+
+from app import __version__, assets
+from app.agents.registry import registered
+from app.api import docs, events, health, options, pages, problems, races, stage, trainings
+from app.api.auth import TokenGuard
+from app.api.deps import Services
+from app.api.limits import BodyLimit, SecurityHeaders
+from app.api.origins import HostGuard
+from app.domain.errors import InvalidInput
+from app.services.bus import EventBus
+from app.services.jobs import Jobs
+from app.services.recordings import Recordings
+from app.services.stage import Stage
+from app.services.store import MemoryStore
+from app.settings import PREFIX, Settings
+from app.viewer.protocol import websocket_options
+from app.viewer.routes import viewer_routes
+from app.viewer.theatre import Theatre
+
+GRACE_S = 3
+_DESCRIPTION = (
+    "Hexapods that learn to walk, and race against look-ahead search. Errors are problem "
+    "documents (RFC 9457), and each says what is valid."
+)
+
+
+def create_app(settings: Settings) -> FastAPI:
+    """The whole application; jobs, stage and hub begin and end with its lifespan."""
+    store, recordings, bus = MemoryStore(), Recordings(), EventBus()
+    show = Stage(store, recordings, bus)
+    theatre = Theatre(show, bus, allowed_origins=_further_origins(settings))
+    jobs = Jobs(store, recordings, bus, on_queued=show.offer)
+    app = FastAPI(
+        title="Racing Hexapods",
+        version=__version__,
+        description=_DESCRIPTION,
+        lifespan=_lifespan,
+        docs_url=None,
+        redoc_url=None,
+    )
+    app.state.theatre = theatre
+    app.state.services = Services(
+        store=store,
+        recordings=recordings,
+        bus=bus,
+        jobs=jobs,
+        stage=show,
+        agents=tuple(registered()),
+        viewers=lambda: theatre.hub.counters.viewers,
+        ready=lambda: None if jobs.is_open else "The server is starting, or stopping.",
+        film=theatre.film,
+    )
+    _add_routes(app, theatre)
+    problems.install(app)
+    # The last is the first to see a request.
+    app.add_middleware(BodyLimit)
+    app.add_middleware(TokenGuard, settings=settings)
+    app.add_middleware(HostGuard, settings=settings)
+    app.add_middleware(SecurityHeaders)
+    return app
+
+
+def _add_routes(app: FastAPI, theatre: Theatre) -> None:
+    versioned = APIRouter(prefix="/api/v1")
+    for module in (trainings, races, stage, events, options):
+        versioned.include_router(module.router)
+    app.include_router(versioned)
+    app.include_router(health.router)
+    app.include_router(docs.router)
+    app.router.routes += [*viewer_routes(theatre.hub), *pages.page_routes(assets.static_dir())]
+
+
+def _further_origins(settings: Settings) -> list[str]:
+    """Origins beside a request's own Host, for proxies that change that."""
+    names = [
+        f"{scheme}://{name}" for scheme in ("http", "https") for name in settings.allowed_hosts
+    ]
+    return names if settings.public_origin is None else [*names, settings.public_origin]
+
+
+@contextlib.asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    services: Services = app.state.services
+    async with app.state.theatre:
+        services.jobs.open()
+        try:
+            yield
+        finally:
+            services.bus.close()
+            await asyncio.to_thread(services.jobs.close)
+
+
+def serve(settings: Settings) -> None:
+    """Serve until a signal says to stop.
+
+    Raises:
+        InvalidInput: if the data folder cannot be written, or the address cannot be bound.
+    """
+    settings.prepare_data()
+    listener = _listen(settings)
+    logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
+    app = create_app(settings)
+    config = uvicorn.Config(
+        app,
+        lifespan="on",
+        log_config=None,
+        log_level="warning",
+        access_log=False,
+        server_header=False,
+        timeout_graceful_shutdown=GRACE_S,
+        **websocket_options(),
+    )
+    with listener:
+        _Server(config, app, _address(settings, listener)).run(sockets=[listener])
+
+
+class _Server(uvicorn.Server):
+    """Tells where it is, and lets go of those who listen before it waits for them."""
+
+    def __init__(self, config: uvicorn.Config, app: FastAPI, address: str) -> None:
+        super().__init__(config)
+        self._app, self._address = app, address
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        if self.started:
+            sys.stdout.write(f"Racing Hexapods is at {self._address} (Ctrl-C stops it)\n")
+            sys.stdout.flush()
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        # The lifespan ends after all connections have, and a stream of events never would.
+        self._app.state.services.bus.close()
+        await self._app.state.theatre.hub.stop()
+        await super().shutdown(sockets)
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        # uvicorn would raise the signal again after a clean end, which is no clean exit code.
+        del sig, frame
+        self.force_exit = self.should_exit
+        self.should_exit = True
+
+
+def _listen(settings: Settings) -> socket.socket:
+    try:
+        found = socket.getaddrinfo(
+            settings.host, settings.port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+        )
+        family, kind, protocol, _, address = found[0]
+        listener = socket.socket(family, kind, protocol)
+    except OSError as error:
+        raise InvalidInput(
+            f"cannot find the address {settings.host} ({error.strerror}); choose one of this "
+            f"machine's with --host or {PREFIX}HOST"
+        ) from error
+    try:
+        if sys.platform != "win32":
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(address)
+        listener.listen(2048)
+    except OSError as error:
+        listener.close()
+        why = error.strerror or str(error)
+        if error.errno == errno.EADDRINUSE:
+            why = "something else listens there"
+        raise InvalidInput(
+            f"cannot listen on {settings.host} port {settings.port} ({why}); choose another with "
+            f"--port or {PREFIX}PORT, or 0 for any that is free"
+        ) from error
+    return listener
+
+
+def _address(settings: Settings, listener: socket.socket) -> str:
+    if settings.public_url is not None:
+        return settings.public_url
+    name, port = listener.getsockname()[:2]
+    if name in ("0.0.0.0", "::"):  # noqa: S104 - compared, not bound
+        name = "localhost"
+    return f"http://[{name}]:{port}/" if ":" in name else f"http://{name}:{port}/"

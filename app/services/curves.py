@@ -1,0 +1,70 @@
+"""What a training learned, row by row, in the forms that people take away."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from app.agents.q_table import QTable
+from app.domain.grid import FootGrid
+
+_ROWS_A_CHUNK = 64
+
+
+def as_csv(rows: Sequence[Mapping[str, Any]]) -> bytes:
+    """A curve as CSV: step, distance_m, epsilon."""
+    columns = ("step", "distance_m", "epsilon")
+    lines = [",".join(columns), *(",".join(str(row[c]) for c in columns) for row in rows)]
+    return "".join(f"{line}\r\n" for line in lines).encode()
+
+
+def table_as_json(table: QTable, meta: Mapping[str, Any]) -> Iterator[str]:
+    """The values of all legal actions, in chunks: large tables have millions."""
+    grid = FootGrid(meta["grid_side_m"], meta["divisions"])
+    head = {
+        "gait": meta["gait"],
+        "divisions": meta["divisions"],
+        "grid_side_m": meta["grid_side_m"],
+        "cells": grid.cells.tolist(),
+    }
+    yield json.dumps(head)[:-1] + ', "values": ['
+    separator = ""
+    for rows in _chunks(table):
+        entries = (
+            json.dumps(
+                {"state": state, "action": [pair, cell], "value": value, "visits": visits},
+                allow_nan=False,
+            )
+            for state, pair, cell, value, visits in rows
+        )
+        yield separator + ",\n".join(entries)
+        separator = ",\n"
+    yield "]}\n"
+
+
+def table_as_csv(table: QTable) -> Iterator[str]:
+    """The same as CSV: the state's cells, pair, cell, value, visits."""
+    cells = [f"state_{pair}" for pair in range(table.pairs)]
+    yield ",".join([*cells, "action_pair", "action_cell", "value", "visits"]) + "\r\n"
+    for rows in _chunks(table):
+        yield "".join(
+            ",".join(map(str, (*state, pair, cell, value, visits))) + "\r\n"
+            for state, pair, cell, value, visits in rows
+        )
+
+
+_Row = tuple[tuple[int, ...], int, int, float, int]
+
+
+def _chunks(table: QTable) -> Iterator[list[_Row]]:
+    chunk: list[_Row] = []
+    for number, (state, values, visits) in enumerate(table.rows(), start=1):
+        for pair, cell in np.argwhere(~np.isnan(values)).tolist():
+            value, times = float(values[pair, cell]), int(visits[pair, cell])
+            chunk.append((state, pair, cell, value, times))
+        if number % _ROWS_A_CHUNK == 0:
+            yield chunk
+            chunk = []
+    if chunk:
+        yield chunk
