@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getCurve, getRun } from "./api.js";
 import { trainingInView } from "./selectors.js";
-import { connection, evaluations, keepRun, references, runs } from "./store.js";
+import { connection, evaluations, keepRun, references, runs, scene } from "./store.js";
 
 const LONGEST_CHAIN = 20;
 
@@ -43,15 +43,22 @@ export const curve = computed(() => {
   let from = 0;
   for (const part of runsOfIt) {
     if (part !== runsOfIt[0]) blocks.push(from);
-    points.push(...evaluationsOf(part.id).map((one) => ({ ...one, step: from + one.step })));
+    const shown = evaluationsOf(part.id).filter(({ step }) => step <= shownUpTo(part));
+    points.push(...shown.map((one) => ({ ...one, step: from + one.step })));
     if (part !== run) from += part.progress?.done ?? 0;
   }
   const greedy_m = [run, ...runsOfIt].map(greedyOf).find(Number.isFinite) ?? null;
   return { run, points, from, to: from + run.config.steps, greedy_m, blocks };
 });
 
-const greedyOf = ({ id, result }) =>
-  references.value[id] ?? fetchedReferences.value[id] ?? result?.greedy_distance_m;
+/** The curve grows with the picture, which is slower than the computer. */
+const shownUpTo = ({ id }) => {
+  const { run_id, kind, phase, lanes } = scene.value ?? {};
+  return run_id === id && kind === "training" && phase !== "finished" ? lanes[0]?.step ?? 0 : Infinity;
+};
+
+const greedyOf = ({ id, result, greedy_distance_m }) =>
+  greedy_distance_m ?? references.value[id] ?? fetchedReferences.value[id] ?? result?.greedy_distance_m;
 
 /** How much a learner has practised in all. */
 export function practised(run) {
@@ -66,7 +73,7 @@ export function practised(run) {
 async function load(id) {
   const answer = await getCurve(id).catch(() => null);
   if (!answer) return;
-  fetched.value = { ...fetched.value, [id]: answer.evaluations ?? answer.items ?? answer };
+  fetched.value = { ...fetched.value, [id]: answer.evaluations };
   if (Number.isFinite(answer.greedy_distance_m)) {
     fetchedReferences.value = { ...fetchedReferences.value, [id]: answer.greedy_distance_m };
   }

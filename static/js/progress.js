@@ -39,10 +39,11 @@ function ofShow(shown) {
   const speed = shown.shown_speed || 1;
   const rest = Math.max(0, shown.duration_s - shown.time_s) / speed;
   const verb = shown.replay ? "Showing again" : "Showing";
+  const isTimeLapse = shown.kind === "training" && stage.value?.speed === "time-lapse";
   const paused = stage.value?.playing === false;
   return {
     label: paused ? "The picture is paused" : `${verb} the ${shown.kind}`,
-    left: paused ? "" : `${duration(rest)} left`,
+    left: paused || isTimeLapse ? "" : `${duration(rest)} left`,
     share: shown.time_s / shown.duration_s,
   };
 }

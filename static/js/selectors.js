@@ -62,8 +62,8 @@ export const raceInView = computed(() => {
   if (shown?.kind === "race") return shown;
   const races = newestFirst.value.filter((run) => run.kind === "race");
   if (shown?.kind === "training") {
-    const next = races.find((race) => isActive(race) && trainingIds(race).includes(shown.id));
-    return next ?? null;
+    const next = get(stage.value.next_run_id);
+    return next ?? races.find((race) => isActive(race) && trainingIds(race).includes(shown.id)) ?? null;
   }
   return races.find((race) => race.state === "finished") ?? null;
 });

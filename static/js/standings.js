@@ -63,7 +63,7 @@ function rowOf(race, { agent, training_id }, number, time) {
     hasCrossed: seen?.crossed ?? Boolean(timed?.crossed_s),
     isMarching: seen?.marching ?? false,
     elapsed_s: track ? Math.min(time, track.total_s) : null,
-    failure: (isOver && (result?.failure ?? null)) || null,
+    failure: seen?.failure ?? (isOver ? result?.failure : null) ?? null,
   };
 }
 

@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getTimeline } from "./api.js";
 import { clock, raceInView } from "./selectors.js";
-import { connection, scene } from "./store.js";
+import { connection, scene, stage } from "./store.js";
 
 const PAUSE_MS = 700;
 
@@ -20,6 +20,8 @@ export const shownTime = computed(() => {
   const race = raceInView.value;
   if (!race) return null;
   if (scene.value?.run_id === race.id && scene.value.kind === "race") return scene.value.time_s;
+  // Simulated, perhaps, but the stage is at its practice still, or about to begin.
+  if ([stage.value?.run_id, stage.value?.next_run_id].includes(race.id)) return null;
   return race.state === "finished" || race.state === "stopped" ? Infinity : null;
 });
 
@@ -45,7 +47,7 @@ export function spent({ thinking, total_s }, time) {
 export function followTimeline() {
   const wanted = computed(() => {
     const race = raceInView.value;
-    if (!race || race.state === "queued" || connection.value !== "live") return "";
+    if (!race?.progress.done || connection.value !== "live") return "";
     return [race.id, clock.value, race.state, race.progress?.done].join(" ");
   });
   let busy = false;

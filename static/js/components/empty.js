@@ -1,11 +1,19 @@
-// A panel that waits for its first number.
+// A panel that waits for its first number: the shape of what will come, and when it does.
 import { html } from "../html.js";
 
-export const Empty = ({ words }) => html`
-  <div class="empty">
-    <svg viewBox="0 0 320 120" preserveAspectRatio="none" aria-hidden="true">
-      <path class="rule" d="M0 118H320M0 78H320M0 38H320" /><path class="sketch" d="M0 116C60 104 80 66 140 56S230 34 320 30" />
-    </svg>
+const CURVE = html`
+  <svg viewBox="0 0 320 110" preserveAspectRatio="none" aria-hidden="true">
+    <path class="rule" d="M0 109H320M0 73H320M0 37H320" />
+    <path class="sketch" d="M0 108C60 98 80 62 140 50S230 28 320 22" />
+  </svg>
+`;
+const CELLS = html`
+  <div class="sketch-cells" aria-hidden="true">${Array.from({ length: 15 }, () => html`<i></i>`)}</div>
+`;
+
+export const Empty = ({ words, shape = "curve" }) => html`
+  <div class=${`empty ${shape}`}>
+    ${shape === "curve" ? CURVE : CELLS}
     <p>${words}</p>
   </div>
 `;

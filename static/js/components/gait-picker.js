@@ -9,7 +9,6 @@ const titleOf = (gait) => (gait.title ?? gait.name).replace(/-(?=\w+$)/, " ");
 
 export function GaitPicker() {
   const gaits = options.value?.gaits ?? [];
-  const chosen = gaits.find(({ name }) => name === form.value.gait);
   return html`
     <fieldset class="gaits" onFocusIn=${showHelp("gait")} onPointerEnter=${showHelp("gait")}>
       <legend><h2>Gait</h2></legend>
@@ -24,7 +23,6 @@ export function GaitPicker() {
           </label>
         `)}
       </div>
-      <p class="dim">${chosen?.description ?? "Legs of one colour move together."}</p>
     </fieldset>
   `;
 }

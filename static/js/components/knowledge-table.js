@@ -15,7 +15,7 @@ export function Knowledge() {
       <p class="dim">Millimetres forward that it expects, with all that follows, from moving a pair of legs to a place</p>
       ${known
         ? html`<${Values} known=${known} /><p class="say">${plan(known)}</p>`
-        : html`<${Empty} words="When a learner is on stage, its table stands here: one value for each pair of legs and each place they could go." />`}
+        : html`<${Empty} shape="cells" words="When a learner is on stage, its table stands here: one value for each pair of legs and each place they could go." />`}
     </section>
   `;
 }
@@ -27,7 +27,7 @@ function Values({ known }) {
     <div class="scroller" tabindex="0" role="region" aria-labelledby="knowledge-title">
       <table class="values">
         <thead>
-          <tr><td></td>${cell_names.map((name) => html`<th scope="col">${name}</th>`)}</tr>
+          <tr><td></td>${cell_names.map((_, cell) => html`<th scope="col">${placeName(known, cell)}</th>`)}</tr>
         </thead>
         <tbody>
           ${pairs.map((legs, pair) => html`
@@ -61,6 +61,14 @@ function Value({ known, pair, cell }) {
   `;
 }
 
+/** "front left", or on finer grids "20 left, 10 front". */
+function placeName({ cell_names, cells_m }, cell, unit = "") {
+  if (cell === 0 || cell_names.length <= 5) return cell_names[cell];
+  const [x, y] = cells_m[cell].map((metres) => Math.round(1000 * metres));
+  const parts = [x && `${Math.abs(x)}${unit} ${x < 0 ? "left" : "right"}`, y && `${Math.abs(y)}${unit} ${y > 0 ? "front" : "back"}`];
+  return parts.filter(Boolean).join(", ");
+}
+
 function best({ values_m }) {
   let found = { pair: -1, cell: -1, value: -Infinity };
   values_m.forEach((row, pair) =>
@@ -73,14 +81,14 @@ function best({ values_m }) {
 
 /** Its next move, in words. */
 function plan(known) {
-  const { pairs, cell_names, values_m, visits, lane, agent } = known;
+  const { pairs, values_m, visits, lane, agent } = known;
   const top = best(known);
   const { pair, cell } = known.next ?? top;
   if (pair < 0) return "";
   const value = values_m[pair][cell] ?? 0;
   const tried = visits?.[pair]?.[cell] ?? 0;
   const name = scene.value.lanes?.[lane]?.name ?? agentOf(agent).title;
-  const move = `${name} will move legs ${pairs[pair].join(" and ")} to ${cell_names[cell]}`;
+  const move = `${name} will move legs ${pairs[pair].join(" and ")} to ${placeName(known, cell, " mm")}`;
   const why = value < top.value ? " to explore" : "";
   const past = tried
     ? `It has tried that ${tried === 1 ? "once" : `${count(tried, "time")}`} from here, and expects ${millimetres(value)} mm from it and what follows.`

@@ -13,7 +13,7 @@ export function LearningChart() {
   return html`
     <section class="panel chart" aria-labelledby="learning-title">
       <h2 id="learning-title">Learning</h2>
-      <p class="dim">Metres it gets in 50 steps, after so many steps of practice</p>
+      <p class="dim">How far it gets in 50 steps, after so much practice</p>
       ${known
         ? html`<${Curve} known=${known} />`
         : html`<${Empty} words="Each time the learner is tried out, a point appears here, on its way to greedy’s line." />`}
@@ -40,7 +40,7 @@ function Curve({ known }) {
     : "Learning curve, without points so far.";
   return html`
     <${Plot} label=${said} data=${data} series=${[{ color, points: points.length < 45 }]} marks=${marks} labels=${labels}
-      x=${{ min: 0, max: to }} y=${{ min: low, max: top }} />
+      x=${{ min: 0, max: to, unit: "steps of practice" }} y=${{ min: low, max: top }} />
     <${AsTable} caption=${said} columns=${["Steps of practice", "Distance in 50 steps"]}
       rows=${points.map((p) => [whole(p.step), metres(p.distance_m)])} />
   `;

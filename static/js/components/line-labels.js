@@ -57,6 +57,7 @@ export function lineLabels(labels, marks, colour) {
     ctx.save();
     ctx.font = `600 ${12 * px}px system-ui, sans-serif`;
     ctx.textBaseline = "middle";
+    ctx.textAlign = "left";
     placed.forEach(({ text, color, left, top, isPoint = true }, n) => {
       ctx.fillStyle = solid(color);
       if (isPoint) {

@@ -5,13 +5,14 @@ import { html } from "../html.js";
 import { shownTheme } from "../theme.js";
 import { lineLabels } from "./line-labels.js";
 
-const HEIGHT = 212;
+const HEIGHT = 216;
+const FONT = "12px system-ui, sans-serif";
 
 /**
  * @param label what the picture shows, in a sentence
  * @param series [{color, dash?, width?, points?}] as many as `data` has lines
  * @param data as uPlot has it: [xs, ys…]
- * @param x, y {min, max, label}
+ * @param x, y {min, max}, x with its unit in words
  * @param labels [{text, color, x, y}] written at the ends of lines
  */
 export function Plot(props) {
@@ -40,9 +41,9 @@ export function Plot(props) {
 
 function optionsOf(host, newest) {
   const colour = coloursOf(host);
-  const axis = (name, more) => ({
+  const axis = (more) => ({
     stroke: colour("--dim"),
-    font: "12px system-ui, sans-serif",
+    font: FONT,
     grid: { stroke: colour("--line"), width: 1 },
     ticks: { show: false },
     ...more,
@@ -51,14 +52,17 @@ function optionsOf(host, newest) {
   return {
     width: host.clientWidth || 300,
     height: HEIGHT,
-    padding: [12, 92, 0, 0],
+    padding: [12, 104, 0, 0],
     legend: { show: false },
     cursor: { show: false },
     select: { show: false },
     scales: { x: { time: false, range: range("x") }, y: { range: range("y") } },
     axes: [
-      axis("x", { size: 28, gap: 6, space: 56, grid: { show: false } }),
-      axis("y", { size: 40, gap: 8, space: 34, values: (_, splits) => splits.map((v) => v.toFixed(1)) }),
+      axis({
+        size: 26, gap: 6, space: 56, grid: { show: false },
+        label: newest.current.x.unit, labelSize: 18, labelFont: FONT, labelGap: 0,
+      }),
+      axis({ size: 44, gap: 8, space: 30, values: (_, splits) => splits.map((v) => `${v.toFixed(1)} m`) }),
     ],
     series: [
       {},

@@ -11,9 +11,9 @@ import { Plot } from "./plot.js";
 
 const FINISH_LINE_M = 0.45;
 const CLOCKS = {
-  paper: "thinking costs what it did in the paper",
-  wall: "thinking costs the time it took on this computer",
-  free: "thinking costs nothing",
+  paper: "it costs what it did in the paper",
+  wall: "it costs the time it took on this computer",
+  free: "it costs nothing under this clock",
 };
 
 export function RaceChart() {
@@ -23,7 +23,7 @@ export function RaceChart() {
   return html`
     <section class="panel chart" aria-labelledby="race-title">
       <h2 id="race-title">The race</h2>
-      <p class="dim">Metres over seconds of race time: ${CLOCKS[clock.value] ?? clock.value}</p>
+      <p class="dim">Flat parts are thinking: ${CLOCKS[clock.value] ?? clock.value}</p>
       ${isOn
         ? html`<${Lines} known=${known} time=${time} />`
         : html`<${Empty} words=${raceInView.value ? "The lines start when the robots do. Flat parts are thinking." : "Each robot draws a line here as it walks. Flat parts are thinking."} />`}
@@ -34,7 +34,7 @@ export function RaceChart() {
 function Lines({ known, time }) {
   const longest = Math.max(...known.lanes.map(({ total_s }) => total_s));
   const until = Math.min(time, longest);
-  const lanes = known.lanes.map((lane) => ({ ...agentOf(lane.agent), ...lane, shown: clipped(lane.points, until) }));
+  const lanes = known.lanes.map((lane) => ({ ...lane, ...agentOf(lane.agent), shown: clipped(lane.points, until) }));
   const data = useMemo(
     () => uPlot.join(lanes.map(({ shown }) => [shown.map(([t]) => t), shown.map(([, d]) => d)])),
     [known, until],
@@ -52,7 +52,7 @@ function Lines({ known, time }) {
   const said = `The race after ${Math.round(until)} seconds: ${lanes.map(({ title, shown }) => `${title} ${metres(shown.at(-1)[1])}`).join(", ")}.`;
   return html`
     <${Plot} label=${said} data=${data} series=${lanes.map(({ color }) => ({ color }))} labels=${labels} marks=${marks}
-      x=${{ min: 0, max: end }} y=${{ min: 0, max: 1.1 * far }} />
+      x=${{ min: 0, max: end, unit: "race time, s" }} y=${{ min: 0, max: 1.1 * far }} />
     <${AsTable} caption=${said} columns=${["Race time", ...lanes.map(({ title }) => title)]} rows=${rowsOf(lanes, until)} />
   `;
 }

@@ -1,16 +1,20 @@
 // What happens, who is winning and why, and what one can do next.
 import { html } from "../html.js";
+import { isNarrow } from "../page.js";
+import { isOperator } from "../selectors.js";
 import { Controls } from "./controls.js";
 import { Knowledge } from "./knowledge-table.js";
 import { LearningChart } from "./learning-chart.js";
 import { RaceChart } from "./race-chart.js";
 import { Scoreboard } from "./scoreboard.js";
 import { Stage } from "./stage.js";
+import { SharedChoices } from "./transport.js";
 
 /** Hidden rather than gone while another view is open, so that the stage goes on. */
 export const RaceView = ({ isHidden }) => html`
   <div class="race-view" hidden=${isHidden}>
     <${Stage} />
+    ${isNarrow.value && isOperator.value && html`<div class="shared-choices"><${SharedChoices} /></div>`}
     <div class="side">
       <${Controls} />
       <${Scoreboard} />

@@ -15,7 +15,7 @@ export function Scoreboard() {
   const rows = standings.value;
   return html`
     <section class="panel scoreboard" aria-labelledby="scoreboard-title">
-      <h2 id="scoreboard-title">Scoreboard</h2>
+      <h2 id="scoreboard-title" class=${rows ? "sr-only" : ""}>Scoreboard</h2>
       ${rows
         ? html`<p class="headline">${headline.value}</p><${Board} rows=${rows} />`
         : html`<${StartList} />`}
@@ -36,8 +36,8 @@ function Board({ rows }) {
             ${isDecided.value ? "At finish" : "Now"}
           </th>
           <th scope="col" title="After all of its own steps">Total</th>
-          <th scope="col" title="Measured time of one decision, on average">A decision</th>
-          <th scope="col" title="Transitions simulated in order to decide">Simulated</th>
+          <th scope="col" class="aside" title="Measured time of one decision, on average">Decision</th>
+          <th scope="col" class="aside" title="Transitions simulated in order to decide">Simulated</th>
         </tr>
       </thead>
       ${rows.map((row) => html`<${Lane} key=${row.lane} row=${row} longest=${longest} />`)}
@@ -54,8 +54,8 @@ function Lane({ row, longest }) {
         <th scope="row" class="agent"><span class="swatch"></span>${row.title}${row.isDone && html`<${Icon} name="flag" />`}</th>
         <td class="big">${metres(row.finished_m ?? row.distance_m)}</td>
         <td class=${row.isDone ? "" : "dim"}>${isDecided.value ? metres(row.total_m ?? row.distance_m) : "–"}</td>
-        <td>${decision(row.decision_s)}</td>
-        <td>${whole(row.simulated)}</td>
+        <td class="aside">${decision(row.decision_s)}</td>
+        <td class="aside">${whole(row.simulated)}</td>
       </tr>
       <tr class="under">
         <td></td>
@@ -64,7 +64,10 @@ function Lane({ row, longest }) {
             <i class="walked" style=${width(row.spent.walked)}></i>
             <i class="thought" style=${width(row.spent.thought)}></i>
           </div>
-          <p class="dim">${doing(row)}</p>
+          <p class="dim">
+            <span>${doing(row)}</span>
+            <span class="facts">${decision(row.decision_s)} a decision, ${whole(row.simulated)} simulated</span>
+          </p>
           ${row.isMarching && html`<p class="marching"><b>Marching on the spot:</b> ${whyMarching(row)}</p>`}
         </td>
       </tr>

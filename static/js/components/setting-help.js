@@ -1,9 +1,10 @@
 // One sentence about every setting: on screen for the one that is touched, to screen readers for each.
 import { signal } from "@preact/signals";
+import { form } from "../form.js";
 import { html } from "../html.js";
 import { options } from "../store.js";
 
-const touched = signal("steps");
+const touched = signal("gait");
 
 /** Until the server says its own. */
 const SENTENCES = {
@@ -35,5 +36,9 @@ export const showHelp = (field) => () => (touched.value = field);
 export const Description = ({ field, id = field }) =>
   html`<span class="sr-only" id=${`help-${id}`}>${sentenceFor(field)}</span>`;
 
-export const SettingHelp = () =>
-  html`<p class="setting-help" aria-hidden="true">${sentenceFor(touched.value)}</p>`;
+/** What is touched, in a sentence; of the gait, which it is. */
+export function SettingHelp() {
+  const gait = options.value?.gaits?.find(({ name }) => name === form.value.gait);
+  const words = touched.value === "gait" ? gait?.description ?? sentenceFor("gait") : sentenceFor(touched.value);
+  return html`<p class="setting-help" aria-hidden="true">${words}</p>`;
+}

@@ -11,7 +11,7 @@ import { SelectField } from "./select-field.js";
 import { Description, SettingHelp, showHelp } from "./setting-help.js";
 import { Slider } from "./slider.js";
 
-const OBSERVATIONS = [["measured", "feels its feet"], ["commanded", "trusts its commands"]];
+const OBSERVATIONS = ["measured", "commanded"];
 
 export const Settings = () => html`
   <div class="settings">
@@ -24,7 +24,7 @@ export const Settings = () => html`
       <${Exploration} />
     </div>
     <${SettingHelp} />
-    <div class="pairs-of-fields">
+    <div class="inline-fields">
       <div class="field" onFocusIn=${showHelp("seed")} onPointerEnter=${showHelp("seed")}>
         <label for="field-seed">Seed</label>
         <${NumberField} field="seed" value=${form.value.seed} onValue=${(value) => set("seed", value)} />
@@ -37,8 +37,8 @@ export const Settings = () => html`
 `;
 
 const observations = () => {
-  const known = options.value?.observations?.map((one) => one.name ?? one);
-  return OBSERVATIONS.filter(([name]) => !known || known.includes(name));
+  const known = options.value?.observations?.map((one) => one.name ?? one) ?? OBSERVATIONS;
+  return known.map((name) => [name, name]);
 };
 
 /** α or γ: of the form, and at once of the training that runs. */

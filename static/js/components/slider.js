@@ -10,13 +10,13 @@ export function Slider({ field, about = field, label, symbol, unit, value, onVal
   return html`
     <div class="slider" onFocusIn=${help} onPointerEnter=${help}>
       <label for=${`slide-${field}`}>${label} ${symbol && html`<b>${symbol}</b>`}</label>
-      <${NumberField} field=${field} value=${value} onValue=${onValue} step=${step}
-        label=${`${label}, as a number`} isDisabled=${isDisabled} />
-      ${unit && html`<span class="unit">${unit}</span>`}
       <input type="range" id=${`slide-${field}`} min=${min} max=${max} step=${step}
         value=${Math.min(Math.max(value, min), max)} style=${{ "--share": `${share}%` }}
         disabled=${isDisabled} aria-describedby=${`help-${field}`}
         onInput=${({ target }) => onValue(Number(target.value))} />
+      <${NumberField} field=${field} value=${value} onValue=${onValue} step=${step}
+        label=${`${label}, as a number`} isDisabled=${isDisabled} />
+      <span class="unit">${unit}</span>
       <${Description} field=${about} id=${field} />
     </div>
   `;

@@ -2,7 +2,7 @@
 import { setStage, skipToEnd, togglePlaying } from "../actions.js";
 import { clockTime } from "../format.js";
 import { html } from "../html.js";
-import { view } from "../page.js";
+import { isNarrow, view } from "../page.js";
 import { agentOf, clock, isOperator, shownRun } from "../selectors.js";
 import { options, scene, stage } from "../store.js";
 import { Icon } from "./icon.js";
@@ -27,11 +27,14 @@ export function Transport() {
         <button class="secondary compact" onClick=${skipToEnd}><${Icon} name="skip" />Skip</button>
       `}
       <${Follow} />
-      ${isOperator.value && html`<${Speed} /><${ClockChoice} />`}
+      ${!isNarrow.value && html`<${SharedChoices} />`}
       <${Problem} at="stage" />
     </div>
   `;
 }
+
+/** What everyone's picture goes by; on a phone it has a row of its own, which may scroll away. */
+export const SharedChoices = () => isOperator.value && html`<${Speed} /><${ClockChoice} />`;
 
 const oneIsLeft = (now) =>
   now?.kind === "race" && now.lanes?.length > 1 && now.duration_s &&
