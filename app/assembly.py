@@ -18,7 +18,7 @@ from app.domain.simulator import Simulator
 from app.physics.mujoco_simulator import MujocoSimulator
 from app.runs.config import RaceConfig, TrainingConfig, Walk
 from app.runs.seeding import LEARNING, RACING, generator
-from app.runs.tables import Checkpoint, agent_state, check_fits, continue_from
+from app.runs.tables import Checkpoint, check_fits, continue_from, load_agent
 from app.runs.training import Learner, evaluate, refer
 from app.runs.walker import Foresight, Walker
 
@@ -46,7 +46,7 @@ def build_learner(
 
     Raises:
         UnknownName, InvalidInput: if the agent cannot be had.
-        TableMismatch: if the table is of another problem.
+        TableMismatch: if the table is of another problem, or of another agent.
         Unreachable: if the robot's legs cannot reach the grid.
     """
     simulator, settings = build_simulator(config, threads), asdict(config)
@@ -88,7 +88,7 @@ def build_walkers(
         threads: of look-ahead in MuJoCo; 0 is one for each core.
 
     Raises:
-        TableMismatch: if a table is of another problem than the race.
+        TableMismatch: if a table is of another problem than the race, or of another agent.
     """
     simulator = build_simulator(config, threads)
     walkers = []
@@ -102,7 +102,7 @@ def build_walkers(
             simulator, lane.agent, lane.observation, rng=rng, settings=settings, explore=False
         )
         if table is not None:
-            walker.agent.load(agent_state(table))
+            load_agent(walker.agent, table)
         walkers.append(walker)
     return walkers
 

@@ -20,8 +20,8 @@ class EpsilonSchedule:
 
     def __call__(self, episode: int) -> float:
         """The ε of an episode, counted from 0; episodes past the last keep its ε."""
-        last = max(1, self.episodes - 1)
-        return self.start + (self.end - self.start) * min(episode, last) / last
+        last = self.episodes - 1
+        return self.start + (self.end - self.start) * min(episode, last) / max(1, last)
 
 
 class QLearning:

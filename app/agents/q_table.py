@@ -27,7 +27,8 @@ class QTable:
 
     def __init__(self, pairs: int, cells: int) -> None:
         self.pairs, self.cells = pairs, cells
-        self.states, self.actions = cells**pairs, pairs * cells
+        self.states: int = cells**pairs
+        self.actions = pairs * cells
         if self.states * self.actions > MAX_VALUES:
             raise InvalidInput(
                 f"a table of {pairs} leg pairs and {cells} cells has "
@@ -89,14 +90,16 @@ class QTable:
         Raises:
             TableMismatch: if they are of a table of another shape, or do not fit together.
         """
-        if arrays["shape"].tolist() != [self.pairs, self.cells]:
-            pairs, cells = arrays["shape"].tolist()
+        if missing := {"shape", "where", "q", "n"} - set(arrays):
+            raise TableMismatch(f"this is no Q-table: it lacks {', '.join(sorted(missing))}")
+        shape, where, q, n = (arrays[name] for name in ("shape", "where", "q", "n"))
+        if shape.tolist() != [self.pairs, self.cells]:
             raise TableMismatch(
-                f"the table has {pairs} leg pairs and {cells} cells, "
-                f"this problem has {self.pairs} and {self.cells}"
+                f"the table's leg pairs and cells are {shape.tolist()}, "
+                f"this problem's {[self.pairs, self.cells]}"
             )
-        where, q, n = (arrays[name] for name in ("where", "q", "n"))
-        if not (where.shape == q.shape == n.shape) or not np.isfinite(q).all():
+        kinds = where.dtype.kind + q.dtype.kind + n.dtype.kind
+        if kinds != "ifu" or not (where.shape == q.shape == n.shape) or not np.isfinite(q).all():
             raise TableMismatch("the table's values, visits and places do not fit together")
         if where.size and not (where.min() >= 0 and where.max() < self.q.size):
             raise TableMismatch("the table has values for states that do not exist")

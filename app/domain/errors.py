@@ -30,5 +30,9 @@ class DamagedFile(InvalidInput):
     """A file that is not what it claims to be, or not whole."""
 
 
+class IllegalAction(HexapodError):
+    """An agent chose what cannot be done where it is."""
+
+
 class Diverged(HexapodError):
     """The physics left the finite numbers; whatever it computed since is meaningless."""

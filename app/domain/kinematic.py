@@ -55,8 +55,8 @@ class KinematicSimulator:
         steps = [self.step(s, a) for s, a in zip(states, actions, strict=True)]
         return Expansion([s.state for s in steps], np.array([s.reward_m for s in steps]))
 
-    def pair_offsets(self, state: KinematicState) -> FloatArray:
-        return np.array((state.feet.lateral_m, state.feet.forward_m)).T
+    def pair_offsets(self, state: KinematicState) -> Sequence[tuple[float, float]]:
+        return list(zip(state.feet.lateral_m, state.feet.forward_m, strict=True))
 
     def pose(self, state: KinematicState) -> FloatArray:
         feet = np.zeros((len(self.robot.legs), 3))

@@ -15,7 +15,7 @@ from app.domain.errors import Unreachable
 from app.domain.gait import Gait
 from app.domain.grid import FootGrid
 from app.domain.robot import Robot
-from app.domain.types import FloatArray, IntArray
+from app.domain.types import FloatArray
 
 JOINT_LIMITS_RAD = {"coxa": (-1.2, 1.2), "femur": (-1.4, 1.9), "tibia": (-2.8, 0.0)}
 """How far each servo turns; the model's joint ranges and the check of reach both use it."""
@@ -30,12 +30,12 @@ class Legs:
     def __init__(self, robot: Robot, gait: Gait) -> None:
         self.robot = robot
         azimuth = np.deg2rad(gait.azimuths_deg)
-        self._sin, self._cos = np.sin(azimuth), np.cos(azimuth)  # (legs,)
         mounts = np.array([leg.radius_m for leg in robot.legs])
-        self._home_reach = robot.home_radius_m - mounts  # from the coxa joint, along the leg
-        columns = (self._sin, self._cos, self._home_reach)
-        self._frames = list(zip(*(c.tolist() for c in columns), strict=True))
-        self._everyone: IntArray = np.arange(len(robot.legs))
+        self.frames: FloatArray = np.array(
+            (np.sin(azimuth), np.cos(azimuth), robot.home_radius_m - mounts)
+        )
+        """Sine and cosine of each leg's azimuth, and how far from its coxa joint along the leg
+        its foot's home is [m], (3, legs)."""
 
     def joint_angles(self, offsets: FloatArray) -> FloatArray:
         """Inverse kinematics of all feet.
@@ -47,10 +47,10 @@ class Legs:
             (..., legs, 3) coxa, femur, tibia [rad]; NaN where a foot is out of reach.
         """
         x, y, z = (np.ascontiguousarray(offsets[..., axis]) for axis in range(3))
-        return self.solve(x, y, z, self._everyone)
+        return self.solve(x, y, z, self.frames)
 
-    def solve(self, x: FloatArray, y: FloatArray, z: FloatArray, legs: IntArray) -> FloatArray:
-        """Inverse kinematics of any feet, each of the leg that `legs` names (from 0).
+    def solve(self, x: FloatArray, y: FloatArray, z: FloatArray, frames: FloatArray) -> FloatArray:
+        """Inverse kinematics of any feet, each in the frame of its leg.
 
         The coordinates come apart and contiguous: NumPy's loops over strided numbers are slower,
         and may differ in the last bit.
@@ -59,13 +59,13 @@ class Legs:
             x: offset from home to the right, in the robot frame [m].
             y: forward.
             z: up; their shapes broadcast.
-            legs: broadcasts with them.
+            frames: a column of `self.frames` for each foot, (3, ...).
 
         Returns:
             (..., 3) coxa, femur, tibia [rad]; NaN where the foot is out of reach.
         """
-        sin, cos = self._sin[legs], self._cos[legs]
-        along = self._home_reach[legs] + (cos * y - sin * x)
+        sin, cos, home = frames
+        along = home + (cos * y - sin * x)
         across = -cos * x - sin * y
         r = np.sqrt(along * along + across * across) - self.robot.coxa_m
         fall = z - self.robot.body_height_m
@@ -91,7 +91,7 @@ class Legs:
             For each leg (x, y, z), its foot's offset from home in the robot frame [m].
         """
         robot, offsets = self.robot, []
-        for leg, (sin, cos, home) in enumerate(self._frames):
+        for leg, (sin, cos, home) in enumerate(self.frames.T.tolist()):
             coxa, femur, tibia = angles[3 * leg : 3 * leg + 3]
             knee = femur + tibia
             r = robot.coxa_m + robot.femur_m * math.cos(femur) + robot.tibia_m * math.cos(knee)
@@ -118,7 +118,8 @@ def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> None:
     """
     legs, drift = Legs(robot, gait), len(gait.pairs) - 1
     for cell, (x, y) in enumerate(grid.cells):
-        for why, forward in (("", y), (" after the body has re-centred", drift * y)):
+        ways = (("", y), (" after the body has re-centred", drift * y), (" on the way there", 0.0))
+        for why, forward in ways:
             for height in (0.0, robot.step_height_m):
                 offset = np.array([x, forward, height])
                 angles = legs.joint_angles(np.tile(offset, (len(robot.legs), 1)))

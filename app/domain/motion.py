@@ -37,9 +37,10 @@ class StepMotion:
 
     def __init__(self, robot: Robot, gait: Gait, grid: FootGrid) -> None:
         self.legs = Legs(robot, gait)
-        self._places = [(float(x), float(y)) for x, y in grid.cells]
+        self._places = grid.places_m
         self._pairs = len(gait.pairs)
-        self._samples = _samples(robot, gait)
+        self._samples = _samples(robot, gait, self.legs.frames)
+        self._substeps = robot.swing_substeps + robot.shift_substeps
 
     def at_home(self) -> Feet:
         """Every foot at home."""
@@ -58,26 +59,29 @@ class StepMotion:
         Returns:
             (n, substeps, legs · 3) [rad]; in each row legs in order, coxa, femur, tibia.
         """
-        samples, rows = self._samples, np.arange(len(plans))[:, None]
-        swinging = [plan.pair for plan in plans]
-        source = samples.source[swinging]  # (n, samples)
-        ways = np.array(
-            [
-                (
-                    (*p.start.lateral_m, *p.landed.lateral_m),
-                    (*p.start.forward_m, *p.landed.forward_m),
-                    (*p.landed.lateral_m, *p.end.lateral_m),
-                    (*p.landed.forward_m, *p.end.forward_m),
-                )
-                for p in plans
-            ]
-        )  # (n, from x, from y, to x, to y; pair in the swing, pair in the shift)
-        from_x, from_y, to_x, to_y = (ways[rows, part, source] for part in range(4))
-        x = samples.side[swinging] * (from_x + samples.share * (to_x - from_x))
+        samples = self._samples
+        swinging, rows = [plan.pair for plan in plans], np.arange(len(plans))[:, None]
+        ways = np.array([_ways(plan) for plan in plans])  # (n, 4, 2 · pairs)
+        source = samples.source.take(swinging, 1) + rows * ways[0].size  # (4, n, samples)
+        from_x, from_y, to_x, to_y = ways.take(source)
+        frames = samples.frames.take(swinging, 1)  # (4, n, samples)
+        x = frames[0] * (from_x + samples.share * (to_x - from_x))
         y = from_y + samples.share * (to_y - from_y)
-        angles = self.legs.solve(x, y, samples.lift, samples.legs[swinging])
-        targets = angles[rows[..., None], samples.order[swinging]]
-        return targets.reshape(len(plans), -1, targets.shape[2] * 3)
+        angles = self.legs.solve(x, y, samples.lift, frames[1:])
+        order = samples.order.take(swinging, 0) + rows * x.shape[1]  # (n, substeps · legs)
+        targets = angles.reshape(-1, 3).take(order, 0)
+        return targets.reshape(len(plans), self._substeps, -1)
+
+
+def _ways(plan: StepPlan) -> tuple[tuple[float, ...], ...]:
+    """From x, from y, to x, to y: of every pair in the swing, then of every pair in the shift."""
+    start, landed, end = plan.start, plan.landed, plan.end
+    return (
+        start.lateral_m + landed.lateral_m,
+        start.forward_m + landed.forward_m,
+        landed.lateral_m + end.lateral_m,
+        landed.forward_m + end.forward_m,
+    )
 
 
 class _Samples(NamedTuple):
@@ -87,41 +91,38 @@ class _Samples(NamedTuple):
     What depends on which pair swings has a row for each pair.
     """
 
-    legs: IntArray
-    """Whose place, (pairs, samples)."""
-    side: FloatArray
-    """1 for a leader and −1 for a partner, (pairs, samples)."""
+    frames: FloatArray
+    """1 for a leader and −1 for a partner, then `Legs.frames` of the leg, (4, pairs, samples)."""
     source: IntArray
-    """Its pair in the swing, or pairs + its pair in the shift, (pairs, samples)."""
+    """Where `_ways` has the sample's from x, from y, to x, to y, (4, pairs, samples)."""
     share: FloatArray
     """How much of its way in this phase the foot has gone, (samples,)."""
     lift: FloatArray
     """How high it is lifted [m], (samples,)."""
     order: IntArray
-    """Which sample commands which leg at which substep, (pairs, substeps, legs)."""
+    """Which sample commands which leg at which substep, (pairs, substeps · legs)."""
 
 
-def _samples(robot: Robot, gait: Gait) -> _Samples:
+def _samples(robot: Robot, gait: Gait, frames: FloatArray) -> _Samples:
     """A half cosine forward and a half sine up in the swing, a half cosine in the shift."""
     count, swing, shift = len(robot.legs), robot.swing_substeps, robot.shift_substeps
     everyone, movers = np.arange(count), np.array(gait.pairs) - 1
     swung = np.repeat(np.arange(1, swing + 1) / swing, 2)
     shifted = np.repeat(np.arange(1, shift + 1) / shift, count)
+    still = np.zeros(count)
     legs, order = [], []
     for pair in movers:
         legs.append(np.concatenate((everyone, np.tile(pair, swing), np.tile(everyone, shift))))
         in_swing = np.tile(everyone, (swing, 1))
         in_swing[:, pair] = count + np.arange(2 * swing).reshape(swing, 2)
-        in_shift = count + 2 * swing + np.arange(count * shift).reshape(shift, count)
-        order.append(np.concatenate((in_swing, in_shift)))
-    pair_of = np.argsort(movers.ravel()) // 2
-    side_of = np.where(np.argsort(movers.ravel()) % 2, -1.0, 1.0)
-    whose, still = np.array(legs), np.zeros(count)
+        in_shift = count + 2 * swing + np.arange(count * shift)
+        order.append(np.concatenate((in_swing.ravel(), in_shift)))
+    whose, place = np.array(legs), np.argsort(movers.ravel())
     in_phase = np.repeat((0, 0, len(movers)), (count, 2 * swing, count * shift))
+    pair_of = (place // 2)[whose] + in_phase  # (pairs, samples)
     return _Samples(
-        whose,
-        side_of[whose],
-        pair_of[whose] + in_phase,
+        np.stack((np.where(place % 2, -1.0, 1.0)[whose], *frames[:, whose])),
+        np.stack([pair_of + part * 2 * len(movers) for part in range(4)]),
         np.concatenate((still, ease(swung), ease(shifted))),
         np.concatenate(
             (still, robot.step_height_m * np.sin(np.pi * swung), np.zeros_like(shifted))

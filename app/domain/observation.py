@@ -28,7 +28,8 @@ def observe(simulator: Simulator[S], state: S, how: Observation) -> Cells:
     """The cells that an agent sees in this state."""
     if how == "commanded":
         return state.commanded
-    return tuple(simulator.grid.nearest(simulator.pair_offsets(state)).tolist())
+    nearest = simulator.grid.nearest
+    return tuple(nearest(x, y) for x, y in simulator.pair_offsets(state))
 
 
 @lru_cache(maxsize=1 << 16)

@@ -83,8 +83,8 @@ class Simulator(Protocol[S]):
     def expand(self, states: Sequence[S], actions: Sequence[Action]) -> Expansion[S]:
         """Carry out one action from each state, as `step` would."""
 
-    def pair_offsets(self, state: S) -> FloatArray:
-        """Where the feet truly are: offsets from home in the robot frame [m], (pairs, 2).
+    def pair_offsets(self, state: S) -> Sequence[tuple[float, float]]:
+        """Where the feet truly are: offsets (x, y) from home in the robot frame [m].
 
         For each pair the mean of its leader's and its mirrored partner's.
         """

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import mujoco
 import numpy as np
 from mujoco.batch import Batch
 
@@ -13,7 +14,7 @@ from app.domain.feet import Feet
 from app.domain.gait import Gait
 from app.domain.grid import FootGrid
 from app.domain.kinematics import check_reach
-from app.domain.motion import StepMotion, recorded_substeps
+from app.domain.motion import StepMotion, StepPlan, recorded_substeps
 from app.domain.robot import Robot
 from app.domain.simulator import Expansion, Motion, Step
 from app.domain.types import Action, Cells, FloatArray
@@ -57,6 +58,7 @@ class MujocoSimulator:
 
     def __init__(self, robot: Robot, gait: Gait, grid: FootGrid, threads: int = 1) -> None:
         check_reach(robot, gait, grid)
+        _keep_quiet()
         self.robot, self.gait, self.grid = robot, gait, grid
         self.model = compile_model(robot)
         self._motion = StepMotion(robot, gait, grid)
@@ -83,7 +85,7 @@ class MujocoSimulator:
         qpos[3], qpos[6] = np.cos(half), np.sin(half)
         qpos[7:] = standing
         batch.rollout(round(SETTLE_S / self.robot.dt_s), standing[None, None], record=())
-        self._check(batch, [0])
+        self._check(batch, [0.0], [0])
         batch.bind("time")[0] = 0
         qpos[:2] = 0
         return MujocoState(_frozen(batch.state[0]), self._motion.at_home())
@@ -99,9 +101,18 @@ class MujocoSimulator:
     def expand(
         self, states: Sequence[MujocoState], actions: Sequence[Action]
     ) -> Expansion[MujocoState]:
+        if not states:
+            return Expansion([], np.empty(0))
         if len(states) > self._many.nsim:
             self._many = Batch(self.model, len(states), self._threads)
         return self._advance(self._many, states, actions, record=False)[0]
+
+    def commands(self, states: Sequence[MujocoState], actions: Sequence[Action]) -> FloatArray:
+        """What the servos are told over a step from each state, (n, substeps, 3 · legs) [rad]."""
+        return self._motion.joint_targets(self._plans(states, actions))
+
+    def _plans(self, states: Sequence[MujocoState], actions: Sequence[Action]) -> list[StepPlan]:
+        return [self._motion.plan(s.feet, a) for s, a in zip(states, actions, strict=True)]
 
     def _advance(
         self,
@@ -111,24 +122,23 @@ class MujocoSimulator:
         record: bool,
     ) -> tuple[Expansion[MujocoState], FloatArray]:
         """Plan and carry out a step from each state; qpos of every substep where recorded."""
-        plans = [self._motion.plan(s.feet, a) for s, a in zip(states, actions, strict=True)]
-        ids = None if len(states) == batch.nsim else np.arange(len(states))
-        before = np.array([s.row for s in states])
-        batch.state[: len(states)] = before
+        plans, count = self._plans(states, actions), len(states)
+        before = np.array([state.row for state in states])
+        batch.state[:count] = before
         recorded = batch.rollout(
             self._substeps,
             self._motion.joint_targets(plans),
             record=("qpos",) if record else (),
-            ids=ids,
+            ids=None if count == batch.nsim else np.arange(count),
         )
-        self._check(batch, [s.steps + 1 for s in states])
-        after = _frozen(batch.state[: len(states)])
+        after = _frozen(batch.state[:count])
         ends = [
             MujocoState(row, plan.end, float(row[2]), state.steps + 1)
             for row, plan, state in zip(after, plans, states, strict=True)
         ]
-        rewards = np.array([self._reward(b, a) for b, a in zip(before, after, strict=True)])
-        return Expansion(ends, rewards), recorded.get("qpos", np.empty(0))
+        rewards = [self._reward(b, a) for b, a in zip(before, after, strict=True)]
+        self._check(batch, rewards, [end.steps for end in ends])
+        return Expansion(ends, np.array(rewards)), recorded.get("qpos", np.empty(0))
 
     def _reward(self, before: FloatArray, after: FloatArray) -> float:
         """Displacement along the robot's horizontal forward direction at the start [m].
@@ -143,28 +153,28 @@ class MujocoSimulator:
         along = (to_x - from_x) * ahead_x + (to_y - from_y) * ahead_y
         return float(along / math.sqrt(ahead_x * ahead_x + ahead_y * ahead_y))
 
-    def _check(self, batch: Batch, steps: Sequence[int]) -> None:
+    def _check(self, batch: Batch, rewards: Sequence[float], steps: Sequence[int]) -> None:
         """Raise `Diverged` if any simulation met a number that is none.
 
         MuJoCo only counts a warning then, and resets the robot to where it never was.
         """
-        finite = np.isfinite(batch.state[: len(steps)])
-        if batch.warning.any() or not finite.all():
-            bad = (batch.warning[: len(steps), :, 1].sum(axis=1) > 0) | ~finite.all(axis=1)
-            batch.warning[...] = 0
-            step = steps[int(bad.argmax())]
-            raise Diverged(
-                f"the physics diverged at step {step}; try a smaller robot.dt_s, a lower servo_kp "
-                "or heavier links"
-            )
+        if not np.count_nonzero(batch.warning) and all(map(math.isfinite, rewards)):
+            return
+        warned = batch.warning[: len(steps), :, 1].sum(axis=1) > 0
+        batch.warning[...] = 0
+        bad = int((warned | ~np.isfinite(rewards)).argmax())
+        raise Diverged(
+            f"the physics diverged at step {steps[bad]}; try a smaller robot.dt_s, a "
+            "lower servo_kp or heavier links"
+        )
 
-    def pair_offsets(self, state: MujocoState) -> FloatArray:
+    def pair_offsets(self, state: MujocoState) -> Sequence[tuple[float, float]]:
         feet = self._motion.legs.foot_offsets(state.row[self._joints].tolist())
         offsets = []
         for leader, partner in self.gait.pairs:
             (x, y, _), (mirrored_x, partner_y, _) = feet[leader - 1], feet[partner - 1]
             offsets.append(((x - mirrored_x) / 2, (y + partner_y) / 2))
-        return np.array(offsets)
+        return offsets
 
     def pose(self, state: MujocoState) -> FloatArray:
         return state.row[1 : 1 + self.model.nq].copy()
@@ -184,6 +194,16 @@ class MujocoSimulator:
             distance,
             int(steps),
         )
+
+
+def _keep_quiet() -> None:
+    """Let MuJoCo write its warnings nowhere: `Diverged` says them.
+
+    By default they go to the console and to MUJOCO_LOG.TXT in whatever folder is the current one.
+    """
+    log = mujoco.MjLogConfig.get()
+    log.logto_file = log.logto_console = False
+    log.set()
 
 
 def _frozen(array: FloatArray) -> FloatArray:

@@ -91,9 +91,9 @@ class Timetable:
 
 def distance_at(lane: LaneRecording, timetable: Timetable, time_s: float) -> float:
     """How far a lane is at a time of the race, in the middle of a motion if need be [m]."""
-    step, _, into = timetable.at(time_s)
-    if step >= len(lane.steps):
+    if time_s >= timetable.total_s:
         return lane.distance_m
+    step, _, into = timetable.at(time_s)
     if into == 0.0:
         return lane.steps[step - 1].distance_m if step else 0.0
     return float(pose_at(lane.start_qpos(step), lane.steps[step].motion, into)[1])

@@ -1,12 +1,14 @@
 """The race loop: every lane has its own physics, and no lane's motion depends on thinking time."""
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, cast
+from typing import cast
 
-from app.agents.protocol import Agent
-from app.domain.errors import Diverged
+import numpy as np
+
+from app.domain.errors import Diverged, HexapodError
 from app.domain.simulator import Motion
-from app.domain.types import Action
+from app.runs.config import RaceConfig
+from app.runs.recording import LaneRecording
 from app.runs.records import LaneFailed, LaneStep, RaceRecord
 from app.runs.walker import Walker
 
@@ -28,25 +30,42 @@ def race(walkers: Sequence[Walker], steps: int, timer: Callable[[], float]) -> I
                 del running[lane]
 
 
+def record_race(
+    walkers: Sequence[Walker], config: RaceConfig, timer: Callable[[], float]
+) -> Iterator[list[LaneRecording]]:
+    """Race into a recording, and yield it, grown, after every step of a lane."""
+    lanes = [
+        LaneRecording(lane.agent, walker.simulator.pose(walker.state).astype(np.float32))
+        for lane, walker in zip(config.lanes, walkers, strict=True)
+    ]
+    for record in race(walkers, config.steps, timer):
+        if isinstance(record, LaneFailed):
+            lanes[record.lane].failure = record.reason
+        else:
+            lanes[record.lane].steps.append(record)
+        yield lanes
+
+
 def _lane_step(lane: int, step: int, walker: Walker, timer: Callable[[], float]) -> RaceRecord:
-    seen, knowledge = walker.seen, walker.knowledge()
-    before, began = walker.transitions, timer()
+    seen, before = walker.seen, walker.transitions
     try:
+        knowledge = walker.knowledge()
+        began = timer()
         action = walker.decide()
+        decision_s = timer() - began
+    except HexapodError as error:
+        return LaneFailed(lane, step, str(error))
     except Exception as error:  # an agent of the user's own may raise anything
         return LaneFailed(lane, step, f"its agent failed: {type(error).__name__}: {error}")
-    decision_s = timer() - began
-    if action not in walker.legal:
-        return LaneFailed(lane, step, _illegal(action, walker.agent))
     try:
-        done = walker.carry_out(Action(*action), record=True)
+        done = walker.carry_out(action, record=True)
     except Diverged as error:
         return LaneFailed(lane, step, str(error))
     return LaneStep(
         lane,
         step,
         seen,
-        Action(*action),
+        action,
         done.reward_m,
         walker.state.distance_m,
         walker.transitions - before,
@@ -54,7 +73,3 @@ def _lane_step(lane: int, step: int, walker: Walker, timer: Callable[[], float])
         cast(Motion, done.motion),
         knowledge,
     )
-
-
-def _illegal(action: Any, agent: Agent) -> str:
-    return f"{type(agent).__name__} chose {action!r}, which is not a legal action here"

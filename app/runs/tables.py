@@ -15,9 +15,11 @@ from typing import Any
 
 import numpy as np
 
+from app.agents.protocol import Agent
 from app.agents.q_learning import QLearning
 from app.agents.q_table import QTable
 from app.domain.errors import DamagedFile, TableMismatch
+from app.domain.grid import FootGrid
 from app.runs import seeding
 from app.runs.config import TrainingConfig, Walk, as_json
 from app.runs.recording import Arrays
@@ -85,13 +87,20 @@ def continue_from(learner: Learner, checkpoint: Checkpoint) -> None:
     """Let a fresh learner go on with what was learned: values, visits and the generator.
 
     Its rates are its own, ε restarts, and the robot starts from rest.
+
+    Raises:
+        TableMismatch: if another agent learned it.
+        DamagedFile: if the generator's state is none.
     """
-    agent, state = learner.walker.agent, checkpoint.part(_AGENT)
+    agent = learner.walker.agent
     if isinstance(agent, QLearning):
-        agent.continue_from(state)
+        agent.continue_from(agent_state(checkpoint))
     else:
-        agent.load(state)
-    seeding.load(learner.rng, checkpoint.meta["rng"])
+        load_agent(agent, checkpoint)
+    try:
+        seeding.load(learner.rng, checkpoint.meta["rng"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise DamagedFile("the table does not hold its generator's state") from error
 
 
 def agent_state(checkpoint: Checkpoint) -> Arrays:
@@ -99,17 +108,31 @@ def agent_state(checkpoint: Checkpoint) -> Arrays:
     return checkpoint.part(_AGENT)
 
 
+def load_agent(agent: Agent, checkpoint: Checkpoint) -> None:
+    """Let an agent go on from what one of its kind had learned.
+
+    Raises:
+        TableMismatch: if another agent learned it.
+    """
+    try:
+        agent.load(agent_state(checkpoint))
+    except (IndexError, KeyError, TypeError, ValueError) as error:
+        raise TableMismatch(
+            f"{type(agent).__name__} cannot load what {checkpoint.meta['agent']} has learned; "
+            "choose a table of the same agent"
+        ) from error
+
+
 def table_of(checkpoint: Checkpoint) -> QTable:
     """The Q-table inside.
 
     Raises:
-        TableMismatch: if the agent that learned keeps none.
+        TableMismatch: if the agent that learned keeps none, or it is of another problem.
     """
-    state = agent_state(checkpoint)
-    if not {"shape", "where", "q", "n"} <= set(state):
-        raise TableMismatch(f"the agent {checkpoint.meta['agent']} keeps no Q-table")
-    pairs, cells = state["shape"].tolist()
-    table = QTable(pairs, cells)
+    state, meta = agent_state(checkpoint), checkpoint.meta
+    if "where" not in state:
+        raise TableMismatch(f"the agent {meta['agent']} keeps no Q-table")
+    table = QTable(len(meta["pairs"]), len(FootGrid(meta["grid_side_m"], meta["divisions"])))
     table.load(state)
     return table
 
@@ -172,7 +195,7 @@ def from_bytes(data: bytes, name: str) -> Checkpoint:
         whole = digest == _digest(members)
         meta = json.loads(str(members.pop("meta")))
         known = meta["format"] == FORMAT
-    except (ValueError, KeyError, OSError, EOFError, TypeError, zipfile.BadZipFile) as error:
+    except Exception as error:  # zipfile and NumPy do not say all that damage makes them raise
         raise DamagedFile(f"{name} is not a Q-table of this product: {error}") from error
     if not whole:
         raise DamagedFile(f"{name} is damaged: its contents do not match its checksum")
@@ -183,9 +206,11 @@ def from_bytes(data: bytes, name: str) -> Checkpoint:
 
 def _refuse_compressed(data: bytes) -> None:
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        for member in archive.infolist():
-            if member.compress_type != zipfile.ZIP_STORED or member.file_size > len(data):
-                raise ValueError("its members are compressed; write it with numpy.savez")
+        members = archive.infolist()
+    if any(member.compress_type != zipfile.ZIP_STORED for member in members):
+        raise ValueError("its members are compressed; write it with numpy.savez")
+    if sum(member.file_size for member in members) > len(data):
+        raise ValueError("its members claim to be larger than the file")
 
 
 def _digest(members: Arrays) -> str:

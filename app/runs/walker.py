@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import Any, cast
 
 from app.agents.protocol import Agent, Node, Valuing
+from app.domain.errors import IllegalAction
 from app.domain.observation import Observation, legal_actions, observe
 from app.domain.simulator import Simulator, Step, WalkState
 from app.domain.types import Action, Cells, FloatArray
@@ -78,8 +79,19 @@ class Walker:
         return self._foresight.transitions if self._foresight else 0
 
     def decide(self) -> Action:
-        """Ask the agent what to do now."""
-        return self.agent.act(self.seen, self.legal)
+        """Ask the agent what to do now.
+
+        Raises:
+            IllegalAction: if that is none of the legal actions.
+        """
+        chosen = self.agent.act(self.seen, self.legal)
+        try:
+            return self.legal[self.legal.index(Action(*chosen))]
+        except (TypeError, ValueError) as error:
+            raise IllegalAction(
+                f"{type(self.agent).__name__} chose {chosen!r}, which is not a legal action here; "
+                "choose one of the (pair, cell) in legal"
+            ) from error
 
     def carry_out(self, action: Action, record: bool = False) -> Step[Any]:
         """Do it, and be where it leads."""

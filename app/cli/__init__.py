@@ -1,0 +1,37 @@
+"""The `hexapods` command: arguments in, one call out."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from app import __version__
+from app.cli import bench, race, serve, train
+from app.domain.errors import HexapodError
+
+COMMANDS = (serve, train, race, bench)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; the exit code is 2 for what cannot be done as asked, with one sentence."""
+    options = _parser().parse_args(arguments)
+    try:
+        code: int = options.run(options)
+    except HexapodError as error:
+        print(f"hexapods {options.command}: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return 130
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="hexapods",
+        description="Six-legged robots that learn to walk, and race against look-ahead search.",
+    )
+    parser.add_argument("--version", action="version", version=f"hexapods {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for command in COMMANDS:
+        command.add_to(commands)
+    return parser

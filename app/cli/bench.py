@@ -1,0 +1,54 @@
+"""`hexapods bench`: what this machine makes of it, each figure a ratio within one run."""
+
+import argparse
+import json
+from collections.abc import Callable
+
+from app.cli import measures
+from app.cli.terminal import progress, show_table
+
+LIMITS = {
+    "training_over_physics": "at most 1.10",
+    "lookahead_speedup": "at least 1.7 on two idle cores",
+    "two_step_decision_over_motion": "at most 1.0 on two idle cores",
+    "planning_overhead": "at most 0.10",
+    "stage_update_ms": "at most 2",
+    "stage_update_bytes": "at most 4,000",
+}
+
+
+def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Describe the command."""
+    parser = commands.add_parser("bench", help="measure this machine", description=__doc__)
+    parser.add_argument("--json", action="store_true", help="print the figures as one object")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Measure everything once; takes about a minute."""
+    steps: tuple[Callable[[], dict[str, float]], ...] = (
+        measures.training,
+        measures.look_ahead,
+        measures.racing,
+        _stage,
+    )
+    figures: dict[str, float] = {}
+    with progress() as bar:
+        task = bar.add_task("measuring", total=len(steps))
+        for measure in steps:
+            figures |= measure()
+            bar.advance(task)
+    if options.json:
+        print(json.dumps(figures))
+    else:
+        rows = [(name, f"{value:.4g}", LIMITS.get(name, "")) for name, value in figures.items()]
+        show_table("On this machine, now", ("figure", "measured", "meant to be"), rows)
+    return 0
+
+
+def _stage() -> dict[str, float]:
+    # Its imports take a second that the other commands need not.
+    from app.viewer.measure import measure_stage_update  # noqa: PLC0415
+
+    milliseconds, size = measure_stage_update(updates=200)
+    return {"stage_update_ms": milliseconds, "stage_update_bytes": size}

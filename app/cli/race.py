@@ -1,0 +1,105 @@
+"""`hexapods race`: agents side by side, timed under three clocks."""
+
+import argparse
+import json
+import time
+from collections.abc import Sequence
+from typing import Any
+
+from app.assembly import build_walkers
+from app.cli.files import read_table
+from app.cli.options import add_observation, add_walk_options, walk_from, whole
+from app.cli.terminal import progress, show_table
+from app.domain.errors import InvalidInput
+from app.runs.clocks import CLOCKS, check_clock
+from app.runs.config import RACE_STEPS, LaneConfig, RaceConfig, as_json
+from app.runs.racing import record_race
+from app.runs.recording import LaneRecording
+from app.runs.results import race_result
+from app.runs.tables import Checkpoint
+from app.runs.walker import Walker
+
+
+def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Describe the command."""
+    parser = commands.add_parser("race", help="race agents", description=__doc__)
+    add_walk_options(parser)
+    add_observation(parser, "of lanes without a table; a trained lane uses its table's")
+    parser.add_argument(
+        "--lane",
+        action="append",
+        required=True,
+        metavar="AGENT[=Q.NPZ]",
+        help="once for each lane: greedy, two-step, q-learning=q.npz, my.module:Agent[=q.npz]",
+    )
+    parser.add_argument("--steps", type=whole, default=RACE_STEPS, help="default 50")
+    parser.add_argument("--seed", type=whole, default=0, help="default 0")
+    parser.add_argument("--clock", default="paper", help=f"to show: {', '.join(CLOCKS)}")
+    parser.add_argument("--json", action="store_true", help="print config and result as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Race as the options say.
+
+    Raises:
+        HexapodError: if they cannot be followed.
+    """
+    check_clock(options.clock)
+    lanes = [_lane(text, options.observation) for text in options.lane]
+    config = RaceConfig(
+        **walk_from(options),
+        lanes=tuple(lane for lane, _ in lanes),
+        steps=options.steps,
+        seed=options.seed,
+    )
+    walkers = build_walkers(config, [table for _, table in lanes])
+    result = race_result(_race(walkers, config), config.steps)
+    if options.json:
+        print(json.dumps({"config": as_json(config), "result": result}))
+    else:
+        _tell(result, options.clock)
+    return 0
+
+
+def _lane(text: str, observation: Any) -> tuple[LaneConfig, Checkpoint | None]:
+    agent, _, path = text.partition("=")
+    if not path:
+        if agent == "q-learning":
+            raise InvalidInput(
+                "a q-learning lane needs its table: --lane q-learning=q.npz "
+                "(hexapods train --out q.npz makes one)"
+            )
+        return LaneConfig(agent=agent, observation=observation), None
+    table = read_table(path)
+    if table.meta["agent"] != agent:
+        raise InvalidInput(f"{path} was learned by {table.meta['agent']}, not by {agent}")
+    return LaneConfig(agent=agent, observation=table.meta["observation"]), table
+
+
+def _race(walkers: Sequence[Walker], config: RaceConfig) -> list[LaneRecording]:
+    recording: list[LaneRecording] = []
+    with progress() as bar:
+        task = bar.add_task("racing", total=len(walkers) * config.steps)
+        for grown in record_race(walkers, config, time.perf_counter):
+            recording = grown
+            bar.advance(task)
+    return recording
+
+
+def _tell(result: dict[str, Any], clock: str) -> None:
+    rows = []
+    for lane in sorted(result["lanes"], key=lambda lane: lane["clocks"][clock]["rank"]):
+        timed, total = lane["clocks"][clock], lane["total_distance_m"]
+        rows.append(
+            (
+                f"{timed['rank']}. {lane['agent']}",
+                f"{timed['finished_distance_m']:.2f} m",
+                lane["failure"] if total is None else f"{total:.2f} m",
+                f"{timed['elapsed_s']:.1f} s",
+                f"{1000 * lane['decision_s'] / max(1, lane['steps']):.1f} ms",
+                f"{lane['simulated_transitions']:,}",
+            )
+        )
+    head = ("lane", "at the finish", "in all", "time", "a decision", "simulated transitions")
+    show_table(f"Ranked at the first finish, {clock} clock", head, rows)

@@ -1,0 +1,72 @@
+"""`hexapods serve`: the dashboard, the API and the stage, on one address."""
+
+import argparse
+import os
+import secrets
+import socket
+import sys
+from typing import Any
+
+import segno
+
+from app.cli.options import whole
+from app.settings import Settings, read_settings
+
+
+def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Describe the command."""
+    parser = commands.add_parser("serve", help="open the dashboard", description=__doc__)
+    parser.add_argument("--host", help="address to bind (default 127.0.0.1, or HEXAPODS_HOST)")
+    parser.add_argument("--port", type=whole, help="default 8000, or HEXAPODS_PORT")
+    parser.add_argument("--data", help="data folder (default: the user's, or HEXAPODS_DATA)")
+    parser.add_argument(
+        "--share",
+        action="store_true",
+        help="let the local network watch: bind every address, make a token if none is set, "
+        "print the links",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Serve until stopped.
+
+    Raises:
+        InvalidInput: if the server cannot start as it is asked to.
+    """
+    from app.server import serve  # noqa: PLC0415 - its imports take a second that others need not
+
+    given: dict[str, Any] = {"host": options.host, "port": options.port, "data": options.data}
+    if options.share:
+        given["host"] = options.host or "0.0.0.0"  # noqa: S104 - that is what --share is for
+        given["token"] = read_token() or secrets.token_urlsafe(24)
+    settings = read_settings(**given)
+    if options.share:
+        show_links(settings)
+    serve(settings)
+    return 0
+
+
+def read_token() -> str | None:
+    """The token of the environment, if it has one."""
+    return os.environ.get("HEXAPODS_TOKEN") or None
+
+
+def show_links(settings: Settings) -> None:
+    """Print who may open what, and the spectators' link as a QR code."""
+    base = settings.public_url or f"http://{local_address()}:{settings.port}"
+    print(f"Operator (may start and stop):  {base}/?token={settings.token}")
+    print(f"Spectators (may watch):         {base}/")
+    segno.make(f"{base}/", micro=False).terminal(out=sys.stdout, compact=True)
+    sys.stdout.flush()
+
+
+def local_address() -> str:
+    """This machine's address in the local network; a UDP socket tells it without sending."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))  # a documentation address: nothing is ever there
+            address: str = probe.getsockname()[0]
+        except OSError:
+            return "127.0.0.1"
+    return address

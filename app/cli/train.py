@@ -1,0 +1,108 @@
+"""`hexapods train`: learn to walk, and keep the table."""
+
+import argparse
+import json
+from typing import Any
+
+from app.assembly import build_learner, finish_training
+from app.cli.files import check_writable, read_table, write_whole
+from app.cli.options import add_observation, add_walk_options, number, walk_from, whole
+from app.cli.terminal import progress
+from app.domain.errors import InvalidInput
+from app.runs.config import TrainingConfig, as_json
+from app.runs.records import Evaluated, StepTaken
+from app.runs.tables import Checkpoint, snapshot, to_bytes
+from app.runs.training import Learner, train
+
+_RATES = ("alpha", "gamma", "epsilon_start", "epsilon_end")
+
+
+def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Describe the command."""
+    parser = commands.add_parser("train", help="learn to walk", description=__doc__)
+    add_walk_options(parser)
+    add_observation(parser, "how the agent reads the state")
+    parser.add_argument("--steps", type=whole, default=500, help="to learn for (default 500)")
+    parser.add_argument("--seed", type=whole, help="of all chance in the run (default 0)")
+    for name in _RATES:
+        default = getattr(TrainingConfig, name)
+        flag = f"--{name.replace('_', '-')}"
+        parser.add_argument(flag, type=number, default=default, help=f"default {default:g}")
+    parser.add_argument("--steps-per-episode", type=whole, default=50, help="default 50")
+    parser.add_argument(
+        "--evaluate-every", type=whole, default=50, help="steps; 0 is never (default 50)"
+    )
+    parser.add_argument("--agent", default="q-learning", help="a name, or my.module:Agent")
+    parser.add_argument("--from", dest="table", metavar="Q.NPZ", help="go on with this table")
+    parser.add_argument("--out", metavar="Q.NPZ", help="keep the table here")
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Train as the options say.
+
+    Raises:
+        HexapodError: if they cannot be followed.
+    """
+    table = read_table(options.table) if options.table else None
+    config = _config(options, table)
+    if options.out:
+        check_writable(options.out)
+    learner = build_learner(config, table)
+    curve = _practise(learner, config)
+    result = finish_training(learner, config)
+    if options.out:
+        write_whole(options.out, to_bytes(snapshot(learner, config)))
+    if options.json:
+        print(json.dumps({"config": as_json(config), "result": result, "curve": curve}))
+    else:
+        _tell(options, config, result)
+    return 0
+
+
+def _config(options: argparse.Namespace, table: Checkpoint | None) -> TrainingConfig:
+    seed = options.seed
+    if table is not None:
+        if seed is not None:
+            raise InvalidInput("--from goes on with the table's own generator; leave --seed out")
+        seed = table.meta["config"]["seed"]
+    return TrainingConfig(
+        **walk_from(options),
+        observation=options.observation,
+        steps=options.steps,
+        seed=0 if seed is None else seed,
+        **{name: getattr(options, name) for name in _RATES},
+        steps_per_episode=options.steps_per_episode,
+        evaluate_every=options.evaluate_every,
+        agent=options.agent,
+    )
+
+
+def _practise(learner: Learner, config: TrainingConfig) -> list[dict[str, float]]:
+    """Run the loop behind a progress bar; the evaluations on the way."""
+    curve = []
+    with progress() as bar:
+        task = bar.add_task("practising", total=config.steps)
+        for record in train(learner, config):
+            if isinstance(record, StepTaken):
+                bar.update(task, completed=record.step)
+            elif isinstance(record, Evaluated):
+                bar.update(task, description=f"walks {record.distance_m:.2f} m")
+                curve.append(
+                    {
+                        "step": record.step,
+                        "distance_m": record.distance_m,
+                        "epsilon": record.epsilon,
+                    }
+                )
+    return curve
+
+
+def _tell(options: argparse.Namespace, config: TrainingConfig, result: dict[str, Any]) -> None:
+    print(
+        f"After {config.steps:,} steps of practice it walks {result['distance_m']:.2f} m in 50 "
+        f"steps; one-step look-ahead walks {result['greedy_distance_m']:.2f} m."
+    )
+    if options.out:
+        print(f"The table is in {options.out}.")
