@@ -44,6 +44,11 @@ def mixed(color: Rgb, other: Rgb, share: float) -> Rgb:
     return r, g, b
 
 
-def batched(colors: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Colours as viser 1.1.1 wants them for batched meshes, which it reads as linear."""
-    return (255 * (colors / 255.0) ** 2.2).round().astype(np.uint8)
+def batched(colors: NDArray[np.uint8], dimmed: float = 1.0) -> NDArray[np.uint8]:
+    """Colours as viser 1.1.1 wants them for batched meshes, which it reads as linear.
+
+    Args:
+        colors: (n, 3), 0–255.
+        dimmed: for what lies flat under the stage's light and should look no paler than it is.
+    """
+    return (255 * dimmed * (colors / 255.0) ** 2.2).round().astype(np.uint8)

@@ -12,7 +12,7 @@ from app.viewer.robot_mesh import RobotMesh
 from app.viewer.shapes import strip
 
 _BAR_M = 0.05
-_TEXT_SCALE = 1.5
+_TEXT_SCALE = 2.4
 
 
 class PhotoFinish:
@@ -119,5 +119,5 @@ class Ghosts:
             f"after {ghost.step} steps of practice: {ghost.distance_m:.2f} m",
             position=(0.0, ghost.distance_m, 0.22),
             anchor="bottom-center",
-            font_screen_scale=1.2,
+            font_screen_scale=1.8,
         )

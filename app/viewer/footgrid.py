@@ -6,15 +6,16 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.domain.types import FloatArray
+from app.domain.types import FloatArray, IntArray
 from app.services.attitude import yaw_rad
 from app.services.frames import Cast, KnowledgeView, LaneView
 from app.viewer.colormap import Rgb, batched, rgb, value_colors
-from app.viewer.shapes import Shape, disc, ring
+from app.viewer.shapes import Shape
 
 _HOME: Rgb = rgb("#e5484d")
 _OTHER: Rgb = rgb("#4c8dff")
-_BLANK: Rgb = (70, 78, 92)
+_BLANK: Rgb = (38, 42, 50)
+_HERE: Rgb = (255, 255, 255)
 _ABOVE_GROUND_M = 0.003
 _LAYER = np.array([0.0, 0.0, 0.0006])
 """What lies over something else, so that it is not hidden by it [m]."""
@@ -23,26 +24,33 @@ _LAYER = np.array([0.0, 0.0, 0.0006])
 class FootGridDrawing:
     """The cells of one lane, centred on each foot's home in the body's frame.
 
-    Rims are red at home and blue elsewhere, as in the paper; the fill is the value of moving the
-    pair there now. The cell where a pair is has a white ring and no value: it is no choice.
+    A cell is drawn as the ground that is nearer to it than to the others: that is how a foot's
+    place is read. Rims are red at home and blue elsewhere, as in the paper; the fill is the value
+    of moving the pair there now. The cell where a pair is has a white rim and no value: it is no
+    choice.
     """
 
     def __init__(self, server: viser.ViserServer, root: str, cast: Cast, x_m: float) -> None:
-        self._cast, self._x_m = cast, x_m
+        self._x_m = x_m
         self._forward_rad = math.radians(90 - cast.gait.forward_deg)
-        self._places = _places(cast)  # (legs, cells, 3)
-        legs, cells = self._places.shape[:2]
-        radius = 0.47 * _spacing(cast.grid.cells)
         self._frame = server.scene.add_frame(root, show_axes=False)
-        flat = self._places.reshape(-1, 3)
-        is_home = np.arange(len(flat)) % cells == 0
-        self._figure = np.where(is_home[:, None], _HOME, _OTHER).astype(np.uint8)
-        _add(server, f"{root}/rims", disc(radius), flat, self._figure)
-        lifted = flat + _LAYER
-        self._fills = _add(server, f"{root}/fills", disc(0.8 * radius), lifted, self._figure)
-        homes, white = lifted[::cells] + _LAYER, np.full((legs, 3), 255, np.uint8)
-        self._here = _add(server, f"{root}/here", ring(0.72 * radius, radius), homes, white)
-        self._here.visible = False
+        pairs = cast.gait.pairs
+        legs = range(1, len(cast.robot.legs) + 1)
+        self._pair_of_leg = [next(p for p, both in enumerate(pairs) if leg in both) for leg in legs]
+        places, side = _places(cast), cast.grid.side_m / (cast.grid.divisions - 1)
+        home_is_between = cast.grid.divisions % 2 == 0
+        others = np.arange(1, len(cast.grid))
+        self._tiles = [
+            _Tiles(server, f"{root}/others", _square(side), others, places, rim=_OTHER),
+            _Tiles(
+                server,
+                f"{root}/home",
+                _diamond(side / 2) if home_is_between else _square(side),
+                np.array([0]),
+                places + 3 * _LAYER,
+                rim=_HOME,
+            ),
+        ]
         self._known: KnowledgeView | None = None
         self._pose: tuple[float, float, float] | None = None
 
@@ -58,23 +66,59 @@ class FootGridDrawing:
         if known is None or _same(known, self._known):
             return
         self._known = known
-        self._fills.batched_colors = batched(self._fill_colors(known))
-        at = [known.current[pair] for pair in self._pair_of_leg]
-        self._here.batched_positions = self._places[np.arange(len(at)), at] + 2 * _LAYER
-        self._here.visible = True
-
-    @property
-    def _pair_of_leg(self) -> list[int]:
-        pairs = self._cast.gait.pairs
-        legs = range(1, len(self._places) + 1)
-        return [next(p for p, both in enumerate(pairs) if leg in both) for leg in legs]
-
-    def _fill_colors(self, known: KnowledgeView) -> NDArray[np.uint8]:
-        """Of every cell of every leg, (legs · cells, 3)."""
         values = known.values_m[self._pair_of_leg]  # (legs, cells)
-        colors = value_colors(values, known.low_m, known.high_m)
-        colors[np.isnan(values)] = _BLANK
-        return colors.reshape(-1, 3)
+        fills = value_colors(values, known.low_m, known.high_m)
+        here = np.array(known.current)[self._pair_of_leg][:, None] == np.arange(values.shape[1])
+        fills[here] = _BLANK
+        for tiles in self._tiles:
+            tiles.draw(fills, here)
+
+
+class _Tiles:
+    """Cells of one shape, under all feet."""
+
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        root: str,
+        outline: FloatArray,
+        cells: IntArray,
+        places: FloatArray,
+        *,
+        rim: Rgb,
+    ) -> None:
+        self._cells, self._rim = cells, rim
+        at = places[:, cells].reshape(-1, 3)
+        colors = np.tile(np.array(rim, np.uint8), (len(at), 1))
+        self._rims = _add(server, f"{root}/rims", _tile(0.96 * outline), at, colors)
+        self._fills = _add(server, f"{root}/fills", _tile(0.84 * outline), at + _LAYER, colors)
+
+    def draw(self, fills: NDArray[np.uint8], here: NDArray[np.bool_]) -> None:
+        """Colour the cells.
+
+        Args:
+            fills: of every cell of every leg, (legs, cells, 3).
+            here: where each leg's pair is, (legs, cells).
+        """
+        is_here = here[:, self._cells].reshape(-1, 1)
+        self._rims.batched_colors = _flat(np.where(is_here, _HERE, self._rim).astype(np.uint8))
+        self._fills.batched_colors = _flat(fills[:, self._cells].reshape(-1, 3))
+
+
+def _square(side: float) -> FloatArray:
+    """Corners of a square around the origin, anticlockwise."""
+    return side / 2 * np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])
+
+
+def _diamond(reach: float) -> FloatArray:
+    """Corners of a square that stands on one of them."""
+    return reach * np.array([[0.0, -1], [1, 0], [0, 1], [-1, 0]])
+
+
+def _tile(outline: FloatArray) -> Shape:
+    """A flat quadrilateral, facing up."""
+    corners = np.column_stack([outline, np.zeros(4)]).astype(np.float32)
+    return Shape(corners, np.array([[0, 1, 2], [0, 2, 3]], np.uint32))
 
 
 def _places(cast: Cast) -> FloatArray:
@@ -89,17 +133,15 @@ def _places(cast: Cast) -> FloatArray:
     return places
 
 
-def _spacing(cells: FloatArray) -> float:
-    """Distance between the two cells that are nearest to each other [m]."""
-    apart = np.hypot(*(cells[:, None] - cells[None]).transpose(2, 0, 1))
-    return float(apart[apart > 0].min())
-
-
 def _same(known: KnowledgeView, before: KnowledgeView | None) -> bool:
     if before is None:
         return False
     scale = (known.low_m, known.high_m) == (before.low_m, before.high_m)
     return scale and known.values_m is before.values_m
+
+
+def _flat(colors: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    return batched(colors, dimmed=0.75)
 
 
 def _add(
@@ -112,7 +154,7 @@ def _add(
         shape.faces,
         batched_positions=at,
         batched_wxyzs=np.tile((1.0, 0.0, 0.0, 0.0), (len(at), 1)),
-        batched_colors=batched(colors),
+        batched_colors=_flat(colors),
         lod="off",
         cast_shadow=False,
         receive_shadow=False,

@@ -5,9 +5,9 @@ import viser
 
 from app.services.frames import LaneView, Role
 from app.viewer.colormap import rgb
+from app.viewer.robot_mesh import ANTENNA_M
 from app.viewer.shapes import flag
 
-_HEIGHT_M = 0.20
 _FLAG_M = 0.22
 
 
@@ -17,11 +17,13 @@ def plate_text(role: Role, lane: LaneView) -> str:
         return f"{role.name}\ncannot go on"
     if lane.step == 0:
         return role.name
+    far = f"{role.name}  {lane.distance_m + 0.0:.2f} m".replace("-0.00", "0.00")
+    if lane.done:
+        return f"{far}\ndone, {lane.step} steps"
     if lane.thinking:
         futures = f" {lane.futures} of {lane.futures_total}" if lane.futures else "…"
-        return f"{role.name}  {_metres(lane.distance_m)}\nstep {lane.step}: thinking{futures}"
-    where = "marching on the spot" if lane.marching else f"step {lane.step}"
-    return f"{role.name}  {_metres(lane.distance_m)}\n{'done' if lane.done else where}"
+        return f"{far}\nstep {lane.step}, thinking{futures}"
+    return f"{far}\n{'marching on the spot' if lane.marching else f'step {lane.step}'}"
 
 
 class Plate:
@@ -30,7 +32,7 @@ class Plate:
     def __init__(self, server: viser.ViserServer, root: str, role: Role, x_m: float) -> None:
         self._role, self._x_m = role, x_m
         self._label = server.scene.add_label(
-            f"{root}/plate", role.name, anchor="bottom-center", font_screen_scale=1.35
+            f"{root}/plate", role.name, anchor="bottom-center", font_screen_scale=2.1
         )
         shape = flag(_FLAG_M)
         self._flag = server.scene.add_mesh_simple(
@@ -46,7 +48,7 @@ class Plate:
     def draw(self, lane: LaneView) -> None:
         """Go along with the robot, and say what it does."""
         x, y, z = lane.qpos[:3].tolist()
-        place = (x + self._x_m, y, z + _HEIGHT_M)
+        place = (x + self._x_m, y, z + ANTENNA_M + 0.03)
         if place != self._place:
             self._label.position = self._place = place
         text = plate_text(self._role, lane)
@@ -56,7 +58,3 @@ class Plate:
         if finished != self._flag.visible:
             self._flag.position = np.array([place[0] + 0.17, y + 0.05, 0.0])
             self._flag.visible = finished
-
-
-def _metres(distance_m: float) -> str:
-    return f"{distance_m + 0.0:.2f} m".replace("-0.00", "0.00")

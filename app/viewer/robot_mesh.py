@@ -11,10 +11,14 @@ from numpy.typing import NDArray
 from app.domain.robot import Robot
 from app.domain.types import FloatArray, IntArray
 from app.physics.mjcf import VISIBLE_GROUP, compile_model
-from app.viewer.shapes import Shape, geom_shape, joined
+from app.viewer.shapes import Shape, antenna, geom_shape, joined
 
 _DARK = ("servo", "hip", "knee", "belly", "deck", "foot", "bracket")
 """Words in the names of geoms that are not painted in the agent's colour."""
+
+
+ANTENNA_M = 0.15
+"""Height of the top over the torso's centre."""
 
 
 class Part(NamedTuple):
@@ -34,7 +38,7 @@ class RobotMesh:
     def __init__(self, robot: Robot) -> None:
         self._model = compile_model(robot)
         self._data = mujoco.MjData(self._model)
-        self.parts = _parts(self._model)
+        self.parts = [*_parts(self._model), _antenna(self._model)]
 
     @property
     def standing(self) -> FloatArray:
@@ -63,6 +67,12 @@ def _parts(model: mujoco.MjModel) -> list[Part]:
         key = ((shape.vertices.round(5) + 0.0).tobytes(), painted)  # + 0.0, since −0 is not 0 here
         alike.setdefault(key, (shape, []))[1].append(link)
     return [Part(shape, painted, np.array(on)) for (_, painted), (shape, on) in alike.items()]
+
+
+def _antenna(model: mujoco.MjModel) -> Part:
+    """What carries the name plate, in the agent's colour; it is drawn only."""
+    torso = model.body("torso").id
+    return Part(antenna(ANTENNA_M), True, np.array([torso]))
 
 
 def _on_link(model: mujoco.MjModel, geom: int) -> tuple[int, Shape]:

@@ -33,7 +33,7 @@ class StageScene:
         self._followed: dict[str, Position] = {}
         self._eased: tuple[float, float] | None = None
         with server.atomic():
-            draw_ground(server)
+            self._world = draw_ground(server)
 
     def draw(self, frame: StageFrame, now: float = math.inf) -> bool:
         """Show this frame.
@@ -58,6 +58,14 @@ class StageScene:
     def follow_position(self, view: str) -> Position | None:
         """Where what a view follows is on the track [m]: `leader`, or a lane from `1`."""
         return self._followed.get(view)
+
+    def centre(self, view: str) -> None:
+        """Move the whole world so that what a view follows comes to the middle, for everyone.
+
+        On stage the hub does this for each viewer; a film has but one.
+        """
+        x, y, _ = self._followed[view]
+        self._world.position = (-x, -y, 0.0)
 
     def _follow(self, frame: StageFrame, xs: list[float], now: float) -> bool:
         """The leader's view goes along in the middle of the track, so that all stay in sight."""

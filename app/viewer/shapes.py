@@ -43,7 +43,7 @@ def geom_shape(model: mujoco.MjModel, geom: int) -> Shape:
     Raises:
         ValueError: if it is of a type that no robot of ours is made of.
     """
-    kind, size = model.geom_type[geom], model.geom_size[geom]
+    kind, size = mujoco.mjtGeom(int(model.geom_type[geom])), model.geom_size[geom]
     types = mujoco.mjtGeom
     if kind == types.mjGEOM_BOX:
         return box(size)
@@ -95,25 +95,18 @@ def disc(radius: float, corners: int = _ROUND) -> Shape:
     return _smooth(vertices, faces)
 
 
-def ring(inner: float, outer: float, corners: int = _ROUND) -> Shape:
-    """Flat on the ground, facing up."""
-    around = 2 * np.pi * np.arange(corners) / corners
-    unit = np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)
-    here, there = np.arange(corners), (np.arange(corners) + 1) % corners
-    faces = np.concatenate(
-        [
-            np.stack([here, corners + here, corners + there], axis=1),
-            np.stack([here, corners + there, there], axis=1),
-        ]
-    )
-    return _smooth(np.concatenate([inner * unit, outer * unit]), faces)
-
-
 def strip(width: float, depth: float) -> Shape:
     """A rectangle flat on the ground, facing up, x by y, centred on the origin."""
     x, y = width / 2, depth / 2
     corners = np.array([[-x, -y, 0], [x, -y, 0], [x, y, 0], [-x, y, 0]])
     return _smooth(corners, np.array([[0, 1, 2], [0, 2, 3]]))
+
+
+def antenna(height: float) -> Shape:
+    """A thin mast on the ground with a ball on its top."""
+    mast = cylinder(0.003, height / 2).moved(np.eye(3), np.array([0, 0, height / 2]))
+    ball = trimesh.creation.icosphere(subdivisions=2, radius=0.016)
+    return joined([mast, _smooth(ball.vertices + np.array([0, 0, height]), ball.faces)])
 
 
 def flag(height: float) -> Shape:

@@ -15,20 +15,24 @@ _BEFORE_M, _BEYOND_M = -0.5, 2.0
 _GROUND: Rgb = (112, 128, 150)
 _LINE: Rgb = (120, 138, 164)
 _TICK: Rgb = (150, 165, 188)
-_GREEN: Rgb = (46, 160, 67)
-_RED: Rgb = (218, 54, 51)
+_GREEN: Rgb = (12, 110, 36)
+_RED: Rgb = (176, 16, 20)
+"""Darker than they look under the stage's light."""
 
 
-def draw_ground(server: viser.ViserServer) -> None:
+def draw_ground(server: viser.ViserServer) -> viser.FrameHandle:
     """What stays whatever is on stage: ground, lights, where a camera begins.
 
     The ground is half transparent and fades out, so that it takes the page's light or dark
     background for its sky: the theme is each viewer's own, and the scene is everyone's.
+
+    Returns:
+        The frame that everything is drawn under.
     """
     scene = server.scene
     scene.set_up_direction("+z")
     scene.world_axes.visible = False
-    scene.add_frame(WORLD, show_axes=False)
+    world = scene.add_frame(WORLD, show_axes=False)
     scene.add_grid(
         f"{WORLD}/ground",
         cell_size=SQUARE_M,
@@ -44,9 +48,14 @@ def draw_ground(server: viser.ViserServer) -> None:
         plane_opacity=0.28,
         shadow_opacity=0.45,
     )
+    scene.configure_environment_map(None)
+    scene.add_light_hemisphere(
+        f"{WORLD}/sky", sky_color=(255, 255, 255), ground_color=(150, 160, 175), intensity=1.6
+    )
     camera = server.initial_camera
-    camera.position, camera.look_at = (0.42, -1.28, 0.86), (0.0, 0.06, 0.03)
-    camera.fov = np.deg2rad(45)
+    camera.position, camera.look_at = (0.0, -1.52, 0.80), (0.0, 0.12, 0.05)
+    camera.fov = np.deg2rad(42)
+    return world
 
 
 def draw_lanes(server: viser.ViserServer, root: str, xs: list[float], width: float) -> None:
@@ -79,7 +88,7 @@ def draw_lanes(server: viser.ViserServer, root: str, xs: list[float], width: flo
         scene.add_label(
             f"{root}/{name}/word",
             word,
-            position=(across / 2 + 0.04, 0.0, 0.0),
-            anchor="center-left",
-            font_screen_scale=1.25,
+            position=(borders[1] - middle, 0.0, 0.0),
+            anchor="center-center",
+            font_screen_scale=1.6,
         )
