@@ -112,6 +112,8 @@ def serve(settings: Settings) -> None:
     settings.prepare_data()
     listener = _listen(settings)
     logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
+    # viser's, which speaks of an address that is for nobody.
+    logging.getLogger("websockets").setLevel(logging.WARNING)
     app = create_app(settings)
     config = uvicorn.Config(
         app,

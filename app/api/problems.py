@@ -88,7 +88,8 @@ async def _validation_error(request: Request, error: Exception) -> Response:
 
 
 async def _http_error(request: Request, error: Exception) -> Response:
-    assert isinstance(error, HTTPException)
+    if not isinstance(error, HTTPException):
+        return await _unexpected(request, error)
     headers = dict(error.headers or {})
     template = _DETAILS.get(HTTPStatus(error.status_code), str(error.detail))
     words = {"path": request.url.path, "method": request.method, "allow": headers.get("Allow", "")}

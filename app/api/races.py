@@ -58,7 +58,6 @@ def get_timeline(
 def _recorded(services: Services, run_id: str) -> tuple[Run, RaceConfig, list[LaneRecording]]:
     run = find(services, "race", run_id)
     lanes = services.recordings.race(run_id)
-    if lanes is None:
+    if lanes is None or not isinstance(run.config, RaceConfig):
         raise Conflict(f"race {run_id} is {run.state} and has no recording (yet)", run.state)
-    assert isinstance(run.config, RaceConfig)
     return run, run.config, lanes

@@ -1,6 +1,7 @@
 """Tables from elsewhere: checked, and then trainings like any other."""
 
 from collections.abc import Collection, Mapping
+from datetime import UTC, datetime
 from typing import Any
 
 from app.domain.errors import DamagedFile, HexapodError, UnknownName
@@ -38,13 +39,25 @@ def adopt(jobs: Jobs, data: bytes, agents: Collection[str], name: str | None = N
         raise DamagedFile(f"the file does not say its {error}") from error
     if not is_whole:
         raise DamagedFile("the file does not hold together: its step or agent is another")
+    greedy = checkpoint.meta.get("greedy_distance_m")
     digest = None
     if "where" in tables.agent_state(checkpoint):
         digest = tables.table_of(checkpoint).sha256()
     greedy = checkpoint.meta.get("greedy_distance_m")
-    result = {"distance_m": None, "greedy_distance_m": greedy, "q_table_sha256": digest}
-    title = name or f"Imported, {step:,} steps, {config.resolved_gait.name}"
-    return jobs.adopt(config, title, step, result, data)
+    run = Run(
+        id=jobs.new_id(),
+        kind="training",
+        name=name or f"Imported, {step:,} steps, {config.resolved_gait.name}",
+        state="finished",
+        config=config,
+        done=step,
+        total=step,
+        greedy_distance_m=greedy,
+        result={"distance_m": None, "greedy_distance_m": greedy, "q_table_sha256": digest},
+        ended_at=datetime.now(UTC),
+    )
+    jobs.keep(run, data)
+    return run
 
 
 def config_from_json(shown: Any) -> TrainingConfig:

@@ -148,21 +148,19 @@ class Job:
 
     def _take_end(self, ended: Ended) -> None:
         lanes = self._recordings.race(self.run_id)
-        if lanes is None:
+        if lanes is None or not isinstance(self._order, RaceOrder):
             self.end(ended.outcome, result=ended.result)
             return
-        result = self._race_result(lanes)
+        result = self._race_result(lanes, self._order)
         failures = [lane.failure for lane in lanes if lane.failure]
         if ended.outcome == "finished" and len(failures) == len(lanes):
             self.end("failed", f"No lane could finish the race: {failures[0]}", result)
         else:
             self.end(ended.outcome, result=result)
 
-    def _race_result(self, lanes: list[LaneRecording]) -> dict[str, Any]:
-        config = self._run.config
-        assert isinstance(config, RaceConfig)
-        result = race_result(lanes, config.steps)
-        robots = _trained_robots(config, self._order)
+    def _race_result(self, lanes: list[LaneRecording], order: RaceOrder) -> dict[str, Any]:
+        result = race_result(lanes, order.config.steps)
+        robots = _trained_robots(order)
         numbered = zip(result["lanes"], self._run.lane_training_ids, robots, strict=True)
         result["lanes"] = [
             {"agent": lane["agent"], "training_id": training, "trained_robot": robot, **lane}
@@ -189,9 +187,8 @@ class Job:
         self._bus.publish("run", run_view(run), self.run_id)
 
 
-def _trained_robots(config: RaceConfig, order: Order) -> list[Any]:
+def _trained_robots(order: RaceOrder) -> list[Any]:
     """For each lane the robot that its table was learned on, where that is another one."""
-    assert isinstance(order, RaceOrder)
-    here = as_mapping(config.robot)
+    here = as_mapping(order.config.robot)
     learned = [table and table.meta["config"]["robot"] for table in order.tables]
     return [None if robot == here else robot for robot in learned]

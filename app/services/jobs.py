@@ -10,25 +10,17 @@ from typing import Any
 
 from app.agents import registry
 from app.domain.errors import HexapodError, InvalidInput
-from app.runs.config import TrainingConfig
 from app.services.bus import EventBus
-from app.services.entries import (
-    Entry,
-    RaceStart,
-    TrainingStart,
-    race_entries,
-    training_entry,
-)
-from app.services.errors import Busy, Conflict
+from app.services.entries import Entry, RaceStart, TrainingStart, race_entries, training_entry
+from app.services.errors import Conflict
 from app.services.ids import RunIds
 from app.services.job import Job
 from app.services.recordings import Recordings
 from app.services.store import LIVE, PAUSED, QUEUED, RUNNING, TABLE, Run, RunStore, State
 from app.services.views import run_view
+from app.services.waiting import WaitingRuns
 
-MAX_QUEUED = 32
 MAX_PAUSED = 16
-RETRY_AFTER_S = 10
 STOP_GRACE_S = 10.0
 _ANSWER_S = 5.0
 _CLOSING_S = 2.0
@@ -61,8 +53,8 @@ class Jobs:
         self._store, self._recordings, self._bus = store, recordings, bus
         self._on_queued = on_queued
         self.cores = cores or os.cpu_count() or 1
-        self._new_id = RunIds()
-        self._queue: list[Entry] = []
+        self.new_id = RunIds()
+        self._waiting = WaitingRuns(store, self._publish)
         self._jobs: dict[str, Job] = {}
         self._closing = False
         self._changed = threading.Condition()
@@ -100,7 +92,7 @@ class Jobs:
             InvalidInput, Conflict: if it cannot be.
             Busy: if too many runs are waiting.
         """
-        return self._enqueue([training_entry(start, self._store, self._new_id)])
+        return self._enqueue([training_entry(start, self._store, self.new_id)])
 
     def race(self, start: RaceStart) -> Run:
         """Queue a race, and before it the trainings that it brings along.
@@ -109,28 +101,13 @@ class Jobs:
             InvalidInput, Conflict: if it cannot be.
             Busy: if too many runs are waiting.
         """
-        return self._enqueue(race_entries(start, self._store, self._new_id))
+        return self._enqueue(race_entries(start, self._store, self.new_id))
 
-    def adopt(
-        self, config: TrainingConfig, name: str, steps: int, result: dict[str, Any], table: bytes
-    ) -> Run:
-        """Keep a table from elsewhere as a training that is finished."""
-        run = Run(
-            id=self._new_id(),
-            kind="training",
-            name=name,
-            state="finished",
-            config=config,
-            done=steps,
-            total=steps,
-            greedy_distance_m=result["greedy_distance_m"],
-            result=result,
-            ended_at=datetime.now(UTC),
-        )
+    def keep(self, run: Run, table: bytes) -> None:
+        """Add a training that ended elsewhere, with its table."""
         self._store.create(run)
         self._store.put_artifact(run.id, TABLE, table)
         self._publish(run)
-        return run
 
     def pause(self, run_id: str) -> Run:
         """Let a running job wait.
@@ -174,7 +151,10 @@ class Jobs:
         with self._changed:
             run = self._store.get(run_id)
             if run.state == "queued":
-                return self._stop_queued(run)
+                for job in (self._jobs.get(training) for training in run.waiting_for):
+                    if job is not None and not job.stopping:
+                        job.stop()
+                return self._waiting.stop(run)
             job = self._live(run_id, LIVE, "stopped")
             job.stop()
         if not job.ended.wait(STOP_GRACE_S):
@@ -207,27 +187,17 @@ class Jobs:
             Conflict: if it has not ended, or a race that waits needs it.
         """
         with self._changed:
-            for entry in self._queue:
-                if run_id in entry.run.lane_training_ids and run_id != entry.run.id:
-                    state = self._store.get(run_id).state
-                    raise Conflict(f"race {entry.run.id} waits, and needs its table", state)
+            race = self._waiting.needing(run_id)
+            if race is not None:
+                state = self._store.get(run_id).state
+                raise Conflict(f"race {race.id} waits, and needs its table", state)
             self._store.delete(run_id)
         self._recordings.discard(run_id)
         self._bus.publish("run-deleted", {"id": run_id}, run_id)
 
     def _enqueue(self, entries: list[Entry]) -> Run:
         with self._changed:
-            free = self.cores - sum(not job.paused for job in self._jobs.values())
-            if len(self._queue) + len(entries) > MAX_QUEUED + max(0, free):
-                raise Busy(
-                    f"{len(self._queue)} runs are waiting, the most is {MAX_QUEUED}; "
-                    "wait for one to end, or stop one",
-                    RETRY_AFTER_S,
-                )
-            self._store.create(*(entry.run for entry in entries))
-            self._queue += entries
-            for entry in entries:
-                self._publish(entry.run)
+            self._waiting.add(entries, max(0, self.cores - self._running))
             self._changed.notify_all()
         run = entries[-1].run
         if self._on_queued is not None:
@@ -248,57 +218,21 @@ class Jobs:
             raise Conflict(f"{run.kind} {run_id} is {run.state} and being stopped", run.state)
         return job
 
-    def _stop_queued(self, run: Run) -> Run:
-        """A race takes the trainings along that were made for it."""
-        stopped = self._drop(run, "stopped", None)
-        for training in run.waiting_for:
-            job = self._jobs.get(training)
-            if job is not None and not job.stopping:
-                job.stop()
-        for entry in [entry for entry in self._queue if entry.run.id in run.waiting_for]:
-            self._drop(entry.run, "stopped", f"Stopped together with race {run.id}.")
-        return stopped
-
-    def _drop(self, run: Run, state: State, error: str | None) -> Run:
-        """End a run that waits; and with it those that wait for it."""
-        now = datetime.now(UTC)
-        self._queue = [entry for entry in self._queue if entry.run.id != run.id]
-        run = self._store.change(run.id, QUEUED, state, error=error, ended_at=now)
-        self._publish(run)
-        self._settle(run)
-        return run
-
-    def _settle(self, run: Run) -> None:
-        """Tell those that wait for a run how it ended."""
-        for entry in [entry for entry in self._queue if run.id in entry.waits_for]:
-            if run.state == "finished":
-                entry.waits_for.discard(run.id)
-                left = tuple(i for i in entry.run.waiting_for if i in entry.waits_for)
-                self._publish(self._store.update(entry.run.id, waiting_for=left))
-            elif run.state == "failed":
-                why = f"Its training {run.id} failed: {run.error}"
-                self._drop(entry.run, "failed", why)
-            else:
-                self._drop(entry.run, "stopped", f"Its training {run.id} was stopped.")
+    @property
+    def _running(self) -> int:
+        return sum(not job.paused for job in self._jobs.values())
 
     def _keep_starting(self) -> None:
         with self._changed:
             while not self._closing:
-                entry = self._next()
+                entry = self._waiting.take() if self._running < self.cores else None
                 if entry is None:
                     self._changed.wait()
                 else:
                     self._start(entry)
 
-    def _next(self) -> Entry | None:
-        running = sum(not job.paused for job in self._jobs.values())
-        if running >= self.cores:
-            return None
-        return next((entry for entry in self._queue if not entry.waits_for), None)
-
     def _start(self, entry: Entry) -> None:
-        """Take a run out of the queue and into a process."""
-        self._queue.remove(entry)
+        """Let a process take over a run that has waited."""
         run_id, now = entry.run.id, datetime.now(UTC)
         run = self._store.change(run_id, QUEUED, "running", started_at=now, waiting_for=())
         try:
@@ -308,7 +242,7 @@ class Jobs:
             why = f"The {run.kind} could not be started: {error}"
             run = self._store.change(run_id, LIVE, "failed", error=why, ended_at=now)
             self._publish(run)
-            self._settle(run)
+            self._waiting.settle(run)
             return
         self._jobs[run_id] = job
         self._note_company()
@@ -330,7 +264,7 @@ class Jobs:
         with self._changed:
             del self._jobs[job.run_id]
             if not self._closing:
-                self._settle(self._store.get(job.run_id))
+                self._waiting.settle(self._store.get(job.run_id))
             self._changed.notify_all()
         job.gone.set()
 

@@ -2,6 +2,7 @@
 
 import logging
 import multiprocessing
+import queue
 import signal
 import threading
 from collections.abc import Callable
@@ -30,12 +31,14 @@ class Child:
         """
         context = multiprocessing.get_context("spawn")
         self._pipe, self._its_pipe = context.Pipe()
+        # A pipe holds little, and a process takes a while to read from it: nobody waits for that.
+        self._to_send: queue.SimpleQueue[Order | Word | None] = queue.SimpleQueue()
+        self._to_send.put(order)
         # Not a daemon: multiprocessing ends daemons from atexit, which a killed server never runs.
         self._process = context.Process(
-            target=worker.main, args=(order, self._its_pipe), name=name, daemon=False
+            target=worker.main, args=(self._its_pipe,), name=name, daemon=False
         )
         self._on_message = on_message
-        self._sending = threading.Lock()
         self._error: Exception | None = None
 
     def start(self, on_end: Callable[[str], None]) -> None:
@@ -52,6 +55,7 @@ class Child:
         self._its_pipe.close()
         name = self._process.name
         threading.Thread(target=self._listen, args=(on_end,), name=name, daemon=True).start()
+        threading.Thread(target=self._talk, name=f"to {name}", daemon=True).start()
 
     @property
     def pid(self) -> int | None:
@@ -60,15 +64,18 @@ class Child:
 
     def send(self, word: Word) -> None:
         """Tell it something; nothing happens if it is gone."""
-        with self._sending:
-            try:
-                self._pipe.send(word)
-            except OSError:
-                _logger.debug("%s is gone", self._process.name)
+        self._to_send.put(word)
 
     def kill(self) -> None:
         """End the process at once."""
         self._process.kill()
+
+    def _talk(self) -> None:
+        try:
+            while (said := self._to_send.get()) is not None:
+                self._pipe.send(said)
+        except OSError:
+            _logger.debug("%s is gone", self._process.name)
 
     def _listen(self, on_end: Callable[[str], None]) -> None:
         try:
@@ -85,7 +92,7 @@ class Child:
         if self._process.is_alive():
             self._process.kill()
             self._process.join()
-        self._pipe.close()
+        self._to_send.put(None)
         on_end(self._how_it_ended())
         self._process.close()
 

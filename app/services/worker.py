@@ -32,9 +32,10 @@ _PR_SET_PDEATHSIG = 1
 _logger = logging.getLogger(__name__)
 
 
-def main(order: Order, pipe: Connection) -> None:
-    """Work on an order until it is done, and end the process."""
+def main(pipe: Connection) -> None:
+    """Work on the order that comes first through the pipe, and end the process."""
     _be_modest()
+    order: Order = pipe.recv()
     words: queue.SimpleQueue[Word] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(pipe, words), daemon=True).start()
     desk = Desk(pipe.send, words)

@@ -1,10 +1,12 @@
 """The stage, viser and the hub, put together: built with the app, running with its lifespan."""
 
 import asyncio
-from collections.abc import Collection, Sequence
+import contextlib
+from collections.abc import Collection, Iterator, Sequence
 from types import TracebackType
 from typing import Self
 
+import rich
 import viser
 
 from app.runs.config import RaceConfig
@@ -59,7 +61,8 @@ class Theatre:
 
     def _open(self) -> None:
         # viser's own default is every interface, without a question who asks.
-        self._viser = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+        with _quiet():
+            self._viser = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
         self.hub.port = self._viser.get_port()
         self._scene = StageScene(self._viser)
         self._loop = StageLoop(self._stage, self._scene, self._bus)
@@ -69,7 +72,19 @@ class Theatre:
         if self._loop is not None:
             self._loop.stop()
         if self._viser is not None:
-            self._viser.stop()
+            with _quiet():
+                self._viser.stop()
 
     def _follow_position(self, view: str) -> Position | None:
         return None if self._scene is None else self._scene.follow_position(view)
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep to itself the box with its own address that viser prints: it is for nobody."""
+    console = rich.get_console()
+    before, console.quiet = console.quiet, True
+    try:
+        yield
+    finally:
+        console.quiet = before

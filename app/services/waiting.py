@@ -1,0 +1,85 @@
+"""The queue: runs in the order in which they were asked for, and what each waits for."""
+
+from collections.abc import Callable, Sequence
+from datetime import UTC, datetime
+
+from app.services.entries import Entry
+from app.services.errors import Busy
+from app.services.store import QUEUED, Run, RunStore, State
+
+MAX_QUEUED = 32
+RETRY_AFTER_S = 10
+
+
+class WaitingRuns:
+    """Runs that wait for a core or for their trainings. Its owner holds a lock around every call.
+
+    Args:
+        store: where the runs are kept.
+        tell: is told of every run that changes here.
+    """
+
+    def __init__(self, store: RunStore, tell: Callable[[Run], None]) -> None:
+        self._store, self._tell = store, tell
+        self._entries: list[Entry] = []
+
+    def add(self, entries: Sequence[Entry], free: int) -> None:
+        """Store runs and let them wait, all or none.
+
+        Args:
+            entries: in order.
+            free: how many could start at once.
+
+        Raises:
+            Busy: if too many are waiting.
+        """
+        if len(self._entries) + len(entries) > MAX_QUEUED + free:
+            raise Busy(
+                f"{len(self._entries)} runs are waiting, the most is {MAX_QUEUED}; wait for one "
+                "to end, or stop one",
+                RETRY_AFTER_S,
+            )
+        self._store.create(*(entry.run for entry in entries))
+        self._entries += entries
+        for entry in entries:
+            self._tell(entry.run)
+
+    def take(self) -> Entry | None:
+        """The first that waits for nothing but a core; it does not wait any more."""
+        ready = (entry for entry in self._entries if not entry.waits_for)
+        entry = next(ready, None)
+        if entry is not None:
+            self._entries.remove(entry)
+        return entry
+
+    def needing(self, training_id: str) -> Run | None:
+        """A race that waits, and needs the table of this training."""
+        runs = (entry.run for entry in self._entries)
+        return next((run for run in runs if training_id in run.lane_training_ids), None)
+
+    def stop(self, run: Run) -> Run:
+        """End a run that waits, and the trainings that were made for it and wait as well."""
+        stopped = self._drop(run, "stopped", None)
+        for entry in [entry for entry in self._entries if entry.run.id in run.waiting_for]:
+            self._drop(entry.run, "stopped", f"Stopped together with race {run.id}.")
+        return stopped
+
+    def settle(self, run: Run) -> None:
+        """Tell those that wait for a run how it ended: go on, or end as it did."""
+        for entry in [entry for entry in self._entries if run.id in entry.waits_for]:
+            if run.state == "finished":
+                entry.waits_for.discard(run.id)
+                left = tuple(i for i in entry.run.waiting_for if i in entry.waits_for)
+                self._tell(self._store.update(entry.run.id, waiting_for=left))
+            elif run.state == "failed":
+                self._drop(entry.run, "failed", f"Its training {run.id} failed: {run.error}")
+            else:
+                self._drop(entry.run, "stopped", f"Its training {run.id} was {run.state}.")
+
+    def _drop(self, run: Run, state: State, error: str | None) -> Run:
+        now = datetime.now(UTC)
+        self._entries = [entry for entry in self._entries if entry.run.id != run.id]
+        run = self._store.change(run.id, QUEUED, state, error=error, ended_at=now)
+        self._tell(run)
+        self.settle(run)
+        return run
