@@ -16,7 +16,7 @@ function secondsLeft(run) {
   return done > first.done ? ((total - done) * (now - first.at)) / (done - first.done) : null;
 }
 
-const verbs = { training: "Practising", race: "Racing" };
+const verbs = { training: "Practising", race: "Simulating the race" };
 
 /** {label, left, share} of what computes, else of what is shown; null if nothing goes on. */
 export const progress = computed(() => (work.value ? ofWork(work.value) : ofShow(scene.value)));
@@ -26,7 +26,7 @@ function ofWork({ asked, now }) {
   const share = total ? done / total : 0;
   const then = asked === now ? "" : ", then the race";
   if (now.state === "queued") return { label: `Waiting for its turn${then}`, left: "", share: 0 };
-  const steps = now.kind === "race" ? `${whole(done)} of ${whole(total)} simulated` : `${whole(done)} of ${count(total, "step")}`;
+  const steps = `${whole(done)} of ${count(total, "step")}`;
   if (now.state === "paused") return { label: `Paused at ${steps}${then}`, left: "", share };
   const seconds = secondsLeft(now);
   const left = seconds === null ? "" : `${duration(seconds)} left`;

@@ -8,7 +8,7 @@ import { html } from "../html.js";
 import { isNarrow } from "../page.js";
 import { progress } from "../progress.js";
 import { agentOf, isOperator, myWork, offStage, shownRun, work } from "../selectors.js";
-import { options } from "../store.js";
+import { options, scene } from "../store.js";
 import { Icon } from "./icon.js";
 import { Problem } from "./problem.js";
 import { Settings } from "./settings.js";
@@ -63,7 +63,7 @@ const busyLabel = () => {
   const { asked, now } = myWork.value ?? {};
   if (!now) return "Starting…";
   if (now.state === "paused") return "Paused";
-  if (now.kind === "training") return asked === now ? "Practising…" : "Practising, then racing…";
+  if (now.kind === "training" || scene.value?.kind === "training") return asked.kind === "training" ? "Practising…" : "Practising, then racing…";
   return "Racing…";
 };
 

@@ -28,18 +28,17 @@ function Curve({ known }) {
   const data = useMemo(() => [points.map((p) => p.step), points.map((p) => p.distance_m)], [points]);
   const labels = [];
   if (points.length > 1) labels.push({ text: metres(last.distance_m), color, x: last.step, y: last.distance_m });
-  if (greedy_m) labels.push({ text: `greedy ${metres(greedy_m)}`, color: "--greedy", x: to, y: greedy_m, isPoint: false });
-  const top = Math.max(0.5, greedy_m ?? 0, ...points.map((p) => p.distance_m)) * 1.08;
+  const top = Math.max(0.5, greedy_m ?? 0, ...points.map((p) => p.distance_m)) * 1.16;
   const low = Math.min(0, ...points.map((p) => p.distance_m));
   const marks = [
-    ...(greedy_m ? [{ y: greedy_m, color: "--greedy", dash: [5, 5] }] : []),
+    ...(greedy_m ? [{ y: greedy_m, color: "--greedy", ink: "--dim", dash: [5, 5], text: `greedy, the line to beat: ${metres(greedy_m)}` }] : []),
     ...blocks.map((x) => ({ x, color: "--line" })),
   ];
   const said = points.length > 1
     ? `Learning curve: ${metres(last.distance_m)} after ${whole(last.step)} steps${greedy_m ? `; greedy gets ${metres(greedy_m)}` : ""}.`
     : "Learning curve, without points so far.";
   return html`
-    <${Plot} label=${said} data=${data} series=${[{ color, points: points.length < 45 }]} marks=${marks} labels=${labels}
+    <${Plot} label=${said} data=${data} series=${[{ color, points: points.length < 45 }]} marks=${marks} labels=${labels} room=${64}
       x=${{ min: 0, max: to, unit: "steps of practice" }} y=${{ min: low, max: top }} />
     <${AsTable} caption=${said} columns=${["Steps of practice", "Distance in 50 steps"]}
       rows=${points.map((p) => [whole(p.step), metres(p.distance_m)])} />

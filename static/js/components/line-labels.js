@@ -6,7 +6,7 @@ const DOT_PX = 4;
 /**
  * A uPlot plugin.
  * @param labels gives [{text, color, x, y}] in the chart's units
- * @param marks gives [{x? or y?, color, text?, dash?}]: thin straight lines across
+ * @param marks gives [{x? or y?, color, ink?, text?, dash?}]: thin straight lines across
  * @param colour resolves a custom property
  */
 export function lineLabels(labels, marks, colour) {
@@ -15,10 +15,10 @@ export function lineLabels(labels, marks, colour) {
   const drawMarks = (u) => {
     const { ctx, bbox } = u;
     const px = devicePixelRatio;
-    for (const { x, y, color, dash = [], text } of marks()) {
+    for (const { x, y, color, ink = color, dash = [], text } of marks()) {
       ctx.save();
       ctx.strokeStyle = solid(color);
-      ctx.fillStyle = solid(color);
+      ctx.fillStyle = solid(ink);
       ctx.lineWidth = 1.5 * px;
       ctx.setLineDash(dash.map((d) => d * px));
       ctx.beginPath();
@@ -26,6 +26,12 @@ export function lineLabels(labels, marks, colour) {
         const at = u.valToPos(y, "y", true);
         ctx.moveTo(bbox.left, at);
         ctx.lineTo(bbox.left + bbox.width, at);
+        if (text) {
+          ctx.font = `600 ${12 * px}px system-ui, sans-serif`;
+          ctx.textAlign = "left";
+          ctx.textBaseline = "bottom";
+          ctx.fillText(text, bbox.left + 6 * px, at - 4 * px);
+        }
       } else {
         const at = u.valToPos(x, "x", true);
         ctx.moveTo(at, bbox.top);
@@ -34,8 +40,8 @@ export function lineLabels(labels, marks, colour) {
           const isLeft = at > bbox.left + 0.6 * bbox.width;
           ctx.font = `${12 * px}px system-ui, sans-serif`;
           ctx.textAlign = isLeft ? "right" : "left";
-          ctx.textBaseline = "top";
-          ctx.fillText(text, at + (isLeft ? -6 : 6) * px, bbox.top + 2 * px);
+          ctx.textBaseline = "bottom";
+          ctx.fillText(text, at + (isLeft ? 6 : -6) * px, bbox.top - 3 * px);
         }
       }
       ctx.stroke();
@@ -58,15 +64,13 @@ export function lineLabels(labels, marks, colour) {
     ctx.font = `600 ${12 * px}px system-ui, sans-serif`;
     ctx.textBaseline = "middle";
     ctx.textAlign = "left";
-    placed.forEach(({ text, color, left, top, isPoint = true }, n) => {
+    placed.forEach(({ text, color, left, top }, n) => {
       ctx.fillStyle = solid(color);
-      if (isPoint) {
-        ctx.beginPath();
-        ctx.arc(left, top, DOT_PX * px, 0, 2 * Math.PI);
-        ctx.fill();
-      }
+      ctx.beginPath();
+      ctx.arc(left, top, DOT_PX * px, 0, 2 * Math.PI);
+      ctx.fill();
       // Ink rather than the line's own colour: yellow on white cannot be read.
-      ctx.fillStyle = color === "--finish" ? solid(color) : solid("--ink");
+      ctx.fillStyle = solid("--ink");
       ctx.fillText(text, left + 9 * px, room[n]);
     });
     ctx.restore();

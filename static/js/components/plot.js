@@ -13,6 +13,7 @@ const FONT = "12px system-ui, sans-serif";
  * @param series [{color, dash?, width?, points?}] as many as `data` has lines
  * @param data as uPlot has it: [xs, ys…]
  * @param x, y {min, max}, x with its unit in words
+ * @param room for the labels, on the right [px]
  * @param labels [{text, color, x, y}] written at the ends of lines
  */
 export function Plot(props) {
@@ -52,7 +53,7 @@ function optionsOf(host, newest) {
   return {
     width: host.clientWidth || 300,
     height: HEIGHT,
-    padding: [12, 104, 0, 0],
+    padding: [20, newest.current.room ?? 88, 0, 0],
     legend: { show: false },
     cursor: { show: false },
     select: { show: false },

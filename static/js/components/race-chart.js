@@ -26,7 +26,7 @@ export function RaceChart() {
       <p class="dim">Flat parts are thinking: ${CLOCKS[clock.value] ?? clock.value}</p>
       ${isOn
         ? html`<${Lines} known=${known} time=${time} />`
-        : html`<${Empty} words=${raceInView.value ? "The lines start when the robots do. Flat parts are thinking." : "Each robot draws a line here as it walks. Flat parts are thinking."} />`}
+        : html`<${Empty} shape="lines" words=${raceInView.value ? "The lines start when the robots do. Flat parts are thinking." : "Each robot draws a line here as it walks. Flat parts are thinking."} />`}
     </section>
   `;
 }
@@ -43,16 +43,13 @@ function Lines({ known, time }) {
   const first = known.first_finish_s;
   const end = Math.max(until, first ? Math.min(1.3 * first, longest) : Math.min(longest, 20), 1);
   const far = Math.max(line, ...lanes.map(({ shown }) => shown.at(-1)[1]));
-  const labels = [
-    ...lanes.map(({ title, color, shown }) => ({ text: title, color, x: shown.at(-1)[0], y: shown.at(-1)[1] })),
-    { text: "finish line", color: "--finish", x: end, y: line, isPoint: false },
-  ];
-  const marks = [{ y: line, color: "--finish" }];
+  const labels = lanes.map(({ title, color, shown }) => ({ text: title, color, x: shown.at(-1)[0], y: shown.at(-1)[1] }));
+  const marks = [{ y: line, color: "--finish", text: "finish line" }];
   if (first && until >= first) marks.push({ x: first, color: "--dim", dash: [2, 3], text: "first is done" });
   const said = `The race after ${Math.round(until)} seconds: ${lanes.map(({ title, shown }) => `${title} ${metres(shown.at(-1)[1])}`).join(", ")}.`;
   return html`
     <${Plot} label=${said} data=${data} series=${lanes.map(({ color }) => ({ color }))} labels=${labels} marks=${marks}
-      x=${{ min: 0, max: end, unit: "race time, s" }} y=${{ min: 0, max: 1.1 * far }} />
+      x=${{ min: 0, max: end, unit: "race time, s" }} y=${{ min: 0, max: 1.16 * far }} />
     <${AsTable} caption=${said} columns=${["Race time", ...lanes.map(({ title }) => title)]} rows=${rowsOf(lanes, until)} />
   `;
 }

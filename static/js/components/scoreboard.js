@@ -51,7 +51,7 @@ function Lane({ row, longest }) {
     <tbody class=${row.isThinking ? "thinking" : ""} style=${{ "--agent": row.color }}>
       <tr>
         <td class="rank">${row.rank}</td>
-        <th scope="row" class="agent"><span class="swatch"></span>${row.title}${row.isDone && html`<${Icon} name="flag" />`}</th>
+        <th scope="row" class="agent"><span class="swatch"></span>${row.title}</th>
         <td class="big">${metres(row.finished_m ?? row.distance_m)}</td>
         <td class=${row.isDone ? "" : "dim"}>${isDecided.value ? metres(row.total_m ?? row.distance_m) : "–"}</td>
         <td class="aside">${decision(row.decision_s)}</td>
@@ -65,7 +65,7 @@ function Lane({ row, longest }) {
             <i class="thought" style=${width(row.spent.thought)}></i>
           </div>
           <p class="dim">
-            <span>${doing(row)}</span>
+            <span>${row.isDone && html`<${Icon} name="flag" />`}${doing(row)}</span>
             <span class="facts">${decision(row.decision_s)} a decision, ${whole(row.simulated)} simulated</span>
           </p>
           ${row.isMarching && html`<p class="marching"><b>Marching on the spot:</b> ${whyMarching(row)}</p>`}

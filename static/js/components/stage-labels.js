@@ -4,7 +4,6 @@ import { times, whole } from "../format.js";
 import { raceScene, standings } from "../standings.js";
 import { scene, stage } from "../store.js";
 
-const PHASES = { "photo-finish": "Photo finish", "start-line": "On the start line" };
 
 export function StageLabels() {
   const now = scene.value;
@@ -14,11 +13,11 @@ export function StageLabels() {
     <div class="labels">
       <div class="chips">
         <p class="chip strong">${now?.label || "On the start line"}</p>
-        ${PHASES[now?.phase] && now.label && now.phase === "photo-finish" && html`<p class="chip accent">${PHASES[now.phase]}</p>`}
+        ${now?.phase === "photo-finish" && html`<p class="chip accent">Photo finish</p>`}
         ${now?.replay && html`<p class="chip">Replay</p>`}
         ${isPaused
           ? html`<p class="chip">Paused</p>`
-          : now?.shown_speed && now.kind !== "idle" && html`<p class="chip num" title="How much faster than real time this is shown">${times(now.shown_speed)}</p>`}
+          : now?.shown_speed > 0 && now.kind !== "idle" && html`<p class="chip num" title="How much faster than real time this is shown">${times(now.shown_speed)}</p>`}
       </div>
       <div class="chips">
         ${thinkers.map((row) => html`

@@ -41,7 +41,10 @@ const oneIsLeft = (now) =>
   now.lanes.filter(({ done }) => !done).length === 1;
 
 function Seek({ now }) {
-  if (!now?.duration_s) return html`<span class="seek"></span>`;
+  if (!now || now.kind === "idle") return html`<span class="seek"></span>`;
+  if (!now.duration_s) {
+    return html`<span class="seek"><span class="num">${clockTime(now.time_s)}</span><span class="dim">still being simulated</span></span>`;
+  }
   const { time_s, duration_s } = now;
   const words = `${clockTime(time_s)} of ${clockTime(duration_s)}`;
   const seek = ({ target }) => setStage({ time_s: Number(target.value) });
@@ -79,7 +82,7 @@ function Follow() {
 function Speed() {
   const speed = stage.value?.speed ?? 1;
   const numbers = SPEEDS.includes(speed) || typeof speed !== "number" ? SPEEDS : [...SPEEDS, speed].sort((a, b) => a - b);
-  const choices = [["time-lapse", "time-lapse"], ...numbers.map((n) => [n, `×${n}`])];
+  const choices = [["time-lapse", "by itself"], ...numbers.map((n) => [n, `×${n}`])];
   return html`
     <${Choice} label="Speed" name="speed" value=${speed} choices=${choices} title="For everyone"
       onValue=${(value) => setStage({ speed: value === "time-lapse" ? value : Number(value) })} />
