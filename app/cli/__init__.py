@@ -14,6 +14,7 @@ COMMANDS = (serve, train, race, bench)
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit code is 2 for what cannot be done as asked, with one sentence."""
     options = _parser().parse_args(arguments)
+    sys.path.insert(0, "")  # so that --agent my_agent:Agent finds my_agent.py in this folder
     try:
         code: int = options.run(options)
     except HexapodError as error:

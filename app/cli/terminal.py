@@ -27,7 +27,7 @@ def show_table(title: str, head: Sequence[str], rows: Sequence[Sequence[Any]]) -
     """A table with a title; all columns but the first are numbers."""
     table = Table(title=title, title_justify="left")
     for place, name in enumerate(head):
-        table.add_column(name, justify="left" if place == 0 else "right")
+        table.add_column(name, justify="left" if place == 0 else "right", no_wrap=place == 0)
     for row in rows:
         table.add_row(*(str(cell) for cell in row))
     Console(file=sys.stdout).print(table)

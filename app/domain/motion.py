@@ -69,7 +69,7 @@ class StepMotion:
         y = from_y + samples.share * (to_y - from_y)
         angles = self.legs.solve(x, y, samples.lift, frames[1:])
         order = samples.order.take(swinging, 0) + rows * x.shape[1]  # (n, substeps · legs)
-        targets = angles.reshape(-1, 3).take(order, 0)
+        targets: FloatArray = angles.reshape(-1, 3).take(order, 0)
         return targets.reshape(len(plans), self._substeps, -1)
 
 

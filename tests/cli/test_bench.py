@@ -1,0 +1,20 @@
+"""`hexapods bench`: that every figure is there; how large it is, is no matter of a test."""
+
+from pathlib import Path
+
+from tests.cli.running import output
+
+
+def test_bench_measures_what_it_promises(tmp_path: Path) -> None:
+    figures = output("bench", folder=tmp_path)
+    assert set(figures) >= {
+        "training_over_physics",
+        "lookahead_speedup",
+        "two_step_decision_over_motion",
+        "planning_overhead",
+        "stage_update_ms",
+        "stage_update_bytes",
+    }
+    assert all(isinstance(value, int | float) for value in figures.values())
+    assert figures["training_over_physics"] > 0.9
+    assert figures["two_step_decision_over_motion"] > 0

@@ -1,0 +1,146 @@
+"""`hexapods train` and `hexapods race`, as a user runs them."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from app.assembly import build_learner, finish_training
+from app.runs.config import TrainingConfig
+from app.runs.training import train
+from tests.cli.running import EXAMPLES, hexapods, output, refusal
+
+GAIT = ("--gait", "left-right-origin")
+QUICK = (*GAIT, "--simulator", "kinematic")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a trained table in it, `q.npz`."""
+    place = tmp_path_factory.mktemp("cli")
+    output("train", *QUICK, "--steps", "300", "--out", "q.npz", folder=place)
+    return place
+
+
+def test_train_tells_how_far_it_walks(tmp_path: Path) -> None:
+    done = hexapods("train", *QUICK, "--steps", "100", "--out", "q.npz", folder=tmp_path)
+    assert done.returncode == 0
+    assert "After 100 steps of practice it walks 0." in done.stdout
+    assert (tmp_path / "q.npz").stat().st_size > 1000
+
+
+def test_the_command_line_and_a_direct_call_learn_the_same_table(tmp_path: Path) -> None:
+    printed = output("train", *GAIT, "--steps", "60", "--seed", "7", folder=tmp_path)
+    config = TrainingConfig(gait="left-right-origin", steps=60, seed=7)
+    learner = build_learner(config)
+    for _ in train(learner, config):
+        pass
+    assert printed["result"] == finish_training(learner, config)
+    assert [point["step"] for point in printed["curve"]] == [50, 60]
+
+
+def test_training_goes_on_from_a_table(folder: Path) -> None:
+    result = output(
+        "train", *QUICK, "--steps", "300", "--from", "q.npz", "--out", "q2.npz", folder=folder
+    )
+    assert result["config"]["seed"] == 0
+    assert (folder / "q2.npz").read_bytes() != (folder / "q.npz").read_bytes()
+
+
+def test_race_of_a_table_against_look_ahead(folder: Path) -> None:
+    race = ("race", *QUICK, "--lane", "q-learning=q.npz", "--lane", "greedy", "--lane", "two-step")
+    lanes = output(*race, folder=folder)["result"]["lanes"]
+    assert [lane["agent"] for lane in lanes] == ["q-learning", "greedy", "two-step"]
+    assert [lane["simulated_transitions"] for lane in lanes] == [0, 600, 7800]
+    assert lanes[1]["total_distance_m"] == pytest.approx(24.833 * 0.02, abs=1e-4)
+    shown = hexapods(*race, "--clock", "free", folder=folder)
+    assert "Ranked at the first finish, free clock" in shown.stdout
+
+
+def test_the_example_agent_learns_and_races(tmp_path: Path) -> None:
+    example = EXAMPLES / "my_agent.py"
+    assert len(example.read_text("utf-8").splitlines()) <= 40
+    shutil.copy(example, tmp_path)
+    mine = ("--agent", "my_agent:Agent", "--steps", "100", "--out", "mine.npz")
+    trained = output("train", *GAIT, *mine, folder=tmp_path)["result"]
+    assert trained["distance_m"] > 0.9 * trained["greedy_distance_m"]
+    lanes = ("--lane", "my_agent:Agent=mine.npz", "--lane", "greedy", "--steps", "10")
+    raced = output("race", *GAIT, *lanes, folder=tmp_path)["result"]["lanes"]
+    assert raced[0]["clocks"]["paper"]["rank"] == 1
+    assert raced[0]["failure"] is None
+
+
+def test_robots_and_gaits_of_ones_own(tmp_path: Path) -> None:
+    (tmp_path / "eight.toml").write_text('preset = "compliant"\nn_legs = 8\nhome_radius_m = 0.26\n')
+    gait = json.dumps({"right_leg": 1, "left_leg": 2, "pairs": [[1, 2], [8, 3], [7, 4], [6, 5]]})
+    own = ("--gait", gait, "--robot", "eight.toml", "--steps", "20", "--evaluate-every", "0")
+    config = output("train", *own, folder=tmp_path)["config"]
+    assert config["robot"]["preset"] == "compliant"
+    assert len(config["robot"]["legs"]) == 8
+    assert config["gait"]["pairs"][1] == [8, 3]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "names"),
+    [
+        (("--gait", "moonwalk"), "left-right-origin, left-right-vertical"),
+        (("--gait", '{"right_leg": 1}'), "right_leg and left_leg"),
+        (("--gait", "{"), "not valid JSON"),
+        ((*GAIT, "--steps", "0"), "from 1 to 10,000,000"),
+        ((*GAIT, "--steps", "-1"), "from 1 to 10,000,000"),
+        ((*GAIT, "--steps", "1e12"), "a whole number"),
+        ((*GAIT, "--steps", "1000000000000"), "from 1 to 10,000,000"),
+        ((*GAIT, "--steps", "nan"), "a whole number"),
+        ((*GAIT, "--alpha", "nan"), "over 0 and at most 1"),
+        ((*GAIT, "--seed", "-1"), "at least 0"),
+        ((*GAIT, "--divisions", "9"), "from 2 to 8"),
+        ((*GAIT, "--grid-side-m", "0.2"), "leg 2 cannot reach cell 1 (front left)"),
+        ((*GAIT, "--grid-side-m", "0.001"), "at least 0.005"),
+        ((*GAIT, "--robot", "sloth"), "stiff, compliant, slippery"),
+        ((*GAIT, "--robot", '{"wings": 2}'), "femur_m"),
+        ((*GAIT, "--robot", '{"femur_m": -1}'), "robot.femur_m must be from"),
+        ((*GAIT, "--robot", '{"n_legs": 5}'), "even number of legs"),
+        ((*GAIT, "--robot", "missing.toml"), "missing.toml"),
+        ((*GAIT, "--simulator", "matrix"), "mujoco, kinematic"),
+        ((*GAIT, "--observation", "guessed"), "measured, commanded"),
+        ((*GAIT, "--agent", "skynet"), "q-learning, greedy, two-step, my.module:Agent"),
+        ((*GAIT, "--agent", "no_module:Agent"), "cannot import no_module"),
+        ((*GAIT, "--from", "missing.npz"), "missing.npz"),
+        ((*GAIT, "--out", "no/such/folder/q.npz"), "choose a folder that can be written"),
+        ((), "--gait"),
+    ],
+)
+def test_bad_input_to_train_is_one_sentence(
+    arguments: tuple[str, ...], names: str, tmp_path: Path
+) -> None:
+    assert names in refusal("train", *arguments, folder=tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "names"),
+    [
+        ((*QUICK, "--lane", "q-learning"), "q-learning=q.npz"),
+        ((*QUICK, "--lane", "greedy=q.npz"), "learned by q-learning"),
+        (("--gait", "front-back-origin", "--lane", "q-learning=q.npz"), "gait left-right-origin"),
+        ((*QUICK, "--divisions", "3", "--lane", "q-learning=q.npz"), "divisions 2"),
+        ((*QUICK, *(["--lane", "greedy"] * 7)), "1 to 6 lanes"),
+        ((*QUICK, "--lane", "greedy", "--clock", "cuckoo"), "paper, wall, free"),
+        ((*QUICK,), "--lane"),
+    ],
+)
+def test_bad_input_to_race_is_one_sentence(
+    arguments: tuple[str, ...], names: str, folder: Path
+) -> None:
+    assert names in refusal("race", *arguments, folder=folder)
+
+
+def test_a_seed_beside_a_table_to_go_on_with_is_refused(folder: Path) -> None:
+    sentence = refusal("train", *QUICK, "--from", "q.npz", "--seed", "1", folder=folder)
+    assert "leave --seed out" in sentence
+
+
+def test_a_file_that_is_no_table_is_refused_by_name(folder: Path) -> None:
+    (folder / "shopping.npz").write_text("milk")
+    sentence = refusal("race", *QUICK, "--lane", "q-learning=shopping.npz", folder=folder)
+    assert "shopping.npz is not a Q-table" in sentence
