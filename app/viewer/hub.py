@@ -23,6 +23,7 @@ from app.viewer.snapshot import UNWANTED, Snapshot
 
 _RETRY_S = 0.5
 _GOODBYE_S = 1.0
+_REMOVALS_KEPT = 100
 
 _PROTOCOL_ERROR = 1002
 _GOING_AWAY = 1001
@@ -69,8 +70,7 @@ class Hub:
         self._on_viewers_changed = on_viewers_changed
         self._sessions: set[Session] = set()
         self._snapshot = Snapshot()
-        self._packed: wire.Frame | None = None
-        self._timestamp_s = 0.0
+        self._packed: dict[tuple[int | None, str], wire.Frame] = {}
         self._live = False
         self._upstream: asyncio.Task[None] | None = None
 
@@ -126,12 +126,14 @@ class Hub:
             return
         await websocket.accept(subprotocol=wire.SUBPROTOCOL)
         view = follow.valid_view(websocket.query_params.get("view")) or follow.FREE
-        session = Session(websocket, view, self.counters)
-        self._add(session)
+        session = Session(websocket, view, self.counters, self._missed_by)
+        self._sessions.add(session)
+        self._count_viewers()
         try:
             await session.run(self._show_view)
         finally:
-            self._remove(session)
+            self._sessions.discard(session)
+            self._count_viewers()
 
     def _refusal(self, offered: list[str]) -> tuple[int, str] | None:
         if wire.SUBPROTOCOL not in offered:
@@ -148,16 +150,6 @@ class Hub:
             # Only browsers send an Origin, and only they carry someone else's cookies.
             return True
         return origin.partition("://")[2] == websocket.headers.get("host")
-
-    def _add(self, session: Session) -> None:
-        self._sessions.add(session)
-        self._count_viewers()
-        if self._live:
-            self._show_all(session)
-
-    def _remove(self, session: Session) -> None:
-        self._sessions.discard(session)
-        self._count_viewers()
 
     def _count_viewers(self) -> None:
         self.counters.viewers = len(self._sessions)
@@ -193,49 +185,55 @@ class Hub:
 
     def _take(self, frame: wire.Frame) -> None:
         self._snapshot.apply(frame)
-        self._packed = None
-        self._timestamp_s = frame.timestamp_s
+        self._packed.clear()
         if self._live:
             if frame.messages:
                 self._fan_out(frame)
+            self._forget_removals()
         elif self._snapshot.complete:
             self._live = True
             self._begin()
 
     def _begin(self) -> None:
         for session in self._sessions:
-            if session.started:
+            if session.version is None:
+                session.wake()
+            else:
                 # Its page still has the old scene; reconnecting is what clears it.
                 session.close(_SERVICE_RESTART, "resync")
                 self.counters.resyncs += 1
-            else:
-                self._show_all(session)
 
     def _fan_out(self, frame: wire.Frame) -> None:
         by_view: dict[str, wire.Frame] = {}
         for session in self._sessions:
             if session.view not in by_view:
-                by_view[session.view] = self._centred(frame, session.view)
-            session.push(by_view[session.view])
+                # In the same frame, lest a browser draw the robot moved but not yet centred.
+                by_view[session.view] = frame.extended(*self._centring(session.view))
+            session.push(by_view[session.view], self._snapshot.version)
 
-    def _show_all(self, session: Session) -> None:
-        if self._packed is None:
-            self._packed = self._snapshot.pack()
-        session.push(self._centred(self._packed, session.view))
-        session.started = True
+    def _missed_by(self, session: Session) -> tuple[wire.Frame, int] | None:
+        if not self._live:
+            return None
+        # When all are behind they are so by the same, and must not each cost a frame's making.
+        key = (session.version, session.view)
+        if key not in self._packed:
+            centring = self._centring(session.view)
+            self._packed[key] = self._snapshot.pack(session.version, centring)
+        return self._packed[key], self._snapshot.version
 
     def _show_view(self, session: Session) -> None:
-        message = self._centring(session.view)
-        if message is not None and session.started:
-            session.push(wire.pack([message], (), self._timestamp_s))
+        centring = self._centring(session.view)
+        if centring and session.version is not None:
+            frame = wire.pack(centring, (), self._snapshot.timestamp_s)
+            session.push(frame, self._snapshot.version)
 
-    def _centred(self, frame: wire.Frame, view: str) -> wire.Frame:
-        # In the same frame, so that no browser draws the robot moved but not yet centred.
-        message = self._centring(view)
-        return frame if message is None else frame.extended(message)
-
-    def _centring(self, view: str) -> wire.Message | None:
+    def _centring(self, view: str) -> list[wire.Message]:
         if view == follow.FREE or self._follow_position is None:
-            return None
+            return []
         position = self._follow_position(view)
-        return None if position is None else follow.centring(self._follow_frame, position)
+        return [] if position is None else [follow.centring(self._follow_frame, position)]
+
+    def _forget_removals(self) -> None:
+        if self._snapshot.removals > _REMOVALS_KEPT:
+            versions = [one.version for one in self._sessions if one.version is not None]
+            self._snapshot.forget_removals(min(versions, default=self._snapshot.version))

@@ -1,11 +1,13 @@
-"""The newest message per thing: what a late joiner needs, and what a laggard's backlog shrinks to.
+"""The newest message per thing: what a late joiner needs, and what a laggard has missed.
 
 viser's own replay walks every message id ever issued, which after a day of racing stalls everyone
 for seconds. What makes a message redundant is viser's own rule, read from its message classes: a
 scene node or a GUI element is created, updated and removed, each newer word replacing an older one.
 """
 
-from typing import NamedTuple
+import itertools
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 from viser import _messages
 
@@ -31,13 +33,15 @@ class _Lifecycle(NamedTuple):
     id_field: str | None
 
 
+_Entity = tuple[str, str, str]
+_Key = tuple[str, ...]
+
+
 class _Kept(NamedTuple):
     message: wire.Message
     buffers: list[memoryview]
+    version: int
 
-
-_Entity = tuple[str, str, str]
-_Key = tuple[str, ...]
 
 _LIFECYCLES = {
     cls.__name__: _Lifecycle(cls.entity_type, cls.lifecycle_phase, cls.entity_id_field)
@@ -47,99 +51,85 @@ _NONE = _Lifecycle(None, None, None)
 
 
 class Snapshot:
-    """Folds frames into the one frame that says the same, and no more."""
+    """All that is to be seen now, and since when each thing is as it is.
 
-    def __init__(self, *, keep_removals: bool = False) -> None:
-        """Start empty.
+    One serves every viewer, so one who lags costs nothing until it can take what it has missed.
+    """
 
-        Args:
-            keep_removals: For someone who has seen what came before, and must be told what is gone.
-        """
-        self._keep_removals = keep_removals
-        self._kept: dict[_Key, _Kept] = {}
-        self._keys_of: dict[_Entity, set[_Key]] = {}
-        self._timestamp_s = 0.0
+    def __init__(self) -> None:
+        self.version = 0
+        """How many frames were taken in."""
+        self.timestamp_s = 0.0
+        """When viser sent the newest of them, by its clock."""
         self.complete = False
         """Whether viser has said that it has now told all there was, which its client waits for."""
+        # Each is ordered by version.
+        self._kept: dict[_Key, _Kept] = {}
+        self._removed: dict[_Entity, _Kept] = {}
+        self._keys_of: dict[_Entity, set[_Key]] = {}
 
     def apply(self, frame: wire.Frame) -> None:
         """Take in what a newer frame says."""
-        self._timestamp_s = frame.timestamp_s
+        self.version += 1
+        self.timestamp_s = frame.timestamp_s
         for message in frame.messages:
             if message["type"] == _REPLAY_DONE:
                 self.complete = True
             else:
                 self._apply(message, frame.buffers)
 
-    def pack(self) -> wire.Frame:
-        """The one frame."""
+    def pack(self, since: int | None = None, more: Iterable[wire.Message] = ()) -> wire.Frame:
+        """One frame that brings a viewer up to date.
+
+        Args:
+            since: The version that the viewer has; None for one who has nothing yet.
+            more: Messages without arrays for the end of the frame.
+        """
+        if since is None:
+            missed = list(self._kept.values())
+        else:
+            # Removals first: a thing that was made after its namesake was removed comes later.
+            missed = [*_newer(self._removed, since), *_newer(self._kept, since)]
         buffers: list[memoryview] = []
-        messages = [
-            wire.rewire(kept.message, kept.buffers, buffers) for kept in self._kept.values()
-        ]
-        if self.complete:
+        messages = [wire.rewire(kept.message, kept.buffers, buffers) for kept in missed]
+        if since is None and self.complete:
             messages.append({"type": _REPLAY_DONE})
-        return wire.pack(messages, buffers, self._timestamp_s)
+        return wire.pack([*messages, *more], buffers, self.timestamp_s)
+
+    @property
+    def removals(self) -> int:
+        """How many things are remembered only because they are gone."""
+        return len(self._removed)
+
+    def forget_removals(self, until: int) -> None:
+        """Forget what was gone at that version, once no viewer is older than that."""
+        self._removed = {
+            entity: kept for entity, kept in self._removed.items() if kept.version > until
+        }
 
     def _apply(self, message: wire.Message, buffers: tuple[memoryview, ...]) -> None:
         lifecycle = _LIFECYCLES.get(message["type"], _NONE)
         entity = _entity(message, lifecycle)
         if entity is not None and lifecycle.phase in ("create", "remove"):
-            self._forget(entity)
-        if lifecycle.phase == "remove" and not self._keep_removals:
-            return
+            for key in self._keys_of.pop(entity, ()):
+                del self._kept[key]
         own: list[memoryview] = []
-        kept = _Kept(wire.rewire(message, buffers, own), own)
-        key = _key(message, lifecycle, entity)
+        kept = _Kept(wire.rewire(message, buffers, own), own, self.version)
         # To the end, because what is said later may rest on what was said before.
+        if entity is not None and lifecycle.phase == "remove":
+            self._removed.pop(entity, None)
+            self._removed[entity] = kept
+            return
+        key = _key(message, lifecycle, entity)
         self._kept.pop(key, None)
         self._kept[key] = kept
         if entity is not None:
             self._keys_of.setdefault(entity, set()).add(key)
 
-    def _forget(self, entity: _Entity) -> None:
-        # But its removal: who has seen an older thing of that name must drop that one's pose too.
-        removal = (*entity, "remove")
-        keys = self._keys_of.pop(entity, set())
-        for key in keys - {removal}:
-            del self._kept[key]
-        if removal in keys:
-            self._keys_of[entity] = {removal}
 
-
-class Backlog:
-    """Frames that wait for one viewer: in order while they are few, else folded into one.
-
-    It is never larger than the scene, however long the viewer does not read.
-    """
-
-    LIMIT = 4
-
-    def __init__(self) -> None:
-        self._frames: list[wire.Frame] = []
-        self._folded: Snapshot | None = None
-        self.merged = 0
-        """How many frames were folded, in all."""
-
-    def push(self, frame: wire.Frame) -> None:
-        """Let a frame wait."""
-        if self._folded is None and len(self._frames) < self.LIMIT:
-            self._frames.append(frame)
-            return
-        if self._folded is None:
-            self._folded = Snapshot(keep_removals=True)
-            for waiting in self._frames:
-                self._folded.apply(waiting)
-            self.merged += len(self._frames)
-            self._frames.clear()
-        self._folded.apply(frame)
-        self.merged += 1
-
-    def take(self) -> list[wire.Frame]:
-        """All that waits, in order; none of it waits any more."""
-        frames = self._frames if self._folded is None else [self._folded.pack()]
-        self._frames, self._folded = [], None
-        return frames
+def _newer(kept: dict[Any, _Kept], since: int) -> list[_Kept]:
+    newest_first = reversed(kept.values())
+    return list(itertools.takewhile(lambda one: one.version > since, newest_first))[::-1]
 
 
 def _entity(message: wire.Message, lifecycle: _Lifecycle) -> _Entity | None:
@@ -154,7 +144,7 @@ def _entity(message: wire.Message, lifecycle: _Lifecycle) -> _Entity | None:
 
 def _key(message: wire.Message, lifecycle: _Lifecycle, entity: _Entity | None) -> _Key:
     about = entity or (message["type"], str(message.get("uuid", "")), "")
-    if lifecycle.phase in ("create", "remove"):
+    if lifecycle.phase == "create":
         return (*about, lifecycle.phase)
     if lifecycle.phase == "update_dict":
         return (*about, message["type"], *sorted(message["updates"]))

@@ -51,7 +51,9 @@ class Frame:
         return pack(kept, self.buffers, self.timestamp_s)
 
     def extended(self, *messages: Message) -> "Frame":
-        """The frame with messages without arrays at its end."""
+        """The frame with messages without arrays at its end; itself if there are none."""
+        if not messages:
+            return self
         return pack((*self.messages, *messages), self.buffers, self.timestamp_s)
 
 

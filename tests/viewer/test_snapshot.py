@@ -6,7 +6,7 @@ import pytest
 import viser
 
 from app.viewer import wire
-from app.viewer.snapshot import Backlog, Snapshot
+from app.viewer.snapshot import Snapshot
 from tests.viewer.serving import Robots, Viewer, array, says
 
 Record = Callable[[], list[wire.Frame]]
@@ -27,12 +27,13 @@ def record(stage: viser.ViserServer) -> Record:
     return so_far
 
 
-def folded(frames: list[wire.Frame], *, keep_removals: bool = False) -> wire.Frame:
-    snapshot = Snapshot(keep_removals=keep_removals)
+def folded(frames: list[wire.Frame], since: int | None = None) -> wire.Frame:
+    """What a viewer needs who has that many of these frames; None for a newcomer."""
+    snapshot = Snapshot()
     for frame in frames:
         snapshot.apply(frame)
     # What goes over the wire, rather than what we believe it to be.
-    return wire.parse(snapshot.pack().raw)
+    return wire.parse(snapshot.pack(since).raw)
 
 
 def about(frame: wire.Frame, name: str) -> list[str]:
@@ -94,7 +95,7 @@ def test_who_saw_it_is_told_that_it_is_gone(stage: viser.ViserServer, record: Re
     ghost.position = (1, 2, 3)
     ghost.remove()
 
-    news = folded(record()[seen:], keep_removals=True)
+    news = folded(record(), seen)
 
     assert about(news, "/world/ghost") == ["RemoveSceneNodeMessage"]
 
@@ -106,7 +107,7 @@ def test_a_successor_comes_after_the_removal(stage: viser.ViserServer, record: R
     record()
     stage.scene.add_label("/world/ghost", "another")
 
-    types = about(folded(record()[seen:], keep_removals=True), "/world/ghost")
+    types = about(folded(record(), seen), "/world/ghost")
 
     assert types[:2] == ["RemoveSceneNodeMessage", "LabelMessage"]
 
@@ -127,44 +128,80 @@ def test_it_ends_with_the_word_that_viser_s_client_waits_for(record: Record) -> 
     frames = record()
 
     assert folded(frames).messages[-1] == {"type": "ReplayDoneMessage"}
+    assert not says("ReplayDoneMessage")(folded(frames, 0))
     assert not says("ReplayDoneMessage")(folded(frames[-1:]))
 
 
-def test_folding_snapshots_is_folding_all(robots: Robots, record: Record) -> None:
-    for place in range(4):
-        robots.stand_at(place)
+def test_a_laggard_gets_what_it_has_missed_and_no_more(robots: Robots, record: Record) -> None:
+    robots.stand_at(1)
+    seen = len(record())
+    robots.stand_at(2)
+    record()
+    robots.stand_at(3)
     frames = record()
 
-    halves = [folded(frames[:3], keep_removals=True), folded(frames[3:], keep_removals=True)]
+    news = folded(frames, seen)
 
-    assert folded(halves).messages == folded(frames).messages
-    assert folded(halves).buffers == folded(frames).buffers
-
-
-def test_a_short_backlog_is_handed_on_as_it_came(record: Record) -> None:
-    frames = (record() * Backlog.LIMIT)[: Backlog.LIMIT]
-    backlog = Backlog()
-    for frame in frames:
-        backlog.push(frame)
-
-    assert backlog.take() == frames
-    assert backlog.take() == []
-    assert backlog.merged == 0
-
-
-def test_a_long_backlog_becomes_one_frame(robots: Robots, record: Record) -> None:
-    backlog = Backlog()
-    for place in range(1, 20):
-        robots.stand_at(place)
-        record()
-    frames = record()
-    for frame in frames:
-        backlog.push(frame)
-
-    [merged] = backlog.take()
-
-    positions = array(wire.parse(merged.raw), Robots.NAME, "batched_positions")
+    positions = array(news, Robots.NAME, "batched_positions")
     assert positions is not None
-    assert positions.tolist() == [19] * 12
-    assert backlog.merged == len(frames) >= 20
-    assert backlog.take() == []
+    assert positions.tolist() == [3] * 12
+    assert about(news, Robots.NAME) == ["SceneNodeUpdateMessage"]
+    assert folded(frames, len(frames)).messages == ()
+
+
+@pytest.mark.parametrize("since", [1, 3, 7, 12])
+def test_catching_up_is_as_good_as_having_seen_all(
+    stage: viser.ViserServer, robots: Robots, record: Record, since: int
+) -> None:
+    for step in range(6):
+        robots.stand_at(step)
+        stage.scene.add_label("/world/plate", f"step {step}").visible = False
+        record()
+        ghost = stage.scene.add_frame("/world/ghost")
+        record()
+        ghost.remove()
+    frames = record()
+
+    caught_up = folded([*frames[:since], folded(frames, since)])
+
+    assert meaning(caught_up) == meaning(folded(frames))
+
+
+def meaning(frame: wire.Frame) -> list[str]:
+    """What a frame says, array by array, whatever the order."""
+
+    def own(message: wire.Message) -> str:
+        buffers: list[memoryview] = []
+        rewired = wire.rewire(message, frame.buffers, buffers)
+        return f"{rewired} {[bytes(buffer) for buffer in buffers]}"
+
+    return sorted(map(own, frame.messages))
+
+
+def test_more_can_be_said_at_the_end(record: Record) -> None:
+    snapshot = Snapshot()
+    for frame in record():
+        snapshot.apply(frame)
+
+    assert snapshot.pack(None, [{"type": "X"}]).messages[-1] == {"type": "X"}
+
+
+def test_what_was_gone_for_all_viewers_is_forgotten(
+    stage: viser.ViserServer, record: Record
+) -> None:
+    snapshot = Snapshot()
+    for number in range(3):
+        ghost = stage.scene.add_frame(f"/world/ghost{number}")
+        record()
+        ghost.remove()
+        record()
+    for frame in record():
+        snapshot.apply(frame)
+    assert snapshot.removals == 3
+
+    first_gone = snapshot.version - 5
+    snapshot.forget_removals(first_gone)
+    assert 0 < snapshot.removals < 3
+
+    snapshot.forget_removals(snapshot.version)
+    assert snapshot.removals == 0
