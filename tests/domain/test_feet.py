@@ -1,0 +1,48 @@
+"""The kinematic law of a step, by hand."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.domain.feet import Feet
+
+FRONT_RIGHT = (0.02, 0.02)
+
+
+def test_the_first_pair_to_the_front_carries_the_body_a_third_of_the_way() -> None:
+    landed = Feet.at_home(3).landed(1, 2, FRONT_RIGHT)
+    assert landed.forward_m == (0.0, 0.02, 0.0)
+
+    after, advance = landed.centred()
+
+    assert advance == pytest.approx(0.02 / 3)
+    assert after.commanded == (0, 2, 0)
+    assert after.lateral_m == (0.0, 0.02, 0.0)
+    assert after.forward_m == pytest.approx((-0.02 / 3, 0.04 / 3, -0.02 / 3))
+
+
+def test_pairs_taking_turns_to_the_front_settle_at_half_the_side_over_two() -> None:
+    feet, advance = Feet.at_home(3), 0.0
+    for step in range(60):
+        feet, advance = feet.landed(step % 3, 2, FRONT_RIGHT).centred()
+
+    assert advance == pytest.approx(0.02 / 2)
+
+
+@given(st.lists(st.tuples(st.integers(0, 2), st.integers(0, 4)), max_size=60))
+def test_offsets_add_up_to_nothing_and_stay_within_reach(steps: list[tuple[int, int]]) -> None:
+    """With three pairs an offset stays within twice the half side; `check_reach` relies on it."""
+    places = [(0.0, 0.0), (-0.02, 0.02), (0.02, 0.02), (-0.02, -0.02), (0.02, -0.02)]
+    feet = Feet.at_home(3)
+    for pair, cell in steps:
+        feet, _ = feet.landed(pair, cell, places[cell]).centred()
+
+    assert sum(feet.forward_m) == pytest.approx(0, abs=1e-12)
+    assert all(abs(y) < 2 * 0.02 for y in feet.forward_m)
+
+
+def test_feet_go_into_an_array_and_come_back_the_same() -> None:
+    feet, _ = Feet.at_home(4).landed(3, 4, (0.02, -0.02)).centred()
+
+    assert feet.as_array().shape == (3, 4)
+    assert Feet.from_array(feet.as_array()) == feet

@@ -1,0 +1,174 @@
+"""The table of gaits in the paper's sense, and what a user may make of it."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.domain.errors import InvalidInput, UnknownName
+from app.domain.gait import NAMED_GAITS, GaitSpec, Pair, Symmetry, resolve
+from app.domain.robot import ring
+
+LEFT_RIGHT = (-30, 30, 90, 150, -150, -90)
+FRONT_BACK = (-60, 0, 60, 120, 180, -120)
+
+
+def azimuths(legs: int) -> list[float]:
+    return [leg.azimuth_deg for leg in ring(legs)]
+
+
+@pytest.mark.parametrize(
+    ("name", "forward_deg", "azimuths_deg", "pairs"),
+    [
+        ("left-right-origin", 30, LEFT_RIGHT, ((1, 4), (2, 5), (3, 6))),
+        ("left-right-vertical", 30, LEFT_RIGHT, ((1, 2), (6, 3), (5, 4))),
+        ("front-back-origin", 60, FRONT_BACK, ((1, 4), (2, 5), (3, 6))),
+        ("front-back-vertical", 60, FRONT_BACK, ((1, 3), (6, 4), (2, 5))),
+    ],
+)
+def test_the_four_gaits_of_a_hexapod(
+    name: str, forward_deg: float, azimuths_deg: tuple[float, ...], pairs: tuple[Pair, ...]
+) -> None:
+    gait = resolve(name, azimuths(6))
+
+    assert gait.name == name
+    assert gait.forward_deg == forward_deg
+    assert gait.azimuths_deg == azimuths_deg
+    assert gait.pairs == pairs
+
+
+@pytest.mark.parametrize(
+    ("legs", "name", "pairs"),
+    [
+        (4, "left-right-origin", ((1, 3), (2, 4))),
+        (4, "left-right-vertical", ((1, 2), (4, 3))),
+        (4, "front-back-origin", ((1, 3), (2, 4))),
+        (4, "front-back-vertical", ((1, 3), (2, 4))),
+        (8, "left-right-origin", ((1, 5), (2, 6), (3, 7), (4, 8))),
+        (8, "left-right-vertical", ((1, 2), (8, 3), (7, 4), (6, 5))),
+        (8, "front-back-origin", ((1, 5), (2, 6), (3, 7), (4, 8))),
+        (8, "front-back-vertical", ((1, 3), (8, 4), (7, 5), (2, 6))),
+        (10, "left-right-origin", ((1, 6), (2, 7), (3, 8), (4, 9), (5, 10))),
+        (10, "left-right-vertical", ((1, 2), (10, 3), (9, 4), (8, 5), (7, 6))),
+        (10, "front-back-origin", ((1, 6), (2, 7), (3, 8), (4, 9), (5, 10))),
+        (10, "front-back-vertical", ((1, 3), (10, 4), (9, 5), (8, 6), (2, 7))),
+    ],
+)
+def test_other_numbers_of_legs_pair_up_by_the_same_rule(
+    legs: int, name: str, pairs: tuple[Pair, ...]
+) -> None:
+    assert resolve(name, azimuths(legs)).pairs == pairs
+
+
+@given(
+    legs=st.sampled_from([4, 6, 8, 10, 12]),
+    right=st.integers(1, 12),
+    between=st.integers(1, 2),
+    symmetry=st.sampled_from(["origin", "vertical"]),
+)
+def test_pairs_are_symmetrical_whichever_way_is_forward(
+    legs: int, right: int, between: int, symmetry: Symmetry
+) -> None:
+    right = 1 + right % legs
+    left = 1 + (right - 1 + between) % legs
+    gait = resolve(GaitSpec(right, left, symmetry), azimuths(legs))
+
+    assert sorted(leg for pair in gait.pairs for leg in pair) == list(range(1, legs + 1))
+    for leader, partner in gait.pairs:
+        a, b = gait.azimuths_deg[leader - 1], gait.azimuths_deg[partner - 1]
+        on_axis = {a, b} == {0, 180}
+        mirrored = a + 180 if symmetry == "origin" or on_axis else -a
+        assert (b - mirrored) % 360 == pytest.approx(0, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("right", "left", "forward_deg"), [(1, 2, 30), (6, 1, -30), (2, 1, -150), (4, 6, -120)]
+)
+def test_forward_bisects_the_anticlockwise_arc_from_right_to_left(
+    right: int, left: int, forward_deg: float
+) -> None:
+    assert resolve(GaitSpec(right, left, "origin"), azimuths(6)).forward_deg == forward_deg
+
+
+def test_legs_need_not_stand_in_a_regular_ring() -> None:
+    gait = resolve("left-right-vertical", [-40, 40, 85, 150, -150, -85])
+
+    assert list(gait.azimuths_deg) == [-40, 40, 85, 150, -150, -85]
+    assert gait.pairs == ((1, 2), (6, 3), (5, 4))
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("left-right-vertical", "leg 5 has no partner under vertical symmetry.*by hand"),
+        ("left-right-origin", "leg 1 has no partner under origin symmetry.*-140° from forward"),
+    ],
+)
+def test_a_leg_without_a_mirror_image_is_named(name: str, message: str) -> None:
+    lopsided = [-40, 40, 90, 150, -145, -90]
+    if name.endswith("origin"):
+        lopsided[0], lopsided[1] = 40, -40
+    spec = NAMED_GAITS[name]
+    with pytest.raises(InvalidInput, match=message):
+        resolve(GaitSpec(*((2, 1) if lopsided[0] > 0 else (1, 2)), spec.symmetry), lopsided)
+
+
+def test_a_leg_alone_on_the_axis_is_named() -> None:
+    with pytest.raises(InvalidInput, match="leg 2 stands alone on the axis"):
+        resolve("front-back-vertical", [-60, 0, 60, 120])
+
+
+def test_pairs_may_be_given_by_hand() -> None:
+    pairs = ((1, 6), (2, 3), (4, 5))
+    gait = resolve(GaitSpec(1, 2, pairs=pairs), azimuths(6))
+
+    assert gait.pairs == pairs
+    assert list(gait.azimuths_deg) == list(LEFT_RIGHT)
+    assert gait.name == "right 1, left 2, 1+6 2+3 4+5"
+
+
+@pytest.mark.parametrize(
+    ("pairs", "message"),
+    [
+        (((1, 4), (2, 5)), "leave out leg 3"),
+        (((1, 4), (2, 5), (3, 2)), "leg 2 is used 2 times"),
+        (((1, 4), (2, 5), (3, 3)), "leg 3 is used 2 times"),
+        (((1, 4), (2, 5), (3, 7)), "no leg 7; this robot has legs 1 to 6"),
+        (((1, 4), (2, 5), (3, 0)), "no leg 0"),
+        ((), "leave out leg 1"),
+    ],
+)
+def test_a_wrong_pairing_says_which_leg(pairs: tuple[Pair, ...], message: str) -> None:
+    with pytest.raises(InvalidInput, match=message):
+        resolve(GaitSpec(1, 2, pairs=pairs), azimuths(6))
+
+
+def test_a_named_gait_by_its_parts_is_the_named_gait() -> None:
+    for name, spec in NAMED_GAITS.items():
+        assert resolve(spec, azimuths(6)) == resolve(name, azimuths(6))
+
+
+def test_a_gait_of_ones_own_says_what_it_is() -> None:
+    assert resolve(GaitSpec(6, 1, "origin"), azimuths(6)).name == "right 6, left 1, origin"
+
+
+def test_an_unknown_gait_names_the_known_ones() -> None:
+    with pytest.raises(UnknownName, match=r"unknown gait 'tripod'.*left-right-origin.*back-vertic"):
+        resolve("tripod", azimuths(6))
+
+
+@pytest.mark.parametrize(
+    ("right", "left", "message"),
+    [(1, 1, "both 1; name two legs"), (0, 2, "no leg 0"), (1, 7, "no leg 7.*1 to 6")],
+)
+def test_right_and_left_are_two_legs_of_the_robot(right: int, left: int, message: str) -> None:
+    with pytest.raises(InvalidInput, match=message):
+        resolve(GaitSpec(right, left, "origin"), azimuths(6))
+
+
+def test_a_gait_has_a_symmetry_or_pairs() -> None:
+    with pytest.raises(InvalidInput, match=r"either symmetry .* or pairs"):
+        GaitSpec(1, 2)
+    with pytest.raises(InvalidInput, match=r"either symmetry .* or pairs"):
+        GaitSpec(1, 2, "origin", ((1, 4), (2, 5), (3, 6)))
+    with pytest.raises(UnknownName, match=r"diagonal.*origin, vertical"):
+        GaitSpec(1, 2, "diagonal")  # type: ignore[arg-type]

@@ -1,0 +1,129 @@
+"""Leg kinematics: from a foot's place to joint angles, and back; and what a leg cannot reach."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from app.domain.errors import Unreachable
+from app.domain.gait import NAMED_GAITS, GaitSpec, resolve
+from app.domain.grid import FootGrid
+from app.domain.kinematics import JOINT_LIMITS_RAD, Legs, check_reach
+from app.domain.robot import Robot, robot
+from app.domain.types import FloatArray
+
+
+def legs_of(made: Robot, gait: str | GaitSpec = "left-right-origin") -> Legs:
+    return Legs(made, resolve(gait, made.azimuths_deg))
+
+
+def offsets(legs: int) -> st.SearchStrategy[FloatArray]:
+    """Places of feet about home that every leg of the default robot reaches, (legs, 3) [m]."""
+    shares = arrays(float, (legs, 3), elements=st.floats(0, 1))
+    return shares.map(lambda s: s * (0.08, 0.08, 0.05) - (0.04, 0.04, 0.01))
+
+
+@given(st.sampled_from(sorted(NAMED_GAITS)), offsets(6))
+def test_forward_kinematics_undoes_inverse_kinematics(gait: str, places: FloatArray) -> None:
+    legs = legs_of(Robot(), gait)
+    angles = legs.joint_angles(places)
+
+    assert angles.shape == (6, 3)
+    assert np.allclose(legs.foot_offsets(angles.ravel().tolist()), places, atol=1e-12)
+
+
+@given(offsets(8))
+def test_and_for_a_robot_of_other_proportions(places: FloatArray) -> None:
+    legs = legs_of(robot({"n_legs": 8, "coxa_m": 0.03, "femur_m": 0.1, "body_height_m": 0.08}))
+    angles = legs.joint_angles(places)
+
+    assert np.allclose(legs.foot_offsets(angles.ravel().tolist()), places, atol=1e-12)
+
+
+def test_at_home_all_legs_are_bent_the_same_with_the_knee_above() -> None:
+    angles = legs_of(Robot()).joint_angles(np.zeros((6, 3)))
+    coxa, femur, tibia = angles.T
+
+    assert np.allclose(coxa, 0, atol=1e-15)
+    assert np.ptp(femur) < 1e-12
+    assert np.ptp(tibia) < 1e-12
+    # The two-link arm spans 0.10 m out and 0.09 m down.
+    assert np.allclose(0.08 * np.cos(femur) + 0.13 * np.cos(femur + tibia), 0.10)
+    assert np.allclose(0.08 * np.sin(femur) + 0.13 * np.sin(femur + tibia), -0.09)
+    assert (femur > 0).all()
+
+
+def test_a_leg_that_points_forward_stretches_to_reach_forward() -> None:
+    """FrontBack: leg 2 points forward, leg 5 backward; neither needs to turn."""
+    angles = legs_of(Robot(), "front-back-origin").joint_angles(np.tile((0, 0.02, 0), (6, 1)))
+    home = legs_of(Robot()).joint_angles(np.zeros((6, 3)))
+
+    assert angles[[1, 4], 0] == pytest.approx(0, abs=1e-12)
+    assert angles[1, 2] > home[1, 2]
+    assert angles[4, 2] < home[4, 2]
+
+
+def test_a_leg_on_the_left_swings_clockwise_to_reach_forward() -> None:
+    """LeftRight: leg 3 points left, leg 6 right."""
+    angles = legs_of(Robot()).joint_angles(np.tile((0, 0.02, 0), (6, 1)))
+
+    assert angles[2, 0] == pytest.approx(-np.arctan2(0.02, 0.15))
+    assert angles[5, 0] == pytest.approx(np.arctan2(0.02, 0.15))
+
+
+def test_out_of_reach_is_not_a_number() -> None:
+    angles = legs_of(Robot()).joint_angles(np.tile((0, 0.3, 0), (6, 1)))
+
+    assert np.isnan(angles).any()
+
+
+@pytest.mark.parametrize("gait", NAMED_GAITS)
+@pytest.mark.parametrize("legs", [4, 6, 8, 10])
+def test_the_default_grid_is_within_reach_of_four_to_ten_legs(gait: str, legs: int) -> None:
+    made = robot({"n_legs": legs})
+    resolved = resolve(gait, made.azimuths_deg)
+    check_reach(made, resolved, FootGrid())
+
+    # Whatever the body does, no servo is ever asked beyond its limit.
+    places = np.array([(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (0, 1)])
+    drift = len(resolved.pairs) - 1
+    scaled = places * (0.02, drift * 0.02, made.step_height_m)
+    angles = Legs(made, resolved).joint_angles(np.repeat(scaled[:, None], legs, axis=1))
+    for joint, (low, high) in enumerate(JOINT_LIMITS_RAD.values()):
+        assert (angles[..., joint] > low).all()
+        assert (angles[..., joint] < high).all()
+
+
+@pytest.mark.parametrize(
+    ("written", "side_m", "message"),
+    [
+        ({}, 0.3, r"leg 1 cannot reach cell 1 \(front left\)"),
+        ({"tibia_m": 0.05}, 0.04, r"leg 1 cannot reach cell 0 \(home\): it is out of the reach"),
+        ({"step_height_m": 0.1}, 0.04, r"leg 5 cannot reach cell 1 \(front left\): its femur"),
+        ({"body_height_m": 0.2}, 0.04, r"leg 1 cannot reach cell 0 \(home\): it is out"),
+        ({}, 0.1, r"leg 2 cannot reach cell 1 \(front left\) after the body has re-centred"),
+        ({"n_legs": 12}, 0.04, r"leg 1 cannot reach cell 1 \(front left\) after the body"),
+    ],
+)
+def test_a_grid_that_a_leg_cannot_reach_names_leg_and_cell(
+    written: dict[str, Any], side_m: float, message: str
+) -> None:
+    made = robot(written)
+    with pytest.raises(Unreachable, match=message + r".*; choose a smaller grid_side_m than"):
+        check_reach(made, resolve("left-right-origin", made.azimuths_deg), FootGrid(side_m=side_m))
+
+
+def test_a_servo_that_would_turn_too_far_is_named() -> None:
+    made = robot({"home_radius_m": 0.2, "body_height_m": 0.06})
+    with pytest.raises(Unreachable, match="its tibia would turn to -163°, beyond its limit"):
+        check_reach(made, resolve("left-right-origin", made.azimuths_deg), FootGrid())
+
+
+def test_a_place_between_two_cells_must_be_within_reach_too() -> None:
+    """On its way from front left to back left a leg that points left passes closest to its hip."""
+    made = robot({"n_legs": 4, "step_height_m": 0.07})
+    with pytest.raises(Unreachable, match="on the way there: its femur would turn to"):
+        check_reach(made, resolve("front-back-origin", made.azimuths_deg), FootGrid(side_m=0.08))

@@ -1,0 +1,131 @@
+"""The motion of a step, read back from the servo commands by forward kinematics."""
+
+import numpy as np
+import pytest
+
+from app.domain.gait import NAMED_GAITS, resolve
+from app.domain.grid import FootGrid
+from app.domain.kinematics import JOINT_LIMITS_RAD
+from app.domain.motion import StepMotion, StepPlan, ease, recorded_substeps
+from app.domain.robot import Robot, robot
+from app.domain.types import Action, FloatArray
+
+SWING, SHIFT = 50, 30
+FRONT_LEFT, FRONT_RIGHT, BACK_LEFT = 1, 2, 3
+
+every_gait = pytest.mark.parametrize("gait", NAMED_GAITS)
+
+
+def motion_of(gait: str, made: Robot | None = None) -> StepMotion:
+    made = made or Robot()
+    return StepMotion(made, resolve(gait, made.azimuths_deg), FootGrid())
+
+
+def third_step(motion: StepMotion) -> StepPlan:
+    """Not the first, so that feet stand off their cells: pair 1 from front left to back left."""
+    feet = motion.plan(motion.at_home(), Action(1, FRONT_LEFT)).end
+    feet = motion.plan(feet, Action(0, FRONT_RIGHT)).end
+    return motion.plan(feet, Action(1, BACK_LEFT))
+
+
+def feet_over_time(motion: StepMotion, plan: StepPlan) -> FloatArray:
+    """(substeps, legs, 3) offsets from home in the robot frame [m]."""
+    targets = motion.joint_targets([plan])[0]
+    return np.array([motion.legs.foot_offsets(row.tolist()) for row in targets])
+
+
+@every_gait
+def test_a_pair_swings_from_where_it_stands_over_the_midpoint_to_its_cell(gait: str) -> None:
+    motion = motion_of(gait)
+    plan = third_step(motion)
+    leader, partner = (leg - 1 for leg in resolve(gait, Robot().azimuths_deg).pairs[1])
+    feet = feet_over_time(motion, plan)
+    from_x, from_y = plan.start.lateral_m[1], plan.start.forward_m[1]
+    half_way, landed = SWING // 2 - 1, SWING - 1
+
+    middle = ((from_x - 0.02) / 2, (from_y - 0.02) / 2, 0.03)
+    assert feet[half_way, leader] == pytest.approx(middle)
+    assert feet[landed, leader] == pytest.approx((-0.02, -0.02, 0), abs=1e-12)
+    for substep in range(SWING):
+        x, y, z = feet[substep, leader]
+        assert feet[substep, partner] == pytest.approx((-x, y, z), abs=1e-12)
+    heights = feet[:SWING, leader, 2]
+    assert heights.max() == pytest.approx(0.03)
+    assert (heights[:-1] > 0).all()
+
+
+@every_gait
+def test_four_feet_hold_while_two_swing(gait: str) -> None:
+    motion = motion_of(gait)
+    pairs = resolve(gait, Robot().azimuths_deg).pairs
+    plan = third_step(motion)
+    feet = feet_over_time(motion, plan)
+
+    for pair in (0, 2):
+        x, y = plan.start.lateral_m[pair], plan.start.forward_m[pair]
+        for leg, side in zip(pairs[pair], (1, -1), strict=True):
+            standing = feet[:SWING, leg - 1]
+            assert (standing == standing[0]).all()
+            assert standing[0] == pytest.approx((side * x, y, 0), abs=1e-12)
+
+
+@every_gait
+def test_the_shift_centres_the_body_over_six_planted_feet(gait: str) -> None:
+    motion = motion_of(gait)
+    plan = third_step(motion)
+    feet = feet_over_time(motion, plan)
+    shift = feet[SWING - 1 :]  # from touch-down on
+
+    assert len(feet) == SWING + SHIFT
+    assert shift[..., 2] == pytest.approx(0, abs=1e-12)
+    moved = shift - shift[0]
+    assert moved == pytest.approx(np.repeat(moved[:, :1], 6, axis=1), abs=1e-12)  # as one
+    assert shift[0].mean(axis=0)[:2] == pytest.approx((0, plan.advance_m), abs=1e-12)
+    assert shift[-1].mean(axis=0) == pytest.approx((0, 0, 0), abs=1e-12)
+    assert moved[-1, 0] == pytest.approx((0, -plan.advance_m, 0), abs=1e-12)
+
+
+@pytest.mark.parametrize("legs", [4, 6, 8, 10])
+def test_a_batch_equals_one_by_one_to_the_last_bit(legs: int) -> None:
+    motion = motion_of("left-right-vertical", robot({"n_legs": legs}))
+    feet = motion.plan(motion.at_home(), Action(1, FRONT_LEFT)).end
+    plans = [motion.plan(feet, Action(p, c)) for p in range(legs // 2) for c in range(5)]
+    together = motion.joint_targets(plans)
+
+    assert together.shape == (5 * legs // 2, SWING + SHIFT, 3 * legs)
+    for plan, row in zip(plans, together, strict=True):
+        assert (motion.joint_targets([plan])[0] == row).all()
+    assert (motion.joint_targets(plans[3:7]) == together[3:7]).all()
+
+
+def test_commands_stay_within_the_joints_limits_over_many_random_steps() -> None:
+    motion, rng = motion_of("left-right-origin"), np.random.default_rng(0)
+    feet, plans = motion.at_home(), []
+    for _ in range(200):
+        plan = motion.plan(feet, Action(int(rng.integers(3)), int(rng.integers(5))))
+        feet = plan.end
+        plans.append(plan)
+    targets = motion.joint_targets(plans).reshape(-1, 6, 3)
+
+    for joint, (low, high) in enumerate(JOINT_LIMITS_RAD.values()):
+        assert targets[..., joint].min() > low
+        assert targets[..., joint].max() < high
+
+
+def test_commands_start_and_end_each_phase_at_rest() -> None:
+    motion = motion_of("left-right-origin")
+    foot = feet_over_time(motion, third_step(motion))[:, 1, 1]  # forward, of a leg that swings
+    speed = np.abs(np.diff(foot))
+
+    assert speed[0] < 0.2 * speed[: SWING - 1].max()
+    assert speed[SWING - 2] < 0.2 * speed[: SWING - 1].max()
+    assert speed[-1] < 0.2 * speed[SWING:].max()
+
+
+def test_ease_runs_from_nothing_to_all() -> None:
+    assert ease(np.array([0, 0.5, 1])) == pytest.approx([0, 0.5, 1])
+
+
+def test_a_recording_keeps_every_twentieth_of_a_second_and_the_end() -> None:
+    assert recorded_substeps(Robot()).tolist() == list(range(4, 80, 5))
+    assert recorded_substeps(Robot(shift_s=0.128))[-2:].tolist() == [79, 81]

@@ -1,0 +1,68 @@
+"""The two readings of the state, and what is legal in it."""
+
+import pytest
+
+from app.domain.errors import UnknownName
+from app.domain.gait import resolve
+from app.domain.grid import FootGrid
+from app.domain.kinematic import KinematicSimulator
+from app.domain.observation import OBSERVATIONS, check_observation, legal_actions, observe
+from app.domain.robot import Robot
+from app.domain.types import Action
+
+HOME, FRONT_LEFT, FRONT_RIGHT, BACK_LEFT, BACK_RIGHT = range(5)
+
+
+@pytest.fixture
+def simulator() -> KinematicSimulator:
+    return KinematicSimulator(
+        Robot(), resolve("left-right-origin", Robot().azimuths_deg), FootGrid()
+    )
+
+
+def test_at_rest_both_readings_are_home(simulator: KinematicSimulator) -> None:
+    for how in OBSERVATIONS:
+        assert observe(simulator, simulator.rest(), how) == (HOME, HOME, HOME)
+
+
+def test_the_readings_part_once_the_body_has_moved(simulator: KinematicSimulator) -> None:
+    state = simulator.rest()
+    for action in ((0, FRONT_LEFT), (1, FRONT_LEFT), (2, BACK_RIGHT), (0, FRONT_RIGHT)):
+        state = simulator.step(state, Action(*action)).state
+    offsets = simulator.pair_offsets(state)
+
+    assert observe(simulator, state, "commanded") == (
+        FRONT_RIGHT,
+        FRONT_LEFT,
+        BACK_RIGHT,
+    )
+    # Sent to the front, the second pair has since fallen behind.
+    assert offsets[1] == pytest.approx((-0.02, 0.02 * 32 / 81))
+    assert observe(simulator, state, "measured") == tuple(
+        simulator.grid.nearest(x, y) for x, y in offsets
+    )
+
+
+def test_a_pair_that_fell_far_enough_behind_reads_as_at_the_back(
+    simulator: KinematicSimulator,
+) -> None:
+    state = simulator.step(simulator.rest(), Action(2, FRONT_LEFT)).state
+    for step in range(6):
+        state = simulator.step(state, Action(step % 2, FRONT_LEFT if step % 4 < 2 else 2)).state
+
+    assert observe(simulator, state, "commanded")[2] == FRONT_LEFT
+    assert observe(simulator, state, "measured")[2] == BACK_LEFT
+
+
+def test_every_pair_may_go_to_every_cell_but_its_own() -> None:
+    actions = legal_actions((HOME, FRONT_LEFT, BACK_RIGHT), 5)
+
+    assert len(actions) == 12
+    assert actions[:5] == ((0, 1), (0, 2), (0, 3), (0, 4), (1, 0))
+    assert not {(0, HOME), (1, FRONT_LEFT), (2, BACK_RIGHT)} & set(actions)
+
+
+def test_an_unknown_reading_names_the_two() -> None:
+    check_observation("measured")
+    with pytest.raises(UnknownName, match="observation 'guessed'; choose one of: measured, comma"):
+        check_observation("guessed")

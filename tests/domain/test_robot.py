@@ -1,0 +1,173 @@
+"""Robots: the default, its presets, and what a user may write."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, fields, replace
+from typing import Any
+
+import pytest
+
+from app.domain.errors import InvalidInput
+from app.domain.robot import PRESETS, LegMount, Robot, as_mapping, ring, robot
+
+
+def test_the_default_robot_is_the_one_that_the_figures_are_for() -> None:
+    figures = {
+        "torso_radius_m": 0.10,
+        "torso_half_height_m": 0.02,
+        "torso_kg": 1.2,
+        "coxa_m": 0.05,
+        "femur_m": 0.08,
+        "tibia_m": 0.13,
+        "coxa_kg": 0.06,
+        "femur_kg": 0.06,
+        "tibia_kg": 0.03,
+        "foot_radius_m": 0.012,
+        "foot_kg": 0.01,
+        "home_radius_m": 0.25,
+        "body_height_m": 0.09,
+        "step_height_m": 0.03,
+        "swing_s": 0.2,
+        "shift_s": 0.12,
+        "servo_kp": 40,
+        "servo_kv": 1,
+        "servo_torque_nm": 1.5,
+        "joint_armature": 0.002,
+        "joint_damping": 0.05,
+        "friction": 1,
+        "dt_s": 0.004,
+    }
+    default = asdict(Robot())
+
+    assert {name: default[name] for name in figures} == figures
+    assert set(default) == {*figures, "name", "legs"}
+    assert list(Robot().azimuths_deg) == [0, 60, 120, 180, 240, 300]
+    assert (Robot().swing_substeps, Robot().shift_substeps) == (50, 30)
+    assert Robot().step_s == pytest.approx(0.32)
+
+
+def test_the_presets_differ_in_servos_and_friction_only() -> None:
+    def differences(name: str) -> dict[str, Any]:
+        own, stiff = asdict(PRESETS[name]), asdict(Robot())
+        return {k: v for k, v in own.items() if v != stiff[k] and k != "name"}
+
+    assert list(PRESETS) == ["stiff", "compliant", "slippery"]
+    assert differences("stiff") == {}
+    assert differences("compliant") == {"servo_kp": 10, "servo_kv": 0.5}
+    assert differences("slippery") == {"friction": 0.1}
+    assert all(preset.name == name for name, preset in PRESETS.items())
+
+
+def test_a_robot_by_name() -> None:
+    assert robot("compliant") == PRESETS["compliant"]
+    assert robot(PRESETS["slippery"]) is PRESETS["slippery"]
+
+
+def test_a_mapping_says_what_differs_from_a_preset() -> None:
+    tall = robot({"preset": "compliant", "body_height_m": 0.1, "friction": 1})
+
+    assert tall.name == "compliant (modified)"
+    assert (tall.body_height_m, tall.servo_kp) == (0.1, 10)
+    assert robot({"femur_m": 0.08}) == Robot()
+
+
+def test_legs_as_a_regular_ring() -> None:
+    octopod = robot({"n_legs": 8, "mount_radius_m": 0.12})
+
+    assert octopod.legs == ring(8, 0.12)
+    assert list(octopod.azimuths_deg) == [0, 45, 90, 135, 180, 225, 270, 315]
+    assert robot({"mount_radius_m": 0.12}).legs == ring(6, 0.12)
+
+
+def test_legs_one_by_one() -> None:
+    mounts = [{"azimuth_deg": a, "radius_m": 0.11} for a in (0, 90, 180)] + [{"azimuth_deg": 270}]
+
+    assert robot({"legs": mounts}).legs == (
+        LegMount(0, 0.11),
+        LegMount(90, 0.11),
+        LegMount(180, 0.11),
+        LegMount(270, 0.10),
+    )
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        "stiff",
+        "compliant",
+        {"servo_kp": 5, "servo_kv": 0.3},
+        {"preset": "slippery", "n_legs": 8},
+        {"legs": [{"azimuth_deg": a, "radius_m": 0.09} for a in (5, 95, 185, 275)]},
+        {"n_legs": 10, "mount_radius_m": 0.13, "tibia_m": 0.15, "dt_s": 0.002},
+    ],
+)
+def test_a_robot_is_written_and_read_back_the_same(written: str | Mapping[str, Any]) -> None:
+    made = robot(written)
+
+    assert robot(as_mapping(made)) == made
+    assert as_mapping(robot(as_mapping(made))) == as_mapping(made)
+
+
+def test_a_preset_is_written_as_its_name_alone() -> None:
+    assert as_mapping(PRESETS["compliant"]) == {"preset": "compliant"}
+    assert as_mapping(robot({"friction": 0.5})) == {"preset": "stiff", "friction": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("written", "message"),
+    [
+        ("spider", "unknown robot 'spider'; choose one of: stiff, compliant, slippery"),
+        ({"preset": "spider"}, "unknown robot 'spider'"),
+        ({"preset": 3}, "unknown robot 3"),
+        ({"wings": 2}, "unknown robot field 'wings'; choose one of: preset, n_legs,.*tibia_m"),
+        ({"name": "x"}, "unknown robot field 'name'"),
+        ({"femur_m": "long"}, "robot.femur_m must be a number, not 'long'"),
+        ({"femur_m": True}, "robot.femur_m must be a number, not True"),
+        ({"femur_m": None}, "robot.femur_m must be a number"),
+        ({"femur_m": math.nan}, "robot.femur_m must be from 0.001 to 2, not nan"),
+        ({"femur_m": math.inf}, "robot.femur_m must be from"),
+        ({"femur_m": 0}, "robot.femur_m must be from"),
+        ({"femur_m": 10**400}, "robot.femur_m must be from"),
+        ({"dt_s": 0.008}, "robot.dt_s must be from 0.0005 to 0.005"),
+        ({"swing_s": 5.1}, "robot.swing_s must be from 0.02 to 5"),
+        ({"n_legs": 7}, "even number of legs, 4 to 12"),
+        ({"n_legs": 2}, "even number of legs, 4 to 12"),
+        ({"n_legs": 14}, "even number of legs, 4 to 12"),
+        ({"n_legs": 6.0}, "robot.n_legs must be a whole number"),
+        ({"n_legs": True}, "robot.n_legs must be a whole number"),
+        ({"mount_radius_m": -0.1}, "robot.mount_radius_m must be from 0 to 2"),
+        ({"legs": 6}, "robot.legs must be a list of {azimuth_deg, radius_m}"),
+        ({"legs": "six"}, "robot.legs must be a list"),
+        ({"legs": [1, 2, 3, 4]}, "robot.legs must be a list of"),
+        ({"legs": [{"azimuth_deg": 0, "length": 1}] * 4}, "robot.legs must be a list of"),
+        ({"legs": [{"radius_m": 0.1}] * 4}, "robot.legs.azimuth_deg must be a number"),
+        ({"legs": [{"azimuth_deg": 361}] * 4}, "robot.legs.azimuth_deg must be from -360 to 360"),
+        ({"legs": [{"azimuth_deg": 0}] * 5}, "even number of legs, 4 to 12, not 5"),
+        ({"legs": [], "n_legs": 6}, "legs one by one, or n_legs and mount_radius_m"),
+    ],
+)
+def test_a_wrong_robot_names_the_field_and_what_is_valid(
+    written: str | Mapping[str, Any], message: str
+) -> None:
+    with pytest.raises(InvalidInput, match=message):
+        robot(written)
+
+
+@pytest.mark.parametrize("name", [f.name for f in fields(Robot) if f.type in (float, "float")])
+def test_every_quantity_is_positive_and_has_limits(name: str) -> None:
+    for value in (-1, 0, 1e12, math.nan):
+        with pytest.raises(InvalidInput, match=f"robot.{name} must be"):
+            robot({name: value})
+    for value in (-1.0, 0.0, math.inf, math.nan):
+        with pytest.raises(InvalidInput, match=f"robot.{name} must be"):
+            replace(Robot(), **{name: value})  # type: ignore[arg-type]
+
+
+def test_a_phase_lasts_at_least_two_substeps() -> None:
+    with pytest.raises(InvalidInput, match=r"robot.shift_s must be from two substeps to 5 s"):
+        Robot(shift_s=0.007)
+
+
+def test_a_ring_is_even() -> None:
+    with pytest.raises(InvalidInput, match="even number of legs"):
+        ring(5)
