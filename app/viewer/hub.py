@@ -6,7 +6,6 @@ anything to viser: the hub listens to nothing but which robot they want to follo
 """
 
 import asyncio
-import contextlib
 import logging
 from collections.abc import Callable, Collection
 from types import TracebackType
@@ -106,8 +105,7 @@ class Hub:
         for session in sessions:
             session.close(_GOING_AWAY, "the server stops")
         await asyncio.gather(*(session.closed(_GOODBYE_S) for session in sessions))
-        with contextlib.suppress(asyncio.CancelledError):
-            await upstream
+        await asyncio.gather(upstream, return_exceptions=True)
 
     async def serve(self, websocket: WebSocket) -> None:
         """Serve one browser until it leaves: the endpoint of the websocket route.
@@ -124,12 +122,13 @@ class Hub:
             await websocket.accept(subprotocol=offered[0] if offered else None)
             await websocket.close(*refusal)
             return
-        await websocket.accept(subprotocol=wire.SUBPROTOCOL)
         view = follow.valid_view(websocket.query_params.get("view")) or follow.FREE
         session = Session(websocket, view, self.counters, self._missed_by)
+        # Counted before the first await, or a crowd at the door would all find it open.
         self._sessions.add(session)
         self._count_viewers()
         try:
+            await websocket.accept(subprotocol=wire.SUBPROTOCOL)
             await session.run(self._show_view)
         finally:
             self._sessions.discard(session)
