@@ -35,7 +35,7 @@ class HostGuard:
         headers = Headers(scope=scope)
         trouble = self._trouble(headers.getlist("host"), headers.getlist("origin"))
         if trouble is None:
-            await self._app(scope, receive, send)
+            await self._app(_without_origin(scope), receive, send)
         elif scope["type"] == "websocket":
             # Before it was accepted: the server answers 403.
             await send({"type": "websocket.close", "code": 1008, "reason": "foreign"})
@@ -75,6 +75,13 @@ class HostGuard:
             return True
         # Through a tunnel the same page has another port, or the other name of this machine.
         return _is_local(name) and _is_local(host[0])
+
+
+def _without_origin(scope: Scope) -> Scope:
+    """For websockets, whose endpoints would ask again and know less of what is let in."""
+    if scope["type"] != "websocket":
+        return scope
+    return {**scope, "headers": [h for h in scope["headers"] if h[0].lower() != b"origin"]}
 
 
 def _split(address: str) -> tuple[str, int | None] | None:

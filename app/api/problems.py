@@ -8,9 +8,11 @@ from typing import Any
 
 from fastapi import FastAPI
 from fastapi.exceptions import RequestValidationError
+from fastapi.routing import iter_route_contexts
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
+from starlette.routing import compile_path
 
 from app.api.sentences import in_sentences
 from app.domain.errors import HexapodError, InvalidInput
@@ -91,9 +93,20 @@ async def _http_error(request: Request, error: Exception) -> Response:
     if not isinstance(error, HTTPException):
         return await _unexpected(request, error)
     headers = dict(error.headers or {})
+    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
+        headers["Allow"] = _allowed(request)
     template = _DETAILS.get(HTTPStatus(error.status_code), str(error.detail))
     words = {"path": request.url.path, "method": request.method, "allow": headers.get("Allow", "")}
     return problem(error.status_code, template.format_map(words), headers=headers)
+
+
+def _allowed(request: Request) -> str:
+    """The methods of all routes with this path; a router only knows of the first."""
+    methods: set[str] = set()
+    for route in iter_route_contexts(request.app.routes):
+        if route.path and compile_path(route.path)[0].match(request.url.path):
+            methods |= set(route.methods or ())
+    return ", ".join(sorted(methods))
 
 
 async def _unexpected(request: Request, error: Exception) -> Response:

@@ -6,6 +6,7 @@ import queue
 import signal
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 
 from app.services import worker
 from app.services.orders import Message, Order, Word
@@ -71,11 +72,10 @@ class Child:
         self._process.kill()
 
     def _talk(self) -> None:
-        try:
-            while (said := self._to_send.get()) is not None:
+        while (said := self._to_send.get()) is not None:
+            with suppress(OSError):  # it is gone, which who listens to it finds out
                 self._pipe.send(said)
-        except OSError:
-            _logger.debug("%s is gone", self._process.name)
+        self._pipe.close()
 
     def _listen(self, on_end: Callable[[str], None]) -> None:
         try:

@@ -1,0 +1,88 @@
+"""What tests say to the API, and how they wait for it."""
+
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import httpx2
+from starlette.testclient import TestClient
+
+ADDRESS = "http://127.0.0.1:8000"
+LONG_S = 60.0
+"""Only a broken server takes so long; a busy machine does not."""
+
+WALK = {"gait": "left-right-origin", "simulator": "kinematic"}
+ENDED = ("finished", "stopped", "failed", "interrupted")
+
+
+@dataclass
+class Api:
+    """Calls under /api/v1."""
+
+    client: TestClient
+
+    def call(self, method: str, path: str, **more: Any) -> httpx2.Response:
+        return self.client.request(method, f"/api/v1{path}", **more)
+
+    def get(self, path: str, **more: Any) -> Any:
+        response = self.call("GET", path, **more)
+        assert response.status_code == 200, response.text
+        return response.json()
+
+    def start(self, path: str, body: Any) -> dict[str, Any]:
+        response = self.call("POST", path, json=body)
+        assert response.status_code == 202, response.text
+        run: dict[str, Any] = response.json()
+        assert response.headers["location"] == f"/api/v1{path}/{run['id']}"
+        return run
+
+    def train(self, **more: Any) -> dict[str, Any]:
+        return self.start("/trainings", {**WALK, "steps": 100, **more})
+
+    def race(self, **more: Any) -> dict[str, Any]:
+        return self.start("/races", {**WALK, **more})
+
+    def slow_training(self, **more: Any) -> dict[str, Any]:
+        """One that runs until it is stopped."""
+        run = self.train(steps=10_000_000, pace=20, evaluate_every=0, **more)
+        return self.until(run, lambda now: now["progress"]["done"] > 0)
+
+    def look(self, run: dict[str, Any]) -> dict[str, Any]:
+        shown: dict[str, Any] = self.get(f"/{run['kind']}s/{run['id']}")
+        return shown
+
+    def until(self, run: dict[str, Any], is_so: Any) -> dict[str, Any]:
+        deadline = time.monotonic() + LONG_S
+        while not is_so(now := self.look(run)):
+            assert now["state"] not in ENDED, now
+            assert time.monotonic() < deadline, now
+            time.sleep(0.01)
+        return now
+
+    def ended(self, run: dict[str, Any]) -> dict[str, Any]:
+        return self.until(run, lambda now: now["state"] in ENDED)
+
+    def finished(self, run: dict[str, Any]) -> dict[str, Any]:
+        now = self.ended(run)
+        assert now["state"] == "finished", now
+        return now
+
+    def tell(self, run: dict[str, Any], verb: str) -> httpx2.Response:
+        return self.call("POST", f"/{run['kind']}s/{run['id']}/{verb}")
+
+    def stop(self, *runs: dict[str, Any]) -> None:
+        for run in runs:
+            self.tell(run, "stop")
+
+
+def refused(response: httpx2.Response, status: int, *words: str) -> dict[str, Any]:
+    """Check that an answer is a problem document whose detail has these words."""
+    assert response.status_code == status, response.text
+    assert response.headers["content-type"] == "application/problem+json"
+    problem: dict[str, Any] = response.json()
+    assert {"type", "title", "status", "detail"} <= set(problem)
+    assert problem["status"] == status
+    assert "Traceback" not in response.text
+    for word in words:
+        assert word in problem["detail"]
+    return problem

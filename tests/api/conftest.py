@@ -1,0 +1,47 @@
+"""The real app with its real jobs; a client that calls it as a browser on this machine would."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient
+
+from app.server import create_app
+from app.settings import Settings
+from tests.api.calls import ADDRESS, Api
+
+
+@pytest.fixture(scope="session")
+def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("data")
+
+
+@pytest.fixture(scope="session")
+def api(data: Path) -> Iterator[Api]:
+    """One server for all tests that do not mind each other's runs."""
+    app = create_app(Settings(data=data))
+    with TestClient(app, base_url=ADDRESS) as client:
+        yield Api(client)
+
+
+@pytest.fixture(scope="session")
+def trained(api: Api) -> dict[str, Any]:
+    """A training that is finished."""
+    return api.finished(api.train(name="trained once"))
+
+
+@pytest.fixture
+def serve(data: Path) -> Iterator[Callable[..., Api]]:
+    """A server of a test's own, with settings of its own; without its lifespan, so no jobs run."""
+    clients: list[TestClient] = []
+
+    def make(**settings: Any) -> Api:
+        app = create_app(Settings(data=data, **settings))
+        client = TestClient(app, base_url=ADDRESS, follow_redirects=False)
+        clients.append(client)
+        return Api(client)
+
+    yield make
+    for client in clients:
+        client.close()

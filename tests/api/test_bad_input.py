@@ -1,0 +1,168 @@
+"""Whatever is wrong gets a 4xx and one sentence that names what is valid."""
+
+import json
+from typing import Any
+
+import pytest
+
+from tests.api.calls import WALK, Api, refused
+
+NAN = float("nan")
+WRONG_TRAININGS: list[tuple[dict[str, Any], tuple[str, ...]]] = [
+    ({"gait": "gallop"}, ("gallop", "left-right-origin", "front-back-vertical")),
+    ({"gait": 5}, ("gait", "left-right-origin")),
+    ({"gait": None}, ("gait", "left-right-origin")),
+    ({"gait": {"right_leg": 1, "left_leg": 9, "symmetry": "origin"}}, ("leg 9",)),
+    ({"gait": {"right_leg": 1, "left_leg": 2, "symmetry": "round"}}, ("origin or vertical",)),
+    ({"gait": {"right_leg": 1, "left_leg": 2}}, ("symmetry", "pairs")),
+    ({"gait": {"right_leg": 1, "left_leg": 2, "pairs": [[1, 4], [2, 5]]}}, ("leg 3",)),
+    ({"gait": {"right_leg": 1, "left_leg": 2, "pairs": [[1, 4, 5]]}}, ("pairs",)),
+    ({"gait": {"right": 1}}, ("right", "right_leg", "left_leg")),
+    ({"agent": "wizard"}, ("wizard", "q-learning", "greedy")),
+    ({"agent": "os:system"}, ("os:system", "q-learning")),
+    ({"agent": "greedy"}, ("Greedy does not learn",)),
+    ({"robot": "steel"}, ("steel", "stiff", "compliant", "slippery")),
+    ({"robot": {"wings": 2}}, ("wings", "tibia_m")),
+    ({"robot": {"n_legs": 5}}, ("even number of legs",)),
+    ({"robot": {"n_legs": 1e400}}, ("n_legs",)),
+    ({"robot": {"tibia_m": NAN}}, ("tibia_m",)),
+    ({"robot": {"tibia_m": 0.03}}, ("Leg 1", "cell", "grid_side_m")),
+    ({"robot": 7}, ("robot", "stiff")),
+    ({"grid_side_m": 0.4}, ("Leg 1", "cell", "0.4")),
+    ({"grid_side_m": 0.004}, ("grid_side_m", "0.005")),
+    ({"steps": 0}, ("steps", "from 1 to 10,000,000")),
+    ({"steps": -1}, ("steps", "from 1 to 10,000,000")),
+    ({"steps": 1e12}, ("steps", "from 1 to 10,000,000")),
+    ({"steps": 10**12}, ("steps", "from 1 to 10,000,000")),
+    ({"steps": NAN}, ("steps", "from 1 to 10,000,000")),
+    ({"steps": "500"}, ("steps", "whole number")),
+    ({"steps": True}, ("steps", "whole number")),
+    ({"steps": None}, ("steps", "whole number")),
+    ({"seed": -1}, ("seed", "0 or more")),
+    ({"seed": 0.5}, ("seed", "whole number")),
+    ({"alpha": 0}, ("alpha", "over 0 and at most 1")),
+    ({"alpha": 1.1}, ("alpha", "over 0 and at most 1")),
+    ({"alpha": float("inf")}, ("alpha",)),
+    ({"gamma": 1}, ("gamma", "under 1")),
+    ({"epsilon_start": 1.5}, ("epsilon_start", "from 0 to 1")),
+    ({"epsilon_end": -0.5}, ("epsilon_end", "from 0 to 1")),
+    ({"steps_per_episode": 0}, ("steps_per_episode",)),
+    ({"evaluate_every": -1}, ("evaluate_every", "from 0")),
+    ({"divisions": 1}, ("divisions", "from 2 to 8")),
+    ({"divisions": 9}, ("divisions", "from 2 to 8")),
+    ({"pace": 0}, ("pace", "max")),
+    ({"pace": "fast"}, ("pace", "max")),
+    ({"pace": True}, ("pace", "max")),
+    ({"observation": "guessed"}, ("observation", "measured", "commanded")),
+    ({"simulator": "matrix"}, ("simulator", "mujoco", "kinematic")),
+    ({"name": "x" * 101}, ("name", "100")),
+    ({"name": "two\nlines"}, ("name", "control characters")),
+    ({"name": "\ud800"}, ("name",)),
+    ({"colour": "red"}, ("colour", "gait", "steps")),
+    ({"{braces}": 1}, ("{braces}", "gait")),
+    ({"lanes": []}, ("lanes", "gait")),
+]
+
+
+@pytest.mark.parametrize(("wrong", "words"), WRONG_TRAININGS, ids=lambda v: str(v)[:40])
+def test_of_a_training(api: Api, wrong: dict[str, Any], words: tuple[str, ...]) -> None:
+    # As text, because no client of good manners sends NaN.
+    body = json.dumps({**WALK, **wrong})
+    problem = refused(post(api, "/trainings", body), 422, *words)
+    assert len(problem["detail"]) < 700
+
+
+WRONG_RACES: list[tuple[dict[str, Any], tuple[str, ...]]] = [
+    ({"lanes": []}, ("lanes", "1 to 6")),
+    ({"lanes": [{"agent": "greedy"}] * 7}, ("lanes", "1 to 6")),
+    ({"lanes": [{"agent": "wizard"}]}, ("wizard", "two-step")),
+    ({"lanes": [{"agent": "q-learning"}]}, ("Lane 1", "training_id", "training")),
+    ({"lanes": [{"agent": "greedy", "training": {}}]}, ("Lane 1", "does not learn")),
+    ({"lanes": [{"agent": "q-learning", "training_id": "none"}]}, ("none", "/api/v1/trainings")),
+    (
+        {"lanes": [{"agent": "q-learning", "training": {}, "training_id": "none"}]},
+        ("Lane 1", "not both"),
+    ),
+    ({"lanes": [{"agent": "q-learning", "training": {"gait": "x"}}]}, ("lanes.0", "gait", "steps")),
+    ({"lanes": [{"agent": "q-learning", "training": {"steps": 0}}]}, ("lanes.0.training.steps",)),
+    ({"lanes": [{"color": "red"}]}, ("color", "training_id")),
+    ({"lanes": [{}]}, ("lanes.0.agent", "missing")),
+    ({"lanes": "three"}, ("lanes",)),
+    ({"steps": 10**7}, ("300,000",)),
+    ({"steps": 0}, ("steps",)),
+    ({"pace": 1}, ("pace", "lanes")),
+    ({"robot": {"n_legs": 12}, "divisions": 8, "grid_side_m": 0.01}, ("64,000,000", "divisions")),
+]
+
+
+@pytest.mark.parametrize(("wrong", "words"), WRONG_RACES, ids=lambda v: str(v)[:40])
+def test_of_a_race(api: Api, wrong: dict[str, Any], words: tuple[str, ...]) -> None:
+    refused(post(api, "/races", json.dumps({**WALK, **wrong})), 422, *words)
+
+
+@pytest.mark.parametrize(
+    "body",
+    ["", "{", "[]", "3", "null", '"text"', "[" * 100_000, '{"gait": 1' + "0" * 10_000 + "}"],
+    ids=lambda body: body[:12] or "nothing",
+)
+def test_of_json(api: Api, body: str) -> None:
+    response = post(api, "/trainings", body)
+    assert response.status_code in (400, 422)
+    refused(response, response.status_code)
+
+
+def test_of_what_is_not_json(api: Api) -> None:
+    refused(api.call("POST", "/trainings", data={"gait": "x"}), 422, "JSON object")
+    refused(api.call("POST", "/trainings", content=b"\xff\xfe{"), 422)
+
+
+def test_all_wrong_fields_are_named(api: Api) -> None:
+    body = {**WALK, "steps": 0, "alpha": 2, "pace": "fast"}
+    problem = refused(api.call("POST", "/trainings", json=body), 422)
+    assert [error["field"] for error in problem["errors"]] == ["steps", "alpha", "pace"]
+
+
+def test_a_training_that_has_not_ended_gives_no_table(api: Api) -> None:
+    run = api.slow_training()
+    lanes = [{"agent": "q-learning", "training_id": run["id"]}]
+    problem = refused(
+        api.call("POST", "/races", json={**WALK, "lanes": lanes}), 409, "finished or stopped"
+    )
+    assert problem["state"] == "running"
+    refused(api.call("GET", f"/trainings/{run['id']}/q-table"), 409, "running")
+    api.stop(run)
+
+
+def test_a_table_for_another_gait(api: Api, trained: dict[str, Any]) -> None:
+    lanes = [{"agent": "q-learning", "training_id": trained["id"]}]
+    other = {**WALK, "gait": "front-back-origin", "lanes": lanes}
+    refused(api.call("POST", "/races", json=other), 422, "gait", "front-back-origin")
+    wider = {**WALK, "grid_side_m": 0.05, "lanes": lanes}
+    refused(api.call("POST", "/races", json=wider), 422, "grid_side_m")
+
+
+def test_unknown_paths_and_methods(api: Api) -> None:
+    refused(api.call("GET", "/experiments"), 404, "/docs")
+    refused(api.call("GET", "/trainings/none"), 404, "none", "/api/v1/trainings")
+    refused(api.call("PUT", "/trainings"), 405, "POST")
+    refused(api.client.get("/nothing"), 404)
+    refused(api.client.get("/static/../pyproject.toml"), 404)
+    refused(api.client.get("/static/%2e%2e/pyproject.toml"), 404)
+
+
+def test_of_the_stage(api: Api) -> None:
+    refused(api.call("PUT", "/stage", json={"run_id": "none"}), 404, "none")
+    for wrong, word in (
+        ({"speed": 65}, "0.25 to 64"),
+        ({"speed": "fast"}, "time-lapse"),
+        ({"time_s": -1}, "0 or more"),
+        ({"clock": "sun"}, "paper, wall, free"),
+        ({"playing": 1}, "true or false"),
+        ({"volume": 1}, "run_id"),
+    ):
+        refused(api.call("PUT", "/stage", json=wrong), 422, word)
+
+
+def post(api: Api, path: str, body: str) -> Any:
+    content = body.encode("utf-8", "surrogatepass")
+    return api.call("POST", path, content=content, headers={"Content-Type": "application/json"})

@@ -1,0 +1,184 @@
+"""The resource `races`: one request that trains and races, and what can be replayed."""
+
+import io
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.runs.recording import race_recording
+from tests.api.calls import WALK, Api, refused
+
+PRACTICE = {"steps": 100}
+LANES = [
+    {"agent": "q-learning", "training": PRACTICE},
+    {"agent": "greedy"},
+    {"agent": "two-step"},
+]
+
+
+@pytest.fixture(scope="module")
+def raced(api: Api) -> dict[str, Any]:
+    """The paper's three lanes, after a short practice."""
+    return api.finished(api.race(lanes=LANES, name="raced once"))
+
+
+def test_a_race_needs_no_more_than_its_gait(api: Api) -> None:
+    race = api.start("/races", {"gait": WALK["gait"]})
+    lanes = race["config"]["lanes"]
+    assert [lane["agent"] for lane in lanes] == ["q-learning", "greedy", "two-step"]
+    assert race["waiting_for"] == [lanes[0]["training_id"]]
+    training = api.get(f"/trainings/{lanes[0]['training_id']}")
+    assert training["config"]["steps"] == 500
+    assert race["config"]["steps"] == 50
+    assert race["state"] == "queued"
+    api.stop(race)
+
+
+def test_one_request_trains_and_then_races(raced: dict[str, Any], api: Api) -> None:
+    lanes = raced["result"]["lanes"]
+    training = api.get(f"/trainings/{lanes[0]['training_id']}")
+    assert training["state"] == "finished"
+    assert training["ended_at"] <= raced["started_at"]
+    assert raced["waiting_for"] == []
+    assert [lane["simulated_transitions"] for lane in lanes] == [0, 600, 7800]
+    assert [lane["steps"] for lane in lanes] == [50, 50, 50]
+    assert lanes[0]["total_distance_m"] == pytest.approx(training["result"]["distance_m"], abs=0.5)
+    assert lanes[1]["total_distance_m"] == pytest.approx(24.833 * 0.02, abs=1e-5)
+    for lane in lanes:
+        assert set(lane["clocks"]) == {"paper", "wall", "free"}
+        for under in lane["clocks"].values():
+            assert {"finished_distance_m", "elapsed_s", "rank"} <= set(under)
+    assert isinstance(raced["result"]["shared_machine"], bool)
+
+
+def test_the_same_race_comes_out_the_same(raced: dict[str, Any], api: Api) -> None:
+    again = api.finished(api.race(lanes=LANES))
+    for one, other in zip(raced["result"]["lanes"], again["result"]["lanes"], strict=True):
+        for name in ("total_distance_m", "simulated_transitions", "steps"):
+            assert one[name] == other[name]
+        for clock in ("paper", "free"):
+            assert one["clocks"][clock] == other["clocks"][clock]
+
+
+def test_a_race_with_a_table_that_there_is(api: Api, trained: dict[str, Any]) -> None:
+    lanes = [{"agent": "q-learning", "training_id": trained["id"]}]
+    robot = {"preset": "compliant"}
+    race = api.finished(api.race(lanes=lanes, robot="compliant"))
+    assert race["waiting_for"] == []
+    assert race["config"]["robot"] == robot
+    lane = race["result"]["lanes"][0]
+    assert lane["training_id"] == trained["id"]
+    assert lane["trained_robot"] == trained["config"]["robot"]
+    plain = api.finished(api.race(lanes=lanes))["result"]["lanes"][0]
+    assert plain["trained_robot"] is None
+
+
+def test_a_lane_observes_as_its_table_does(api: Api) -> None:
+    practice = {"steps": 20, "observation": "commanded", "seed": 3}
+    race = api.finished(api.race(lanes=[{"agent": "q-learning", "training": practice}], seed=9))
+    lane = race["config"]["lanes"][0]
+    assert lane["observation"] == "commanded"
+    training = api.get(f"/trainings/{lane['training_id']}")
+    assert (training["config"]["seed"], race["config"]["seed"]) == (3, 9)
+
+
+def test_practise_more_and_race_again(api: Api, raced: dict[str, Any]) -> None:
+    before = raced["config"]["lanes"][0]["training_id"]
+    practice = {**PRACTICE, "continue_from": before}
+    again = api.finished(api.race(lanes=[{"agent": "q-learning", "training": practice}]))
+    training = api.get(f"/trainings/{again['config']['lanes'][0]['training_id']}")
+    assert training["config"]["continue_from"] == before
+
+
+def test_stopping_the_race_stops_the_practice_for_it(api: Api) -> None:
+    practice = {"steps": 10_000_000, "pace": 1, "evaluate_every": 0}
+    race = api.race(lanes=[{"agent": "q-learning", "training": practice}])
+    training = api.get(f"/trainings/{race['waiting_for'][0]}")
+    api.until(training, lambda now: now["state"] == "running")
+    assert api.tell(race, "stop").json()["state"] == "stopped"
+    assert api.ended(training)["state"] == "stopped"
+
+
+def test_stopping_the_practice_stops_the_race_and_says_so(api: Api) -> None:
+    practice = {"steps": 10_000_000, "pace": 1, "evaluate_every": 0}
+    race = api.race(lanes=[{"agent": "q-learning", "training": practice}])
+    training = api.get(f"/trainings/{race['waiting_for'][0]}")
+    refused(api.tell(race, "pause"), 409, "queued")
+    api.until(training, lambda now: now["progress"]["done"] > 0)
+    api.stop(training)
+    now = api.ended(race)
+    assert now["state"] == "stopped"
+    assert training["id"] in now["error"]
+    refused(api.call("GET", f"/races/{race['id']}/recording"), 409, "no recording")
+
+
+def test_a_table_that_is_waited_for_is_kept(api: Api, trained: dict[str, Any]) -> None:
+    practice = {"steps": 10_000_000, "pace": 1, "evaluate_every": 0}
+    lanes = [
+        {"agent": "q-learning", "training_id": trained["id"]},
+        {"agent": "q-learning", "training": practice},
+    ]
+    race = api.race(lanes=lanes)
+    refused(api.call("DELETE", f"/trainings/{trained['id']}"), 409, race["id"])
+    api.stop(race)
+
+
+def test_its_recording_replays_it(api: Api, raced: dict[str, Any]) -> None:
+    path = f"/races/{raced['id']}/recording"
+    shown = api.get(path)
+    assert [lane["agent"] for lane in shown["lanes"]] == ["q-learning", "greedy", "two-step"]
+    data = api.call("GET", f"{path}?format=npz")
+    assert len(data.content) < 400_000
+    with np.load(io.BytesIO(data.content), allow_pickle=False) as file:
+        lanes = race_recording(dict(file))
+    for lane, told in zip(lanes, shown["lanes"], strict=True):
+        assert [step.distance_m for step in lane.steps] == [s["distance_m"] for s in told["steps"]]
+        last = told["steps"][-1]
+        assert np.allclose(lane.steps[-1].motion.qpos, last["qpos"], atol=1e-5)
+        assert len(last["time_s"]) == len(last["qpos"])
+
+
+def test_its_timeline_is_flat_while_it_thinks(api: Api, raced: dict[str, Any]) -> None:
+    shown = api.get(f"/races/{raced['id']}/timeline")
+    assert (shown["clock"], shown["steps"], shown["finish_line_m"]) == ("paper", 50, 0.45)
+    learner, greedy, two_step = shown["lanes"]
+    assert learner["color"] == "#E69F00"
+    assert learner["thinking"] == []
+    assert learner["total_s"] == pytest.approx(16, abs=0.1)
+    assert shown["first_finish_s"] == learner["total_s"]
+    assert greedy["futures"] == [12] * 50
+    assert two_step["total_s"] == pytest.approx(91, abs=0.5)
+    assert greedy["crossed_s"] < two_step["crossed_s"]
+    assert len(greedy["points"]) == 101
+    began, ended = greedy["thinking"][1]
+    distances = dict(map(tuple, greedy["points"]))
+    assert distances[began] == distances[ended]
+    free = api.get(f"/races/{raced['id']}/timeline?clock=free")
+    assert {lane["total_s"] for lane in free["lanes"]} == {learner["total_s"]}
+    refused(api.call("GET", f"/races/{raced['id']}/timeline?clock=sun"), 422, "paper, wall, free")
+
+
+def test_who_starts_a_run_gives_it_the_stage(api: Api) -> None:
+    first = api.slow_training()
+    api.call("PUT", "/stage", json={"run_id": first["id"]})
+    second = api.slow_training()
+    assert api.get("/stage")["run_id"] == first["id"], "a live run holds it"
+    api.stop(first)
+    third = api.slow_training()
+    assert api.get("/stage")["run_id"] == third["id"]
+    shown = api.call("PUT", "/stage", json={"run_id": second["id"], "speed": 4}).json()
+    assert (shown["run_id"], shown["speed"]) == (second["id"], 4)
+    api.stop(second, third)
+
+
+def test_options_are_all_that_can_be_asked_for(api: Api) -> None:
+    options = api.get("/options")
+    for gait in options["gaits"]:
+        for robot in options["robots"]:
+            body = {**WALK, "gait": gait["name"], "robot": robot["name"], "steps": 1}
+            api.stop(api.start("/trainings", body))
+    learns = {agent["name"]: agent["learns"] for agent in options["agents"]}
+    assert learns == {"q-learning": True, "greedy": False, "two-step": False}
+    api.stop(api.start("/trainings", options["defaults"]["training"]))
+    assert set(options["limits"]) <= set(options["help"])

@@ -1,0 +1,203 @@
+"""Who gets in: over every route that the app has, not over those that someone thought of."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from fastapi import FastAPI
+from fastapi.routing import iter_route_contexts
+from starlette.testclient import TestClient
+from starlette.websockets import WebSocketDisconnect
+
+from app.api.auth import COOKIE
+from app.api.limits import IMPORT_PATH, MAX_BODY_BYTES
+from tests.api.calls import Api, refused
+
+TOKEN = "a-token-for-tests"
+SAFE = {"GET", "HEAD"}
+Serve = Callable[..., Api]
+
+
+def every_route(client: TestClient) -> list[tuple[str, str]]:
+    """(method, path) of all there is, `WS` for websockets."""
+    app = client.app
+    assert isinstance(app, FastAPI)
+    found = []
+    for route in iter_route_contexts(app.routes):
+        path = (route.path or "").replace("{run_id}", "none")
+        if path == "/static":
+            found.append(("GET", "/static/favicon.svg"))
+        else:
+            found += [(method, path) for method in sorted(route.methods or {"WS"})]
+    assert len(found) > 30
+    return found
+
+
+def answer(client: TestClient, method: str, path: str, headers: dict[str, str]) -> int:
+    """The status; 101 for a websocket that is let in."""
+    if method != "WS":
+        response = client.request(method, path, headers=headers)
+        if response.status_code >= 400 and method != "HEAD":
+            refused(response, response.status_code)
+        return response.status_code
+    try:
+        # The test client calls websockets by a name of its own.
+        with client.websocket_connect(path, headers={"Host": "127.0.0.1:8000", **headers}):
+            return 101
+    except WebSocketDisconnect as closed:
+        assert closed.code == 1008
+        return 403
+
+
+def quick(routes: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Without the stream that never ends; who may not have it is answered all the same."""
+    return [(method, path) for method, path in routes if path != "/api/v1/events"]
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Host": "evil.example"},
+        {"Host": "evil.example:8000"},
+        {"Host": "127.0.0.1.evil.example"},
+        {"Host": "localhost.evil.example"},
+        {"Host": ""},
+        {"Host": "user@127.0.0.1"},
+        {"Host": "127.0.0.1/x"},
+        {"Origin": "http://evil.example"},
+        {"Origin": "https://127.0.0.1.evil.example"},
+        {"Origin": "null"},
+        {"Origin": "file://"},
+        {"Origin": "http://203.0.113.7:8000"},
+        {"Host": "192.168.1.5:8000", "Origin": "http://192.168.1.6:8000"},
+        {"Host": "192.168.1.5:8000", "Origin": "http://localhost:8000"},
+        {"Host": "192.168.1.5:8000", "Origin": "http://192.168.1.5:9000"},
+    ],
+    ids=str,
+)
+def test_foreign_names_and_pages_get_nowhere(serve: Serve, headers: dict[str, str]) -> None:
+    client = serve().client
+    for method, path in [*every_route(client), ("GET", "/nothing")]:
+        assert answer(client, method, path, headers) == 403, (method, path)
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {},
+        {"Host": "localhost"},
+        {"Host": "LOCALHOST:8000"},
+        {"Host": "[::1]:8000"},
+        {"Host": "192.168.1.5:8000", "Origin": "http://192.168.1.5:8000"},
+        {"Host": "192.168.1.5", "Origin": "http://192.168.1.5"},
+        {"Origin": "http://127.0.0.1:8000"},
+        {"Host": "127.0.0.1:8000", "Origin": "http://localhost:9000"},
+        {"Host": "lab.example", "Origin": "http://lab.example"},
+        {"Host": "hexapods.example", "Origin": "https://hexapods.example"},
+        {"Host": "127.0.0.1:8000", "Origin": "https://hexapods.example"},
+    ],
+    ids=str,
+)
+def test_ones_own_names_and_pages_get_in(serve: Serve, headers: dict[str, str]) -> None:
+    client = serve(public_url="https://hexapods.example", allowed_hosts=("lab.example",)).client
+    for method, path in quick(every_route(client)):
+        assert answer(client, method, path, headers) not in (401, 403), (method, path)
+
+
+def test_without_the_token_one_may_look_and_change_nothing(serve: Serve) -> None:
+    client = serve(token=TOKEN).client
+    for method, path in quick(every_route(client)):
+        status = answer(client, method, path, {})
+        if method in SAFE | {"WS"}:
+            assert status != 401, (method, path)
+        else:
+            assert status == 401, (method, path)
+    refused(client.post("/nothing"), 401, "Bearer")
+
+
+def test_spectators_may_need_the_token_too(serve: Serve) -> None:
+    client = serve(token=TOKEN, spectators="token").client
+    is_open = {"/", "/healthz", "/readyz", "/static/favicon.svg"}
+    for method, path in every_route(client):
+        status = answer(client, method, path, {})
+        if path in is_open and method in SAFE:
+            assert status in (200, 503), (method, path)
+        else:
+            assert status == (403 if method == "WS" else 401), (method, path)
+
+
+@pytest.mark.parametrize("how", ["Bearer", "bearer", "cookie"])
+def test_with_the_token_one_may_do_everything(serve: Serve, how: str) -> None:
+    client = serve(token=TOKEN, spectators="token").client
+    headers = {}
+    if how == "cookie":
+        assert client.get(f"/?token={TOKEN}").status_code == 303
+        headers["Cookie"] = f"{COOKIE}={client.cookies[COOKIE]}"
+    else:
+        headers["Authorization"] = f"{how} {TOKEN}"
+    for method, path in quick(every_route(client)):
+        assert answer(client, method, path, headers) not in (401, 403), (method, path)
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Authorization": "Bearer wrong"},
+        {"Authorization": "Bearer "},
+        {"Authorization": f"Basic {TOKEN}"},
+        {"Authorization": TOKEN},
+        {"Authorization": b"Bearer t\xf6k"},
+        {"Cookie": f"{COOKIE}={TOKEN}"},
+        {"Cookie": f"{COOKIE}="},
+        {"Cookie": "\x7f;;=;"},
+    ],
+    ids=str,
+)
+def test_what_is_not_the_token_is_not(serve: Serve, headers: Any) -> None:
+    client = serve(token=TOKEN).client
+    response = client.put("/api/v1/stage", json={}, headers=headers)
+    refused(response, 401, "token")
+    assert response.headers["www-authenticate"].startswith("Bearer")
+
+
+def test_the_link_sets_a_cookie_and_cleans_the_address(serve: Serve) -> None:
+    client = serve(token=TOKEN).client
+    response = client.get(f"/?gait=x&token={TOKEN}&steps=5")
+    assert response.status_code == 303
+    assert response.headers["location"] == "?gait=x&steps=5"
+    cookie = response.headers["set-cookie"]
+    for said in ("HttpOnly", "SameSite=strict", "Path=/"):
+        assert said.lower() in cookie.lower()
+    assert TOKEN not in cookie
+    assert client.put("/api/v1/stage", json={"playing": True}).status_code == 200
+    refused(client.get("/?token=wrong"), 401, "not the server's token")
+    secure = serve(token=TOKEN, public_url="https://hexapods.example").client
+    assert "secure" in secure.get(f"/?token={TOKEN}").headers["set-cookie"].lower()
+    assert serve().client.get("/?token=any").headers["location"] == "./"
+
+
+def test_every_answer_tells_browsers_to_be_careful(serve: Serve) -> None:
+    client = serve().client
+    for method, path in quick(every_route(client)):
+        if method == "WS":
+            continue
+        headers = client.request(method, path).headers
+        assert headers["x-content-type-options"] == "nosniff", path
+        assert "frame-ancestors 'self'" in headers["content-security-policy"], path
+        assert headers["referrer-policy"] == "same-origin", path
+    page = client.get("/").headers["content-security-policy"]
+    assert "script-src 'self' 'sha256-" in page
+    assert "unsafe-inline" not in page.partition("script-src")[2].partition(";")[0]
+
+
+def test_bodies_are_capped(serve: Serve) -> None:
+    api = serve()
+    large = b"x" * (MAX_BODY_BYTES + 1)
+    refused(api.call("POST", "/trainings", content=large), 413, "1,048,576")
+    chunks = (b"x" * 65536 for _ in range(32))
+    refused(api.call("POST", "/trainings", content=chunks), 413, "1,048,576")
+    exact = b" " * (MAX_BODY_BYTES - 2) + b"{}"
+    json: Any = {"Content-Type": "application/json"}
+    refused(api.call("POST", "/trainings", content=exact, headers=json), 422, "gait")
+    refused(api.client.post(IMPORT_PATH, content=large), 422, "The file")
+    refused(api.client.post(IMPORT_PATH, headers={"Content-Length": "99999999999"}), 413)

@@ -1,0 +1,199 @@
+"""The resource `trainings`: start, watch, change, and take away what was learned."""
+
+import csv
+import io
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.assembly import build_learner, finish_training
+from app.runs.config import TrainingConfig
+from app.runs.tables import from_bytes, table_of
+from app.runs.training import train
+from tests.api.calls import WALK, Api, refused
+
+
+def train_directly(**fields: Any) -> dict[str, Any]:
+    config = TrainingConfig(gait=WALK["gait"], **fields)
+    learner = build_learner(config)
+    for _ in train(learner, config):
+        pass
+    return finish_training(learner, config)
+
+
+def test_a_training_needs_no_more_than_its_gait(api: Api) -> None:
+    run = api.start("/trainings", {"gait": "front-back-vertical"})
+    api.stop(run)
+    config = run["config"]
+    assert run["kind"] == "training"
+    assert run["state"] == "queued"
+    assert run["progress"] == {"done": 0, "total": 500}
+    assert (config["steps"], config["alpha"], config["gamma"]) == (500, 0.3, 0.9)
+    assert (config["observation"], config["simulator"]) == ("measured", "mujoco")
+    assert run["created_at"].endswith("Z")
+
+
+def test_it_computes_what_the_loop_computes_to_the_last_bit(
+    api: Api, trained: dict[str, Any]
+) -> None:
+    again = api.finished(api.train())
+    assert trained["result"] == again["result"]
+    assert trained["result"] == train_directly(steps=100, simulator="kinematic")
+
+
+def test_so_it_does_on_mujoco(api: Api) -> None:
+    run = api.finished(api.start("/trainings", {"gait": WALK["gait"], "steps": 30, "seed": 7}))
+    assert run["result"] == train_directly(steps=30, seed=7)
+
+
+def test_its_curve_is_its_evaluations(api: Api, trained: dict[str, Any]) -> None:
+    curve = api.get(f"/trainings/{trained['id']}/curve")
+    assert [row["step"] for row in curve["evaluations"]] == [50, 100]
+    assert curve["evaluations"][-1]["distance_m"] == trained["result"]["distance_m"]
+    assert curve["greedy_distance_m"] == pytest.approx(24.833 * 0.02, abs=1e-3 * 0.02)
+    response = api.call(
+        "GET", f"/trainings/{trained['id']}/curve", headers={"Accept": "text/csv, */*;q=0.1"}
+    )
+    rows = list(csv.DictReader(io.StringIO(response.text)))
+    assert [{k: float(v) for k, v in row.items()} for row in rows] == curve["evaluations"]
+
+
+def test_its_table_is_there_in_three_forms(api: Api, trained: dict[str, Any]) -> None:
+    path = f"/trainings/{trained['id']}/q-table"
+    shown = api.get(path)
+    assert (shown["gait"], shown["divisions"], shown["grid_side_m"]) == (WALK["gait"], 2, 0.04)
+    assert shown["cells"][0] == [0, 0]
+    assert len(shown["values"]) == 1500
+    table = table_of(from_bytes(api.call("GET", path, params={"format": "npz"}).content, "it"))
+    assert table.sha256() == trained["result"]["q_table_sha256"]
+    for entry in shown["values"]:
+        pair, cell = entry["action"]
+        assert table.values(tuple(entry["state"]))[pair, cell] == entry["value"]
+        assert table.visits(tuple(entry["state"]))[pair, cell] == entry["visits"]
+    rows = list(csv.DictReader(io.StringIO(api.call("GET", f"{path}?format=csv").text)))
+    assert len(rows) == 1500
+    assert sum(int(row["visits"]) for row in rows) == 100
+    by_accept = api.call("GET", path, headers={"Accept": "application/x-npz"})
+    assert by_accept.headers["content-type"] == "application/x-npz"
+
+
+def test_a_table_can_be_brought_along(api: Api, trained: dict[str, Any]) -> None:
+    data = api.call("GET", f"/trainings/{trained['id']}/q-table?format=npz").content
+    response = api.call("POST", "/trainings/import?name=from+elsewhere", content=data)
+    assert response.status_code == 201
+    run = response.json()
+    assert response.headers["location"] == f"/api/v1/trainings/{run['id']}"
+    assert (run["name"], run["state"]) == ("from elsewhere", "finished")
+    assert run["result"]["q_table_sha256"] == trained["result"]["q_table_sha256"]
+    shared = ("gait", "steps", "seed", "alpha", "observation", "agent")
+    assert all(run["config"][name] == trained["config"][name] for name in shared)
+    lanes = [{"agent": "q-learning", "training_id": run["id"]}]
+    assert api.finished(api.race(lanes=lanes))["result"]["lanes"][0]["steps"] == 50
+
+
+def test_a_damaged_table_is_refused(api: Api, trained: dict[str, Any]) -> None:
+    data = api.call("GET", f"/trainings/{trained['id']}/q-table?format=npz").content
+    middle = len(data) // 2
+    changed = data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
+    bomb = io.BytesIO()
+    np.savez_compressed(bomb, meta=np.zeros(10_000_000))
+    for wrong in (changed, data[:middle], b"no zip", bomb.getvalue()):
+        refused(api.call("POST", "/trainings/import", content=wrong), 422, "The file")
+    refused(api.call("POST", "/trainings/import"), 422, ".npz")
+
+
+def test_practice_goes_on_where_it_ended(api: Api, trained: dict[str, Any]) -> None:
+    more = api.finished(api.train(continue_from=trained["id"]))
+    assert more["config"]["continue_from"] == trained["id"]
+    table = api.get(f"/trainings/{more['id']}/q-table")
+    assert sum(entry["visits"] for entry in table["values"]) == 200
+    body = {**WALK, "continue_from": trained["id"]}
+    refused(api.call("POST", "/trainings", json={**body, "seed": 1}), 422, "seed")
+    other = {**body, "gait": "front-back-origin"}
+    refused(api.call("POST", "/trainings", json=other), 422, "gait", "front-back-origin")
+    unseen = {**body, "continue_from": "nothing"}
+    refused(api.call("POST", "/trainings", json=unseen), 422, "nothing", "/api/v1/trainings")
+
+
+def test_pause_resume_stop(api: Api) -> None:
+    run = api.slow_training()
+    refused(api.tell(run, "resume"), 409, "running", "paused")
+    assert api.tell(run, "pause").json()["state"] == "paused"
+    assert api.tell(run, "pause").json()["state"] == "paused"
+    refused(api.call("DELETE", f"/trainings/{run['id']}"), 409)
+    assert api.tell(run, "resume").json()["state"] == "running"
+    stopped = api.tell(run, "stop")
+    assert stopped.status_code == 202
+    now = api.look(run)
+    assert now["state"] == "stopped"
+    assert now["result"]["q_table_sha256"]
+    table = api.get(f"/trainings/{run['id']}/q-table")
+    assert sum(entry["visits"] for entry in table["values"]) == now["progress"]["done"]
+    problem = refused(api.tell(run, "stop"), 409, "stopped")
+    assert problem["state"] == "stopped"
+    assert api.call("DELETE", f"/trainings/{run['id']}").status_code == 204
+    refused(api.call("GET", f"/trainings/{run['id']}"), 404, run["id"])
+
+
+def test_rates_and_pace_change_while_it_runs_and_are_kept(api: Api) -> None:
+    run = api.slow_training()
+    path = f"/trainings/{run['id']}"
+    now = api.call("PATCH", path, json={"alpha": 0.1, "epsilon": 0.5}).json()
+    assert [(c["alpha"], c["epsilon"]) for c in now["changes"]] == [(0.1, 0.5)]
+    api.tell(run, "pause")
+    now = api.call("PATCH", path, json={"pace": "max", "gamma": 0}).json()
+    assert now["changes"][-1] == {"step": now["changes"][-1]["step"], "pace": "max", "gamma": 0}
+    api.stop(run)
+    data = api.call("GET", f"{path}/q-table?format=npz").content
+    assert from_bytes(data, "it").meta["changes"] == now["changes"]
+    refused(api.call("PATCH", path, json={"pace": 1}), 409, "stopped")
+    for body in ({}, {"alpha": None}, {"alpha": 0}, {"pace": 0}, {"steps": 5}, {"gamma": 1}):
+        refused(api.call("PATCH", path, json=body), 422)
+
+
+def test_changed_rates_can_be_repeated_exactly(api: Api) -> None:
+    run = api.slow_training()
+    now = api.call("PATCH", f"/trainings/{run['id']}", json={"alpha": 0.05, "pace": 50}).json()
+    api.until(run, lambda then: then["progress"]["done"] > now["changes"][0]["step"] + 20)
+    api.stop(run)
+    now = api.look(run)
+    config = TrainingConfig(
+        gait=WALK["gait"], simulator="kinematic", steps=10_000_000, evaluate_every=0
+    )
+    learner = build_learner(config)
+    for _ in train(learner, config):
+        for change in now["changes"]:
+            if learner.step == change["step"] == learner.step:
+                learner.walker.agent.tune(alpha=change["alpha"])  # type: ignore[attr-defined]
+        if learner.step == now["progress"]["done"]:
+            break
+    assert finish_training(learner, config) == now["result"]
+
+
+def test_lists_come_in_pages_newest_first(api: Api, trained: dict[str, Any]) -> None:
+    made = [api.finished(api.train(steps=1, name=f"page {n}"))["id"] for n in range(3)]
+    first = api.get("/trainings?limit=2&state=finished")
+    assert [run["id"] for run in first["items"]] == made[:0:-1]
+    second = api.get(f"/trainings?limit=1&state=finished&cursor={first['next_cursor']}")
+    assert [run["id"] for run in second["items"]] == made[:1]
+    assert all(run["kind"] == "training" for run in api.get("/trainings")["items"])
+    refused(api.call("GET", "/trainings?state=lost"), 422, "queued", "interrupted")
+    refused(api.call("GET", "/trainings?limit=0"), 422, "1 to 100")
+
+
+def test_a_race_is_no_training(api: Api) -> None:
+    race = api.finished(api.race(lanes=[{"agent": "greedy"}]))
+    refused(api.call("GET", f"/trainings/{race['id']}"), 404, race["id"])
+    refused(api.call("POST", f"/trainings/{race['id']}/stop"), 404)
+
+
+def test_a_broken_physics_is_a_failed_run_with_the_reason(api: Api) -> None:
+    body = {"gait": WALK["gait"], "steps": 200, "robot": {"dt_s": 0.005, "servo_kp": 1000.0,
+            "servo_torque_nm": 100.0, "servo_kv": 0.001, "tibia_kg": 0.001, "foot_kg": 0.001,
+            "coxa_kg": 0.001, "femur_kg": 0.001, "joint_armature": 0.0001,
+            "joint_damping": 0.0001}}  # fmt: skip
+    run = api.ended(api.start("/trainings", body))
+    assert run["state"] == "failed", run
+    assert "diverged" in run["error"]
+    assert "Traceback" not in run["error"]
