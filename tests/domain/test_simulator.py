@@ -1,0 +1,230 @@
+"""What every simulator promises, tried on both."""
+
+from collections.abc import Callable
+from dataclasses import FrozenInstanceError
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.domain.gait import NAMED_GAITS, resolve
+from app.domain.grid import FootGrid
+from app.domain.kinematic import KinematicSimulator
+from app.domain.kinematics import Legs
+from app.domain.observation import legal_actions, observe
+from app.domain.robot import Robot, robot
+from app.domain.simulator import Simulator
+from app.domain.types import Action
+from app.physics.mujoco_simulator import MujocoSimulator
+
+Build = Callable[..., Simulator[Any]]
+
+
+@pytest.fixture(params=[KinematicSimulator, MujocoSimulator], ids=["kinematic", "mujoco"])
+def build(request: pytest.FixtureRequest) -> Build:
+    def build(
+        gait: str = "left-right-origin", made: Robot | None = None, divisions: int = 2
+    ) -> Simulator[Any]:
+        made = made or Robot()
+        simulator: Simulator[Any] = request.param(
+            made, resolve(gait, made.azimuths_deg), FootGrid(divisions=divisions)
+        )
+        return simulator
+
+    return build
+
+
+@pytest.fixture
+def simulator(build: Build) -> Simulator[Any]:
+    return build()
+
+
+def walk(simulator: Simulator[Any], state: Any, steps: int, seed: int = 0) -> list[Any]:
+    """The states that chance leads through."""
+    rng, states = np.random.default_rng(seed), []
+    for _ in range(steps):
+        legal = legal_actions(observe(simulator, state, "commanded"), len(simulator.grid))
+        state = simulator.step(state, legal[int(rng.integers(len(legal)))]).state
+        states.append(state)
+    return states
+
+
+def bits(simulator: Simulator[Any], state: Any) -> dict[str, bytes]:
+    """All that a state is."""
+    return {name: array.tobytes() for name, array in simulator.dump(state).items()}
+
+
+def test_rest_is_on_the_start_line_with_every_foot_at_home(build: Build) -> None:
+    for gait in NAMED_GAITS:
+        simulator = build(gait)
+        rest = simulator.rest()
+
+        assert (rest.distance_m, rest.steps, rest.commanded) == (0, 0, (0, 0, 0))
+        assert np.allclose(simulator.pair_offsets(rest), 0, atol=1e-3)
+        assert observe(simulator, rest, "measured") == (0, 0, 0)
+
+
+@pytest.mark.parametrize("gait", NAMED_GAITS)
+def test_the_robot_faces_along_the_track(build: Build, gait: str) -> None:
+    """World +y, whichever of its legs that is."""
+    simulator = build(gait)
+    pose = simulator.pose(simulator.rest())
+    half_yaw = np.arctan2(pose[6], pose[3])
+    heading = 2 * np.rad2deg(half_yaw) + simulator.gait.forward_deg
+
+    assert pose.shape == (7 + 18,)
+    assert pose[:2] == pytest.approx((0, 0), abs=1e-9)
+    assert pose[2] == pytest.approx(0.09 + 0.012, abs=2e-3)
+    assert heading == pytest.approx(90, abs=0.1)
+
+
+def test_the_pose_holds_the_joint_angles_of_the_legs_in_order(simulator: Simulator[Any]) -> None:
+    state = walk(simulator, simulator.rest(), 5)[-1]
+    angles = simulator.pose(state)[7:].tolist()
+    feet = Legs(simulator.robot, simulator.gait).foot_offsets(angles)
+
+    for (leader, partner), (x, y) in zip(
+        simulator.gait.pairs, simulator.pair_offsets(state), strict=True
+    ):
+        (right, forward, _), (left, as_forward, _) = feet[leader - 1], feet[partner - 1]
+        assert (right - left) / 2 == pytest.approx(x, abs=1e-12)
+        assert (forward + as_forward) / 2 == pytest.approx(y, abs=1e-12)
+
+
+def test_a_step_moves_the_pair_that_was_told_to_and_counts(simulator: Simulator[Any]) -> None:
+    state = simulator.step(simulator.rest(), Action(1, 2)).state
+    offsets = np.array(simulator.pair_offsets(state))
+
+    assert state.commanded == (0, 2, 0)
+    assert state.steps == 1
+    expected = np.array([(0, -1 / 3), (1, 2 / 3), (0, -1 / 3)]) * 0.02
+    assert np.allclose(offsets, expected, atol=2e-3)
+
+
+def test_the_reward_is_how_far_the_body_came(simulator: Simulator[Any]) -> None:
+    first = simulator.step(simulator.rest(), Action(1, 2))
+
+    assert first.reward_m == pytest.approx(first.state.distance_m, abs=1e-5)
+    assert first.reward_m == pytest.approx(0.02 / 3, rel=0.15)
+    assert simulator.step(simulator.rest(), Action(1, 4)).reward_m < 0
+
+
+def test_the_same_steps_lead_to_the_same_place_to_the_last_bit(build: Build) -> None:
+    one, other = build(), build()
+    states = walk(one, one.rest(), 12)
+
+    assert [bits(one, s) for s in states] == [bits(other, s) for s in walk(other, other.rest(), 12)]
+    assert [bits(one, s) for s in states] == [bits(one, s) for s in walk(one, one.rest(), 12)]
+
+
+@pytest.mark.parametrize("divisions", [2, 3])
+def test_expanding_is_stepping_to_the_last_bit(build: Build, divisions: int) -> None:
+    simulator = build("left-right-vertical", divisions=divisions)
+    here = [simulator.rest(), *walk(simulator, simulator.rest(), 4)]
+    futures = [
+        (state, action)
+        for state in here
+        for action in legal_actions(state.commanded, len(simulator.grid))
+    ]
+    # Of all sizes, growing and shrinking, so that what one call leaves behind would show.
+    for some in (futures[:7], futures, futures[11:14], futures[-1:]):
+        expansion = simulator.expand([s for s, _ in some], [a for _, a in some])
+        assert expansion.rewards_m.shape == (len(some),)
+        for (state, action), after, reward in zip(
+            some, expansion.states, expansion.rewards_m, strict=True
+        ):
+            step = simulator.step(state, action)
+            assert bits(simulator, after) == bits(simulator, step.state)
+            assert float(reward) == step.reward_m
+
+
+def test_expanding_nothing_gives_nothing(simulator: Simulator[Any]) -> None:
+    expansion = simulator.expand([], [])
+
+    assert expansion.states == []
+    assert expansion.rewards_m.shape == (0,)
+
+
+def test_a_state_is_a_value_that_nothing_changes(simulator: Simulator[Any]) -> None:
+    state = walk(simulator, simulator.rest(), 3)[-1]
+    before = bits(simulator, state)
+
+    walk(simulator, state, 3)
+    simulator.expand([state] * 3, [Action(p, 4) for p in range(3)])
+    simulator.pose(state)[:] = 0
+    for array in simulator.dump(state).values():
+        array[:] = 0
+    loaded = simulator.dump(state)
+    copy = simulator.load(loaded)
+    for array in loaded.values():
+        array[:] = 0
+
+    assert bits(simulator, state) == before
+    assert bits(simulator, copy) == before
+    with pytest.raises(FrozenInstanceError):
+        state.distance_m = 1.0
+    with pytest.raises(FrozenInstanceError):
+        state.feet.forward_m = ()
+
+
+def test_the_arrays_of_a_state_cannot_be_written_to(simulator: Simulator[Any]) -> None:
+    state = walk(simulator, simulator.rest(), 1)[-1]
+    arrays = [getattr(state, name) for name in type(state).__slots__]
+
+    assert not any(a.flags.writeable for a in arrays if isinstance(a, np.ndarray))
+
+
+def test_a_state_is_dumped_and_loaded_to_the_last_bit_and_goes_on_the_same(build: Build) -> None:
+    simulator, other = build(), build()
+    middle = walk(simulator, simulator.rest(), 6)[-1]
+    copy = other.load(simulator.dump(middle))
+
+    assert bits(other, copy) == bits(simulator, middle)
+    assert (copy.commanded, copy.distance_m, copy.steps) == (
+        middle.commanded,
+        middle.distance_m,
+        middle.steps,
+    )
+    onward, again = (walk(s, m, 6, 1) for s, m in ((simulator, middle), (other, copy)))
+    assert [bits(simulator, s) for s in onward] == [bits(other, s) for s in again]
+
+
+@pytest.mark.parametrize(
+    ("made", "frames"), [(Robot(), 16), (Robot(shift_s=0.128), 17), (Robot(dt_s=0.002), 16)]
+)
+def test_a_recorded_step_holds_fifty_poses_a_second(build: Build, made: Robot, frames: int) -> None:
+    simulator = build(made=made)
+    before = simulator.rest()
+    step = simulator.step(before, Action(1, 2), record=True)
+    assert step.motion is not None
+    time_s, qpos = step.motion
+
+    assert time_s.dtype == qpos.dtype == np.float32
+    assert time_s.shape == (frames,)
+    assert qpos.shape == (frames, 7 + 18)
+    assert time_s[:16] == pytest.approx(np.arange(1, 17) * 0.02)
+    assert time_s[-1] == pytest.approx(made.step_s)
+    assert (qpos[-1] == simulator.pose(step.state).astype(np.float32)).all()
+    assert np.linalg.norm(qpos[:, 3:7], axis=1) == pytest.approx(1)
+    assert np.abs(np.diff(qpos, axis=0)).max() < 0.35  # no jumps
+
+
+def test_recording_changes_nothing(simulator: Simulator[Any]) -> None:
+    here = walk(simulator, simulator.rest(), 2)[-1]
+    seen, unseen = (simulator.step(here, Action(0, 3), record) for record in (True, False))
+
+    assert unseen.motion is None
+    assert bits(simulator, seen.state) == bits(simulator, unseen.state)
+    assert seen.reward_m == unseen.reward_m
+
+
+@pytest.mark.parametrize("legs", [4, 8, 10])
+def test_the_number_of_legs_is_a_parameter(build: Build, legs: int) -> None:
+    simulator = build("front-back-vertical", robot({"n_legs": legs}))
+    state = simulator.rest()
+    for step in range(12):
+        state = simulator.step(state, Action(step % (legs // 2), 1 + step // 6 % 2)).state
+
+    assert len(state.commanded) == len(simulator.pair_offsets(state)) == legs // 2
+    assert simulator.pose(state).shape == (7 + 3 * legs,)
+    assert 0.03 < state.distance_m < 0.2

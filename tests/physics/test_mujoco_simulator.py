@@ -1,0 +1,186 @@
+"""What only physics promises: standing, threads, and an error where it breaks."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+
+from app.domain.errors import Diverged
+from app.domain.gait import NAMED_GAITS, resolve
+from app.domain.grid import FootGrid
+from app.domain.observation import legal_actions
+from app.domain.robot import PRESETS, Robot, robot
+from app.domain.types import Action, FloatArray
+from app.physics.mjcf import compile_model
+from app.physics.mujoco_simulator import MujocoSimulator, MujocoState
+
+
+def build(
+    gait: str = "left-right-origin", made: Robot | None = None, threads: int = 1
+) -> MujocoSimulator:
+    made = made or Robot()
+    return MujocoSimulator(made, resolve(gait, made.azimuths_deg), FootGrid(), threads)
+
+
+def layer(simulator: MujocoSimulator) -> tuple[list[MujocoState], list[Action]]:
+    """All that a two-step look-ahead simulates second: 144 transitions."""
+    first = legal_actions((0, 0, 0), 5)
+    states = simulator.expand([simulator.rest()] * 12, first).states
+    pairs = [(s, a) for s in states for a in legal_actions(s.commanded, 5)]
+    return [s for s, _ in pairs], [a for _, a in pairs]
+
+
+def test_any_number_of_threads_gives_the_same_bits() -> None:
+    def rows(threads: int) -> tuple[bytes, bytes]:
+        simulator = build(threads=threads)
+        expansion = simulator.expand(*layer(simulator))
+        return b"".join(s.row.tobytes() for s in expansion.states), expansion.rewards_m.tobytes()
+
+    alone = rows(1)
+    assert len(alone[1]) == 144 * 8
+    assert rows(2) == alone
+    assert rows(4) == alone
+    assert rows(0) == alone
+
+
+def data_at(simulator: MujocoSimulator, state: MujocoState) -> Any:
+    data = mujoco.MjData(simulator.model)
+    mujoco.mj_setState(simulator.model, data, state.row, mujoco.mjtState.mjSTATE_INTEGRATION.value)
+    mujoco.mj_forward(simulator.model, data)
+    return data
+
+
+def feet_of(data: Any, legs: int = 6) -> FloatArray:
+    return np.array([data.body(f"leg{leg}_foot").xpos for leg in range(1, legs + 1)])
+
+
+@pytest.mark.parametrize("gait", NAMED_GAITS)
+@pytest.mark.parametrize("preset", PRESETS)
+def test_the_home_pose_stands_still(gait: str, preset: str) -> None:
+    simulator = build(gait, PRESETS[preset])
+    data = data_at(simulator, simulator.rest())
+    start, feet = data.qpos.copy(), feet_of(data)
+    for _ in range(500):
+        mujoco.mj_step(simulator.model, data)
+
+    assert np.abs(data.qpos[:3] - start[:3]).max() < 2e-4  # 0.2 mm in two seconds
+    assert np.abs(data.qpos[3:7] - start[3:7]).max() < 1e-6
+    assert np.abs(data.qvel).max() < 1e-3
+    assert np.abs(feet_of(data) - feet).max() < 2e-4
+    assert data.time == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("legs", [4, 6, 8])
+def test_feet_stand_on_the_ground_and_do_not_sink(legs: int) -> None:
+    simulator = build(made=robot({"n_legs": legs}))
+    data = data_at(simulator, simulator.rest())
+
+    assert data.ncon == legs
+    # MuJoCo's contacts are soft: a foot presses in until they carry the weight, about 1 mm.
+    assert feet_of(data, legs)[:, 2] == pytest.approx(0.012, abs=1.2e-3)
+    carried = sum(float(_force(simulator, data, i)[0]) for i in range(data.ncon))
+    weight = 9.81 * (1.2 + 0.16 * legs)
+    assert carried == pytest.approx(weight, rel=1e-3)
+
+
+def _force(simulator: MujocoSimulator, data: Any, contact: int) -> FloatArray:
+    force = np.zeros(6)
+    mujoco.mj_contactForce(simulator.model, data, contact, force)
+    return force
+
+
+def test_feet_do_not_sink_after_walking_either() -> None:
+    simulator = build("front-back-vertical")
+    state = simulator.rest()
+    for step in range(24):
+        state = simulator.step(state, Action(step % 3, 1 + step // 3 % 2)).state
+    feet = feet_of(data_at(simulator, state))
+
+    assert feet[:, 2] == pytest.approx(0.012, abs=2e-3)
+    assert state.distance_m == pytest.approx(24 * 0.01, rel=0.1)
+
+
+def test_the_torso_stays_level_and_on_course_with_stiff_servos() -> None:
+    simulator = build("left-right-origin")
+    state = simulator.rest()
+    for step in range(24):
+        state = simulator.step(state, Action(step % 3, 1 + step // 3 % 2)).state
+    x, y, z, *_ = simulator.pose(state)
+
+    assert y == state.distance_m
+    assert abs(x) < 0.02
+    assert z == pytest.approx(0.102, abs=5e-3)
+
+
+def test_reward_is_measured_not_commanded() -> None:
+    """On ice the feet slip, so that the body lags behind the plan."""
+    gripping, slipping = build(), build(made=Robot(friction=0.02))
+    firm, loose = (s.step(s.rest(), Action(0, 1)).reward_m for s in (gripping, slipping))
+
+    assert firm == pytest.approx(0.02 / 3, rel=0.1)
+    assert abs(loose - firm) > 2e-4
+
+
+def spoilt(state: MujocoState, value: float) -> MujocoState:
+    row = state.row.copy()
+    row[9] = value  # a joint angle
+    return replace(state, row=row, steps=41)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, 1e20])
+def test_physics_that_breaks_names_the_step(value: float) -> None:
+    simulator = build()
+    broken = spoilt(simulator.rest(), value)
+    with pytest.raises(
+        Diverged, match=r"the physics diverged at step 42; try a smaller robot.dt_s"
+    ):
+        simulator.step(broken, Action(0, 1))
+
+
+def test_one_broken_future_among_many_is_found() -> None:
+    simulator = build(threads=2)
+    rest = simulator.rest()
+    states = [rest] * 5 + [spoilt(rest, np.nan)] + [rest] * 6
+    with pytest.raises(Diverged, match="at step 42"):
+        simulator.expand(states, legal_actions((0, 0, 0), 5))
+
+
+def test_after_an_error_the_simulator_is_as_good_as_new() -> None:
+    simulator = build()
+    expected = simulator.step(simulator.rest(), Action(2, 2))
+    with pytest.raises(Diverged):
+        simulator.step(spoilt(simulator.rest(), np.nan), Action(0, 1))
+    again = simulator.step(simulator.rest(), Action(2, 2))
+
+    assert again.state.row.tobytes() == expected.state.row.tobytes()
+
+
+def test_mujoco_leaves_no_log_in_the_working_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    simulator = build(threads=2)
+    rest = simulator.rest()
+    with pytest.raises(Diverged):
+        simulator.step(spoilt(rest, np.nan), Action(0, 1))
+    with pytest.raises(Diverged):
+        simulator.expand([spoilt(rest, np.nan)] * 12, legal_actions((0, 0, 0), 5))
+
+    assert list(tmp_path.iterdir()) == []
+    assert capfd.readouterr() == ("", "")
+
+
+def test_the_state_vector_is_the_whole_of_it() -> None:
+    """Anything less than mjSTATE_INTEGRATION diverges when a run goes on."""
+    simulator = build()
+    whole = mujoco.mj_stateSize(simulator.model, mujoco.mjtState.mjSTATE_INTEGRATION.value)
+
+    assert simulator.rest().row.shape == (whole,)
+    assert simulator.rest().row[0] == 0  # time starts with the run
+
+
+def test_models_are_compiled_once() -> None:
+    assert build().model is build("front-back-origin").model is compile_model(Robot())
