@@ -73,7 +73,8 @@ class RaceLane:
         moment, lane = self.at(time_s), self.recording
         taken = len(self._timetable.ends)
         behind = not complete and time_s >= self.end_s  # it still computes, in earnest
-        if moment.step >= taken or (behind and taken):
+        at_end = complete and time_s >= self.end_s
+        if moment.step >= taken or at_end or (behind and taken):
             return self._still(time_s, complete, behind)
         step = lane.steps[moment.step]
         start = lane.start_qpos(moment.step)

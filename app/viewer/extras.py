@@ -12,7 +12,7 @@ from app.viewer.robot_mesh import RobotMesh
 from app.viewer.shapes import strip
 
 _BAR_M = 0.05
-_TEXT_SCALE = 2.4
+_TEXT_SCALE = 1.7
 
 
 class PhotoFinish:
@@ -116,8 +116,8 @@ class Ghosts:
             )
         self._server.scene.add_label(
             f"{self._root}/robot/label",
-            f"after {ghost.step} steps of practice: {ghost.distance_m:.2f} m",
+            f"{ghost.distance_m:.2f} m\nafter {ghost.step} steps",
             position=(0.0, ghost.distance_m, 0.22),
             anchor="bottom-center",
-            font_screen_scale=1.8,
+            font_screen_scale=1.35,
         )

@@ -9,21 +9,24 @@ from app.viewer.robot_mesh import ANTENNA_M
 from app.viewer.shapes import flag
 
 _FLAG_M = 0.22
+TEXT_SCALE = 1.35
+"""Of 12 px, on every screen."""
 
 
 def plate_text(role: Role, lane: LaneView) -> str:
-    """Two short lines: who, and what it does."""
+    """Who, how far, and what it does; lines so short that three plates fit on a phone."""
     if lane.failure is not None:
         return f"{role.name}\ncannot go on"
     if lane.step == 0:
         return role.name
-    far = f"{role.name}  {lane.distance_m + 0.0:.2f} m".replace("-0.00", "0.00")
-    if lane.done:
-        return f"{far}\ndone, {lane.step} steps"
+    far = f"{lane.distance_m:.2f} m".replace("-0.00", "0.00")
+    lines = [role.name, f"{far}, {'done' if lane.done else f'step {lane.step}'}"]
     if lane.thinking:
-        futures = f" {lane.futures} of {lane.futures_total}" if lane.futures else "…"
-        return f"{far}\nstep {lane.step}, thinking{futures}"
-    return f"{far}\n{'marching on the spot' if lane.marching else f'step {lane.step}'}"
+        futures = f" {lane.futures}/{lane.futures_total}" if lane.futures else "…"
+        lines.append(f"thinking{futures}")
+    elif lane.marching:
+        lines.append("on the spot")
+    return "\n".join(lines)
 
 
 class Plate:
@@ -32,7 +35,7 @@ class Plate:
     def __init__(self, server: viser.ViserServer, root: str, role: Role, x_m: float) -> None:
         self._role, self._x_m = role, x_m
         self._label = server.scene.add_label(
-            f"{root}/plate", role.name, anchor="bottom-center", font_screen_scale=2.1
+            f"{root}/plate", role.name, anchor="bottom-center", font_screen_scale=TEXT_SCALE
         )
         shape = flag(_FLAG_M)
         self._flag = server.scene.add_mesh_simple(

@@ -17,9 +17,11 @@ from app.viewer.robot_mesh import RobotMesh, robot_mesh
 from app.viewer.track import WORLD, draw_ground, draw_lanes
 
 CAST = f"{WORLD}/cast"
-_DARK = (52, 58, 68)
+_DARK = (88, 96, 110)
 _SHADE = 0.25
 _EASE_S = 0.25
+_ALONE_NEARER_M = 0.3
+"""A single lane leaves room to come closer to it."""
 
 Position = tuple[float, float, float]
 
@@ -77,7 +79,8 @@ class StageScene:
         if before is not None and now > before[0]:
             y = aim + (before[1] - aim) * math.exp((before[0] - now) / _EASE_S)
         self._eased = (now, y)
-        followed = {"leader": (0.0, y, 0.0)}
+        nearer = _ALONE_NEARER_M if len(frame.lanes) == 1 else 0.0
+        followed = {"leader": (0.0, y + nearer, 0.0)}
         for number, (lane, x) in enumerate(zip(frame.lanes, xs, strict=True), start=1):
             followed[str(number)] = (x + float(lane.qpos[0]), float(lane.qpos[1]), 0.0)
         self._followed = followed

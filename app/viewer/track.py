@@ -90,5 +90,5 @@ def draw_lanes(server: viser.ViserServer, root: str, xs: list[float], width: flo
             word,
             position=(borders[1] - middle, 0.0, 0.0),
             anchor="center-center",
-            font_screen_scale=1.6,
+            font_screen_scale=1.15,
         )

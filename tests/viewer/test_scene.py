@@ -1,0 +1,247 @@
+"""The stage drawn in a real viser, as a real client is told it."""
+
+import socket
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import viser
+from websockets.sync.client import connect
+from websockets.typing import Subprotocol
+
+from app.domain.grid import FootGrid
+from app.domain.robot import Robot, ring
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.services.casting import idle_cast, race_cast, rest_pose, training_cast
+from app.services.frames import Cast, Ghost, KnowledgeView, LaneView, StageFrame
+from app.viewer import wire
+from app.viewer.loopback import loopback_viser
+from app.viewer.measure import measure_stage_update
+from app.viewer.robot_mesh import robot_mesh
+from app.viewer.scene import StageScene
+from app.viewer.snapshot import Snapshot
+
+GAIT = "left-right-vertical"
+
+
+@pytest.fixture
+def server() -> Iterator[viser.ViserServer]:
+    with loopback_viser() as started:
+        yield started
+
+
+def told(server: viser.ViserServer) -> dict[str, dict[str, Any]]:
+    """Every node of the scene with its properties, as a newcomer is told them."""
+    url, snapshot = f"ws://127.0.0.1:{server.get_port()}/", Snapshot()
+    protocol = Subprotocol(wire.SUBPROTOCOL)
+    with connect(url, subprotocols=[protocol], compression=None, max_size=None, proxy=None) as ws:
+        while not snapshot.complete:
+            snapshot.apply(wire.parse(ws.recv(timeout=30, decode=False)))
+    frame, nodes = snapshot.pack(), dict[str, dict[str, Any]]()
+    for message in frame.messages:
+        if not message.get("name", "").startswith("/world"):
+            continue
+        node = nodes.setdefault(message["name"], {})
+        properties = message.get("props") or message.get("updates") or message
+        node.update({name: plain(value, frame) for name, value in properties.items()})
+    return nodes
+
+
+def plain(value: Any, frame: wire.Frame) -> Any:
+    """A property, or the array that it names."""
+    if isinstance(value, dict) and "__binary_index" in value:
+        return np.frombuffer(frame.buffers[value["__binary_index"]], value["dtype"])
+    return value
+
+
+def race_of(lanes: int, robot: Robot | None = None) -> Cast:
+    agents = ("q-learning", "greedy", "two-step", "greedy", "greedy", "greedy")[:lanes]
+    config = RaceConfig(
+        gait=GAIT, robot=robot or Robot(), lanes=tuple(LaneConfig(agent=a) for a in agents)
+    )
+    return race_cast(config)
+
+
+def standing(cast: Cast) -> StageFrame:
+    lane = LaneView(rest_pose(cast), 3, 50, 0.0)
+    return StageFrame(cast, "run", "race", "Race", (lane,) * len(cast.roles))
+
+
+def knowing(cast: Cast, current: tuple[int, ...] = (0, 1, 2)) -> KnowledgeView:
+    values = np.linspace(-0.01, 0.06, 3 * len(cast.grid)).reshape(3, -1)
+    values[range(3), current] = np.nan
+    return KnowledgeView(values, values, current, None, -0.01, 0.06)
+
+
+def test_everything_is_under_one_frame_and_no_robot_is_many_nodes(
+    server: viser.ViserServer,
+) -> None:
+    StageScene(server).draw(standing(race_of(3)))
+    three = {name for name in told(server) if "/robots/" in name}
+
+    StageScene(server).draw(standing(race_of(6)))
+    six = {name for name in told(server) if "/robots/" in name}
+
+    assert three == six
+    assert len(three) < 12
+
+
+@pytest.mark.parametrize("legs", [4, 6, 8])
+def test_a_robot_of_any_number_of_legs_stands_where_its_pose_says(legs: int) -> None:
+    robot = Robot(legs=ring(legs))
+    mesh = robot_mesh(robot)
+    pose = mesh.standing.copy()
+    pose[:3] = 0.3, 0.4, 0.1
+
+    places, attitudes = mesh.place(pose)
+
+    assert sum(len(part.links) for part in mesh.parts) < 2 + 1 + 6 * legs
+    links = np.unique(np.concatenate([part.links for part in mesh.parts]))
+    assert len(links) == 1 + 3 * legs, "torso, and coxa, femur and tibia of every leg"
+    assert places[links[0]] == pytest.approx([0.3, 0.4, 0.1])
+    assert np.linalg.norm(attitudes[links], axis=1) == pytest.approx(np.ones(len(links)))
+    for part in mesh.parts:
+        assert np.isfinite(part.shape.vertices).all()
+        assert part.shape.faces.max() < len(part.shape.vertices)
+
+
+def test_lanes_stand_side_by_side_in_their_agents_colours(server: viser.ViserServer) -> None:
+    cast = race_of(3)
+    scene = StageScene(server)
+    scene.draw(standing(cast))
+    xs = [(scene.follow_position(view) or (np.nan,))[0] for view in ("1", "2", "3")]
+
+    assert np.diff(xs) == pytest.approx([xs[2], xs[2]])
+    assert xs[0] == -xs[2]
+    assert xs[2] > 2 * cast.robot.home_radius_m, "they cannot touch"
+    assert scene.follow_position("4") is None
+    plates = [m["text"] for n, m in told(server).items() if n.endswith("/plate")]
+    assert plates == [f"{role.name}\n0.00 m, step 3" for role in cast.roles]
+
+
+def test_start_and_finish_have_a_word(server: viser.ViserServer) -> None:
+    StageScene(server).draw(standing(race_of(1)))
+    nodes = told(server)
+    words = {m["text"] for n, m in nodes.items() if n.endswith("/word")}
+
+    assert words == {"Start", "Finish"}
+    red, green = nodes["/world/cast/track/finish"], nodes["/world/cast/track/start"]
+    assert np.argmax(red["color"]) == 0
+    assert np.argmax(green["color"]) == 1
+
+
+def test_the_view_goes_along_with_the_leader(server: viser.ViserServer) -> None:
+    cast, scene = race_of(2), StageScene(server)
+    ahead = rest_pose(cast).copy()
+    ahead[1] = 0.4
+    first = standing(cast)
+    moved = replace(first, lanes=(first.lanes[0], LaneView(ahead, 9, 50, 0.4)))
+
+    scene.draw(first, now=0.0)
+    assert scene.follow_position("leader") == (0.0, 0.0, 0.0)
+    ys = []
+    for number in range(1, 60):
+        scene.draw(moved, now=number / 30)
+        ys.append((scene.follow_position("leader") or (0, np.nan, 0))[1])
+
+    assert ys == sorted(ys), "smoothly"
+    assert ys[0] < 0.1
+    assert ys[-1] == pytest.approx(0.4, abs=0.01)
+
+
+def test_nothing_is_sent_while_nothing_moves(server: viser.ViserServer) -> None:
+    scene, frame = StageScene(server), standing(race_of(3))
+    serializer = server.get_scene_serializer()
+    assert scene.draw(frame, now=0.0)
+    once = len(serializer._messages)
+
+    assert not scene.draw(replace(frame, time_s=5.0), now=1.0)
+    assert len(serializer._messages) == once
+
+
+def test_a_new_cast_leaves_nothing_of_the_old(server: viser.ViserServer) -> None:
+    scene = StageScene(server)
+    practice = training_cast(TrainingConfig(gait=GAIT, divisions=3))
+    ghosts = (Ghost(50, 0.1), Ghost(100, 0.3))
+
+    def show_all() -> None:
+        scene.draw(standing(idle_cast()))
+        scene.draw(replace(standing(practice), ghosts=ghosts))
+        scene.draw(replace(standing(race_of(3)), phase="photo-finish"))
+        scene.draw(standing(race_of(6, Robot(legs=ring(8)))))
+        scene.draw(standing(race_of(2)))
+
+    show_all()
+    nodes = told(server)
+    for _ in range(3):
+        show_all()
+
+    assert told(server).keys() == nodes.keys()
+    assert len(nodes) < 40
+
+
+def test_cells_take_the_colour_of_their_value_and_the_present_one_none(
+    server: viser.ViserServer,
+) -> None:
+    cast, scene = race_of(1), StageScene(server)
+    lane = replace(standing(cast).lanes[0], knowledge=knowing(cast))
+    scene.draw(replace(standing(cast), lanes=(lane,)))
+    fills = told(server)["/world/cast/lane0/grid/others/fills"]
+    colors = fills["batched_colors"].reshape(6, 4, 3)
+
+    leader, partner = cast.gait.pairs[2]
+    assert (colors[leader - 1] == colors[partner - 1]).all(), "a pair is of one mind"
+    best, present = colors[leader - 1, 3], colors[leader - 1, 1]
+    assert best[0] > 120
+    assert best[2] < 40
+    assert present.max() < 20
+
+
+@pytest.mark.parametrize("divisions", [2, 3, 8])
+def test_cells_of_every_grid_can_be_drawn(server: viser.ViserServer, divisions: int) -> None:
+    cast = replace(race_of(1), grid=FootGrid(0.04, divisions))
+    lane = replace(standing(cast).lanes[0], knowledge=knowing(cast))
+
+    StageScene(server).draw(replace(standing(cast), lanes=(lane,)))
+
+    assert sum(name.endswith("/fills") for name in told(server)) == 2
+
+
+def test_a_photo_finish_draws_every_distance_and_goes_again(server: viser.ViserServer) -> None:
+    cast, scene = race_of(2), StageScene(server)
+    far = replace(standing(cast).lanes[0], distance_m=0.375, rank=1)
+    frame = replace(standing(cast), lanes=(far, replace(far, distance_m=-0.01, rank=2)))
+
+    scene.draw(replace(frame, phase="photo-finish"))
+    said = [m["text"] for n, m in told(server).items() if "/photo/far" in n]
+    assert said == ["1.  0.38 m", "2.  -0.01 m"]
+
+    scene.draw(frame)
+    assert not [name for name in told(server) if "/photo" in name]
+
+
+def test_a_finished_lane_shows_its_flag(server: viser.ViserServer) -> None:
+    cast, scene = race_of(1), StageScene(server)
+    frame = standing(cast)
+    scene.draw(frame)
+    assert not told(server)["/world/cast/lane0/flag"]["visible"]
+
+    scene.draw(replace(frame, lanes=(replace(frame.lanes[0], done=True),)))
+    assert told(server)["/world/cast/lane0/flag"]["visible"]
+
+
+def test_an_update_of_three_walking_robots_is_small() -> None:
+    spent_ms, size = measure_stage_update(updates=30)
+
+    assert spent_ms > 0
+    assert 500 < size <= 4096
+
+
+def test_viser_is_gone_afterwards() -> None:
+    with loopback_viser() as server:
+        port = server.get_port()
+
+    with pytest.raises(OSError, match="refused"), socket.create_connection(("127.0.0.1", port)):
+        pass

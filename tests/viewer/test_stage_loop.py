@@ -1,0 +1,87 @@
+"""The thread that draws."""
+
+import asyncio
+import json
+import logging
+import threading
+from typing import Any
+
+import pytest
+
+from app.services.bus import EventBus
+from app.services.frames import StageFrame
+from app.services.recordings import Recordings
+from app.services.stage import Stage
+from app.services.store import MemoryStore
+from app.viewer.loopback import loopback_viser
+from app.viewer.scene import StageScene
+from app.viewer.stage_loop import StageLoop
+from tests.services.theatre import Theatre
+from tests.viewer.serving import eventually
+
+
+class ThrowsAtFirst(StageScene):
+    """A scene with a fault in its first frames."""
+
+    faults = 3
+
+    def draw(self, frame: StageFrame, now: float = 0.0) -> bool:
+        if self.faults:
+            self.faults -= 1
+            raise RuntimeError("a fault in a frame")
+        return super().draw(frame, now)
+
+
+def test_it_draws_until_it_is_stopped() -> None:
+    stage, bus = Stage(MemoryStore(), Recordings(), EventBus()), EventBus()
+    with loopback_viser() as server:
+        scene = StageScene(server)
+        with StageLoop(stage, scene, bus) as loop:
+            eventually(lambda: scene.follow_position("leader"))
+        loop.stop()
+
+    assert "stage" not in {thread.name for thread in threading.enumerate()}
+
+
+def test_a_fault_in_a_frame_does_not_end_the_show(caplog: pytest.LogCaptureFixture) -> None:
+    stage, bus = Stage(MemoryStore(), Recordings(), EventBus()), EventBus()
+    with loopback_viser() as server, caplog.at_level(logging.INFO):
+        scene = ThrowsAtFirst(server)
+        with StageLoop(stage, scene, bus):
+            eventually(lambda: scene.follow_position("leader"))
+
+    said = [record.message for record in caplog.records if "stage" in record.name]
+    assert said == ["drawing the stage failed, going on", "drawing the stage works again"]
+
+
+def test_a_race_moves_and_the_page_is_told() -> None:
+    theatre = Theatre()
+    run = theatre.race()
+    stage = Stage(theatre.store, theatre.recordings, theatre.bus)
+    stage.show(run.id)
+
+    async def hear() -> list[dict[str, Any]]:
+        heard, scenes = theatre.bus.subscribe(), []
+        async for event in heard:
+            if event.event == "scene":
+                scenes.append(json.loads(event.data))
+            if len(scenes) == 3:
+                heard.close()
+        return scenes
+
+    with loopback_viser() as server:
+        scene = StageScene(server)
+        with StageLoop(stage, scene, theatre.bus):
+            scenes = asyncio.run(hear())
+            eventually(lambda: (scene.follow_position("1") or (0, 0))[1] > 0.001)
+
+    assert [scene["run_id"] for scene in scenes] == [run.id] * 3
+    times = [scene["time_s"] for scene in scenes]
+    assert times == sorted(times)
+    assert len(set(times)) == 3
+
+
+def test_a_loop_that_never_began_can_be_stopped() -> None:
+    stage = Stage(MemoryStore(), Recordings(), EventBus())
+    with loopback_viser() as server:
+        StageLoop(stage, StageScene(server), EventBus()).stop()
