@@ -73,8 +73,7 @@ class QLearning:
         epsilon = self.epsilon
         if epsilon > 0 and self._rng.random() < epsilon:
             return legal[int(self._rng.integers(len(legal)))]
-        row = self.table.q[self.table.index(observation)].tolist()
-        values = [row[self.table.column(action)] for action in legal]
+        values = self.table.values_of(observation, legal)
         highest = max(values)
         best = [action for action, value in zip(legal, values, strict=True) if value == highest]
         return best[0] if len(best) == 1 else best[int(self._rng.integers(len(best)))]
@@ -83,8 +82,7 @@ class QLearning:
         """Q(s, a) ← (1 − α) Q(s, a) + α (r + γ max Q(s′, ·)). The walk never ends."""
         observation, action, reward, after, legal = transition
         table = self.table
-        row = table.q[table.index(after)].tolist()
-        sample = reward + self._gamma * max(row[table.column(a)] for a in legal)
+        sample = reward + self._gamma * max(table.values_of(after, legal))
         here = table.index(observation), table.column(action)
         table.q[here] = (1 - self._alpha) * table.q[here] + self._alpha * sample
         table.n[here] += 1

@@ -1,7 +1,7 @@
 """The table of state-action values: one row per state, one column per (pair, cell)."""
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import product
 
 import numpy as np
@@ -49,6 +49,12 @@ class QTable:
         """The column of an action."""
         return action.pair * self.cells + action.cell
 
+    def values_of(self, observation: Cells, actions: Sequence[Action]) -> list[float]:
+        """The values of some actions in this state, as plain floats."""
+        row: list[float] = self.q[self.index(observation)].tolist()
+        cells = self.cells
+        return [row[pair * cells + cell] for pair, cell in actions]
+
     def values(self, observation: Cells) -> FloatArray:
         """(pairs, cells) values of the actions in this state, NaN where illegal."""
         return self._row(self.q, observation)
@@ -63,7 +69,7 @@ class QTable:
             yield state, self.values(state), self.visits(state)
 
     @property
-    def legal_values(self) -> int:
+    def size(self) -> int:
         """How many state-action values there are: 1,500 at two divisions and three pairs."""
         return self.states * (self.actions - self.pairs)
 

@@ -5,15 +5,14 @@ home, its partner at (−x, y). A step puts one pair on its new cell; then the b
 mean of all forward offsets, and every offset shrinks by it. Lateral offsets cancel by symmetry.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from app.domain.types import Cells, FloatArray
 
 
-@dataclass(frozen=True, slots=True)
-class Feet:
+class Feet(NamedTuple):
     """The offsets of all pairs from home in the robot frame. Plain floats: they are few."""
 
     commanded: Cells

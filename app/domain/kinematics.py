@@ -31,11 +31,10 @@ class Legs:
         self.robot = robot
         azimuth = np.deg2rad(gait.azimuths_deg)
         mounts = np.array([leg.radius_m for leg in robot.legs])
-        self.frames: FloatArray = np.array(
-            (np.sin(azimuth), np.cos(azimuth), robot.home_radius_m - mounts)
-        )
-        """Sine and cosine of each leg's azimuth, and how far from its coxa joint along the leg
-        its foot's home is [m], (3, legs)."""
+        sin, cos = np.sin(azimuth), np.cos(azimuth)
+        self.frames: FloatArray = np.array((robot.home_radius_m - mounts, -sin, cos, -cos, -sin))
+        """From an offset in the robot frame to the frame of each leg, (5, legs): how far along the
+        leg from its coxa joint home is [m], then what x and y add along the leg, then across."""
 
     def joint_angles(self, offsets: FloatArray) -> FloatArray:
         """Inverse kinematics of all feet.
@@ -59,14 +58,14 @@ class Legs:
             x: offset from home to the right, in the robot frame [m].
             y: forward.
             z: up; their shapes broadcast.
-            frames: a column of `self.frames` for each foot, (3, ...).
+            frames: a column of `self.frames` for each foot, (5, ...).
 
         Returns:
             (..., 3) coxa, femur, tibia [rad]; NaN where the foot is out of reach.
         """
-        sin, cos, home = frames
-        along = home + (cos * y - sin * x)
-        across = -cos * x - sin * y
+        home, x_along, y_along, x_across, y_across = frames
+        along = home + (x_along * x + y_along * y)
+        across = x_across * x + y_across * y
         r = np.sqrt(along * along + across * across) - self.robot.coxa_m
         fall = z - self.robot.body_height_m
         femur, tibia = self.robot.femur_m, self.robot.tibia_m
@@ -91,7 +90,7 @@ class Legs:
             For each leg (x, y, z), its foot's offset from home in the robot frame [m].
         """
         robot, offsets = self.robot, []
-        for leg, (sin, cos, home) in enumerate(self.frames.T.tolist()):
+        for leg, (home, x_along, y_along, x_across, y_across) in enumerate(self.frames.T.tolist()):
             coxa, femur, tibia = angles[3 * leg : 3 * leg + 3]
             knee = femur + tibia
             r = robot.coxa_m + robot.femur_m * math.cos(femur) + robot.tibia_m * math.cos(knee)
@@ -99,8 +98,8 @@ class Legs:
             height = robot.femur_m * math.sin(femur) + robot.tibia_m * math.sin(knee)
             offsets.append(
                 (
-                    -sin * along - cos * across,
-                    cos * along - sin * across,
+                    x_along * along + x_across * across,
+                    y_along * along + y_across * across,
                     height + robot.body_height_m,
                 )
             )

@@ -64,10 +64,9 @@ class StepMotion:
         ways = np.array([_ways(plan) for plan in plans])  # (n, 4, 2 · pairs)
         source = samples.source.take(swinging, 1) + rows * ways[0].size  # (4, n, samples)
         from_x, from_y, to_x, to_y = ways.take(source)
-        frames = samples.frames.take(swinging, 1)  # (4, n, samples)
-        x = frames[0] * (from_x + samples.share * (to_x - from_x))
+        x = from_x + samples.share * (to_x - from_x)  # of the leader
         y = from_y + samples.share * (to_y - from_y)
-        angles = self.legs.solve(x, y, samples.lift, frames[1:])
+        angles = self.legs.solve(x, y, samples.lift, samples.frames.take(swinging, 1))
         order = samples.order.take(swinging, 0) + rows * x.shape[1]  # (n, substeps · legs)
         targets: FloatArray = angles.reshape(-1, 3).take(order, 0)
         return targets.reshape(len(plans), self._substeps, -1)
@@ -92,7 +91,7 @@ class _Samples(NamedTuple):
     """
 
     frames: FloatArray
-    """1 for a leader and −1 for a partner, then `Legs.frames` of the leg, (4, pairs, samples)."""
+    """`Legs.frames` of the sample's leg, mirrored for a partner, (5, pairs, samples)."""
     source: IntArray
     """Where `_ways` has the sample's from x, from y, to x, to y, (4, pairs, samples)."""
     share: FloatArray
@@ -118,10 +117,12 @@ def _samples(robot: Robot, gait: Gait, frames: FloatArray) -> _Samples:
         in_shift = count + 2 * swing + np.arange(count * shift)
         order.append(np.concatenate((in_swing.ravel(), in_shift)))
     whose, place = np.array(legs), np.argsort(movers.ravel())
+    side = np.where(place % 2, -1.0, 1.0)  # a partner is at (−x, y)
+    mirrored = frames * np.array([np.ones(count), side, np.ones(count), side, np.ones(count)])
     in_phase = np.repeat((0, 0, len(movers)), (count, 2 * swing, count * shift))
     pair_of = (place // 2)[whose] + in_phase  # (pairs, samples)
     return _Samples(
-        np.stack((np.where(place % 2, -1.0, 1.0)[whose], *frames[:, whose])),
+        mirrored[:, whose],
         np.stack([pair_of + part * 2 * len(movers) for part in range(4)]),
         np.concatenate((still, ease(swung), ease(shifted))),
         np.concatenate(
