@@ -96,12 +96,10 @@ const tellWork = (verb) =>
 
 export const stop = () =>
   attempt("work", async () => {
-    const { asked, now } = work.value;
-    // The race first: without it, it would start with what its learner has practised so far.
-    for (const run of new Set([asked, now])) {
-      const answer = await api.tell(run, "stop");
-      if (answer?.id) keepRun(answer);
-    }
+    // A race that waits takes its practice with it.
+    const answer = await api.tell(work.value.asked, "stop");
+    if (answer?.id) keepRun(answer);
+    if (stage.value?.playing === false) await api.putStage({ playing: true });
   });
 
 /** Space: pause the work that is on stage, else the picture. */

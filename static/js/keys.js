@@ -11,7 +11,7 @@ export const KEYS = [
 ];
 
 const TEXT = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable]";
-const PRESSED_BY_SPACE = "button, a, summary, input, [role=button]";
+const PRESSED_BY_SPACE = "button:not([aria-disabled=true]), a, summary, input:not([type=range])";
 
 /** Do what a key says; true if it said something. */
 function act(key) {

@@ -13,6 +13,7 @@ export const headline = computed(() => {
   const rows = standings.value;
   if (!rows?.length) return null;
   const best = Math.max(...rows.map((row) => (isDecided.value ? row.finished_m : row.distance_m) ?? 0));
+  if (!isDecided.value && best <= 0) return "On the start line";
   const ahead = rows.filter((row) => row.rank === 1);
   if (ahead.length > 1) {
     return isDecided.value ? `Level at the finish with ${metres(best)}` : "Level";

@@ -1,6 +1,6 @@
 // Who is where in the race in view, up to the moment that is on screen and no further.
 import { computed } from "@preact/signals";
-import { agentOf, clock, raceInView } from "./selectors.js";
+import { agentOf, clock, isActive, raceInView } from "./selectors.js";
 import { distanceAt, shownTime, spent, timeline } from "./timeline.js";
 import { scene } from "./store.js";
 
@@ -28,6 +28,7 @@ export const standings = computed(() => {
   const race = raceInView.value;
   const time = shownTime.value;
   if (!race || time === null) return null;
+  if (!isActive(race) && !race.progress.done) return null;
   const rows = race.config.lanes.map((lane, number) => rowOf(race, lane, number, time));
   return rows.sort((a, b) => a.rank - b.rank || a.lane - b.lane);
 });

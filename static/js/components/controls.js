@@ -1,4 +1,5 @@
 // What one can do next: one primary button, and what runs already.
+import { useState } from "preact/hooks";
 import {
   canStart, doNext, nextDeed, otherDeeds, pause, pending, resume, showOnStage, stop,
 } from "../actions.js";
@@ -15,23 +16,25 @@ import { Settings } from "./settings.js";
 
 export function Controls() {
   if (!isOperator.value) return html`<${WatchOnly} />`;
-  const deeds = html`<${Deeds} />`;
+  // On a phone the button comes first. Keys, so that turning it loses nothing that is unfolded.
+  const deeds = html`<${Deeds} key="deeds" />`;
+  const settings = html`<${FoldedSettings} key="settings" />`;
   return html`
     <section class="panel controls" aria-label="Train and race">
-      ${isNarrow.value
-        ? html`${deeds}<${FoldedSettings} />`
-        : html`<${Settings} />${deeds}`}
+      ${isNarrow.value ? [deeds, settings] : [settings, deeds]}
     </section>
   `;
 }
 
-/** On a phone the button comes first, and the settings in one line. */
+/** On a phone the settings are one line, until they are asked for. */
 function FoldedSettings() {
+  const [isOpen, setOpen] = useState(false);
   const { gait, steps, alpha, gamma } = form.value;
   const chosen = options.value?.gaits?.find(({ name }) => name === gait);
+  const onToggle = ({ target }) => isNarrow.value && setOpen(target.open);
   return html`
-    <details class="folded">
-      <summary>
+    <details class="folded" open=${isOpen || !isNarrow.value} onToggle=${onToggle}>
+      <summary hidden=${!isNarrow.value}>
         <span>Settings</span>
         <span class="dim">${chosen?.title ?? gait}, ${count(steps, "step")}, α ${alpha}, γ ${gamma}</span>
       </summary>
@@ -130,9 +133,9 @@ function WatchOnly() {
   const shown = progress.value;
   const names = (shownRun.value?.config?.lanes ?? []).map(({ agent }) => agentOf(agent).title);
   return html`
-    <section class="panel controls" aria-label="What is happening">
+    <section class="panel watch" aria-label="What is happening">
       <h2>You are watching</h2>
-      <p class="dim">${names.length ? `${names.join(", ")} race. ` : ""}The camera is yours; who has the operator's link runs the show.</p>
+      <p class="dim">${names.length ? `${names.join(", ")} race. ` : ""}The camera is yours; whoever has the operator’s link runs the show.</p>
       ${shown && html`<${Progress} />`}
     </section>
   `;

@@ -2,7 +2,7 @@
 import { share } from "../actions.js";
 import { html } from "../html.js";
 import { helpIsOpen, place } from "../page.js";
-import { connection, role, viewers } from "../store.js";
+import { connection, viewers } from "../store.js";
 import { nextTheme, theme } from "../theme.js";
 import { Icon } from "./icon.js";
 
@@ -40,7 +40,7 @@ function Live() {
   return html`
     <p class=${`live ${state}`}>
       <span class="dot" aria-hidden="true"></span>
-      <span>${STATES[state] ?? `live${watching}`}${role.value === "spectator" ? html` · <span class="nowrap">you watch</span>` : ""}</span>
+      <span>${STATES[state] ?? `live${watching}`}</span>
     </p>
   `;
 }

@@ -31,7 +31,7 @@ export function HelpDialog() {
           make one: greedy looks one move ahead, two-step looks two. Whoever is furthest when the first robot has used its
           steps, wins; thinking costs time.
         </p>
-        <form method="dialog"><button class="secondary">Close</button></form>
+        <form method="dialog"><button class="secondary" autofocus>Close</button></form>
       </div>
     </dialog>
   `;

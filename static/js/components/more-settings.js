@@ -26,13 +26,13 @@ export const MoreSettings = () => html`
         choices=${named(options.value?.simulators, ["mujoco"]).map((name) => [name, SIMULATORS[name] ?? name])} />
       <${Pace} />
       <${Figure} field="divisions" label="Foot grid, divisions" />
-      <${Figure} field="grid_side_m" label="Foot grid, side" unit="mm" factor=${1000} />
+      <${Figure} field="grid_side_m" label="Foot grid, side" unit="m" step=${0.005} />
       <${Figure} field="epsilon_end" label="Exploring ε, at last" step=${0.01} />
       <${Figure} field="steps_per_episode" label="Steps an episode" />
       <${Figure} field="evaluate_every" label="Try out every" unit="steps" />
       <${Figure} field="race_steps" label="Steps of the race" />
       <${Lanes} />
-      <div class="field">
+      <div class="field wide">
         <label for="field-name">Name</label>
         <input type="text" id="field-name" maxlength="100" value=${form.value.name}
           placeholder="optional" aria-describedby="help-name"
@@ -50,10 +50,10 @@ const Choice = ({ field, label, choices, ...rest }) => html`
   <p class="sentence" aria-hidden="true">${sentenceFor(field)}</p></div>
 `;
 
-const Figure = ({ field, label, unit, factor, step }) => html`
+const Figure = ({ field, label, unit, step }) => html`
   <div class="field">
     <label for=${`field-${field}`}>${label}${unit && ` (${unit})`}</label>
-    <${NumberField} field=${field} value=${form.value[field]} factor=${factor} step=${step}
+    <${NumberField} field=${field} value=${form.value[field]} step=${step}
       onValue=${(value) => set(field, value)} />
     <${Sentence} field=${field} />
   </div>
@@ -80,14 +80,16 @@ function Lanes() {
     else set("lanes", [...lanes]);
   };
   return html`
-    <fieldset class="field lanes">
+    <fieldset class="field wide">
       <legend>Who races</legend>
+      <div class="checks">
       ${agents.map(({ name, title: words }) => html`
         <label class="check">
           <input type="checkbox" checked=${lanes.includes(name)} onChange=${() => toggle(name)} />
           ${words ?? name}
         </label>
       `)}
+      </div>
       <${Sentence} field="lanes" />
     </fieldset>
   `;

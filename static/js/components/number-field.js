@@ -15,11 +15,11 @@ const WHOLE = new Set([
 ]);
 
 const limitsOf = (field) =>
-  options.value?.limits?.[field === "race_steps" ? "steps" : field] ?? LIMITS[field] ?? [null, null];
+  options.value?.limits?.[field] ?? LIMITS[field] ?? [null, null];
 
-/** What is wrong with a number, or null. `factor`: how many of the unit shown are one of the form's. */
-function mistakeIn(field, value, factor) {
-  const [low, high] = limitsOf(field).map((limit) => (limit === null ? null : limit * factor));
+/** What is wrong with a number, or null. */
+function mistakeIn(field, value) {
+  const [low, high] = limitsOf(field);
   const range = high === null ? `at least ${low}` : `from ${low} to ${high.toLocaleString("en")}`;
   if (!Number.isFinite(value)) return `A number, ${range}`;
   if (WHOLE.has(field) && !Number.isInteger(value)) return `A whole number, ${range}`;
@@ -29,20 +29,20 @@ function mistakeIn(field, value, factor) {
   return null;
 }
 
-const shownAs = (value, factor) => String(Number((value * factor).toPrecision(8)));
+const shownAs = (value) => String(Number(value.toPrecision(8)));
 
 /** `label` is for screen readers where no <label> names the field. */
-export function NumberField({ field, value, onValue, step = 1, factor = 1, label, isDisabled = false }) {
+export function NumberField({ field, value, onValue, step = 1, label, isDisabled = false }) {
   const [draft, setDraft] = useState(null);
   const mistake = mistakes.value[field];
   const isRefused = refusedFields.value.includes(field);
 
   const onInput = ({ target }) => {
     const typed = target.value.trim() === "" ? NaN : Number(target.value);
-    const wrong = mistakeIn(field, typed, factor);
+    const wrong = mistakeIn(field, typed);
     setDraft(target.value);
     setMistake(field, wrong);
-    if (!wrong) onValue(typed / factor);
+    if (!wrong) onValue(typed);
   };
   const onBlur = () => {
     setDraft(null);
@@ -50,7 +50,7 @@ export function NumberField({ field, value, onValue, step = 1, factor = 1, label
   };
   return html`
     <span class="number">
-      <input type="number" inputmode="decimal" id=${`field-${field}`} value=${draft ?? shownAs(value, factor)}
+      <input type="number" inputmode="decimal" id=${`field-${field}`} value=${draft ?? shownAs(value)}
         step=${step} disabled=${isDisabled} aria-label=${label}
         aria-invalid=${mistake || isRefused ? "true" : undefined}
         aria-describedby=${mistake ? `mistake-${field}` : `help-${field}`}

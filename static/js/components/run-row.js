@@ -14,7 +14,7 @@ export function RunRow({ run }) {
     <li class="run">
       <p class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${run.state}</p>
       <div class="what">
-        <p><b>${title}</b> <span class="dim">${gaitOf(run)}</span></p>
+        <p><b>${title}</b> ${!title.includes(run.config.gait) && html`<span class="dim">${gaitOf(run)}</span>`}</p>
         <p class="dim">${about(run)}</p>
         ${run.error && html`<p class="bad">${run.error}</p>`}
       </div>

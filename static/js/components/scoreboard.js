@@ -4,7 +4,7 @@ import { count, decision, duration, metres, whole } from "../format.js";
 import { html } from "../html.js";
 import { headline } from "../outcome.js";
 import { practised } from "../curves.js";
-import { agentOf, clock, futures, learns, raceInView } from "../selectors.js";
+import { agentOf, clock, futures, isActive, learns, raceInView } from "../selectors.js";
 import { isDecided, raceScene, standings } from "../standings.js";
 import { options, runs } from "../store.js";
 import { Icon } from "./icon.js";
@@ -102,12 +102,19 @@ function about(agent, trainingId) {
   return `Simulates ${whole(futures(depth, raceInView.value?.config ?? form.value))} moves before each step`;
 }
 
+function startWords(race) {
+  if (!race) return "These will race. Nothing is decided.";
+  return isActive(race) || race.state === "finished"
+    ? "They race as soon as practice is over."
+    : `The race ${race.state === "stopped" ? "was stopped" : race.state} before it began.`;
+}
+
 /** Before a race: who will race. */
 function StartList() {
   const race = raceInView.value;
   const lanes = race?.config?.lanes ?? form.value.lanes.map((agent) => ({ agent }));
   return html`
-    <p class="dim">${race ? "They race as soon as practice is over." : "These will race. Nothing is decided."}</p>
+    <p class="dim">${startWords(race)}</p>
     <ul class="start-list">
       ${lanes.map(({ agent, training_id }) => {
         const { title, color } = agentOf(agent);

@@ -23,7 +23,7 @@ const SENTENCES = {
   robot: "Servos and ground: stiff servos, compliant ones, or a slippery floor.",
   simulator: "Full physics with MuJoCo, or the ideal law of walking without slip.",
   divisions: "Points along a side of the square of places where a foot may go.",
-  grid_side_m: "Side of that square, in millimetres.",
+  grid_side_m: "Side of that square, in metres.",
   race_steps: "How many steps each robot has in the race.",
   lanes: "Who races, one lane each.",
   name: "What this run is called in the list of runs.",

@@ -3,7 +3,7 @@ import { setStage, skipToEnd, togglePlaying } from "../actions.js";
 import { clockTime } from "../format.js";
 import { html } from "../html.js";
 import { isNarrow, view } from "../page.js";
-import { agentOf, clock, isOperator, shownRun } from "../selectors.js";
+import { agentOf, clock, isActive, isOperator, shownRun } from "../selectors.js";
 import { options, scene, stage } from "../store.js";
 import { Icon } from "./icon.js";
 import { Problem } from "./problem.js";
@@ -43,7 +43,7 @@ const oneIsLeft = (now) =>
 function Seek({ now }) {
   if (!now || now.kind === "idle") return html`<span class="seek"></span>`;
   if (!now.duration_s) {
-    return html`<span class="seek"><span class="num">${clockTime(now.time_s)}</span><span class="dim">still being simulated</span></span>`;
+    return html`<span class="seek"><span class="num">${clockTime(now.time_s)}</span><span class="dim">${isActive(shownRun.value) ? "still being simulated" : ""}</span></span>`;
   }
   const { time_s, duration_s } = now;
   const words = `${clockTime(time_s)} of ${clockTime(duration_s)}`;
