@@ -1,9 +1,11 @@
 """How many can watch: `python benchmarks/viewers.py http://127.0.0.1:8000 --viewers 200`.
 
 Opens viewers of a server that runs on this machine, counts what they get for some seconds, times
-`GET /healthz` meanwhile, prints one JSON object, and ends. Promises 7 and 8 of the project are
-that the median stays at 20 frames/s or more with 200 viewers, the API's 95th percentile under
-250 ms, and that 20 who do not read cost the others less than 5 % of their frames.
+`GET /healthz` meanwhile, prints one JSON object, and ends. Something must move on stage, or there
+are no frames to count: start a race or a training first.
+
+What is promised: 200 viewers get 20 frames/s or more in the median, the API's 95th percentile
+stays under 250 ms, and 20 who do not read cost the others less than 5 % of their frames.
 """
 
 import argparse
@@ -119,6 +121,7 @@ def _report(tallies: list[Tally], latencies_s: list[float], took_s: float) -> di
         "viewers": len(tallies),
         "seconds": round(took_s, 1),
         "frames_per_s_median": round(statistics.median(rates), 2),
+        "frames_per_s_highest": round(max(rates), 2),
         "frames_per_s_lowest": round(min(rates), 2),
         "bytes_per_s_total": round(sum(tally.size_bytes for tally in tallies) / took_s),
         "viewers_lost": sum(tally.lost for tally in tallies),
