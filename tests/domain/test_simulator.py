@@ -1,7 +1,6 @@
 """What every simulator promises, tried on both."""
 
 from collections.abc import Callable
-from dataclasses import FrozenInstanceError
 from typing import Any
 
 import numpy as np
@@ -161,9 +160,9 @@ def test_a_state_is_a_value_that_nothing_changes(simulator: Simulator[Any]) -> N
 
     assert bits(simulator, state) == before
     assert bits(simulator, copy) == before
-    with pytest.raises(FrozenInstanceError):
+    with pytest.raises(AttributeError):
         state.distance_m = 1.0
-    with pytest.raises(FrozenInstanceError):
+    with pytest.raises(AttributeError):
         state.feet.forward_m = ()
 
 

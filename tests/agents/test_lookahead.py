@@ -1,0 +1,150 @@
+"""Look-ahead: what it chooses, and how many transitions it simulates for it."""
+
+from collections.abc import Sequence
+from itertools import product
+
+import numpy as np
+import pytest
+
+from app.agents.lookahead import Greedy, LookAhead, TwoStep
+from app.agents.protocol import Node
+from app.domain.gait import NAMED_GAITS, resolve
+from app.domain.grid import FootGrid
+from app.domain.kinematic import KinematicSimulator
+from app.domain.robot import Robot
+from app.domain.types import Action, FloatArray
+from app.runs.walker import Foresight, Walker
+
+HOME, FRONT_LEFT, FRONT_RIGHT, BACK_LEFT, BACK_RIGHT = range(5)
+
+
+def walker(
+    depth: int, gait: str = "left-right-origin", divisions: int = 2
+) -> tuple[Walker, Foresight]:
+    simulator = KinematicSimulator(
+        Robot(), resolve(gait, Robot().azimuths_deg), FootGrid(divisions=divisions)
+    )
+    foresight = Foresight(simulator, "measured")
+    return Walker(simulator, LookAhead(foresight, depth), "measured", foresight), foresight
+
+
+@pytest.mark.parametrize(("depth", "transitions"), [(1, 12), (2, 156), (3, 1884)])
+def test_a_decision_simulates_every_sequence_once(depth: int, transitions: int) -> None:
+    robot, foresight = walker(depth)
+    robot.decide()
+
+    assert foresight.transitions == transitions
+    assert transitions == sum(12**d for d in range(1, depth + 1))
+
+
+def test_at_three_divisions_there_are_24_actions() -> None:
+    robot, foresight = walker(2, divisions=3)
+    robot.decide()
+
+    assert foresight.transitions == 24 + 24 * 24
+
+
+@pytest.mark.parametrize(("depth", "transitions"), [(1, 600), (2, 7_800)])
+def test_depth_is_kept_to_the_last_of_fifty_steps(depth: int, transitions: int) -> None:
+    robot, foresight = walker(depth)
+    for _ in range(50):
+        robot.carry_out(robot.decide())
+
+    assert foresight.transitions == robot.transitions == transitions
+
+
+@pytest.mark.parametrize("gait", NAMED_GAITS)
+def test_greedy_takes_turns_to_the_front(gait: str) -> None:
+    """The first of equals: pair 1 before pair 2, left before right; then whoever is hindmost."""
+    robot, _ = walker(1, gait)
+    chosen = []
+    for _ in range(9):
+        chosen.append(robot.decide())
+        robot.carry_out(chosen[-1])
+
+    assert chosen[:3] == [(0, FRONT_LEFT), (1, FRONT_LEFT), (2, FRONT_LEFT)]
+    assert [action.pair for action in chosen] == [0, 1, 2] * 3
+    assert {action.cell for action in chosen} <= {FRONT_LEFT, FRONT_RIGHT}
+
+
+@pytest.mark.parametrize("depth", [1, 2, 3])
+def test_the_first_action_of_the_best_sequence_is_chosen(depth: int) -> None:
+    """Against trying all sequences one by one, along a walk that chance leads off the best way."""
+    robot, _ = walker(depth)
+    simulator, rng = robot.simulator, np.random.default_rng(depth)
+
+    def best_sum(state: object, left: int) -> float:
+        if left == 0:
+            return 0.0
+        robot.place(state)  # type: ignore[arg-type]
+        sums = []
+        for action in robot.legal:
+            step = simulator.step(state, action)
+            sums.append(step.reward_m + best_sum(step.state, left - 1))
+            robot.place(state)  # type: ignore[arg-type]
+        return max(sums)
+
+    for _ in range(3 if depth == 3 else 8):
+        state = robot.state
+        chosen = robot.decide()
+        step = simulator.step(state, chosen)
+        worth = step.reward_m + best_sum(step.state, depth - 1)
+        assert worth == pytest.approx(best_sum(state, depth), abs=1e-12)
+        robot.place(state)
+        robot.carry_out(robot.legal[int(rng.integers(len(robot.legal)))])
+
+
+class TrapDoor:
+    """Implements `Expand` on a little world: from A the best step leads to where all is bad."""
+
+    class Place:
+        def __init__(self, name: str) -> None:
+            self.name = name
+
+        @property
+        def legal(self) -> Sequence[Action]:
+            return tuple(Action(0, cell) for cell in range(len(WORLD[self.name])))
+
+    def __init__(self) -> None:
+        self.here: Node = self.Place("A")
+        self.calls: list[int] = []
+
+    def __call__(
+        self, nodes: Sequence[Node], actions: Sequence[Action]
+    ) -> tuple[Sequence[Node], FloatArray]:
+        self.calls.append(len(actions))
+        found = [
+            WORLD[node.name][action.cell]  # type: ignore[attr-defined]
+            for node, action in zip(nodes, actions, strict=True)
+        ]
+        return [self.Place(name) for name, _ in found], np.array([r for _, r in found])
+
+
+WORLD: dict[str, list[tuple[str, float]]] = {
+    "A": [("B", 1.0), ("C", 0.5), ("D", 0.4), ("D", 0.4)],
+    "B": [("A", -5.0)],
+    "C": [("A", 0.1), ("A", 0.2)],
+    "D": [("A", 0.1), ("A", 0.5), ("A", 0.0)],
+}
+
+
+def test_greedy_steps_into_the_trap() -> None:
+    assert Greedy(TrapDoor()).act((0,), ()) == (0, 0)
+
+
+def test_two_steps_avoid_it_and_of_equals_take_the_first() -> None:
+    world = TrapDoor()
+
+    assert TwoStep(world).act((0,), ()) == (0, 2)
+    assert world.calls == [4, 1 + 2 + 3 + 3]  # a layer a call, and a family may have any size
+
+
+def test_every_gait_and_depth_gives_each_pair_its_turn() -> None:
+    for gait, depth in product(NAMED_GAITS, (1, 2)):
+        robot, _ = walker(depth, gait)
+        moved = set()
+        for _ in range(6):
+            action = robot.decide()
+            moved.add(action.pair)
+            robot.carry_out(action)
+        assert moved == {0, 1, 2}

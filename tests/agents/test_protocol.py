@@ -1,0 +1,117 @@
+"""What every agent promises, tried on all of ours and on a user's own."""
+
+import pytest
+
+from app.agents.protocol import Agent, Transition
+from app.assembly import build_learner
+from app.domain.observation import OBSERVATIONS, Observation, observe
+from app.domain.types import Action
+from app.runs import seeding
+from app.runs.config import TrainingConfig
+from app.runs.training import Learner
+
+AGENTS = [
+    "q-learning",
+    "greedy",
+    "two-step",
+    "tests.own_agents:ThreeStep",
+    "tests.own_agents:Restless",
+    "tests.own_agents:Plain",
+]
+
+
+def learner(agent: str, seed: int = 0, observation: Observation = "measured") -> Learner:
+    return build_learner(
+        TrainingConfig(
+            gait="left-right-origin",
+            simulator="kinematic",
+            agent=agent,
+            seed=seed,
+            observation=observation,
+            steps=60,
+            steps_per_episode=10,
+        )
+    )
+
+
+def walk(learner: Learner, steps: int) -> list[tuple[Action, float]]:
+    """Act, and learn from what comes of it."""
+    walker, done = learner.walker, []
+    for _ in range(steps):
+        seen, action = walker.seen, walker.decide()
+        reward = walker.carry_out(action).reward_m
+        walker.agent.learn(Transition(seen, action, reward, walker.seen, walker.legal))
+        done.append((action, reward))
+    return done
+
+
+def written(learner: Learner) -> dict[str, bytes]:
+    return {name: array.tobytes() for name, array in learner.walker.agent.state().items()}
+
+
+@pytest.fixture(params=AGENTS)
+def agent(request: pytest.FixtureRequest) -> str:
+    name: str = request.param
+    return name
+
+
+def steps_for(agent: str) -> int:
+    return 6 if agent.endswith("ThreeStep") else 25
+
+
+def test_it_keeps_to_the_protocol(agent: str) -> None:
+    assert isinstance(learner(agent).walker.agent, Agent)
+
+
+@pytest.mark.parametrize("observation", OBSERVATIONS)
+def test_it_takes_legal_actions_by_what_it_sees(agent: str, observation: Observation) -> None:
+    walker = learner(agent, observation=observation).walker
+    for _ in range(steps_for(agent)):
+        seen = observe(walker.simulator, walker.state, observation)
+        action = walker.decide()
+        assert action in walker.legal
+        assert seen[action.pair] != action.cell
+        assert [type(part) for part in action] == [int, int]
+        walker.carry_out(action)
+
+
+def test_the_same_seed_acts_and_learns_the_same(agent: str) -> None:
+    one, other = learner(agent, seed=5), learner(agent, seed=5)
+
+    assert walk(one, steps_for(agent)) == walk(other, steps_for(agent))
+    assert written(one) == written(other)
+
+
+def test_from_a_state_it_goes_on_identically(agent: str) -> None:
+    original, copy = learner(agent, seed=1), learner(agent, seed=2)
+    walk(original, steps_for(agent))
+    copy.walker.agent.load(original.walker.agent.state())
+    copy.walker.place(original.walker.state)
+    seeding.load(copy.rng, seeding.dump(original.rng))
+    assert written(copy) == written(original)
+
+    assert walk(copy, steps_for(agent)) == walk(original, steps_for(agent))
+    assert written(copy) == written(original)
+
+
+def test_its_state_is_a_copy(agent: str) -> None:
+    original = learner(agent)
+    walk(original, 5)
+    before = written(original)
+    for array in original.walker.agent.state().values():
+        array.fill(1)
+
+    assert written(original) == before
+
+
+def test_only_who_asks_for_it_is_shown_the_future() -> None:
+    blind, seeing = learner("q-learning"), learner("two-step")
+    walk(blind, 10)
+    walk(seeing, 2)
+
+    assert blind.walker.transitions == 0
+    assert seeing.walker.transitions == 2 * 156
+
+
+def test_other_seeds_act_otherwise() -> None:
+    assert walk(learner("q-learning", seed=1), 10) != walk(learner("q-learning", seed=2), 10)

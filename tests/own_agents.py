@@ -1,0 +1,79 @@
+"""Agents as a user might write them, good and bad; found as `tests.own_agents:Name`."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.agents.lookahead import LookAhead
+from app.agents.protocol import AgentState, Expand, Problem, Transition
+from app.domain.types import Action, Cells
+
+
+class Restless:
+    """Goes anywhere; remembers how much it earned."""
+
+    def __init__(self, rng: np.random.Generator, problem: Problem) -> None:
+        self._rng, self.problem, self.earned_m = rng, problem, 0.0
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        return legal[int(self._rng.integers(len(legal)))]
+
+    def learn(self, transition: Transition) -> None:
+        self.earned_m += transition.reward_m
+
+    def state(self) -> AgentState:
+        return {"earned_m": np.array([self.earned_m])}
+
+    def load(self, state: AgentState) -> None:
+        self.earned_m = float(state["earned_m"][0])
+
+
+class ThreeStep(LookAhead):
+    """Looks one step further than ours."""
+
+    def __init__(self, expand: Expand) -> None:
+        super().__init__(expand, depth=3)
+
+
+class Plain(Restless):
+    """Writes its action as a plain tuple of NumPy numbers, which is as good."""
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        pair, cell = super().act(observation, legal)
+        return (np.int64(pair), np.int64(cell))  # type: ignore[return-value]
+
+
+class Needy(Restless):
+    """Asks for what nobody offers."""
+
+    def __init__(self, rng: np.random.Generator, problem: Problem, crystal_ball: object) -> None:
+        super().__init__(rng, problem)
+
+
+class Cheat(Restless):
+    """Leaves a pair where it is, which is no action."""
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        return Action(0, observation[0])
+
+
+class Clumsy(Restless):
+    """Breaks on its third step."""
+
+    acted = 0
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        self.acted += 1
+        if self.acted == 3:
+            raise RuntimeError("I tripped")
+        return legal[0]
+
+
+class Forgetful:
+    """Lacks what lets an agent be saved."""
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        return legal[0]
+
+    def learn(self, transition: Transition) -> None:
+        pass
