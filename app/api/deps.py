@@ -7,6 +7,7 @@ from typing import Annotated
 from fastapi import Depends, Request
 
 from app.api.auth import Role
+from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.services.bus import EventBus
@@ -15,8 +16,8 @@ from app.services.recordings import Recordings
 from app.services.stage import Stage
 from app.services.store import RunStore
 
-Film = Callable[[RaceConfig, Sequence[LaneRecording]], bytes]
-"""From a race to a file that viser's client plays."""
+Film = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock], bytes]
+"""From a race, its name and a clock to a file that viser's client plays."""
 
 
 @dataclass(frozen=True)

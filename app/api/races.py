@@ -14,7 +14,7 @@ from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.services import replays
 from app.services.errors import Conflict
-from app.services.store import Run
+from app.services.store import UNENDED, Run
 from app.services.timeline import timeline
 
 router = run_routes("race")
@@ -33,12 +33,13 @@ def get_recording(
     request: Request,
     run_id: RunPath,
     format: Annotated[Literal["json", "npz", "viser"] | None, Query()] = None,  # noqa: A002
+    clock: Annotated[Clock, Query()] = "paper",
 ) -> Response:
-    """Joint positions over time; `viser` is for `/viewer/?playbackPath=…`."""
+    """Joint positions over time; `viser`, timed by `clock`, is for `/viewer/?playbackPath=…`."""
     run, config, lanes = _recorded(services, run_id)
     kind = chosen(request, format, ("json", "npz"))
     if kind == "viser":
-        film = services.film(config, lanes)
+        film = _film(services, run, config, clock)
         return attachment(film, "application/octet-stream", f"race-{run_id}.viser")
     if kind == "npz":
         return attachment(replays.as_npz(lanes), "application/x-npz", f"race-{run_id}.npz")
@@ -53,6 +54,21 @@ def get_timeline(
     """When each lane thinks and walks; flat parts of its points are thinking."""
     run, config, lanes = _recorded(services, run_id)
     return JSONResponse(timeline(lanes, run.lane_training_ids, config.steps, clock))
+
+
+def _film(services: Services, run: Run, config: RaceConfig, clock: Clock) -> bytes:
+    """Made once: it takes seconds."""
+    lanes = services.recordings.race(run.id)
+    if run.state in UNENDED or lanes is None:
+        raise Conflict(
+            f"race {run.id} is {run.state}; its film can be had once it ended", run.state
+        )
+    name = f"film-{clock}.viser"
+    film = services.store.artifact(run.id, name)
+    if film is None:
+        film = services.film(config, lanes, run.name, clock)
+        services.store.put_artifact(run.id, name, film)
+    return film
 
 
 def _recorded(services: Services, run_id: str) -> tuple[Run, RaceConfig, list[LaneRecording]]:

@@ -1,20 +1,21 @@
 """The stage, viser and the hub, put together: built with the app, running with its lifespan."""
 
 import asyncio
-import contextlib
-from collections.abc import Collection, Iterator, Sequence
+import threading
+from collections.abc import Collection, Sequence
+from contextlib import ExitStack
 from types import TracebackType
 from typing import Self
 
-import rich
-import viser
-
+from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.services.bus import EventBus
 from app.services.stage import Stage
+from app.viewer.film import film
 from app.viewer.follow import Position
 from app.viewer.hub import Hub
+from app.viewer.loopback import loopback_viser
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop
 
@@ -32,8 +33,8 @@ class Theatre:
         """
         self._stage, self._bus = stage, bus
         self._scene: StageScene | None = None
-        self._viser: viser.ViserServer | None = None
-        self._loop: StageLoop | None = None
+        self._running = ExitStack()
+        self._filming = threading.Lock()
         self.hub = Hub(
             0,  # until viser has one
             follow_position=self._follow_position,
@@ -53,38 +54,20 @@ class Theatre:
         traceback: TracebackType | None,
     ) -> None:
         await self.hub.stop()
-        await asyncio.to_thread(self._close)
+        await asyncio.to_thread(self._running.close)
 
-    def film(self, config: RaceConfig, lanes: Sequence[LaneRecording]) -> bytes:
-        """A race as a file that viser's client plays."""
-        raise NotImplementedError
+    def film(
+        self, config: RaceConfig, lanes: Sequence[LaneRecording], name: str, clock: Clock
+    ) -> bytes:
+        """A race as a file that viser's client plays; one is made at a time."""
+        with self._filming:
+            return film(config, lanes, name, clock)
 
     def _open(self) -> None:
-        # viser's own default is every interface, without a question who asks.
-        with _quiet():
-            self._viser = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-        self.hub.port = self._viser.get_port()
-        self._scene = StageScene(self._viser)
-        self._loop = StageLoop(self._stage, self._scene, self._bus)
-        self._loop.start()
-
-    def _close(self) -> None:
-        if self._loop is not None:
-            self._loop.stop()
-        if self._viser is not None:
-            with _quiet():
-                self._viser.stop()
+        server = self._running.enter_context(loopback_viser())
+        self.hub.port = server.get_port()
+        self._scene = StageScene(server)
+        self._running.enter_context(StageLoop(self._stage, self._scene, self._bus))
 
     def _follow_position(self, view: str) -> Position | None:
         return None if self._scene is None else self._scene.follow_position(view)
-
-
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Keep to itself the box with its own address that viser prints: it is for nobody."""
-    console = rich.get_console()
-    before, console.quiet = console.quiet, True
-    try:
-        yield
-    finally:
-        console.quiet = before

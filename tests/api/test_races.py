@@ -182,3 +182,13 @@ def test_options_are_all_that_can_be_asked_for(api: Api) -> None:
     assert learns == {"q-learning": True, "greedy": False, "two-step": False}
     api.stop(api.start("/trainings", options["defaults"]["training"]))
     assert set(options["limits"]) <= set(options["help"])
+
+
+def test_its_film_is_for_the_viewer(api: Api) -> None:
+    race = api.finished(api.race(lanes=[{"agent": "greedy"}], steps=3))
+    path = f"/races/{race['id']}/recording?format=viser"
+    film = api.call("GET", path)
+    assert film.status_code == 200
+    assert len(film.content) > 1000
+    assert api.call("GET", path).content == film.content
+    assert api.client.get("/viewer/", params={"playbackPath": f"/api/v1{path}"}).status_code == 200

@@ -45,8 +45,7 @@ def answer(client: TestClient, method: str, path: str, headers: dict[str, str]) 
         with client.websocket_connect(path, headers={"Host": "127.0.0.1:8000", **headers}):
             return 101
     except WebSocketDisconnect as closed:
-        assert closed.code == 1008
-        return 403
+        return 403 if closed.code == 1008 else closed.code
 
 
 def quick(routes: list[tuple[str, str]]) -> list[tuple[str, str]]:

@@ -1,0 +1,210 @@
+"""Jobs in real processes: their order, their end, and what becomes of one that dies."""
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import psutil
+import pytest
+
+from app.domain.errors import InvalidInput
+from app.runs.config import TrainingConfig, Walk
+from app.services.bus import EventBus
+from app.services.entries import LaneStart, RaceStart, TrainingStart
+from app.services.errors import Busy, Conflict
+from app.services.jobs import Jobs
+from app.services.recordings import Recordings
+from app.services.store import UNENDED, MemoryStore, Run
+from app.services.waiting import MAX_QUEUED
+
+WALK = Walk(gait="left-right-origin", simulator="kinematic")
+LONG_S = 60.0
+
+
+@pytest.fixture
+def store() -> MemoryStore:
+    return MemoryStore()
+
+
+@pytest.fixture
+def jobs(store: MemoryStore) -> Iterator[Jobs]:
+    made = Jobs(store, Recordings(), EventBus(), cores=1)
+    made.open()
+    yield made
+    made.close()
+
+
+def training(**fields: Any) -> TrainingStart:
+    return TrainingStart(TrainingConfig(**vars(WALK), **{"steps": 10, **fields}))
+
+
+def endless() -> TrainingStart:
+    return training(steps=10_000_000, pace=20, evaluate_every=0)
+
+
+def until(is_so: Callable[[], Any]) -> None:
+    deadline = time.monotonic() + LONG_S
+    while not is_so():
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+
+
+def ended(store: MemoryStore, run: Run) -> Run:
+    until(lambda: store.get(run.id).state not in UNENDED)
+    return store.get(run.id)
+
+
+def moving(store: MemoryStore, run: Run) -> None:
+    until(lambda: store.get(run.id).done > 0)
+
+
+def pid_of(jobs: Jobs, run: Run) -> int:
+    pid = jobs._jobs[run.id].child.pid
+    assert pid is not None
+    return pid
+
+
+def test_they_start_in_the_order_in_which_they_were_asked_for(
+    jobs: Jobs, store: MemoryStore
+) -> None:
+    runs = [jobs.train(training()) for _ in range(3)]
+    last = ended(store, runs[-1])
+    starts = [store.get(run.id).started_at for run in runs]
+    assert starts == sorted(starts, key=str)
+    ends = [store.get(run.id).ended_at for run in runs]
+    assert all(a <= b for a, b in zip(ends, starts[1:], strict=False) if a and b)
+    assert last.state == "finished"
+
+
+def test_the_queue_is_bounded(jobs: Jobs, store: MemoryStore) -> None:
+    first = jobs.train(endless())
+    moving(store, first)
+    for _ in range(MAX_QUEUED):
+        jobs.train(endless())
+    with pytest.raises(Busy, match="32") as error:
+        jobs.train(endless())
+    assert error.value.retry_after_s > 0
+    lanes = [LaneStart("greedy")]
+    with pytest.raises(Busy):
+        jobs.race(RaceStart(WALK, lanes, 50, 0))
+    queued = store.list(state="queued").items
+    assert len(queued) == MAX_QUEUED
+    for run in queued:
+        assert jobs.stop(run.id).state == "stopped"
+    jobs.stop(first.id)
+
+
+def test_a_paused_job_gives_its_place_away(jobs: Jobs, store: MemoryStore) -> None:
+    first = jobs.train(endless())
+    moving(store, first)
+    second = jobs.train(training())
+    assert store.get(second.id).state == "queued"
+    jobs.pause(first.id)
+    assert ended(store, second).state == "finished"
+    done = store.get(first.id).done
+    time.sleep(0.3)
+    assert store.get(first.id).done - done <= 1, "it was paused"
+    jobs.resume(first.id)
+    until(lambda: store.get(first.id).done > done + 1)
+    assert jobs.stop(first.id).state == "stopped"
+
+
+def test_words_are_obeyed_between_two_steps(jobs: Jobs, store: MemoryStore) -> None:
+    mujoco = Walk(gait="left-right-origin")
+    start = TrainingStart(TrainingConfig(**vars(mujoco), steps=1_000_000, evaluate_every=0))
+    run = jobs.train(start)
+    moving(store, run)
+    began = time.monotonic()
+    changed = jobs.change(run.id, {"alpha": 0.2})
+    assert changed.changes[0]["alpha"] == 0.2
+    stopped = jobs.stop(run.id)
+    assert stopped.state == "stopped"
+    assert stopped.result is not None
+    # The promise is one second; a step takes 2 ms, so whatever is over this is no busy machine.
+    assert time.monotonic() - began < 10
+
+
+def test_a_killed_process_is_a_failed_run_that_names_the_signal(
+    jobs: Jobs, store: MemoryStore
+) -> None:
+    run = jobs.train(endless())
+    moving(store, run)
+    began = time.monotonic()
+    os.kill(pid_of(jobs, run), signal.SIGKILL)
+    now = ended(store, run)
+    assert time.monotonic() - began < 5
+    assert now.state == "failed"
+    assert "SIGKILL" in (now.error or "")
+    assert ended(store, jobs.train(training())).state == "finished", "others go on"
+
+
+def test_a_race_fails_with_its_practice(jobs: Jobs, store: MemoryStore) -> None:
+    race = jobs.race(RaceStart(WALK, [LaneStart("q-learning", training=endless())], 50, 0))
+    practice = store.get(race.waiting_for[0])
+    moving(store, practice)
+    os.kill(pid_of(jobs, practice), signal.SIGSEGV)
+    now = ended(store, race)
+    assert now.state == "failed"
+    assert practice.id in (now.error or "")
+    assert "SIGSEGV" in (now.error or "")
+
+
+def test_one_of_many_that_stop_it_wins(jobs: Jobs, store: MemoryStore) -> None:
+    run = jobs.train(endless())
+    moving(store, run)
+    won, lost = [], []
+
+    def stop() -> None:
+        try:
+            won.append(jobs.stop(run.id))
+        except Conflict as conflict:
+            lost.append(conflict)
+
+    threads = [threading.Thread(target=stop) for _ in range(16)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert (len(won), len(lost)) == (1, 15)
+
+
+def test_a_race_says_if_it_shared_the_machine(store: MemoryStore) -> None:
+    jobs = Jobs(store, Recordings(), EventBus(), cores=2)
+    jobs.open()
+    try:
+        alone = ended(store, jobs.race(RaceStart(WALK, [LaneStart("greedy")], 5, 0)))
+        other = jobs.train(endless())
+        moving(store, other)
+        shared = ended(store, jobs.race(RaceStart(WALK, [LaneStart("greedy")], 5, 0)))
+        assert alone.result is not None
+        assert shared.result is not None
+        assert (alone.result["shared_machine"], shared.result["shared_machine"]) == (False, True)
+    finally:
+        jobs.close()
+
+
+def test_closing_leaves_no_process(store: MemoryStore) -> None:
+    jobs = Jobs(store, Recordings(), EventBus(), cores=2)
+    jobs.open()
+    runs = [jobs.train(endless()) for _ in range(3)]
+    for run in runs[:2]:
+        moving(store, run)
+    children = [psutil.Process(pid_of(jobs, run)) for run in runs[:2]]
+    jobs.close()
+    assert not any(child.is_running() for child in children)
+    assert [store.get(run.id).state for run in runs] == ["interrupted", "interrupted", "queued"]
+
+
+def test_a_process_is_modest(jobs: Jobs, store: MemoryStore) -> None:
+    run = jobs.train(endless())
+    moving(store, run)
+    assert psutil.Process(pid_of(jobs, run)).nice() == 15
+    jobs.stop(run.id)
+
+
+def test_an_agent_without_rates_has_none_to_change(jobs: Jobs) -> None:
+    with pytest.raises(InvalidInput, match="does not learn"):
+        jobs.train(training(agent="greedy"))

@@ -1,0 +1,266 @@
+"""The server as people run it: one process on loopback, its streams, its end, its refusals."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx2
+import psutil
+import pytest
+import viser
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+
+LONG_S = 60.0
+BODY = {"gait": "left-right-origin", "simulator": "kinematic"}
+ENDLESS = {**BODY, "steps": 10_000_000, "pace": 20, "evaluate_every": 0}
+HEXAPODS = [sys.executable, "-c", "import sys; from app.cli import main; sys.exit(main())"]
+Events = Iterator[tuple[str, Any, str]]
+
+
+def environ(**variables: str) -> dict[str, str]:
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("HEXAPODS_")}
+    return {**kept, **variables}
+
+
+class Served:
+    """`hexapods serve` on a port that the system chose."""
+
+    def __init__(self, data: Path, **variables: str) -> None:
+        command = [*HEXAPODS, "serve", "--port", "0", "--data", str(data)]
+        self.process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, text=True, env=environ(**variables)
+        )
+        assert self.process.stdout is not None
+        line = self.process.stdout.readline()
+        assert "Racing Hexapods is at http://127.0.0.1:" in line
+        self.address = line.split()[4].rstrip("/")
+        self.client = httpx2.Client(base_url=self.address, timeout=LONG_S, trust_env=False)
+
+    def start(self, body: dict[str, Any]) -> dict[str, Any]:
+        response = self.client.post("/api/v1/trainings", json=body)
+        assert response.status_code == 202, response.text
+        run: dict[str, Any] = response.json()
+        return run
+
+    def moving(self, run: dict[str, Any]) -> dict[str, Any]:
+        deadline = time.monotonic() + LONG_S
+        while True:
+            now: dict[str, Any] = self.client.get(f"/api/v1/trainings/{run['id']}").json()
+            if now["progress"]["done"] > 0:
+                return now
+            assert time.monotonic() < deadline
+            time.sleep(0.02)
+
+    def events(self, query: str = "", last: str | None = None) -> Events:
+        headers = {} if last is None else {"Last-Event-ID": last}
+        path = f"/api/v1/events{query}"
+        with self.client.stream("GET", path, headers=headers) as response:
+            assert response.status_code == 200
+            assert response.headers["content-type"].startswith("text/event-stream")
+            event: dict[str, str] = {}
+            for line in response.iter_lines():
+                name, _, value = line.partition(": ")
+                event[name] = value
+                if not line and "data" in event:
+                    yield event["event"], json.loads(event["data"]), event["id"]
+                    event = {}
+
+    def end(self, by: int = signal.SIGTERM) -> int:
+        self.client.close()
+        if self.process.poll() is None:
+            self.process.send_signal(by)
+        code = self.process.wait(LONG_S)
+        assert self.process.stdout is not None
+        self.process.stdout.close()
+        return code
+
+
+@pytest.fixture
+def serve(tmp_path: Path) -> Iterator[Callable[..., Served]]:
+    served: list[Served] = []
+
+    def make(**variables: str) -> Served:
+        served.append(Served(tmp_path, **variables))
+        return served[-1]
+
+    yield make
+    for one in served:
+        one.end(signal.SIGKILL)
+
+
+def test_a_stream_begins_with_a_snapshot_and_goes_on_with_what_happens(
+    serve: Callable[..., Served],
+) -> None:
+    server = serve()
+    events = server.events()
+    name, snapshot, _ = next(events)
+    assert name == "snapshot"
+    assert (snapshot["role"], snapshot["viewers"], snapshot["runs"]) == ("operator", 0, [])
+    assert {"version", "stage", "scene"} <= set(snapshot)
+    run = server.start({**BODY, "steps": 100})
+    seen: dict[str, list[Any]] = {}
+    last = 0
+    for name, data, number in events:
+        seen.setdefault(name, []).append(data)
+        assert int(number) > last
+        last = int(number)
+        if name == "run" and data["state"] == "finished":
+            break
+    assert [e["step"] for e in seen["evaluation"]] == [50, 100]
+    assert all(e["run_id"] == run["id"] for e in seen["evaluation"])
+    assert seen["reference"][0]["greedy_distance_m"] > 0.4
+    assert seen["run"][0]["id"] == run["id"]
+    assert seen["stage"][-1]["run_id"] == run["id"]
+
+
+def test_who_comes_back_misses_no_point_of_a_curve(serve: Callable[..., Served]) -> None:
+    server = serve()
+    _, _, seen = next(server.events())
+    run = server.start({**BODY, "steps": 100})
+    while server.client.get(f"/api/v1/trainings/{run['id']}").json()["state"] != "finished":
+        time.sleep(0.02)
+    events = server.events(last=seen)
+    name, snapshot, _ = next(events)
+    assert (name, snapshot["runs"][0]["state"]) == ("snapshot", "finished")
+    steps: list[int] = []
+    for name, data, _ in events:
+        if name == "evaluation":
+            steps.append(data["step"])
+        if steps == [50, 100]:
+            break
+    own = server.events(f"?run_id={run['id']}", last="99999999999999999")
+    _, snapshot, _ = next(own)
+    assert [row["step"] for row in snapshot["evaluations"]] == [50, 100]
+    missing = server.client.get("/api/v1/events?run_id=none")
+    assert (missing.status_code, missing.headers["content-type"]) == (
+        404,
+        "application/problem+json",
+    )
+
+
+def test_a_pause_and_new_rates_reach_who_listens(serve: Callable[..., Served]) -> None:
+    server = serve()
+    run = server.start(ENDLESS)
+    server.moving(run)
+    path = f"/api/v1/trainings/{run['id']}"
+    events = server.events(f"?run_id={run['id']}")
+    next(events)
+    server.client.patch(path, json={"alpha": 0.1})
+    server.client.post(f"{path}/pause")
+    told: list[str] = []
+    for name, data, _ in events:
+        told.append(name)
+        assert data.get("run_id", data.get("id")) == run["id"]
+        if name == "run" and data["state"] == "paused":
+            break
+    assert "rates" in told
+    server.client.post(f"{path}/stop")
+    assert server.client.delete(path).status_code == 204
+    assert "run-deleted" in [name for name, _, _ in until_closed(server, events)]
+
+
+def until_closed(server: Served, events: Events) -> Iterator[tuple[str, Any, str]]:
+    server.process.send_signal(signal.SIGTERM)
+    yield from events
+
+
+@pytest.mark.parametrize("by", [signal.SIGTERM, signal.SIGINT], ids=["SIGTERM", "SIGINT"])
+def test_a_signal_ends_it_cleanly_though_people_watch(
+    serve: Callable[..., Served], by: int
+) -> None:
+    server = serve()
+    run = server.start(ENDLESS)
+    server.moving(run)
+    events = server.events()
+    next(events)
+    family = psutil.Process(server.process.pid).children(recursive=True)
+    assert family
+    began = time.monotonic()
+    assert server.end(by) == 0
+    assert time.monotonic() - began < 10
+    _, left = psutil.wait_procs(family, timeout=LONG_S)
+    assert not left
+
+
+def test_killing_it_leaves_no_process_behind(serve: Callable[..., Served]) -> None:
+    server = serve()
+    server.moving(server.start(ENDLESS))
+    family = psutil.Process(server.process.pid).children(recursive=True)
+    assert any("multiprocessing.spawn" in " ".join(p.cmdline()) for p in family)
+    assert server.end(signal.SIGKILL) == -signal.SIGKILL
+    _, left = psutil.wait_procs(family, timeout=10)
+    assert not left
+
+
+def test_the_stage_is_there_and_only_for_its_own_page(serve: Callable[..., Served]) -> None:
+    server = serve()
+    address = server.address.replace("http", "ws") + "/viewer/?view=leader"
+    protocols: Any = [f"viser-v{viser.__version__}"]
+    own: Any = server.address
+    with connect(address, origin=own, subprotocols=protocols, proxy=None) as watching:
+        assert len(watching.recv(timeout=LONG_S)) > 100
+        viewers = next(server.events())[1]["viewers"]
+        assert viewers == 1
+    port = int(server.address.rpartition(":")[2])
+    for host, origin in (("evil.example", None), ("127.0.0.1", "http://evil.example")):
+        calling: Any = {"origin": origin, "sock": socket.create_connection(("127.0.0.1", port))}
+        foreign = f"ws://{host}:{port}/viewer/"
+        with pytest.raises(InvalidStatus) as refused:
+            connect(foreign, subprotocols=protocols, proxy=None, **calling)
+        assert refused.value.response.status_code == 403
+    assert server.client.get("/viewer/").status_code == 200
+    assert server.client.get("/docs").text.count("<details>") > 20
+
+
+def test_a_spectator_is_told_so(serve: Callable[..., Served]) -> None:
+    server = serve(HEXAPODS_TOKEN="a-token-for-tests")
+    assert next(server.events())[1]["role"] == "spectator"
+    assert server.client.post("/api/v1/trainings", json=BODY).status_code == 401
+    server.client.headers["Authorization"] = "Bearer a-token-for-tests"
+    assert next(server.events())[1]["role"] == "operator"
+    server.start({**BODY, "steps": 1})
+
+
+def refusal(*arguments: str, **variables: str) -> str:
+    done = subprocess.run(
+        [*HEXAPODS, "serve", *arguments],
+        capture_output=True,
+        text=True,
+        timeout=LONG_S,
+        env=environ(**variables),
+        check=False,
+    )
+    assert done.returncode == 2, done.stderr
+    assert "Traceback" not in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    return done.stderr
+
+
+def test_a_port_in_use(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = str(taken.getsockname()[1])
+        said = refusal("--port", port, "--data", str(tmp_path))
+    assert port in said
+    assert "--port" in said
+
+
+def test_an_address_that_is_not_ours(tmp_path: Path) -> None:
+    said = refusal("--host", "192.0.2.1", "--data", str(tmp_path), HEXAPODS_TOKEN="long-enough")
+    assert "192.0.2.1" in said
+
+
+def test_a_data_folder_that_cannot_be_written(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    assert "HEXAPODS_DATA" in refusal("--port", "0", "--data", str(tmp_path / "file"))
+
+
+def test_no_token_no_network(tmp_path: Path) -> None:
+    assert "HEXAPODS_TOKEN" in refusal("--host", "0.0.0.0", "--data", str(tmp_path))

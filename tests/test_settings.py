@@ -1,0 +1,81 @@
+"""Settings: where they come from, and what is refused before anything starts."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.domain.errors import InvalidInput
+from app.settings import Settings, is_loopback, read_settings
+
+TOKEN = "a-token-for-tests"
+
+
+def test_without_anything_it_is_loopback_and_a_folder_of_the_users() -> None:
+    settings = read_settings({})
+    assert (settings.host, settings.port, settings.token) == ("127.0.0.1", 8000, None)
+    assert settings.data.name == "racing-hexapods"
+    assert settings.spectators == "public"
+
+
+def test_an_option_goes_before_its_variable(tmp_path: Path) -> None:
+    environ = {
+        "HEXAPODS_HOST": "0.0.0.0",
+        "HEXAPODS_PORT": "9000",
+        "HEXAPODS_DATA": str(tmp_path),
+        "HEXAPODS_TOKEN": TOKEN,
+        "HEXAPODS_SPECTATORS": "token",
+        "HEXAPODS_PUBLIC_URL": "https://Hexapods.Example",
+        "HEXAPODS_ALLOWED_HOSTS": "a.example, B.example,",
+    }
+    settings = read_settings(environ, port=0, host=None)
+    assert (settings.host, settings.port, settings.data) == ("0.0.0.0", 0, tmp_path)
+    assert settings.allowed_hosts == ("a.example", "b.example")
+    assert settings.public_host == "hexapods.example"
+    assert settings.public_origin == "https://hexapods.example"
+
+
+def test_an_empty_variable_is_none() -> None:
+    names = ("HOST", "PORT", "DATA", "TOKEN", "SPECTATORS", "PUBLIC_URL", "ALLOWED_HOSTS")
+    assert read_settings({f"HEXAPODS_{name}": "" for name in names}) == read_settings({})
+
+
+@pytest.mark.parametrize(
+    ("environ", "words"),
+    [
+        ({"HOST": "0.0.0.0"}, ["0.0.0.0", "HEXAPODS_TOKEN", "127.0.0.1"]),
+        ({"HOST": "::"}, ["HEXAPODS_TOKEN"]),
+        ({"HOST": "192.168.1.5"}, ["HEXAPODS_TOKEN"]),
+        ({"HOST": "hexapods.example"}, ["HEXAPODS_TOKEN"]),
+        ({"PORT": "99999"}, ["from 0 to 65535"]),
+        ({"PORT": "-1"}, ["from 0 to 65535"]),
+        ({"PORT": "web"}, ["from 0 to 65535"]),
+        ({"TOKEN": "short"}, ["8 to 200"]),
+        ({"TOKEN": "has spaces in it"}, ["no spaces"]),
+        ({"SPECTATORS": "none"}, ["public, token"]),
+        ({"PUBLIC_URL": "hexapods.example"}, ["https://hexapods.example"]),
+        ({"PUBLIC_URL": "https://[x"}, ["https://hexapods.example"]),
+        ({"ALLOWED_HOSTS": "https://a.example"}, ["host names"]),
+        ({"ALLOWED_HOSTS": "*"}, ["host names"]),
+    ],
+    ids=str,
+)
+def test_what_is_refused(environ: dict[str, str], words: list[str]) -> None:
+    with pytest.raises(InvalidInput) as error:
+        read_settings({f"HEXAPODS_{name}": value for name, value in environ.items()})
+    assert all(word in str(error.value) for word in words)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "127.8.9.1", "localhost", "::1"])
+def test_loopback_needs_no_token(host: str, tmp_path: Path) -> None:
+    assert is_loopback(host)
+    Settings(host=host, data=tmp_path)
+
+
+@pytest.mark.parametrize("where", ["file", "file/below", "proc"])
+def test_a_data_folder_that_cannot_be_written(where: str, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    folder: Any = Path("/proc/hexapods") if where == "proc" else tmp_path / where
+    with pytest.raises(InvalidInput, match="HEXAPODS_DATA"):
+        Settings(data=folder).prepare_data()
