@@ -1,0 +1,35 @@
+"""Lanes made up by hand, small enough to do the arithmetic in the head."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.domain.simulator import Motion
+from app.domain.types import Action
+from app.runs.recording import LaneRecording
+from app.runs.records import LaneStep
+
+
+def qpos(y: float) -> list[float]:
+    """A pose y along the track: upright, with one joint that turns as it goes."""
+    return [0, y, 0.1, 1, 0, 0, 0, 10 * y]
+
+
+def step(
+    number: int,
+    ys: Sequence[float],
+    *,
+    transitions: int = 0,
+    decision_s: float = 0.0,
+    frame_s: float = 0.5,
+) -> LaneStep:
+    """A step that is at ys[0], ys[1], … after frame_s, 2 frame_s, …"""
+    times = np.arange(1, len(ys) + 1) * frame_s
+    motion = Motion(times.astype(np.float32), np.array([qpos(y) for y in ys], np.float32))
+    return LaneStep(
+        0, number, (0, 0, 0), Action(0, 1), 0.0, ys[-1], transitions, decision_s, motion, None
+    )
+
+
+def lane(*steps: LaneStep, agent: str = "greedy", failure: str | None = None) -> LaneRecording:
+    return LaneRecording(agent, np.array(qpos(0), np.float32), list(steps), failure)

@@ -1,0 +1,149 @@
+"""One race under three clocks, by hand on tiny examples."""
+
+import pytest
+
+from app.domain.errors import UnknownName
+from app.runs.clocks import (
+    CLOCKS,
+    FINISH_LINE_M,
+    Moment,
+    Timetable,
+    check_clock,
+    crossing_s,
+    decision_s,
+    distance_at,
+    motion_s,
+)
+from tests.runs.made_up import lane, step
+
+# Two steps of a second each: 10 cm, then 20 cm; 10 and 20 transitions; 0.7 and 0.1 s of thought.
+WALK = lane(
+    step(1, [0.05, 0.1], transitions=10, decision_s=0.7),
+    step(2, [0.2, 0.3], transitions=20, decision_s=0.1),
+)
+
+
+def test_a_step_is_decision_plus_motion() -> None:
+    first, second = WALK.steps
+
+    assert motion_s(first) == 1
+    assert [decision_s(s, "free") for s in (first, second)] == [0, 0]
+    assert [decision_s(s, "wall") for s in (first, second)] == [0.7, 0.1]
+    # 0.03 × motion time for every transition.
+    assert [decision_s(s, "paper") for s in (first, second)] == pytest.approx([0.3, 0.6])
+
+
+def test_the_paper_clock_scales_with_the_motion() -> None:
+    assert decision_s(step(1, [0.1], transitions=12, frame_s=0.32), "paper") == pytest.approx(
+        0.03 * 12 * 0.32
+    )
+
+
+@pytest.mark.parametrize(
+    ("clock", "thought", "ends"),
+    [
+        ("free", (0, 1), (1, 2)),
+        ("wall", (0.7, 1.8), (1.7, 2.8)),
+        ("paper", (0.3, 1.9), (1.3, 2.9)),
+    ],
+)
+def test_a_timetable_says_when_it_thinks_and_when_it_moves(
+    clock: str, thought: tuple[float, ...], ends: tuple[float, ...]
+) -> None:
+    table = Timetable.of(WALK.steps, next(c for c in CLOCKS if c == clock))
+
+    assert table.thought == pytest.approx(thought)
+    assert table.ends == pytest.approx(ends)
+    assert table.total_s == pytest.approx(ends[-1])
+
+
+@pytest.mark.parametrize(
+    ("time_s", "moment"),
+    [
+        (0, (0, 0, 0)),
+        (0.15, (0, 0.5, 0)),
+        (0.3, (0, 1, 0)),
+        (0.8, (0, 1, 0.5)),
+        (1.3, (0, 1, 1)),
+        (1.6, (1, 0.5, 0)),
+        (2.4, (1, 1, 0.5)),
+        (2.91, (2, 0, 0)),
+        (99, (2, 0, 0)),
+    ],
+)
+def test_at_any_time_it_thinks_moves_or_is_done(
+    time_s: float, moment: tuple[int, float, float]
+) -> None:
+    assert Timetable.of(WALK.steps, "paper").at(time_s) == pytest.approx(Moment(*moment))
+
+
+def test_without_thought_it_moves_from_the_start() -> None:
+    table = Timetable.of(WALK.steps, "free")
+
+    assert table.at(0.25) == Moment(0, 1, 0.25)
+    assert table.at(1.25) == Moment(1, 1, 0.25)
+
+
+@pytest.mark.parametrize(
+    ("time_s", "distance_m"),
+    [
+        (0, 0),
+        (0.3, 0),  # has only thought so far
+        (0.55, 0.025),  # half way to the first frame
+        (0.8, 0.05),
+        (1.05, 0.075),
+        (1.3, 0.1),
+        (1.7, 0.1),  # thinks again
+        (2.15, 0.15),
+        (2.65, 0.25),
+        (2.9, 0.3),
+        (50, 0.3),
+    ],
+)
+def test_the_distance_in_the_middle_of_a_motion(time_s: float, distance_m: float) -> None:
+    table = Timetable.of(WALK.steps, "paper")
+
+    assert distance_at(WALK, table, time_s) == pytest.approx(distance_m, abs=1e-7)
+
+
+def test_at_its_end_a_lane_is_exactly_where_it_ended() -> None:
+    """Not where a pose in single precision says."""
+    for clock in CLOCKS:
+        table = Timetable.of(WALK.steps, clock)
+        assert distance_at(WALK, table, table.total_s) == WALK.distance_m
+
+
+def test_a_lane_that_has_not_begun_is_on_the_start_line() -> None:
+    table = Timetable.of([], "paper")
+
+    assert table.total_s == 0
+    assert distance_at(lane(), table, 3.0) == 0
+    assert crossing_s(lane(), table) is None
+
+
+def test_the_red_line_is_crossed_between_two_frames() -> None:
+    runner = lane(
+        step(1, [0.1, 0.2], transitions=10),  # 0.3 s of thought, then a second
+        step(2, [0.4, 0.5], transitions=10),  # over 0.45 three quarters into its motion
+        step(3, [0.4, 0.6], transitions=10),  # and back, and again: too late to count
+    )
+
+    assert FINISH_LINE_M == 0.45
+    assert crossing_s(runner, Timetable.of(runner.steps, "free")) == pytest.approx(1.75)
+    assert crossing_s(runner, Timetable.of(runner.steps, "paper")) == pytest.approx(2.35)
+
+
+def test_the_red_line_may_be_crossed_before_a_steps_first_frame() -> None:
+    runner = lane(step(1, [0.1, 0.4]), step(2, [0.5, 0.5]))
+
+    assert crossing_s(runner, Timetable.of(runner.steps, "free")) == pytest.approx(1.25)
+
+
+def test_who_never_reaches_the_red_line_has_no_crossing() -> None:
+    assert crossing_s(WALK, Timetable.of(WALK.steps, "paper")) is None
+
+
+def test_an_unknown_clock_names_the_three() -> None:
+    check_clock("paper")
+    with pytest.raises(UnknownName, match="unknown clock 'sun'; choose one of: paper, wall, free"):
+        check_clock("sun")

@@ -1,0 +1,114 @@
+"""What a user may ask for."""
+
+import json
+import math
+from typing import Any
+
+import pytest
+
+from app.domain.errors import InvalidInput, UnknownName
+from app.domain.gait import GaitSpec
+from app.domain.robot import robot
+from app.runs.config import (
+    LaneConfig,
+    RaceConfig,
+    TrainingConfig,
+    Walk,
+    as_json,
+    check_pace,
+    gait_from_json,
+)
+
+GAIT = "left-right-origin"
+LANES = (LaneConfig(agent="greedy"),)
+
+
+def test_the_defaults_are_the_papers() -> None:
+    config = TrainingConfig(gait=GAIT)
+
+    assert (config.alpha, config.gamma) == (0.3, 0.9)
+    assert (config.epsilon_start, config.epsilon_end, config.steps_per_episode) == (1, 0, 50)
+    assert (config.steps, config.divisions, config.grid_side_m) == (500, 2, 0.04)
+    assert (config.observation, config.simulator, config.robot.name) == (
+        "measured",
+        "mujoco",
+        "stiff",
+    )
+    assert RaceConfig(gait=GAIT, lanes=LANES).steps == 50
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({"gait": "tripod"}, "unknown gait 'tripod'"),
+        ({"simulator": "gazebo"}, "unknown simulator 'gazebo'; choose one of: mujoco, kinematic"),
+        ({"observation": "guessed"}, "unknown observation"),
+        ({"divisions": 1}, "divisions must be a whole number from 2 to 8"),
+        ({"grid_side_m": 0.001}, "grid_side_m must be at least"),
+        ({"steps": 0}, r"steps must be from 1 to 10,000,000, not 0"),
+        ({"steps": -1}, "steps must be from 1"),
+        ({"steps": 10**12}, "steps must be from 1"),
+        ({"steps": 1e3}, "steps must be a whole number"),
+        ({"steps": math.nan}, "steps must be a whole number"),
+        ({"steps": True}, "steps must be a whole number"),
+        ({"seed": -1}, "seed must be at least 0, not -1"),
+        ({"steps_per_episode": 0}, "steps_per_episode must be from 1"),
+        ({"evaluate_every": -1}, "evaluate_every must be from 0"),
+        ({"alpha": 0}, "alpha must be over 0 and at most 1"),
+        ({"alpha": 1.1}, "alpha must be over 0 and at most 1"),
+        ({"alpha": math.nan}, "alpha must be over 0 and at most 1"),
+        ({"gamma": 1}, "gamma must be at least 0 and under 1"),
+        ({"gamma": -0.1}, "gamma must be at least 0 and under 1"),
+        ({"epsilon_start": 1.1}, "epsilon must be from 0 to 1"),
+        ({"epsilon_end": -0.1}, "epsilon must be from 0 to 1"),
+        ({"pace": 0}, "pace must be max, or from 0.01 to 1000"),
+        ({"pace": "fast"}, "pace must be max, or from"),
+        ({"pace": math.inf}, "pace must be max, or from"),
+    ],
+)
+def test_a_wrong_training_says_what_is_valid(asked: dict[str, Any], message: str) -> None:
+    with pytest.raises(InvalidInput, match=message):
+        TrainingConfig(**{"gait": GAIT, **asked})
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({"lanes": ()}, "a race has 1 to 6 lanes, not 0"),
+        ({"lanes": LANES * 7}, "a race has 1 to 6 lanes, not 7"),
+        ({"steps": 0}, "steps must be from 1"),
+        ({"seed": -3}, "seed must be at least 0"),
+    ],
+)
+def test_a_wrong_race_says_what_is_valid(asked: dict[str, Any], message: str) -> None:
+    with pytest.raises(InvalidInput, match=message):
+        RaceConfig(**{"gait": GAIT, "lanes": LANES, **asked})
+
+
+def test_a_gait_that_the_robot_has_no_legs_for_is_refused() -> None:
+    with pytest.raises(InvalidInput, match="no leg 6; this robot has legs 1 to 4"):
+        Walk(gait=GaitSpec(6, 1, "origin"), robot=robot({"n_legs": 4}))
+
+
+def test_a_lane_reads_its_state_in_a_known_way() -> None:
+    with pytest.raises(UnknownName, match="observation"):
+        LaneConfig(agent="greedy", observation="guessed")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("pace", ["max", 0.01, 1, 1000])
+def test_a_pace_is_max_or_a_number_of_times_real_time(pace: float | str) -> None:
+    check_pace(pace)
+
+
+@pytest.mark.parametrize(
+    "gait", [GAIT, GaitSpec(6, 1, "vertical"), GaitSpec(1, 2, pairs=((1, 6), (2, 3), (4, 5)))]
+)
+def test_a_config_in_plain_types_is_fit_for_json_and_names_the_same_gait(
+    gait: str | GaitSpec,
+) -> None:
+    made = robot({"preset": "compliant", "n_legs": 6, "friction": 0.5})
+    shown = json.loads(json.dumps(as_json(TrainingConfig(gait=gait, robot=made))))
+
+    assert gait_from_json(shown.pop("gait")) == gait
+    assert robot(shown.pop("robot")) == made
+    assert TrainingConfig(gait=gait, robot=made, **shown) == TrainingConfig(gait=gait, robot=made)

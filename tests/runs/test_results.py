@@ -1,0 +1,90 @@
+"""Distances, times and ranks."""
+
+from typing import Any
+
+import pytest
+
+from app.runs.recording import LaneRecording
+from app.runs.results import finish_s, race_result
+from tests.runs.made_up import lane, step
+
+
+def hare() -> LaneRecording:
+    """Far steps after long thought: at paper time each takes 1 s + 1.5 s."""
+    return lane(
+        step(1, [0.1, 0.2], transitions=50, decision_s=0.25),
+        step(2, [0.3, 0.5], transitions=50, decision_s=0.25),
+        agent="hare",
+    )
+
+
+def tortoise() -> LaneRecording:
+    return lane(step(1, [0.05, 0.1]), step(2, [0.15, 0.2]), agent="tortoise")
+
+
+def under(result: dict[str, Any], clock: str, name: str) -> list[Any]:
+    return [lane["clocks"][clock][name] for lane in result["lanes"]]
+
+
+def test_the_race_is_ranked_when_the_first_lane_has_used_its_steps() -> None:
+    """At two seconds the hare is half a second into its first motion."""
+    result = race_result([hare(), tortoise()], steps=2)
+
+    assert under(result, "paper", "elapsed_s") == pytest.approx([5, 2])
+    assert under(result, "paper", "finished_distance_m") == pytest.approx([0.1, 0.2])
+    assert under(result, "paper", "rank") == [2, 1]
+    assert under(result, "free", "elapsed_s") == pytest.approx([2, 2])
+    assert under(result, "free", "finished_distance_m") == pytest.approx([0.5, 0.2])
+    assert under(result, "free", "rank") == [1, 2]
+    # By the wall it was done at 2.5 s, so at 2 s it was half way through its second motion.
+    assert under(result, "wall", "finished_distance_m") == pytest.approx([0.3, 0.2])
+    assert under(result, "wall", "rank") == [1, 2]
+
+
+def test_a_lane_says_what_it_did() -> None:
+    first, second = race_result([hare(), tortoise()], steps=2)["lanes"]
+
+    assert first.pop("clocks")["paper"]["crossed_s"] == pytest.approx(4.875)
+    assert first == {
+        "agent": "hare",
+        "steps": 2,
+        "total_distance_m": 0.5,
+        "failure": None,
+        "decision_s": 0.5,
+        "simulated_transitions": 100,
+    }
+    assert second["total_distance_m"] == 0.2
+    assert second["clocks"]["paper"]["crossed_s"] is None
+
+
+def test_who_finishes_first_stands_exactly_at_its_total_distance() -> None:
+    result = race_result([tortoise(), hare()], steps=2)
+
+    assert under(result, "paper", "finished_distance_m")[0] == 0.2
+
+
+def test_equals_share_a_rank_and_the_next_one_is_left_out() -> None:
+    result = race_result([tortoise(), hare(), tortoise(), lane(step(1, [0.0, 0.0]))], steps=2)
+
+    assert under(result, "free", "rank") == [2, 1, 2, 4]
+
+
+def test_a_lane_that_failed_has_no_total_distance_and_says_why() -> None:
+    fallen = lane(step(1, [0.3, 0.4]), agent="clumsy", failure="it tripped")
+    result = race_result([fallen, tortoise()], steps=2)
+
+    assert result["lanes"][0]["total_distance_m"] is None
+    assert result["lanes"][0]["failure"] == "it tripped"
+    assert result["lanes"][0]["steps"] == 1
+    assert finish_s([fallen, tortoise()], 2, "free") == 2  # it does not end the race
+    assert under(result, "free", "finished_distance_m") == pytest.approx([0.4, 0.2])
+    assert under(result, "free", "elapsed_s") == pytest.approx([1, 2])
+
+
+def test_while_nobody_has_finished_a_lane_is_where_it_is() -> None:
+    lanes = [lane(step(1, [0.1, 0.2])), lane()]
+    result = race_result(lanes, steps=2)
+
+    assert finish_s(lanes, 2, "paper") is None
+    assert under(result, "paper", "finished_distance_m") == [0.2, 0]
+    assert under(result, "paper", "rank") == [1, 2]
