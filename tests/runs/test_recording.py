@@ -1,0 +1,174 @@
+"""Recordings: what is kept of a run, and how it goes into a file."""
+
+import io
+from itertools import count
+
+import numpy as np
+import pytest
+
+from app.assembly import build_learner, build_walkers
+from app.domain.simulator import Motion
+from app.domain.types import Action
+from app.runs.clocks import Timetable
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.racing import record_race
+from app.runs.recording import (
+    FIRST_STEPS,
+    NEWEST_STEPS,
+    LaneRecording,
+    PracticeRecording,
+    pose_at,
+    race_arrays,
+    race_recording,
+)
+from app.runs.records import Evaluated, LaneStep, StepTaken
+from app.runs.tables import snapshot
+from app.runs.training import train
+from tests.runs.made_up import lane, qpos, step
+
+START = np.array(qpos(0), np.float32)
+
+
+def a_race(steps: int) -> list[LaneRecording]:
+    """The paper's three lanes on MuJoCo; the learner has practised a little."""
+    practice = TrainingConfig(gait="left-right-origin", simulator="kinematic", steps=200)
+    learner = build_learner(practice)
+    for _ in train(learner, practice):
+        pass
+    agents = ("q-learning", "greedy", "two-step")
+    config = RaceConfig(
+        gait="left-right-origin", steps=steps, lanes=tuple(LaneConfig(agent=a) for a in agents)
+    )
+    walkers = build_walkers(config, [snapshot(learner, practice), None, None])
+    ticks = count()
+    *_, lanes = record_race(walkers, config, lambda: float(next(ticks)))
+    return lanes
+
+
+@pytest.fixture(scope="module")
+def race() -> list[LaneRecording]:
+    return a_race(steps=6)
+
+
+def as_file(lanes: list[LaneRecording]) -> bytes:
+    buffer = io.BytesIO()
+    np.savez(buffer, **race_arrays(lanes))  # type: ignore[arg-type]
+    return buffer.getvalue()
+
+
+def assert_same(one: LaneStep, other: LaneStep) -> None:
+    for name in ("step", "observation", "action", "reward_m", "distance_m", "transitions"):
+        assert getattr(one, name) == getattr(other, name)
+    assert one.decision_s == other.decision_s
+    for array, again in zip(one.motion, other.motion, strict=True):
+        assert array.dtype == again.dtype
+        assert np.array_equal(array, again)
+    assert (one.knowledge is None) == (other.knowledge is None)
+    if one.knowledge and other.knowledge:
+        assert np.allclose(one.knowledge.values, other.knowledge.values, equal_nan=True)
+        assert np.array_equal(one.knowledge.visits, other.knowledge.visits, equal_nan=True)
+
+
+def test_a_race_goes_into_a_file_without_pickle_and_comes_back_the_same(
+    race: list[LaneRecording],
+) -> None:
+    with np.load(io.BytesIO(as_file(race)), allow_pickle=False) as file:
+        back = race_recording(dict(file))
+
+    assert [lane.agent for lane in back] == ["q-learning", "greedy", "two-step"]
+    for lane_before, lane_after in zip(race, back, strict=True):
+        assert np.array_equal(lane_before.rest_qpos, lane_after.rest_qpos)
+        assert lane_after.failure is None
+        assert len(lane_after.steps) == 6
+        for one, other in zip(lane_before.steps, lane_after.steps, strict=True):
+            assert_same(one, other)
+    assert [s.lane for s in back[2].steps] == [2] * 6
+    assert [s.knowledge is not None for s in (lane.steps[0] for lane in back)] == [1, 0, 0]
+
+
+def test_a_lane_that_failed_or_never_began_comes_back_too() -> None:
+    before = [lane(step(1, [0.1, 0.2]), failure="it fell"), lane(failure="its agent failed")]
+    back = race_recording(race_arrays(before))
+
+    assert [lane.failure for lane in back] == ["it fell", "its agent failed"]
+    assert [len(lane.steps) for lane in back] == [1, 0]
+    assert_same(back[0].steps[0], before[0].steps[0])
+
+
+def test_a_minute_of_a_race_of_three_is_under_two_megabytes(race: list[LaneRecording]) -> None:
+    """Counted by the clock that packs most motion into a minute."""
+    seconds = max(Timetable.of(lane.steps, "free").total_s for lane in race)
+
+    assert seconds == pytest.approx(6 * 0.32)
+    assert len(as_file(race)) * 60 / seconds < 2_000_000
+
+
+def test_a_recording_has_fifty_poses_a_second(race: list[LaneRecording]) -> None:
+    for recorded in race:
+        for taken in recorded.steps:
+            assert taken.motion.time_s == pytest.approx(np.arange(1, 17) * 0.02)
+
+
+def test_each_step_begins_where_the_last_one_ended(race: list[LaneRecording]) -> None:
+    recorded = race[1]
+
+    assert recorded.start_qpos(0) is recorded.rest_qpos
+    for number in range(1, 6):
+        last = recorded.steps[number - 1].motion.qpos[-1]
+        assert np.array_equal(recorded.start_qpos(number), last)
+        assert np.abs(recorded.steps[number].motion.qpos[0] - last).max() < 0.2
+    assert recorded.distance_m == recorded.steps[-1].distance_m
+    assert lane().distance_m == 0
+
+
+@pytest.mark.parametrize(
+    ("time_s", "y"), [(0, 0), (0.25, 0.1), (0.5, 0.2), (0.75, 0.25), (1, 0.3), (1.2, 0.3), (-1, 0)]
+)
+def test_a_pose_between_two_frames_is_between_them(time_s: float, y: float) -> None:
+    motion = step(1, [0.2, 0.3]).motion
+
+    assert pose_at(START, motion, time_s) == pytest.approx(qpos(y), abs=1e-6)
+
+
+def test_an_attitude_between_two_frames_is_a_rotation() -> None:
+    turned = np.array([0, 0, 0.1, np.sqrt(0.5), 0, 0, np.sqrt(0.5), 0], np.float32)
+    motion = Motion(np.array([1], np.float32), turned[None])
+    pose = pose_at(START, motion, 0.5)
+
+    assert np.linalg.norm(pose[3:7]) == pytest.approx(1)
+    assert pose[3:7] == pytest.approx((np.cos(np.pi / 8), 0, 0, np.sin(np.pi / 8)), abs=1e-6)
+
+
+def test_reading_a_pose_leaves_the_recording_as_it_is() -> None:
+    motion = step(1, [0.2, 0.3]).motion
+    before = motion.qpos.copy()
+    for time_s in (0.0, 0.3, 2.0):
+        pose_at(START, motion, time_s)[:] = 9
+
+    assert np.array_equal(motion.qpos, before)
+    assert START.tolist() == pytest.approx(qpos(0))
+
+
+def taken(number: int) -> StepTaken:
+    return StepTaken(number, 0, 0.0, (0, 0, 0), Action(0, 1), 0.0, 0.0, None, None)
+
+
+def test_of_practice_the_first_20_and_the_newest_500_steps_are_kept() -> None:
+    recording = PracticeRecording(START)
+    for number in range(1, 701):
+        recording.add(taken(number))
+        if number % 100 == 0:
+            recording.add(Evaluated(number, 0.0, 0.1, None))
+    kept = [s.step for s in recording.steps]
+
+    assert (FIRST_STEPS, NEWEST_STEPS) == (20, 500)
+    assert kept == [*range(1, 21), *range(201, 701)]
+    assert [e.step for e in recording.evaluations] == [100, 200, 300, 400, 500, 600, 700]
+
+
+def test_short_practice_is_kept_whole() -> None:
+    recording = PracticeRecording(START)
+    for number in range(1, 101):
+        recording.add(taken(number))
+
+    assert [s.step for s in recording.steps] == list(range(1, 101))
