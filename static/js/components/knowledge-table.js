@@ -24,7 +24,7 @@ function Values({ known }) {
   const { pairs, cell_names } = known;
   const gait = options.value?.gaits?.find(({ name }) => name === shownRun.value?.config?.gait);
   return html`
-    <div class="scroller" tabindex="0" role="region" aria-labelledby="knowledge-title">
+    <div class="scroller" tabindex="0" role="region" aria-label="Value of each move">
       <table class="values">
         <thead>
           <tr><td></td>${cell_names.map((_, cell) => html`<th scope="col">${placeName(known, cell)}</th>`)}</tr>

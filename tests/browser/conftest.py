@@ -1,0 +1,32 @@
+"""A server for the tests that do not mind each other's runs, and pages that must not complain."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import Serving, serving
+
+
+@pytest.fixture(scope="session")
+def shared_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serving]:
+    """Whatever the tests before left on stage is still there."""
+    with serving(tmp_path_factory.mktemp("data")) as server:
+        yield server
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[Serving]:
+    """A server that nobody has used."""
+    with serving(tmp_path) as fresh:
+        yield fresh
+
+
+@pytest.fixture
+def dashboard(page: Page) -> Iterator[Dashboard]:
+    """A page that fails its test if it complained: on the console, or about an answer."""
+    watched = Dashboard(page)
+    yield watched
+    assert watched.complaints == []

@@ -1,0 +1,92 @@
+"""The dashboard as the tests see it, by the words that a person reads on it."""
+
+import hashlib
+import re
+from collections.abc import Callable
+from typing import Any
+
+from playwright.sync_api import ConsoleMessage, Locator, Page, Response, expect
+
+PATIENCE_MS = 60_000
+"""A race in software WebGL beside the browser that shows it, on two cores, takes its time."""
+
+expect.set_options(timeout=PATIENCE_MS)
+
+_METRES = re.compile(r"−?\d+\.\d\d m")
+
+
+class Dashboard:
+    """A page of it, and what went wrong on it."""
+
+    def __init__(self, page: Page) -> None:
+        """Listen to what the page complains about; nothing is opened."""
+        self.page = page
+        self.complaints: list[str] = []
+        page.set_default_timeout(PATIENCE_MS)
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        page.on("console", self._heard)
+        page.on("response", self._answered)
+
+    def open(self, address: str) -> None:
+        """Open it, and wait until it is live and the stage has a picture."""
+        self.page.goto(address)
+        expect(self.page.locator(".live")).to_contain_text("live")
+        self.wait_for_stage()
+
+    def wait_for_stage(self) -> None:
+        """Wait until the 3D client has its stream."""
+        expect(self.page.locator(".stage")).to_have_attribute("data-status", "connected")
+
+    @property
+    def primary(self) -> Locator:
+        """The one big button."""
+        return self.page.locator("button.primary")
+
+    def button(self, name: str) -> Locator:
+        """A button by its whole name."""
+        return self.page.get_by_role("button", name=name, exact=True)
+
+    @property
+    def rows(self) -> Locator:
+        """The scoreboard's lanes, the leader first."""
+        return self.page.locator(".board tbody")
+
+    def distances(self) -> list[str]:
+        """What stands in the scoreboard's column of distances."""
+        return self.page.locator(".board .big").all_inner_texts()
+
+    def picture(self) -> str:
+        """A fingerprint of the robots' canvas, without what stands over it."""
+        canvas = self.page.frame_locator(".picture iframe").locator("canvas").first
+        return hashlib.sha256(canvas.screenshot(timeout=PATIENCE_MS)).hexdigest()
+
+    def eventually(self, condition: Callable[[], object], what: str) -> None:
+        """Wait for something that no locator can say."""
+        for _ in range(PATIENCE_MS // 250):
+            if condition():
+                return
+            self.page.wait_for_timeout(250)
+        raise AssertionError(f"not within {PATIENCE_MS / 1000:.0f} s: {what}")
+
+    def has_figures(self) -> bool:
+        """Whether every lane has a distance."""
+        shown = self.distances()
+        return len(shown) == 3 and all(_METRES.fullmatch(one) for one in shown)
+
+    def scroll_width(self) -> int:
+        """How wide the page is, scrolled or not."""
+        width: int = self.page.evaluate("document.documentElement.scrollWidth")
+        return width
+
+    def get(self, path: str) -> Any:
+        """What the API answers to this page."""
+        return self.page.evaluate("path => fetch(path).then(r => r.json())", path)
+
+    def _heard(self, message: ConsoleMessage) -> None:
+        # Answers of 400 and above are told by `_answered`, with their address.
+        if message.type == "error" and "Failed to load resource" not in message.text:
+            self.complaints.append(message.text)
+
+    def _answered(self, response: Response) -> None:
+        if response.status >= 400:
+            self.complaints.append(f"{response.status} {response.url}")

@@ -1,0 +1,34 @@
+"""The server goes away and comes back."""
+
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import Serving, serving
+
+pytestmark = pytest.mark.timeout(300)
+
+
+def test_the_last_picture_stays_until_it_is_back(dashboard: Dashboard, tmp_path: Path) -> None:
+    page = dashboard.page
+    first = Serving(tmp_path)
+    dashboard.open(first.address)
+    port = first.port
+    first.kill()
+
+    expect(page.get_by_text("Reconnecting. This is the last picture.")).to_be_visible()
+    expect(page.locator(".live")).to_have_text("reconnecting")
+    expect(page.frame_locator(".picture iframe").locator("canvas").first).to_be_visible()
+    dashboard.primary.click()
+    problem = page.locator(".deeds").get_by_role("alert").filter(has_text="does not answer")
+    expect(problem).to_be_visible()
+    # Nobody answered: the browser says so by itself, and cannot be kept from it.
+    dashboard.complaints.clear()
+
+    with serving(tmp_path, port):
+        expect(page.locator(".live")).to_contain_text("live")
+        expect(page.get_by_text("Reconnecting.")).to_have_count(0)
+        dashboard.wait_for_stage()
+        dashboard.complaints.clear()

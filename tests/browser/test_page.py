@@ -1,0 +1,159 @@
+"""The page by itself: what it says before anything runs, its links, keys, widths and roles."""
+
+import re
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import Serving, serving
+
+pytestmark = pytest.mark.timeout(300)
+
+AXE = Path(__file__).with_name("vendor") / "axe.min.js"
+PHONE = {"width": 390, "height": 844}
+
+
+def violations(dashboard: Dashboard) -> list[str]:
+    """What axe finds on the page, without viser's own page in the frame."""
+    dashboard.page.evaluate(AXE.read_text("utf-8"))
+    found = dashboard.page.evaluate("axe.run(document, {iframes: false})")
+    return [f"{v['id']}: {n['html']}" for v in found["violations"] for n in v["nodes"]]
+
+
+def test_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
+    page = dashboard.page
+    dashboard.open(server.address)
+    expect(dashboard.primary).to_have_text("Train 500 steps, then race")
+    expect(page.locator(".start-list li")).to_have_count(3)
+    expect(page.locator(".empty")).to_have_count(3)
+    expect(page.get_by_role("radio")).to_have_count(4)
+    assert page.url == server.address
+    page.get_by_role("link", name="Runs").click()
+    expect(page.get_by_text("Nothing has run.")).to_be_visible()
+
+
+def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> None:
+    page = dashboard.page
+    dashboard.open(shared_server.address)
+    page.get_by_role("radio", name="Front-back, mirrored").check(force=True)
+    page.get_by_role("spinbutton", name="Practice, as a number").fill("750")
+    page.get_by_role("slider", name="Looking ahead γ").fill("0.5")
+    page.get_by_text("More settings").click()
+    page.get_by_label("Robot").select_option("slippery")
+    page.get_by_role("checkbox", name="Two-step").uncheck()
+    link = page.url
+    page.goto("about:blank")
+
+    dashboard.open(link)
+    expect(dashboard.primary).to_have_text(re.compile("^Train 750 steps"))
+    expect(page.get_by_role("radio", name="Front-back, mirrored")).to_be_checked()
+    expect(page.get_by_role("slider", name="Looking ahead γ")).to_have_value("0.5")
+    page.get_by_text("More settings").click()
+    expect(page.get_by_label("Robot")).to_have_value("slippery")
+    expect(page.get_by_role("checkbox", name="Two-step")).not_to_be_checked()
+    page.get_by_role("button", name="Share").click()
+    expect(page.locator(".toast")).to_contain_text(re.compile("link", re.IGNORECASE))
+
+
+def test_a_number_that_is_none_holds_the_button_back(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    page = dashboard.page
+    dashboard.open(shared_server.address)
+    alpha = page.get_by_role("spinbutton", name="Learning rate, as a number")
+    alpha.fill("7")
+    expect(page.get_by_role("alert").filter(has_text="from 0 to 1")).to_be_visible()
+    expect(dashboard.primary).to_have_attribute("aria-disabled", "true")
+    alpha.fill("0.7")
+    expect(dashboard.primary).not_to_have_attribute("aria-disabled", "true")
+
+
+def test_keys(dashboard: Dashboard, server: Serving) -> None:
+    page = dashboard.page
+    dashboard.open(f"{server.address}?steps=100000&pace=8")
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog", name="Keys")).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+
+    follow = page.get_by_label("Follow")
+    page.keyboard.press("2")
+    expect(follow).to_have_value("2")
+    page.keyboard.press("0")
+    expect(follow).to_have_value("free")
+
+    page.keyboard.press("r")
+    expect(page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
+    page.keyboard.press("Space")
+    expect(page.get_by_text(re.compile("^Paused at "))).to_be_visible()
+    # The stage forwards the keys that it gets.
+    page.frame_locator(".picture iframe").locator("body").press("Space")
+    expect(page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_a_phone_needs_no_scrolling_sideways(
+    browser: Browser, shared_server: Serving, theme: str
+) -> None:
+    scheme = "light" if theme == "light" else "dark"
+    with browser.new_context(viewport=PHONE, color_scheme=scheme) as context:  # type: ignore[arg-type]
+        dashboard = Dashboard(context.new_page())
+        dashboard.open(shared_server.address)
+        page = dashboard.page
+        stage = page.locator(".stage")
+        top, below = stage.bounding_box(), dashboard.primary.bounding_box()
+        assert top is not None
+        assert below is not None
+        assert top["y"] + top["height"] <= below["y"]
+
+        page.locator("summary", has_text="Settings").first.click()
+        page.get_by_text("More settings").click()
+        assert dashboard.scroll_width() == PHONE["width"]
+        assert violations(dashboard) == []
+        page.mouse.wheel(0, 600)
+        expect(stage).to_be_in_viewport(ratio=0.99)
+
+        page.goto(f"{shared_server.address}#runs")
+        assert dashboard.scroll_width() == PHONE["width"]
+        assert dashboard.complaints == []
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_axe_finds_nothing(dashboard: Dashboard, shared_server: Serving, theme: str) -> None:
+    dashboard.page.emulate_media(color_scheme="light" if theme == "light" else "dark")
+    dashboard.open(shared_server.address)
+    dashboard.page.get_by_text("More settings").click()
+    assert violations(dashboard) == []
+    dashboard.page.get_by_role("link", name="Runs").click()
+    expect(dashboard.page.get_by_role("heading", name="Runs")).to_be_visible()
+    assert violations(dashboard) == []
+
+
+def test_the_theme_is_chosen_and_remembered(dashboard: Dashboard, shared_server: Serving) -> None:
+    page = dashboard.page
+    dashboard.open(shared_server.address)
+    page.get_by_role("button", name=re.compile("^Theme: auto")).click()
+    page.get_by_role("button", name=re.compile("^Theme: light")).click()
+    expect(page.locator("html")).to_have_attribute("data-theme", "dark")
+    dashboard.open(shared_server.address)
+    expect(page.locator("html")).to_have_attribute("data-theme", "dark")
+    stage = page.frame_locator(".picture iframe").locator("html")
+    expect(stage).to_have_attribute("data-theme", "dark")
+
+
+def test_spectators_get_no_controls(dashboard: Dashboard, tmp_path: Path) -> None:
+    page = dashboard.page
+    with serving(tmp_path, token="for-the-operator") as guarded:
+        dashboard.open(guarded.address)
+        expect(page.get_by_role("heading", name="You are watching")).to_be_visible()
+        expect(dashboard.primary).to_have_count(0)
+        expect(page.get_by_label("Clock")).to_have_count(0)
+        expect(page.get_by_label("Follow")).to_be_visible()
+        page.keyboard.press("r")
+
+        dashboard.open(f"{guarded.address}?token=for-the-operator")
+        assert page.url == guarded.address
+        expect(dashboard.primary).to_be_visible()
+        assert dashboard.get("/api/v1/trainings")["items"] == []

@@ -1,0 +1,101 @@
+"""The whole way: press the button, watch it learn and race, go on, stop."""
+
+import re
+from urllib.parse import urlencode
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import Serving
+
+pytestmark = pytest.mark.timeout(300)
+
+SHORT = urlencode({"steps": 40, "evaluate_every": 20, "race_steps": 6})
+LONG = urlencode({"steps": 100_000, "pace": 8})
+
+
+def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> None:
+    page = dashboard.page
+    dashboard.open(f"{server.address}?{SHORT}")
+    expect(page.locator(".chip").first).to_have_text("On the start line")
+    before = dashboard.picture()
+
+    expect(dashboard.primary).to_have_text("Train 40 steps, then race")
+    dashboard.primary.click()
+
+    expect(page.locator(".chip").first).to_contain_text("of 40")
+    expect(page.get_by_role("table", name="Standings")).to_be_visible()
+    dashboard.eventually(lambda: dashboard.picture() != before, "the robots move in the canvas")
+    dashboard.eventually(dashboard.has_figures, "the scoreboard fills")
+    headline = page.locator(".headline")
+    expect(headline).to_have_text(re.compile(r"at the finish with −?0\.\d\d m$"))
+    expect(page.get_by_role("status").filter(has_text="at the finish")).to_be_attached()
+    expect(
+        page.get_by_role("img", name=re.compile("^Learning curve: .*greedy gets"))
+    ).to_be_visible()
+    expect(page.get_by_role("img", name=re.compile("^The race after .*Two-step"))).to_be_visible()
+    expect(dashboard.rows.filter(has_text="Two-step").locator(".aside").last).to_have_text("936")
+
+    expect(dashboard.primary).to_have_text("Practise 40 more, race again")
+    dashboard.primary.click()
+    expect(page.locator(".start-list, .board").first).to_contain_text("80 steps of practice")
+    expect(dashboard.primary).to_have_text("Practise 40 more, race again")
+
+    runs = dashboard.get("/api/v1/trainings")["items"]
+    assert [run["progress"]["done"] for run in runs] == [40, 40]
+    assert runs[0]["config"]["continue_from"] == runs[1]["id"]
+
+
+def test_the_values_of_the_state_are_a_table(dashboard: Dashboard, server: Serving) -> None:
+    dashboard.open(f"{server.address}?{LONG}")
+    dashboard.button("Train only").click()
+    values = dashboard.page.locator("table.values")
+    expect(values.locator("tbody tr")).to_have_count(3)
+    expect(values.locator("td.here")).to_have_count(3)
+    expect(values.locator("td.next")).to_have_count(1)
+    expect(dashboard.page.locator(".say")).to_have_text(
+        re.compile(r"^Q-learning will move legs \d and \d to (home|front|back)")
+    )
+
+
+def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server: Serving) -> None:
+    page = dashboard.page
+    dashboard.open(f"{server.address}?{LONG}")
+    dashboard.primary.click()
+    expect(
+        page.get_by_text(re.compile(r"^Practising, \S+ of 100.000 steps, then the race$"))
+    ).to_be_visible()
+
+    page.get_by_role("slider", name="Learning rate α").fill("0.5")
+    page.get_by_role("slider", name="Exploring now ε").fill("0.25")
+
+    def changes() -> dict[str, float]:
+        [training] = dashboard.get("/api/v1/trainings")["items"]
+        return {k: v for change in training["changes"] for k, v in change.items() if v is not None}
+
+    dashboard.eventually(
+        lambda: (changes().get("alpha"), changes().get("epsilon")) == (0.5, 0.25), "the new rates"
+    )
+
+    dashboard.button("Pause").click()
+    expect(page.get_by_text(re.compile("^Paused at "))).to_be_visible()
+    dashboard.button("Resume").click()
+    expect(page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
+
+    dashboard.button("Stop").click()
+    expect(page.locator(".state.stopped")).to_have_count(0)
+    expect(dashboard.primary).to_have_text(re.compile("^Train "))
+    page.get_by_role("link", name="Runs").click()
+    expect(page.locator(".state.stopped")).to_have_count(2)
+
+
+def test_a_refusal_stands_beside_the_button(dashboard: Dashboard, server: Serving) -> None:
+    dashboard.open(f"{server.address}?{urlencode({'grid_side_m': 0.9})}")
+    dashboard.primary.click()
+    problem = dashboard.page.locator(".deeds").get_by_role("alert").filter(has_text="cannot reach")
+    expect(problem).to_contain_text("grid_side_m")
+    assert [c.split()[0] for c in dashboard.complaints] == ["422"]
+    dashboard.complaints.clear()
+    dashboard.button("Dismiss").click()
+    expect(problem).to_have_count(0)
