@@ -107,10 +107,15 @@ def build_walkers(
     return walkers
 
 
-def finish_training(learner: Learner, config: TrainingConfig) -> dict[str, Any]:
-    """The result of a training, as it stands: how far it walks now, and the table's hash."""
+def finish_training(
+    learner: Learner, config: TrainingConfig, measure_rival: bool = True
+) -> dict[str, Any]:
+    """The result of a training, as it stands: how far it walks now, and the table's hash.
+
+    Without `measure_rival`, `greedy_distance_m` is None unless it was measured before.
+    """
     distance = evaluate(learner, config, learner.epsilon).distance_m
-    if learner.greedy_distance_m is None:
+    if learner.greedy_distance_m is None and measure_rival:
         refer(learner)
     agent = learner.walker.agent
     return {

@@ -13,6 +13,10 @@ from app.services.orders import Batch, Changed, Message, Word
 BATCHES_PER_S = 30
 
 
+class Stopped(Exception):
+    """The job was told to stop, in the middle of something that is not worth finishing."""
+
+
 class Desk:
     """Stands between a loop and the server.
 
@@ -68,16 +72,34 @@ class Desk:
             if wait_s is None or wait_s > 1 / BATCHES_PER_S:
                 self.flush()
             try:
-                if wait_s is not None and wait_s <= 0:
-                    word = self._words.get_nowait()
-                else:
-                    word = self._words.get(timeout=wait_s)
+                word = self._next_word(wait_s)
             except queue.Empty:
                 self._set_due()
                 return True
             self._obey(word, step, agent)
             if self.stopped:
                 return False
+
+    def listen(self, step: int, agent: object) -> None:
+        """Obey what there is to obey in the middle of an evaluation, which has no pace.
+
+        Raises:
+            Stopped: if the job is to stop.
+        """
+        while not self.stopped:
+            try:
+                word = self._next_word(None if self._paused else 0.0)
+            except queue.Empty:
+                return
+            self._obey(word, step, agent)
+            if self._paused:
+                self.flush()
+        raise Stopped
+
+    def _next_word(self, wait_s: float | None) -> Word:
+        if wait_s is not None and wait_s <= 0:
+            return self._words.get_nowait()
+        return self._words.get(timeout=wait_s)
 
     def _wait_s(self) -> float | None:
         """Until the next step is due; None for as long as it is paused."""

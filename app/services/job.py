@@ -57,6 +57,7 @@ class Job:
         self._run, self._order = run, order
         self._store, self._recordings, self._bus = store, recordings, bus
         self._answers: dict[int, threading.Event] = {}
+        self._has_begun = False
         self._published_s = 0.0
         self._progress: deque[tuple[float, int]] = deque()
 
@@ -74,7 +75,10 @@ class Job:
     def stop(self) -> None:
         """End after the present step, with what has come of it so far."""
         self.stopping = True
-        self.child.send(Word("stop"))
+        if self._has_begun:
+            self.child.send(Word("stop"))
+        else:
+            self.child.kill()
 
     def tune(self, changes: Mapping[str, Any]) -> threading.Event:
         """Change rates or pace after the present step; the event is set once that is done."""
@@ -94,6 +98,15 @@ class Job:
         self.ended.set()
         self._publish(run)
 
+    def process_ended(self, how: str) -> None:
+        """Give the run its last state if its process died before it could say one."""
+        if not self.stopping:
+            self.end("failed", f"The job ended before it was done: {how}.")
+        elif self._has_begun:
+            self.end("stopped", f"It did not answer when it was to stop, so {how}.")
+        else:
+            self.end("stopped", "It was stopped before it began.")
+
     def _take(self, message: Message) -> None:
         """Take in a message of the process; called from its thread."""
         if isinstance(message, Batch):
@@ -110,6 +123,7 @@ class Job:
             self.end("failed", f"The {self._run.kind} failed: {message.reason}")
 
     def _begin(self, began: Began) -> None:
+        self._has_begun = True
         config = self._run.config
         if isinstance(config, RaceConfig):
             poses = zip(config.lanes, began.rest_qpos, strict=True)

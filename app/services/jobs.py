@@ -257,10 +257,8 @@ class Jobs:
     def _process_ended(self, job: Job, how: str) -> None:
         if self._closing:
             job.end("interrupted", "The server was stopped while it ran.")
-        elif job.stopping:
-            job.end("stopped", f"It did not answer when it was to stop, so {how}.")
         else:
-            job.end("failed", f"The job ended before it was done: {how}.")
+            job.process_ended(how)
         with self._changed:
             del self._jobs[job.run_id]
             if not self._closing:

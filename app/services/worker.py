@@ -22,9 +22,10 @@ from app.domain.errors import HexapodError
 from app.runs.racing import race
 from app.runs.records import LaneStep, StepTaken
 from app.runs.tables import snapshot, to_bytes
-from app.runs.training import train
+from app.runs.training import Learner, train
 from app.runs.walker import Walker
-from app.services.desk import Desk
+from app.services.desk import Desk, Stopped
+from app.services.listening import ListeningAgent
 from app.services.orders import Began, Ended, Failed, Order, RaceOrder, Saved, TrainingOrder, Word
 
 NICENESS = 15
@@ -61,14 +62,33 @@ def _train(order: TrainingOrder, desk: Desk) -> None:
     walker = learner.walker
     desk.send(Began((_pose(walker),)))
     desk.keep_pace(config.pace, config.robot.step_s)
-    for record in train(learner, config, record=True):
-        desk.report(record, learner.step)
-        if isinstance(record, StepTaken) and not desk.go_on(learner.step, walker.agent):
-            break
+    with suppress(Stopped):
+        for record in train(_attentive(learner, desk), config, record=True):
+            desk.report(record, learner.step)
+            if isinstance(record, StepTaken) and not desk.go_on(learner.step, walker.agent):
+                break
     desk.flush()
-    result = finish_training(learner, config)
+    # The rival's walk is long; who stops a training before its first evaluation waits for nothing.
+    result = finish_training(learner, config, measure_rival=not desk.stopped)
     desk.send(Saved(to_bytes(snapshot(learner, config, changes=desk.changes))))
     desk.send(Ended("stopped" if desk.stopped else "finished", result))
+
+
+def _attentive(learner: Learner, desk: Desk) -> Learner:
+    """The same learner, whose evaluations obey between two steps as its practice does."""
+    contender, rival = learner.contender, learner.rival
+
+    def listening(walker: Walker) -> Walker:
+        # Once it was stopped, what is left is the last evaluation.
+        if not desk.stopped:
+            walker.agent = ListeningAgent(
+                walker.agent, lambda: desk.listen(learner.step, learner.walker.agent)
+            )
+        return walker
+
+    learner.contender = lambda rng: listening(contender(rng))
+    learner.rival = lambda: listening(rival())
+    return learner
 
 
 def _race(order: RaceOrder, desk: Desk) -> None:

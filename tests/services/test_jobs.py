@@ -127,6 +127,30 @@ def test_words_are_obeyed_between_two_steps(jobs: Jobs, store: MemoryStore) -> N
     assert time.monotonic() - began < 10
 
 
+def test_an_evaluation_is_no_excuse(jobs: Jobs, store: MemoryStore) -> None:
+    """Its look-ahead rival would take half a minute at eight divisions."""
+    slow = Walk(gait="left-right-origin", divisions=8, grid_side_m=0.03)
+    config = TrainingConfig(**vars(slow), steps=100, evaluate_every=1, steps_per_episode=1)
+    run = jobs.train(TrainingStart(config))
+    moving(store, run)
+    time.sleep(0.5)
+    assert jobs.pause(run.id).state == "paused"
+    changed = jobs.change(run.id, {"gamma": 0.5})
+    assert changed.changes == ({"step": 1, "gamma": 0.5},)
+    stopped = jobs.stop(run.id)
+    assert (stopped.state, stopped.done, stopped.error) == ("stopped", 1, None)
+    assert stopped.result is not None
+    assert stopped.result["greedy_distance_m"] is None
+
+
+def test_one_that_has_not_begun_stops_at_once(jobs: Jobs, store: MemoryStore) -> None:
+    run = jobs.train(endless())
+    until(lambda: store.get(run.id).state == "running")
+    stopped = jobs.stop(run.id)
+    assert stopped.state == "stopped"
+    assert stopped.done <= 1
+
+
 def test_a_killed_process_is_a_failed_run_that_names_the_signal(
     jobs: Jobs, store: MemoryStore
 ) -> None:
