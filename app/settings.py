@@ -9,7 +9,7 @@ import os
 import re
 import tempfile
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, Literal, get_args
 from urllib.parse import urlsplit
@@ -21,6 +21,7 @@ from app.domain.errors import InvalidInput, UnknownName
 Spectators = Literal["public", "token"]
 
 PREFIX = "HEXAPODS_"
+MIN_QUOTA_MB = 10
 _TOKEN = re.compile(r"[\x21-\x7e]{8,200}")
 _HOST_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9_]([a-z0-9_-]*[a-z0-9_])?(\.[a-z0-9_-]+)*")
 
@@ -38,15 +39,20 @@ class Settings:
         spectators: `public` lets anyone watch, `token` only who has the token.
         public_url: where a proxy offers the server, such as `https://hexapods.example`.
         allowed_hosts: further host names by which the server may be called.
+        database_url: of a PostgreSQL database, which may hold a password; None for SQLite in the
+            data folder.
+        quota_mb: how much the data folder may take, in MB; None for as much as the disk has.
     """
 
     host: str = "127.0.0.1"
     port: int = 8000
     data: Path
-    token: str | None = None
+    token: str | None = field(default=None, repr=False)
     spectators: Spectators = "public"
     public_url: str | None = None
     allowed_hosts: tuple[str, ...] = ()
+    database_url: str | None = field(default=None, repr=False)
+    quota_mb: int | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.port, bool) or not 0 <= self.port <= 65535:
@@ -65,6 +71,12 @@ class Settings:
                     f"{PREFIX}ALLOWED_HOSTS must be host names separated by commas, without "
                     f"scheme, port or star; {name!r} is none"
                 )
+        if self.database_url is not None:
+            _check_database_url(self.database_url)
+        if self.quota_mb is not None and self.quota_mb < MIN_QUOTA_MB:
+            raise InvalidInput(
+                f"{PREFIX}QUOTA_MB must be at least {MIN_QUOTA_MB}, not {self.quota_mb}"
+            )
         if self.token is None and not is_loopback(self.host):
             raise InvalidInput(
                 f"refusing to listen on {self.host} without a token, since anyone there could "
@@ -106,17 +118,19 @@ def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Se
 
     Args:
         environ: the environment.
-        options: `host`, `port`, `data`, `token`, `spectators`, `public_url`, `allowed_hosts`.
+        options: the attributes of `Settings`, by their names.
 
     Raises:
         InvalidInput: for a value that cannot be, or a refusal to start with it.
     """
-    names = ("host", "port", "data", "token", "spectators", "public_url", "allowed_hosts")
+    names = [attribute.name for attribute in fields(Settings)]
     given: dict[str, Any] = {name: environ.get(PREFIX + name.upper()) or None for name in names}
     given |= {name: value for name, value in options.items() if value is not None}
     given = {name: value for name, value in given.items() if value is not None}
     if isinstance(given.get("port"), str):
         given["port"] = _port(given["port"])
+    if isinstance(given.get("quota_mb"), str):
+        given["quota_mb"] = _quota_mb(given["quota_mb"])
     if isinstance(given.get("allowed_hosts"), str):
         hosts = given["allowed_hosts"].lower().split(",")
         given["allowed_hosts"] = tuple(host.strip() for host in hosts if host.strip())
@@ -138,6 +152,28 @@ def _port(text: str) -> int:
     if not text.isascii() or not text.isdigit():
         raise InvalidInput(f"the port must be from 0 to 65535, not {text!r}")
     return int(text)
+
+
+def _quota_mb(text: str) -> int:
+    if not text.isascii() or not text.isdigit():
+        raise InvalidInput(f"{PREFIX}QUOTA_MB must be a whole number of megabytes, not {text!r}")
+    return int(text)
+
+
+def _check_database_url(url: str) -> None:
+    """The URL itself is in no message, since it may hold a password."""
+    try:
+        parts = urlsplit(url)
+        good = (
+            parts.scheme in ("postgresql", "postgres") and parts.path.strip("/") and parts.port != 0
+        )
+    except ValueError:
+        good = False
+    if not good:
+        raise InvalidInput(
+            f"{PREFIX}DATABASE_URL must look like postgresql://user:password@host/database; "
+            "without it, SQLite in the data folder is used"
+        )
 
 
 def _check_url(url: str) -> None:

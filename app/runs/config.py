@@ -9,7 +9,7 @@ from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import Gait, GaitSpec, resolve
 from app.domain.grid import FootGrid
 from app.domain.observation import Observation, check_observation
-from app.domain.robot import Robot, as_mapping
+from app.domain.robot import Robot, as_mapping, robot
 
 SimulatorName = Literal["mujoco", "kinematic"]
 SIMULATORS: tuple[SimulatorName, ...] = get_args(SimulatorName)
@@ -143,6 +143,20 @@ def as_json(config: Walk) -> dict[str, Any]:
     if isinstance(config.gait, GaitSpec):
         shown["gait"] = {k: v for k, v in asdict(config.gait).items() if v is not None}
     return shown
+
+
+def config_from_json(shown: Mapping[str, Any]) -> TrainingConfig | RaceConfig:
+    """The config that `as_json` wrote; only a race has lanes.
+
+    Raises:
+        InvalidInput: if a value cannot be.
+        KeyError, TypeError, ValueError: if `as_json` did not write it.
+    """
+    fields = {**shown, "gait": gait_from_json(shown["gait"]), "robot": robot(shown["robot"])}
+    if "lanes" not in fields:
+        return TrainingConfig(**fields)
+    lanes = tuple(LaneConfig(**lane) for lane in fields.pop("lanes"))
+    return RaceConfig(**fields, lanes=lanes)
 
 
 def gait_from_json(value: str | Mapping[str, Any]) -> str | GaitSpec:

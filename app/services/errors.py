@@ -25,3 +25,11 @@ class Busy(HexapodError):
 
 class JobFailed(HexapodError):
     """A job's process ended without a result; the message says how."""
+
+
+class StorageFull(HexapodError):
+    """There is no room for what is to be kept; whatever was kept before is as it was."""
+
+
+class StorageFailed(HexapodError):
+    """The store cannot be used at the moment; the message says why."""

@@ -1,0 +1,1 @@
+"""Runs in a database: SQLite in the data folder, or PostgreSQL. Start reading at `opening.py`."""

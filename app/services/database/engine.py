@@ -1,0 +1,167 @@
+"""A database for many threads of one process: transactions, and its errors in plain words."""
+
+import sqlite3
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import Any, TypeVar
+
+from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
+from sqlalchemy.exc import DBAPIError, IntegrityError, InterfaceError, OperationalError
+
+from app.domain.errors import DamagedFile, HexapodError
+from app.services.errors import StorageFailed, StorageFull
+
+BUSY_S = 10.0
+"""How long to wait for another process that holds the database."""
+T = TypeVar("T")
+_ONLY_READS = "hexapods_only_reads"
+_SECONDARY = 0xFF  # an error code of SQLite's, without what it says beyond its kind
+
+
+class Database:
+    """One database. A piece of work is one transaction, done whole or not at all.
+
+    Attributes:
+        engine: for who needs connections of their own.
+        on_full: called when the disk is full; True if it made room, so that trying again helps.
+    """
+
+    def __init__(self, engine: Engine, on_full: Callable[[], bool] = lambda: False) -> None:
+        self.engine, self.on_full = engine, on_full
+        # SQLite lets those who wait poll, and so starve; a lock is fair among our own threads.
+        is_file = engine.dialect.name == "sqlite"
+        self._turn = threading.Lock() if is_file else nullcontext()
+
+    def read(self, work: Callable[[Connection], T]) -> T:
+        """Do what only reads; it sees one state of the database throughout.
+
+        Raises:
+            StorageFailed: if the database cannot be used.
+        """
+        with _in_plain_words(), self.engine.connect() as connection:
+            return work(connection.execution_options(**{_ONLY_READS: True}))
+
+    def write(self, work: Callable[[Connection], T]) -> T:
+        """Do what writes; when this returns, it lasts. It may be tried twice.
+
+        Raises:
+            StorageFull: if the disk is full.
+            StorageFailed: if the database cannot be used, or is held for over 10 s.
+        """
+        try:
+            return self._write(work)
+        except StorageFull:
+            if not self.on_full():
+                raise
+        return self._write(work)
+
+    def _write(self, work: Callable[[Connection], T]) -> T:
+        with _in_plain_words(), self._turn, self.engine.begin() as connection:
+            return work(connection)
+
+    @contextmanager
+    def connected(self) -> Iterator[Connection]:
+        """A connection of one's own, outside of any transaction.
+
+        Raises:
+            StorageFailed: if the database cannot be reached.
+        """
+        with _in_plain_words(), self.engine.connect() as connection:
+            yield connection.execution_options(isolation_level="AUTOCOMMIT")
+
+    def close(self) -> None:
+        """Let go of all connections."""
+        self.engine.dispose()
+
+
+def sqlite_engine(path: Path) -> Engine:
+    """An engine for a file, which is made if it is not there."""
+    engine = create_engine(
+        URL.create("sqlite", database=str(path)),
+        # Without the driver's own transactions, which begin late and so lose updates.
+        connect_args={"isolation_level": None, "timeout": BUSY_S},
+    )
+    event.listen(engine, "connect", _prepare_sqlite)
+    event.listen(engine, "begin", _begin_sqlite)
+    return engine
+
+
+def postgresql_engine(url: str) -> Engine:
+    """An engine for a PostgreSQL server, whose connections are made when they are needed."""
+    wait_ms = int(BUSY_S * 1000)
+    return create_engine(
+        make_url(url).set(drivername="postgresql+psycopg"),
+        pool_pre_ping=True,
+        connect_args={
+            "connect_timeout": int(BUSY_S),
+            "options": f"-c lock_timeout={wait_ms} -c timezone=UTC -c synchronous_commit=on",
+        },
+    )
+
+
+def _prepare_sqlite(connection: sqlite3.Connection, record: object) -> None:
+    del record
+    for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
+        connection.execute(f"PRAGMA {pragma}")
+
+
+def _begin_sqlite(connection: Connection) -> None:
+    only_reads = connection.get_execution_options().get(_ONLY_READS)
+    # A transaction that begins to write halfway can find that it is too late, and loses.
+    connection.exec_driver_sql("BEGIN" if only_reads else "BEGIN IMMEDIATE")
+
+
+@contextmanager
+def _in_plain_words() -> Iterator[None]:
+    try:
+        yield
+    except IntegrityError:
+        raise
+    except DBAPIError as error:
+        raise _translated(error) from error
+
+
+def _translated(error: DBAPIError) -> HexapodError:
+    if isinstance(error.orig, sqlite3.Error):
+        return _sqlite_error(error.orig)
+    state = getattr(error.orig, "sqlstate", None)
+    if state in ("53100", "54000"):
+        return StorageFull("the disk of the PostgreSQL server is full; make room there")
+    if state == "55P03":
+        return _held()
+    if isinstance(error, OperationalError | InterfaceError):
+        return StorageFailed("the PostgreSQL server does not answer; see that it runs")
+    return StorageFailed(f"the database refuses ({type(error.orig).__name__})")
+
+
+def _sqlite_error(error: sqlite3.Error) -> HexapodError:
+    code = getattr(error, "sqlite_errorcode", 0)
+    kinds: dict[int, Any] = {
+        sqlite3.SQLITE_BUSY: _held,
+        sqlite3.SQLITE_LOCKED: _held,
+        sqlite3.SQLITE_FULL: _full,
+        sqlite3.SQLITE_CORRUPT: _damaged,
+        sqlite3.SQLITE_NOTADB: _damaged,
+    }
+    # A limit on the size of files is met as an error of a write.
+    found = _full if code == sqlite3.SQLITE_IOERR_WRITE else kinds.get(code & _SECONDARY)
+    return found() if found else StorageFailed(f"the database cannot be used ({error})")
+
+
+def _held() -> HexapodError:
+    return StorageFailed(
+        f"another program holds the database for over {BUSY_S:g} s; close it, then try again"
+    )
+
+
+def _full() -> HexapodError:
+    return StorageFull("the disk of the data folder is full; delete runs, or make room there")
+
+
+def _damaged() -> HexapodError:
+    return DamagedFile(
+        "the database file in the data folder is damaged, or is no database; move it away to "
+        "begin anew, or put a copy of it back"
+    )

@@ -1,0 +1,227 @@
+"""The store that lasts: rows in a database, arrays in files beside it."""
+
+from collections.abc import Collection, Mapping, Sequence
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import Connection, Executable, delete, insert, select, update
+
+from app.domain.errors import DamagedFile
+from app.services.artifacts import ArtifactFiles, Stored
+from app.services.database.engine import Database
+from app.services.database.progress import Progress
+from app.services.database.rows import columns_of, row_of, run_of
+from app.services.database.schema import ARTIFACTS, EVALUATIONS, RUNS
+from app.services.errors import Conflict, NotFound, StorageFull
+from app.services.store import UNENDED, Kind, Page, Run, State
+
+_Row = dict[str, Any]
+_DIED = "The server ended before the run did."
+_FILE = (ARTIFACTS.c.file, ARTIFACTS.c.size, ARTIFACTS.c.sha256)
+
+
+class SqlStore:
+    """Implements `RunStore`. What a call has done when it returns lasts, but for progress.
+
+    Every call may also raise `StorageFailed`, if the database cannot be used, and those that
+    write `StorageFull`; nothing has changed then.
+    """
+
+    def __init__(self, database: Database, files: ArtifactFiles) -> None:
+        self._database, self._files = database, files
+        self._progress = Progress()
+
+    def create(self, *runs: Run) -> None:
+        rows = [row_of(run) for run in runs]
+        if rows:
+            self._database.write(lambda connection: connection.execute(insert(RUNS), rows))
+
+    def get(self, run_id: str) -> Run:
+        return self._as_run(self._database.read(lambda connection: _row(connection, run_id)))
+
+    def list(
+        self,
+        kind: Kind | None = None,
+        state: State | None = None,
+        limit: int = 50,
+        cursor: str | None = None,
+    ) -> Page:
+        wanted = select(RUNS).order_by(RUNS.c.id.desc()).limit(limit + 1)
+        if kind is not None:
+            wanted = wanted.where(RUNS.c.kind == kind)
+        if state is not None:
+            wanted = wanted.where(RUNS.c.state == state)
+        if cursor is not None:
+            wanted = wanted.where(RUNS.c.id < cursor)
+        rows = self._database.read(lambda connection: _found(connection, wanted))
+        runs = [self._as_run(row) for row in rows[:limit]]
+        return Page(runs, runs[-1].id if len(rows) > limit else None)
+
+    def change(
+        self, run_id: str, from_states: Collection[State], to_state: State, **fields: Any
+    ) -> Run:
+        # Whoever reads meanwhile sees the progress until the row has it.
+        columns = columns_of({**self._progress.of(run_id), "state": to_state, **fields})
+
+        still = update(RUNS).where(RUNS.c.id == run_id, RUNS.c.state.in_(from_states))
+
+        def work(connection: Connection) -> _Row:
+            changed = _found(connection, still.values(columns).returning(RUNS))
+            if not changed:
+                run = _row(connection, run_id)
+                raise Conflict(f"{run['kind']} {run_id} is {run['state']}", run["state"])
+            return changed[0]
+
+        row = self._database.write(work)
+        self._progress.take(run_id)
+        return run_of(row)
+
+    def update(self, run_id: str, **fields: Any) -> Run:
+        columns = columns_of({**self._progress.of(run_id), **fields})
+        statement = update(RUNS).where(RUNS.c.id == run_id).values(columns).returning(RUNS)
+
+        def work(connection: Connection) -> _Row:
+            changed = _found(connection, statement)
+            return changed[0] if changed else _row(connection, run_id)
+
+        row = self._database.write(work)
+        self._progress.take(run_id)
+        return run_of(row)
+
+    def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> Run:
+        if self._progress.note(run_id, {"done": done, "eta_s": eta_s}):
+            statement = update(RUNS).where(RUNS.c.id == run_id).values(done=done, eta_s=eta_s)
+            self._database.write(lambda connection: connection.execute(statement))
+        return self.get(run_id)
+
+    def delete(self, run_id: str) -> None:
+        def work(connection: Connection) -> Sequence[str]:
+            row = _row(connection, run_id, and_hold=True)
+            state = row["state"]
+            if state in UNENDED:
+                raise Conflict(f"{row['kind']} {run_id} is {state}; stop it first", state)
+            files = select(ARTIFACTS.c.file).where(ARTIFACTS.c.run_id == run_id)
+            names = connection.execute(files).scalars().all()
+            connection.execute(delete(RUNS).where(RUNS.c.id == run_id))
+            return names
+
+        self._files.remove(*self._database.write(work))
+        self._progress.take(run_id)
+
+    def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
+        if not rows:
+            return
+        added = [{"run_id": run_id, **row} for row in rows]
+        first = min(row["step"] for row in rows)
+        repeated = EVALUATIONS.c.run_id == run_id, EVALUATIONS.c.step >= first
+
+        def work(connection: Connection) -> None:
+            _row(connection, run_id, and_hold=True)
+            connection.execute(delete(EVALUATIONS).where(*repeated))
+            connection.execute(insert(EVALUATIONS), added)
+
+        self._database.write(work)
+
+    def evaluations(self, run_id: str) -> Sequence[Mapping[str, Any]]:
+        curve = select(EVALUATIONS).where(EVALUATIONS.c.run_id == run_id)
+
+        def work(connection: Connection) -> Sequence[_Row]:
+            _row(connection, run_id)
+            return _found(connection, curve.order_by(EVALUATIONS.c.step))
+
+        return [
+            {name: _number(row[name]) for name in ("step", "distance_m", "epsilon")}
+            for row in self._database.read(work)
+        ]
+
+    def put_artifact(self, run_id: str, name: str, data: bytes) -> None:
+        self.get(run_id)
+        stored = self._files.write(data)
+        of_this_name = ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name
+        row = {"run_id": run_id, "name": name, "written_at": datetime.now(UTC)}
+
+        def work(connection: Connection) -> Sequence[str]:
+            _row(connection, run_id, and_hold=True)
+            former = select(ARTIFACTS.c.file).where(*of_this_name)
+            names = connection.execute(former).scalars().all()
+            connection.execute(delete(ARTIFACTS).where(*of_this_name))
+            connection.execute(insert(ARTIFACTS), [{**row, **stored._asdict()}])
+            return names
+
+        try:
+            former = self._database.write(work)
+        except (NotFound, StorageFull):
+            # After any other error the database may have taken it, and the next start knows.
+            self._files.remove(stored.file)
+            raise
+        self._files.remove(*former)
+
+    def artifact(self, run_id: str, name: str) -> bytes | None:
+        said = f"{name} of run {run_id}"
+        missing: Stored | None = None
+        while (stored := self._stored(run_id, name)) is not None:
+            try:
+                return self._files.read(stored, said)
+            except FileNotFoundError as error:
+                # It may have made way for a newer one since we asked.
+                if stored == missing:
+                    raise DamagedFile(f"{said} is missing from the data folder") from error
+                missing = stored
+        return None
+
+    def interrupt_all(self) -> Sequence[str]:
+        """Mark every run that has not ended as interrupted: the server that ran it is dead.
+
+        Returns:
+            their ids.
+        """
+        now = datetime.now(UTC)
+        statement = (
+            update(RUNS)
+            .where(RUNS.c.state.in_(UNENDED))
+            .values(state="interrupted", error=_DIED, eta_s=None, waiting_for=[], ended_at=now)
+            .returning(RUNS.c.id)
+        )
+        return self._database.write(
+            lambda connection: connection.execute(statement).scalars().all()
+        )
+
+    def sweep(self) -> int:
+        """Remove the files that no run has; to be called before anyone writes.
+
+        Returns:
+            how many files that were.
+        """
+        known = select(ARTIFACTS.c.file)
+        files = self._database.read(lambda connection: connection.execute(known).scalars().all())
+        return self._files.sweep(files)
+
+    def _stored(self, run_id: str, name: str) -> Stored | None:
+        wanted = select(*_FILE).where(ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name)
+
+        def work(connection: Connection) -> Sequence[_Row]:
+            _row(connection, run_id)
+            return _found(connection, wanted)
+
+        rows = self._database.read(work)
+        return Stored(**rows[0]) if rows else None
+
+    def _as_run(self, row: _Row) -> Run:
+        return run_of({**row, **self._progress.of(row["id"])})
+
+
+def _found(connection: Connection, statement: Executable) -> Sequence[_Row]:
+    return [{**row} for row in connection.execute(statement).mappings()]
+
+
+def _row(connection: Connection, run_id: str, and_hold: bool = False) -> _Row:
+    """The row of a run, which nobody else changes before the transaction ends if it is held."""
+    wanted = select(RUNS).where(RUNS.c.id == run_id)
+    rows = _found(connection, wanted.with_for_update() if and_hold else wanted)
+    if not rows:
+        raise NotFound(f"there is no run {run_id!r} (any more)")
+    return rows[0]
+
+
+def _number(value: float | None) -> float:
+    return float("nan") if value is None else value
