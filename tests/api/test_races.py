@@ -1,6 +1,7 @@
 """The resource `races`: one request that trains and races, and what can be replayed."""
 
 import io
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -170,6 +171,18 @@ def test_who_starts_a_run_gives_it_the_stage(api: Api) -> None:
     shown = api.call("PUT", "/stage", json={"run_id": second["id"], "speed": 4}).json()
     assert (shown["run_id"], shown["speed"]) == (second["id"], 4)
     api.stop(second, third)
+
+
+def test_too_many_that_wait_are_told_to_come_back(serve: Callable[..., Api]) -> None:
+    api = serve()  # whose jobs never start, so that all of them wait
+    lanes = [{"agent": "q-learning", "training": {}}] * 6
+    answers = [api.call("POST", "/races", json={**WALK, "lanes": lanes}) for _ in range(50)]
+    taken = [answer for answer in answers if answer.status_code == 202]
+    assert 4 <= len(taken) < 50
+    refused(answers[-1], 429, "32")
+    assert int(answers[-1].headers["retry-after"]) > 0
+    assert api.get("/trainings?limit=100")["items"], "all or none of a race is taken"
+    assert len(api.get("/trainings?limit=100")["items"]) == 6 * len(taken)
 
 
 def test_options_are_all_that_can_be_asked_for(api: Api) -> None:
