@@ -56,10 +56,13 @@ def train(
     """
     while learner.step < config.steps:
         epsilon, episode = learner.epsilon, learner.step // config.steps_per_episode
-        yield _practise(learner, episode, epsilon, record)
-        if learner.step % config.steps_per_episode == 0 or learner.step == config.steps:
-            yield EpisodeEnded(episode, learner.step, epsilon, learner.episode_reward_m)
+        taken, earned_m = _practise(learner, episode, epsilon, record), learner.episode_reward_m
+        has_ended = learner.step % config.steps_per_episode == 0 or learner.step == config.steps
+        if has_ended:  # before the yield, after which the learner may be saved
             learner.episode_reward_m = 0.0
+        yield taken
+        if has_ended:
+            yield EpisodeEnded(episode, learner.step, epsilon, earned_m)
         if _is_due(learner.step, config):
             if learner.greedy_distance_m is None:
                 yield refer(learner)

@@ -1,0 +1,269 @@
+"""What was learned as a file: whole, checked, and for one problem only."""
+
+import io
+import json
+import pickle
+import zipfile
+from copy import copy
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.agents.q_learning import QLearning
+from app.assembly import build_learner
+from app.domain.errors import DamagedFile, TableMismatch
+from app.domain.gait import GaitSpec
+from app.domain.robot import robot
+from app.runs.config import TrainingConfig
+from app.runs.tables import (
+    Checkpoint,
+    check_fits,
+    continue_from,
+    from_bytes,
+    snapshot,
+    table_of,
+    to_bytes,
+)
+from app.runs.training import train
+
+CONFIG = TrainingConfig(
+    gait="left-right-origin", simulator="kinematic", steps=120, evaluate_every=0
+)
+
+
+def trained(config: TrainingConfig = CONFIG) -> Checkpoint:
+    learner = build_learner(config)
+    for _ in train(learner, config):
+        pass
+    return snapshot(learner, config)
+
+
+TABLE = trained()
+FILE = to_bytes(TABLE)
+
+
+def same(one: Checkpoint, other: Checkpoint) -> bool:
+    return (
+        one.meta == other.meta
+        and set(one.arrays) == set(other.arrays)
+        and all(
+            a.dtype == other.arrays[name].dtype and a.tobytes() == other.arrays[name].tobytes()
+            for name, a in one.arrays.items()
+        )
+    )
+
+
+def test_a_table_goes_into_a_file_and_comes_back_the_same() -> None:
+    assert same(from_bytes(FILE, "q.npz"), TABLE)
+    assert to_bytes(from_bytes(FILE, "q.npz")) == FILE
+
+
+def test_the_file_holds_all_that_is_needed_to_go_on() -> None:
+    meta, arrays = TABLE.meta, set(TABLE.arrays)
+
+    assert {"agent.q", "agent.n", "agent.where", "agent.learned", "agent.rates"} <= arrays
+    assert {"state.feet", "state.travel"} <= arrays
+    assert meta["step"] == 120
+    assert json.loads(meta["rng"])["bit_generator"] == "PCG64"
+    assert meta["gait"] == "left-right-origin"
+    assert meta["pairs"] == [[1, 4], [2, 5], [3, 6]]
+    assert meta["observation"] == "measured"
+
+
+def test_on_mujoco_the_whole_state_vector_is_in_it() -> None:
+    config = replace(CONFIG, simulator="mujoco", steps=2)
+    learner = build_learner(config)
+    for _ in train(learner, config):
+        pass
+
+    row = snapshot(learner, config).arrays["state.row"]
+    assert row.tobytes() == learner.walker.state.row.tobytes()  # type: ignore[attr-defined]
+
+
+def test_any_numpy_reads_it_without_pickle() -> None:
+    with np.load(io.BytesIO(FILE), allow_pickle=False) as file:
+        assert json.loads(str(file["meta"]))["format"] == 1
+        assert np.isfinite(file["agent.q"]).all()
+
+
+def test_the_table_inside_has_the_values_that_were_learned() -> None:
+    learner = build_learner(CONFIG)
+    for _ in train(learner, CONFIG):
+        pass
+    agent = learner.walker.agent
+    assert isinstance(agent, QLearning)
+    table = table_of(from_bytes(FILE, "q.npz"))
+
+    assert table.sha256() == agent.table.sha256()
+    assert np.array_equal(table.n, agent.table.n)
+    assert table.n.sum() == 120
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"gait": "front-back-origin"}, "for gait left-right-origin, this run has front-back-orig"),
+        ({"gait": "left-right-vertical"}, "for gait left-right-origin, this run has left-right-v"),
+        ({"gait": GaitSpec(2, 3, "origin")}, "for gait left-right-origin, this run has right 2,"),
+        ({"robot": robot({"n_legs": 8})}, "for legs 6, this run has 8"),
+        (
+            {"robot": robot({"legs": [{"azimuth_deg": a} for a in (0, 50, 120, 180, 230, 300)]})},
+            "for azimuths_deg",
+        ),
+        ({"divisions": 3}, "for divisions 2, this run has 3"),
+        ({"grid_side_m": 0.05}, r"for grid_side_m 0\.04, this run has 0\.05"),
+        ({"observation": "commanded"}, "for observation measured, this run has commanded"),
+    ],
+)
+def test_a_table_of_another_problem_is_refused(changes: dict[str, Any], message: str) -> None:
+    config = replace(CONFIG, **changes)
+    with pytest.raises(TableMismatch, match=message + ".*; choose a table of the same gait"):
+        check_fits(TABLE, config, config.observation)
+    with pytest.raises(TableMismatch, match=message):
+        build_learner(config, TABLE)
+
+
+def test_its_robot_and_its_simulator_may_differ() -> None:
+    config = replace(CONFIG, robot=robot("slippery"), simulator="mujoco")
+
+    check_fits(TABLE, config, config.observation)
+    check_fits(TABLE, replace(config, observation="commanded"))  # a race takes the table's own
+
+
+def test_a_table_of_another_agent_is_refused() -> None:
+    wanderer = replace(CONFIG, agent="tests.own_agents:Restless")
+    foreign = trained(wanderer)
+
+    with pytest.raises(TableMismatch, match="this is no Q-table: it lacks n, q, shape, where"):
+        build_learner(CONFIG, foreign)
+    with pytest.raises(TableMismatch, match="Restless cannot load what q-learning has learned"):
+        build_learner(wanderer, TABLE)
+    with pytest.raises(TableMismatch, match="Restless keeps no Q-table"):
+        table_of(foreign)
+
+
+def members() -> dict[str, Any]:
+    with np.load(io.BytesIO(FILE), allow_pickle=False) as file:
+        return dict(file)
+
+
+def npz(arrays: dict[str, Any], compressed: bool = False) -> bytes:
+    buffer = io.BytesIO()
+    (np.savez_compressed if compressed else np.savez)(buffer, **arrays)
+    return buffer.getvalue()
+
+
+def without(name: str) -> dict[str, Any]:
+    return {key: value for key, value in members().items() if key != name}
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"", "worn.npz is not a Q-table of this product"),
+        (b"step,distance\n1,2\n", "worn.npz is not a Q-table of this product"),
+        (pickle.dumps({"q": 1}), "worn.npz is not a Q-table of this product"),
+        (b"PK\x05\x06" + b"\0" * 18, "worn.npz is not a Q-table of this product: .*digest"),
+        (npz({"q": np.zeros(3)}), "worn.npz is not a Q-table of this product: .*digest"),
+        (npz(without("meta")), "worn.npz is (damaged|not a Q-table)"),
+        (npz(without("agent.q")), "worn.npz is damaged: its contents do not match its checksum"),
+        (npz({**members(), "more": np.zeros(1)}), "worn.npz is damaged"),
+        (npz({**members(), "agent.q": members()["agent.q"] * 2}), "worn.npz is damaged"),
+        (npz({**members(), "meta": np.array('{"format": 1}')}), "worn.npz is damaged"),
+        (npz({**members(), "meta": np.array("not json")}), "worn.npz is not a Q-table"),
+        (npz(members(), compressed=True), "its members are compressed; write it with numpy.savez"),
+    ],
+)
+def test_what_is_no_table_of_ours_is_refused_by_name(data: bytes, message: str) -> None:
+    with pytest.raises(DamagedFile, match=message):
+        from_bytes(data, "worn.npz")
+
+
+@given(st.integers(0, len(FILE) - 1))
+def test_a_truncated_file_is_refused(length: int) -> None:
+    with pytest.raises(DamagedFile, match=r"worn.npz is"):
+        from_bytes(FILE[:length], "worn.npz")
+
+
+@given(st.integers(0, 8 * len(FILE) - 1))
+def test_a_flipped_bit_is_found_or_harmless(bit: int) -> None:
+    """Harmless is one in what the archive says beside its contents, such as a date."""
+    data = bytearray(FILE)
+    data[bit // 8] ^= 1 << bit % 8
+    try:
+        read = from_bytes(bytes(data), "worn.npz")
+    except DamagedFile as error:
+        assert str(error).startswith("worn.npz is")  # noqa: PT017
+    else:
+        assert same(read, TABLE)
+
+
+def test_a_flipped_bit_in_a_value_is_found() -> None:
+    value = TABLE.arrays["agent.q"].tobytes()
+    data = bytearray(FILE)
+    data[FILE.index(value) + 3] ^= 16
+    with pytest.raises(DamagedFile, match=r"worn.npz"):
+        from_bytes(bytes(data), "worn.npz")
+
+
+def test_a_bomb_is_refused_before_it_is_unpacked() -> None:
+    bomb = npz({"q": np.zeros(20_000_000)}, compressed=True)  # 160 MB in 160 kB
+    assert len(bomb) < 1_000_000
+    with pytest.raises(DamagedFile, match=r"boom.npz .* compressed"):
+        from_bytes(bomb, "boom.npz")
+
+
+def test_members_that_claim_more_than_the_file_holds_are_refused() -> None:
+    """Many entries of an archive's directory may point at the same bytes."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        archive.writestr("a.npy", np.zeros(2000).tobytes())
+        for name in ("b.npy", "c.npy"):
+            again = copy(archive.filelist[0])
+            again.filename = again.orig_filename = name
+            archive.filelist.append(again)
+    with pytest.raises(DamagedFile, match=r"boom.npz .* claim to be larger than the file"):
+        from_bytes(buffer.getvalue(), "boom.npz")
+
+
+class Bomb:
+    """Writes a file when it is unpickled."""
+
+    def __init__(self, target: Path) -> None:
+        self._target = target
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Path.write_text, (self._target, "boom")
+
+
+def test_a_pickle_inside_is_refused_and_never_run(tmp_path: Path) -> None:
+    target = tmp_path / "boom"
+    data = npz({**members(), "agent.q": np.array([Bomb(target)], object)})
+    with pytest.raises(DamagedFile, match=r"worn.npz is not a Q-table"):
+        from_bytes(data, "worn.npz")
+
+    assert not target.exists()
+
+
+def test_a_newer_format_names_the_one_that_is_read() -> None:
+    newer = to_bytes(Checkpoint({**TABLE.meta, "format": 2}, TABLE.arrays))
+    with pytest.raises(DamagedFile, match=r"q\.npz has format 2; this version reads 1"):
+        from_bytes(newer, "q.npz")
+
+
+@pytest.mark.parametrize("state", ["", "[]", "{}", '{"bit_generator": "MT19937"}', 3])
+def test_a_well_formed_file_with_a_worthless_generator_is_refused(state: object) -> None:
+    checkpoint = Checkpoint({**TABLE.meta, "rng": state}, TABLE.arrays)
+    with pytest.raises(DamagedFile, match="does not hold its generator's state"):
+        continue_from(build_learner(CONFIG), checkpoint)
+
+
+def test_a_well_formed_file_with_a_worthless_table_is_refused() -> None:
+    huge = Checkpoint(TABLE.meta, {**TABLE.arrays, "agent.shape": np.array([10**9, 5])})
+    with pytest.raises(TableMismatch, match="this problem's"):
+        table_of(huge)

@@ -1,0 +1,296 @@
+"""The training loop: its schedule, its records, and that it repeats and goes on to the last bit."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.agents.q_learning import QLearning
+from app.assembly import build_learner, finish_training
+from app.domain.errors import IllegalAction
+from app.runs import seeding
+from app.runs.config import SIMULATORS, SimulatorName, TrainingConfig
+from app.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
+from app.runs.tables import from_bytes, restore, snapshot, to_bytes
+from app.runs.training import Learner, train
+
+CONFIG = TrainingConfig(
+    gait="left-right-vertical", simulator="kinematic", steps=200, seed=3, evaluate_every=50
+)
+
+on_both = pytest.mark.parametrize("simulator", SIMULATORS)
+
+
+def run(config: TrainingConfig, threads: int = 1) -> tuple[Learner, list[TrainingRecord]]:
+    learner = build_learner(config, threads=threads)
+    return learner, list(train(learner, config))
+
+
+def table_hash(learner: Learner) -> str:
+    agent = learner.walker.agent
+    assert isinstance(agent, QLearning)
+    return agent.table.sha256()
+
+
+def everything(learner: Learner) -> tuple[Any, ...]:
+    """All that a training changes, to the last bit."""
+    walker = learner.walker
+    return (
+        table_hash(learner),
+        {name: array.tobytes() for name, array in walker.agent.state().items()},
+        seeding.dump(learner.rng),
+        {name: a.tobytes() for name, a in walker.simulator.dump(walker.state).items()},
+        (learner.step, learner.episode_reward_m, learner.greedy_distance_m, learner.epsilon),
+    )
+
+
+def steps(records: list[TrainingRecord]) -> list[StepTaken]:
+    return [r for r in records if isinstance(r, StepTaken)]
+
+
+@pytest.mark.parametrize(
+    ("total", "per_episode", "epsilons"),
+    [
+        (500, 50, [1 - e / 9 for e in range(10)]),
+        (250, 50, [1, 0.75, 0.5, 0.25, 0]),
+        (100, 50, [1, 0]),
+        (50, 50, [1]),
+        (20, 50, [1]),
+        (120, 50, [1, 0.5, 0]),  # a last partial episode counts
+        (7, 2, [1, 2 / 3, 1 / 3, 0]),
+    ],
+)
+def test_epsilon_falls_linearly_over_the_episodes(
+    total: int, per_episode: int, epsilons: list[float]
+) -> None:
+    config = replace(CONFIG, steps=total, steps_per_episode=per_episode, evaluate_every=0)
+    _, records = run(config)
+    taken = steps(records)
+
+    assert [s.step for s in taken] == list(range(1, total + 1))
+    assert [s.episode for s in taken] == [s // per_episode for s in range(total)]
+    assert [s.epsilon for s in taken] == pytest.approx(
+        [epsilons[s // per_episode] for s in range(total)]
+    )
+
+
+def test_epsilon_may_run_between_other_numbers() -> None:
+    config = replace(CONFIG, steps=150, epsilon_start=0.9, epsilon_end=0.3, evaluate_every=0)
+    _, records = run(config)
+
+    assert sorted({s.epsilon for s in steps(records)}) == pytest.approx([0.3, 0.6, 0.9])
+
+
+def test_episodes_end_every_50_steps_and_at_the_end() -> None:
+    _, records = run(replace(CONFIG, steps=120, evaluate_every=0))
+    ended = [r for r in records if isinstance(r, EpisodeEnded)]
+    taken = steps(records)
+
+    assert [(e.episode, e.step) for e in ended] == [(0, 50), (1, 100), (2, 120)]
+    assert ended[1].reward_m == pytest.approx(sum(s.reward_m for s in taken[50:100]))
+    assert ended[2].reward_m == pytest.approx(sum(s.reward_m for s in taken[100:]))
+
+
+def test_within_a_training_the_robot_is_never_put_back() -> None:
+    _, records = run(replace(CONFIG, evaluate_every=0))
+    total = 0.0
+    for taken in steps(records):
+        total += taken.reward_m
+        assert taken.distance_m == pytest.approx(total)
+
+
+def test_a_step_says_what_was_seen_and_known() -> None:
+    learner = build_learner(CONFIG)
+    first, *_, last = [
+        r
+        for r in train(learner, replace(CONFIG, steps=60), record=True)
+        if isinstance(r, StepTaken)
+    ]
+
+    assert first.observation == (0, 0, 0)
+    assert first.motion is not None
+    assert first.motion.qpos.shape == (16, 25)
+    assert first.knowledge is not None
+    assert np.nansum(first.knowledge.visits) == 0  # before the step
+    assert last.knowledge is not None
+    assert np.isnan(last.knowledge.values[range(3), last.observation]).all()
+    _, unrecorded = run(replace(CONFIG, steps=1, evaluate_every=0))
+    assert steps(unrecorded)[0].motion is None
+
+
+def test_the_line_to_beat_comes_once_before_the_first_evaluation() -> None:
+    _, records = run(replace(CONFIG, steps=120))
+    told = [r for r in records if isinstance(r, Reference | Evaluated)]
+
+    assert isinstance(told[0], Reference)
+    assert told[0].greedy_distance_m == pytest.approx(24.833 * 0.02, abs=1e-4)
+    assert [r.step for r in told[1:] if isinstance(r, Evaluated)] == [50, 100, 120]
+    assert isinstance(records[-1], Evaluated)
+
+
+@on_both
+def test_evaluating_leaves_the_learner_undisturbed(simulator: SimulatorName) -> None:
+    config = replace(CONFIG, simulator=simulator, steps=70)
+
+    def learned(every: int) -> tuple[Any, ...]:
+        *rest, (step, reward, _, epsilon) = everything(
+            run(replace(config, evaluate_every=every))[0]
+        )
+        return (*rest, step, reward, epsilon)
+
+    assert learned(7) == learned(0)
+    assert learned(50) == learned(0)
+
+
+def test_an_evaluation_does_not_depend_on_those_before_it() -> None:
+    def last(every: int) -> Evaluated:
+        record = run(replace(CONFIG, evaluate_every=every))[1][-1]
+        assert isinstance(record, Evaluated)
+        return record
+
+    assert last(7).distance_m == last(50).distance_m == last(200).distance_m
+
+
+def test_an_evaluation_walks_fifty_steps_from_rest() -> None:
+    learner = build_learner(CONFIG)
+    evaluated = [r for r in train(learner, CONFIG, record=True) if isinstance(r, Evaluated)][-1]
+
+    assert evaluated.motion is not None
+    assert evaluated.motion.qpos.shape == (50 * 16, 25)
+    assert evaluated.motion.time_s == pytest.approx(np.arange(1, 801) * 0.02, abs=1e-4)
+    assert evaluated.motion.qpos[-1, 1] == pytest.approx(evaluated.distance_m, abs=1e-6)
+
+
+@on_both
+def test_the_same_config_and_seed_give_the_same_table(simulator: SimulatorName) -> None:
+    config = replace(CONFIG, simulator=simulator, steps=60, evaluate_every=0)
+
+    assert everything(run(config)[0]) == everything(run(config)[0])
+    assert table_hash(run(config)[0]) != table_hash(run(replace(config, seed=4))[0])
+
+
+def test_and_at_any_thread_count() -> None:
+    config = replace(CONFIG, simulator="mujoco", steps=40, evaluate_every=40)
+    runs = [run(config, threads) for threads in (1, 2, 4)]
+
+    assert everything(runs[0][0]) == everything(runs[1][0]) == everything(runs[2][0])
+    evaluations = [[r for r in records if isinstance(r, Evaluated)] for _, records in runs]
+    assert evaluations[0] == evaluations[1] == evaluations[2]
+
+
+@on_both
+@pytest.mark.parametrize("broken_at", [13, 50, 77])
+def test_saved_midway_and_loaded_it_equals_the_unbroken_run(
+    simulator: SimulatorName, broken_at: int
+) -> None:
+    config = replace(CONFIG, simulator=simulator, steps=90, evaluate_every=45)
+    unbroken, records = run(config)
+
+    first = build_learner(config)
+    for _ in train(first, config):
+        if first.step == broken_at:
+            break
+    saved = to_bytes(snapshot(first, config))
+    second = build_learner(config)
+    restore(second, from_bytes(saved, "midway.npz"))
+    assert everything(second) == everything(first)
+    after = list(train(second, config))
+
+    assert everything(second) == everything(unbroken)
+    told = [r for r in records if isinstance(r, Reference) or r.step > broken_at]
+    assert after == told[-len(after) :]
+
+
+def test_changed_rates_survive_being_saved() -> None:
+    config = replace(CONFIG, evaluate_every=0)
+    first = build_learner(config)
+    agent = first.walker.agent
+    assert isinstance(agent, QLearning)
+    for _ in train(first, replace(config, steps=100)):
+        if first.step == 60:
+            agent.tune(alpha=0.05, epsilon=0.4)
+    second = build_learner(config)
+    restore(second, from_bytes(to_bytes(snapshot(first, config)), "tuned.npz"))
+
+    assert second.epsilon == 0.4
+    assert [r.epsilon for r in train(second, config) if isinstance(r, StepTaken)] == [0.4] * 100
+
+
+def test_going_on_from_a_table_takes_what_was_learned_and_nothing_else() -> None:
+    first, _ = run(CONFIG)
+    table = snapshot(first, CONFIG)
+    onward = build_learner(replace(CONFIG, alpha=0.1, seed=99), table)
+    agent, successor = first.walker.agent, onward.walker.agent
+    assert isinstance(agent, QLearning)
+    assert isinstance(successor, QLearning)
+
+    # Values, visits and the learning generator go on …
+    assert table_hash(onward) == table_hash(first)
+    assert np.array_equal(successor.table.n, agent.table.n)
+    assert seeding.dump(onward.rng) == seeding.dump(first.rng)
+    # … ε restarts, rates are the new run's, the robot starts from rest.
+    assert onward.epsilon == 1
+    assert successor.state()["rates"][0] == 0.1
+    assert onward.step == 0
+    assert (onward.walker.state.distance_m, onward.walker.state.steps) == (0, 0)
+    assert onward.walker.seen == (0, 0, 0)
+
+
+def test_blocks_restart_the_schedule_and_keep_learning() -> None:
+    config = replace(CONFIG, steps=250, evaluate_every=0)
+    table, visits, epsilons = None, [], []
+    for _ in range(3):
+        learner = build_learner(config, table)
+        records = list(train(learner, config))
+        epsilons.append([r.epsilon for r in records if isinstance(r, EpisodeEnded)])
+        table = from_bytes(to_bytes(snapshot(learner, config)), "block.npz")
+        visits.append(int(table.arrays["agent.n"].sum()))
+
+    assert epsilons == [[1, 0.75, 0.5, 0.25, 0]] * 3
+    assert visits == [250, 500, 750]
+
+
+def test_the_blocks_differ_from_each_other() -> None:
+    """The generator goes on, so the second block explores elsewhere."""
+    config = replace(CONFIG, evaluate_every=0, epsilon_end=1.0)
+    first, records = run(config)
+    onward = build_learner(config, snapshot(first, config))
+    again = list(train(onward, config))
+
+    assert [s.action for s in steps(records)] != [s.action for s in steps(again)]
+
+
+def test_the_result_names_distance_greedy_and_hash() -> None:
+    learner, records = run(CONFIG)
+    result = finish_training(learner, CONFIG)
+    last = records[-1]
+
+    assert isinstance(last, Evaluated)
+    assert result == {
+        "distance_m": last.distance_m,
+        "greedy_distance_m": learner.greedy_distance_m,
+        "q_table_sha256": table_hash(learner),
+    }
+
+
+def test_without_evaluations_the_result_is_the_same() -> None:
+    quiet = replace(CONFIG, evaluate_every=0)
+
+    assert finish_training(run(quiet)[0], quiet) == finish_training(run(CONFIG)[0], CONFIG)
+
+
+def test_an_agent_of_ones_own_trains_saves_and_goes_on() -> None:
+    config = replace(CONFIG, agent="tests.own_agents:Restless", steps=40)
+    learner, _ = run(config)
+    state = learner.walker.agent.state()
+    onward = build_learner(config, from_bytes(to_bytes(snapshot(learner, config)), "own.npz"))
+
+    assert float(state["earned_m"][0]) == pytest.approx(learner.walker.state.distance_m)
+    assert onward.walker.agent.state() == state
+    assert finish_training(learner, config)["q_table_sha256"] is None
+
+
+def test_in_practice_an_illegal_action_is_an_error_that_names_agent_and_action() -> None:
+    with pytest.raises(IllegalAction, match=r"Cheat chose Action\(pair=0, cell=0\).*in legal"):
+        run(replace(CONFIG, agent="tests.own_agents:Cheat"))

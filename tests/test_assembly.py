@@ -1,0 +1,162 @@
+"""From configs to simulators, learners and lanes."""
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from app.agents.lookahead import Greedy, TwoStep
+from app.agents.q_learning import QLearning
+from app.assembly import build_learner, build_simulator, build_walkers
+from app.domain.errors import InvalidInput, TableMismatch, UnknownName, Unreachable
+from app.domain.gait import GaitSpec
+from app.domain.kinematic import KinematicSimulator
+from app.domain.robot import robot
+from app.physics.mujoco_simulator import MujocoSimulator
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, Walk
+from app.runs.tables import Checkpoint, snapshot
+from app.runs.training import train
+from tests import own_agents
+
+CONFIG = TrainingConfig(
+    gait="left-right-origin", simulator="kinematic", steps=150, evaluate_every=0
+)
+RACE = RaceConfig(
+    gait="left-right-origin",
+    simulator="kinematic",
+    lanes=(
+        LaneConfig(agent="q-learning"),
+        LaneConfig(agent="greedy"),
+        LaneConfig(agent="two-step"),
+    ),
+)
+
+
+@pytest.fixture(scope="module")
+def table() -> Checkpoint:
+    learner = build_learner(CONFIG)
+    for _ in train(learner, CONFIG):
+        pass
+    return snapshot(learner, CONFIG)
+
+
+def test_a_config_names_its_simulator() -> None:
+    made = robot({"n_legs": 8})
+    walk = Walk(gait="front-back-vertical", robot=made, divisions=3, grid_side_m=0.03)
+    physics, law = build_simulator(walk), build_simulator(replace(walk, simulator="kinematic"))
+
+    assert isinstance(physics, MujocoSimulator)
+    assert isinstance(law, KinematicSimulator)
+    for simulator in (physics, law):
+        assert simulator.robot is made
+        assert len(simulator.grid) == 9
+        assert simulator.grid.side_m == 0.03
+        assert simulator.gait.pairs == ((1, 3), (8, 4), (7, 5), (2, 6))
+
+
+@pytest.mark.parametrize("simulator", ["mujoco", "kinematic"])
+def test_a_grid_out_of_reach_is_refused_with_leg_and_cell(simulator: Any) -> None:
+    with pytest.raises(Unreachable, match=r"leg 2 cannot reach cell 1 \(front left\)"):
+        build_simulator(Walk(gait="left-right-origin", grid_side_m=0.2, simulator=simulator))
+
+
+def test_a_learner_gets_its_rates_from_the_config() -> None:
+    learner = build_learner(replace(CONFIG, alpha=0.2, gamma=0.5, epsilon_start=0.7))
+
+    assert learner.walker.agent.state()["rates"][:2].tolist() == [0.2, 0.5]
+    assert learner.epsilon == 0.7
+
+
+def test_learning_evaluating_and_racing_draw_from_generators_of_their_own(
+    table: Checkpoint,
+) -> None:
+    learner, *_ = build_walkers(RACE, [table, None, None])
+    racing = [a.action for a in _walk(learner)]
+
+    assert racing == [a.action for a in _walk(build_walkers(RACE, [table, None, None])[0])]
+
+
+def _walk(walker: Any) -> list[Any]:
+    class Taken:
+        def __init__(self) -> None:
+            self.action = walker.decide()
+            walker.carry_out(self.action)
+
+    return [Taken() for _ in range(10)]
+
+
+def test_lanes_are_built_in_order_at_rest(table: Checkpoint) -> None:
+    walkers = build_walkers(RACE, [table, None, None])
+
+    assert [type(walker.agent) for walker in walkers] == [QLearning, Greedy, TwoStep]
+    assert [walker.state.distance_m for walker in walkers] == [0, 0, 0]
+    assert [walker.transitions for walker in walkers] == [0, 0, 0]
+
+
+def test_a_lane_that_learned_races_without_exploring(table: Checkpoint) -> None:
+    learner = build_walkers(RACE, [table, None, None])[0]
+    agent = learner.agent
+
+    assert isinstance(agent, QLearning)
+    assert agent.epsilon == 0
+    assert agent.table.n.sum() == 150
+
+
+def test_a_table_of_another_problem_is_refused(table: Checkpoint) -> None:
+    with pytest.raises(TableMismatch, match="for divisions 2, this run has 3"):
+        build_walkers(replace(RACE, divisions=3), [table, None, None])
+    commanded = replace(
+        RACE, lanes=(LaneConfig(agent="q-learning", observation="commanded"), *RACE.lanes[1:])
+    )
+    with pytest.raises(TableMismatch, match="for observation measured, this run has commanded"):
+        build_walkers(commanded, [table, None, None])
+
+
+def test_a_table_of_another_agent_is_refused(table: Checkpoint) -> None:
+    lanes = (LaneConfig(agent="tests.own_agents:Restless"),)
+    with pytest.raises(TableMismatch, match="Restless cannot load what q-learning has learned"):
+        build_walkers(replace(RACE, lanes=lanes), [table])
+
+
+def test_every_lane_needs_its_table_or_none(table: Checkpoint) -> None:
+    with pytest.raises(ValueError, match="zip"):
+        build_walkers(RACE, [table])
+
+
+def test_an_agent_of_ones_own_trains_and_races() -> None:
+    config = replace(CONFIG, agent="tests.own_agents:Restless")
+    learner = build_learner(config)
+    race = replace(RACE, lanes=(LaneConfig(agent="tests.own_agents:Restless"),))
+    (walker,) = build_walkers(race, [None])
+
+    assert isinstance(learner.walker.agent, own_agents.Restless)
+    assert isinstance(walker.agent, own_agents.Restless)
+    assert walker.agent.problem.pairs == ((1, 4), (2, 5), (3, 6))
+    assert walker.agent.problem.cells_m.shape == (5, 2)
+
+
+def test_one_that_looks_ahead_is_given_a_simulator_and_counted() -> None:
+    race = replace(RACE, lanes=(LaneConfig(agent="tests.own_agents:ThreeStep"),))
+    (walker,) = build_walkers(race, [None])
+    walker.decide()
+
+    assert walker.transitions == 12 + 144 + 1728
+
+
+def test_an_agent_that_cannot_be_had_says_why() -> None:
+    with pytest.raises(InvalidInput, match=r"asks for crystal_ball; on offer: .*alpha.*rng"):
+        build_learner(replace(CONFIG, agent="tests.own_agents:Needy"))
+    with pytest.raises(UnknownName, match="unknown agent 'dijkstra'"):
+        build_learner(replace(CONFIG, agent="dijkstra"))
+
+
+def test_a_gait_of_ones_own_walks() -> None:
+    """Hand-given pairs, forward between legs 6 and 1."""
+    gait = GaitSpec(6, 1, pairs=((6, 1), (5, 2), (4, 3)))
+    race = replace(RACE, gait=gait, simulator="mujoco", lanes=(LaneConfig(agent="greedy"),))
+    (walker,) = build_walkers(race, [None], threads=1)
+    for _ in range(6):
+        walker.carry_out(walker.decide())
+
+    assert 0.03 < walker.state.distance_m < 0.07
+    assert abs(walker.simulator.pose(walker.state)[0]) < 0.01
