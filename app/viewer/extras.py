@@ -99,17 +99,16 @@ class Ghosts:
         )
 
     def _draw_robot(self, ghost: Ghost) -> None:
-        places, attitudes = self._mesh.place(self._rest)
-        places[:, 1] += ghost.distance_m
+        placed = self._mesh.place(self._rest).moved(0.0, ghost.distance_m)
         for number, part in enumerate(self._mesh.parts):
             self._server.scene.add_batched_meshes_simple(
                 f"{self._root}/robot/{number}",
                 part.shape.vertices,
                 part.shape.faces,
-                batched_positions=places[part.links],
-                batched_wxyzs=attitudes[part.links],
+                batched_positions=placed.places[part.links],
+                batched_wxyzs=placed.attitudes[part.links],
                 batched_colors=batched(np.array([self._color] * len(part.links), np.uint8)),
-                opacity=0.3,
+                opacity=0.4,
                 lod="off",
                 cast_shadow=False,
                 receive_shadow=False,

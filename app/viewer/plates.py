@@ -50,7 +50,8 @@ class Plate:
 
     def draw(self, lane: LaneView) -> None:
         """Go along with the robot, and say what it does."""
-        x, y, z = lane.qpos[:3].tolist()
+        # To the millimetre, so that a robot that only trembles sends nothing for its plate.
+        x, y, z = lane.qpos[:3].round(3).tolist()
         place = (x + self._x_m, y, z + ANTENNA_M + 0.03)
         if place != self._place:
             self._label.position = self._place = place

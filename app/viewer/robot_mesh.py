@@ -32,6 +32,19 @@ class Part(NamedTuple):
     """Bodies of the model."""
 
 
+class Placed(NamedTuple):
+    """A robot in one pose."""
+
+    places: FloatArray
+    """Of all bodies of the model, (bodies, 3) [m]."""
+    attitudes: FloatArray
+    """Of all bodies, (bodies, 4) wxyz."""
+
+    def moved(self, x_m: float, y_m: float = 0.0) -> "Placed":
+        """The same, elsewhere on the track."""
+        return Placed(self.places + np.array([x_m, y_m, 0.0]), self.attitudes)
+
+
 class RobotMesh:
     """Draws robots of one kind: from joint positions to where each part is."""
 
@@ -46,11 +59,12 @@ class RobotMesh:
         pose: FloatArray = self._model.qpos0
         return pose
 
-    def place(self, qpos: NDArray[np.floating[Any]]) -> tuple[FloatArray, FloatArray]:
-        """Places (bodies, 3) [m] and attitudes (bodies, 4) wxyz of all links; copies."""
-        self._data.qpos[:] = qpos
-        mujoco.mj_kinematics(self._model, self._data)
-        return self._data.xpos.copy(), self._data.xquat.copy()
+    def place(self, qpos: NDArray[np.floating[Any]]) -> Placed:
+        """Where everything is in this pose."""
+        data = self._data
+        data.qpos[:] = qpos
+        mujoco.mj_kinematics(self._model, data)
+        return Placed(data.xpos.copy(), data.xquat.copy())
 
 
 def _parts(model: mujoco.MjModel) -> list[Part]:
