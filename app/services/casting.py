@@ -3,6 +3,9 @@
 from collections.abc import Sequence
 from functools import lru_cache
 
+import numpy as np
+
+from app.domain.errors import Unreachable
 from app.domain.gait import Gait
 from app.domain.grid import FootGrid
 from app.domain.kinematic import KinematicSimulator
@@ -43,8 +46,13 @@ def rest_pose(cast: Cast) -> FloatArray:
 
 @lru_cache(maxsize=8)
 def _rest_pose(robot: Robot, gait: Gait, grid: FootGrid) -> FloatArray:
-    simulator = KinematicSimulator(robot, gait, grid)
-    pose = simulator.pose(simulator.rest())
+    try:
+        simulator = KinematicSimulator(robot, gait, grid)
+        pose = simulator.pose(simulator.rest())
+    except Unreachable:
+        # A run of such a robot has failed before its first step; it is shown all the same.
+        pose = np.zeros(7 + 3 * len(robot.legs))
+        pose[2], pose[3] = robot.body_height_m + robot.foot_radius_m, 1.0
     pose.flags.writeable = False
     return pose
 

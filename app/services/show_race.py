@@ -12,6 +12,8 @@ from app.services.show import Billing
 
 SPEED, LAST_LANE_SPEED = 2.0, 8.0
 PHOTO_FINISH_S = 3.0
+CUSHION_S = 0.5
+"""How far, in real time, a race that still computes is shown behind it."""
 
 
 class RaceShow:
@@ -69,13 +71,25 @@ class RaceShow:
         if self._photo_left_s > 0:
             self._photo_left_s = max(0.0, self._photo_left_s - elapsed_s)
             return
+        limit = self._horizon_s
+        self._waiting = not self._all_complete and self._hold_back(limit)
         target, first = self._time_s + elapsed_s * self._rate, self.first_finish_s
         if first is not None and self._time_s < first <= target:
             self._photo_left_s = PHOTO_FINISH_S
             target = first
-        limit = self._horizon_s
-        self._waiting = not self._all_complete and target >= limit
-        self._time_s = max(min(target, limit), min(self._time_s, limit))
+        self._time_s = min(target, limit)
+
+    def _hold_back(self, limit: float) -> bool:
+        """Go slower before the end of what is computed, so as not to stop and go at each step.
+
+        Returns:
+            Whether there is next to nothing left to show.
+        """
+        left_s = limit - self._time_s
+        wanted, self._rate = self._rate, min(self._rate, left_s / CUSHION_S)
+        if left_s < 0.002:
+            self._time_s = limit
+        return self._rate < wanted / 4
 
     def seek(self, time_s: float) -> None:
         """Go to a race time, at most to what every lane has computed."""

@@ -44,6 +44,7 @@ class Plate:
             shape.faces,
             color=rgb(role.color),
             side="double",
+            receive_shadow=False,
             visible=False,
         )
         self._place: tuple[float, float, float] | None = None

@@ -46,12 +46,15 @@ class Placed(NamedTuple):
 
 
 class RobotMesh:
-    """Draws robots of one kind: from joint positions to where each part is."""
+    """Draws robots of one kind: from joint positions to where each part is.
+
+    Its scratch space is its own, so each thread has its own mesh.
+    """
 
     def __init__(self, robot: Robot) -> None:
         self._model = compile_model(robot)
         self._data = mujoco.MjData(self._model)
-        self.parts = [*_parts(self._model), _antenna(self._model)]
+        self.parts = _parts(robot)
 
     @property
     def standing(self) -> FloatArray:
@@ -67,8 +70,10 @@ class RobotMesh:
         return Placed(data.xpos.copy(), data.xquat.copy())
 
 
-def _parts(model: mujoco.MjModel) -> list[Part]:
+@lru_cache(maxsize=8)
+def _parts(robot: Robot) -> tuple[Part, ...]:
     """Links that look alike become one part, however many legs there are."""
+    model = compile_model(robot)
     links: dict[tuple[int, bool], list[Shape]] = {}
     for geom in np.flatnonzero(model.geom_group == VISIBLE_GROUP):
         link, shape = _on_link(model, int(geom))
@@ -80,7 +85,8 @@ def _parts(model: mujoco.MjModel) -> list[Part]:
         shape = joined(shapes)
         key = ((shape.vertices.round(5) + 0.0).tobytes(), painted)  # + 0.0, since −0 is not 0 here
         alike.setdefault(key, (shape, []))[1].append(link)
-    return [Part(shape, painted, np.array(on)) for (_, painted), (shape, on) in alike.items()]
+    parts = [Part(shape, painted, np.array(on)) for (_, painted), (shape, on) in alike.items()]
+    return (*parts, _antenna(model))
 
 
 def _antenna(model: mujoco.MjModel) -> Part:
@@ -103,9 +109,3 @@ def _matrix(wxyz: Iterable[float]) -> FloatArray:
     flat = np.empty(9)
     mujoco.mju_quat2Mat(flat, np.array(wxyz, float))
     return flat.reshape(3, 3)
-
-
-@lru_cache(maxsize=4)
-def robot_mesh(robot: Robot) -> RobotMesh:
-    """The mesh of a robot; used by one thread at a time."""
-    return RobotMesh(robot)

@@ -8,7 +8,7 @@ from app.services.frames import Cast, StageFrame
 from app.viewer.extras import Ghosts, PhotoFinish
 from app.viewer.footgrid import FootGridDrawing
 from app.viewer.plates import Plate
-from app.viewer.robot_mesh import robot_mesh
+from app.viewer.robot_mesh import RobotMesh
 from app.viewer.robots import Robots
 from app.viewer.track import LAMP, SQUARE_M, WORLD, draw_ground, draw_lanes
 
@@ -102,7 +102,7 @@ class _Drawing:
         xs = [width * (lane - (lanes - 1) / 2) for lane in range(lanes)]
         draw_lanes(server, f"{CAST}/track", xs, width)
         self.xs = xs[: len(cast.roles)]
-        mesh = robot_mesh(cast.robot)
+        mesh = RobotMesh(cast.robot)
         self._robots = Robots(server, f"{CAST}/robots", cast, mesh, self.xs)
         pairs = list(zip(cast.roles, self.xs, strict=True))
         self._plates = [

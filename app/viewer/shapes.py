@@ -113,7 +113,8 @@ def flag(height: float) -> Shape:
     """A pole on the ground with a pennant towards +x."""
     pole = cylinder(0.02 * height, height / 2).moved(np.eye(3), np.array([0, 0, height / 2]))
     top, low, out = height, 0.62 * height, 0.55 * height
-    cloth = np.array([[0, 0, top], [0, 0, low], [out, 0, (top + low) / 2]])
+    lean = 0.2 * height  # towards the light, which comes from above
+    cloth = np.array([[0, lean, top], [0, -lean, low], [out, 0, (top + low) / 2]])
     return joined([pole, _smooth(cloth, np.array([[0, 1, 2], [0, 2, 1]]))])
 
 

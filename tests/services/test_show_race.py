@@ -5,6 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from app.domain.robot import Robot
+from app.runs.config import LaneConfig, RaceConfig
 from app.runs.results import finish_s, race_result
 from app.services.frames import StageFrame
 from app.services.show_race import LAST_LANE_SPEED, PHOTO_FINISH_S, SPEED
@@ -178,3 +180,29 @@ def test_who_gains_nothing_marches_on_the_spot(theatre: Theatre) -> None:
     assert not any(lane.marching for lane in greedy)
     assert any(lane.marching for lane in idle)
     assert not any(lane.marching for lane in idle if lane.step <= 10)
+
+
+def test_a_race_that_computes_slowly_is_shown_without_stopping_at_each_step(
+    theatre: Theatre,
+) -> None:
+    run, walk = theatre.racing(("greedy",), steps=40)
+    theatre.stage.show(run.id)
+    frames = []
+    for _ in range(30):
+        walk()
+        frames += theatre.watch(0.4)
+    gone = np.diff([frame.time_s for frame in frames])[100:]
+
+    assert gone.min() > 0
+    assert gone.max() < 4 * gone.mean()
+
+
+def test_a_robot_that_cannot_stand_is_shown_all_the_same(theatre: Theatre) -> None:
+    config = RaceConfig(
+        gait="left-right-origin", robot=Robot(tibia_m=0.001), lanes=(LaneConfig(agent="greedy"),)
+    )
+    run = theatre.create(config, state="failed")
+    theatre.stage.show(run.id)
+
+    assert theatre.look().lanes[0].qpos.shape == (25,)
+    assert theatre.stage.state()["ended"]

@@ -19,7 +19,7 @@ from app.services.frames import Cast, Ghost, KnowledgeView, LaneView, StageFrame
 from app.viewer import wire
 from app.viewer.loopback import loopback_viser
 from app.viewer.measure import measure_stage_update
-from app.viewer.robot_mesh import robot_mesh
+from app.viewer.robot_mesh import RobotMesh
 from app.viewer.scene import StageScene
 from app.viewer.snapshot import Snapshot
 
@@ -91,7 +91,7 @@ def test_everything_is_under_one_frame_and_no_robot_is_many_nodes(
 @pytest.mark.parametrize("legs", [4, 6, 8])
 def test_a_robot_of_any_number_of_legs_stands_where_its_pose_says(legs: int) -> None:
     robot = Robot(legs=ring(legs))
-    mesh = robot_mesh(robot)
+    mesh = RobotMesh(robot)
     pose = mesh.standing.copy()
     pose[:3] = 0.3, 0.4, 0.1
 
