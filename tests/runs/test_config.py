@@ -16,6 +16,7 @@ from app.runs.config import (
     Walk,
     as_json,
     check_pace,
+    config_from_json,
     gait_from_json,
 )
 
@@ -112,3 +113,23 @@ def test_a_config_in_plain_types_is_fit_for_json_and_names_the_same_gait(
     assert gait_from_json(shown.pop("gait")) == gait
     assert robot(shown.pop("robot")) == made
     assert TrainingConfig(gait=gait, robot=made, **shown) == TrainingConfig(gait=gait, robot=made)
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        TrainingConfig(gait=GAIT),
+        TrainingConfig(
+            gait=GaitSpec(1, 4, pairs=((1, 4), (2, 6), (3, 5))),
+            robot=robot({"preset": "slippery", "n_legs": 6, "mount_radius_m": 0.12}),
+            simulator="kinematic",
+            seed=2**70,
+            pace=2.5,
+            agent="my.module:Agent",
+        ),
+        TrainingConfig(gait=GaitSpec(1, 3, "vertical"), robot=robot({"n_legs": 8, "femur_m": 0.1})),
+        RaceConfig(gait=GAIT, lanes=(*LANES, LaneConfig(agent="x", observation="commanded"))),
+    ],
+)
+def test_what_a_file_keeps_is_read_back(config: TrainingConfig | RaceConfig) -> None:
+    assert config_from_json(json.loads(json.dumps(as_json(config)))) == config

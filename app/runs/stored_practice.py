@@ -1,0 +1,120 @@
+"""A training's recording as arrays for files: its steps in one, its evaluations in several.
+
+Evaluations are many and never change, so that a file of them is written once, when it is full.
+"""
+
+from collections.abc import Iterable, Sequence
+from itertools import accumulate
+from typing import Any
+
+import numpy as np
+
+from app.domain.simulator import Motion
+from app.domain.types import Action
+from app.runs.recording import Arrays, PracticeRecording
+from app.runs.records import Evaluated, Knowledge, StepTaken
+
+_SCALARS = ("step", "episode", "epsilon", "reward_m", "distance_m")
+
+
+def practice_arrays(recording: PracticeRecording) -> Arrays:
+    """The steps that are kept, and how many evaluations go with them; up to about 1 MB."""
+    steps = recording.steps
+    arrays: Arrays = {
+        "rest_qpos": recording.rest_qpos,
+        "evaluations": np.array(len(recording.evaluations)),
+        "scalars": np.array([[getattr(s, n) for n in _SCALARS] for s in steps], float),
+        "observation": np.array([s.observation for s in steps]),
+        "action": np.array([s.action for s in steps]),
+        "is_known": np.array([s.knowledge is not None for s in steps]),
+        **_motion_arrays([s.motion for s in steps]),
+    }
+    known = [s.knowledge for s in steps if s.knowledge]
+    if known:
+        arrays["values"] = np.array([k.values for k in known], np.float32)
+        arrays["visits"] = np.array([k.visits for k in known], np.float32)
+    return arrays
+
+
+def evaluation_arrays(evaluations: Sequence[Evaluated]) -> Arrays:
+    """Some evaluations with their motion; about 0.1 MB each."""
+    scalars = [(e.step, e.epsilon, e.distance_m) for e in evaluations]
+    return {"scalars": np.array(scalars, float), **_motion_arrays([e.motion for e in evaluations])}
+
+
+def practice_recording(arrays: Arrays, evaluations: Iterable[Arrays]) -> PracticeRecording:
+    """The recording that `practice_arrays` and, in order, `evaluation_arrays` wrote."""
+    recording = PracticeRecording(arrays["rest_qpos"])
+    for step in _steps(arrays):
+        recording.add(step)
+    evaluated = [e for one in evaluations for e in _evaluations(one)]
+    # There may be more of them than had been when the steps were last written.
+    for evaluation in evaluated[: int(arrays["evaluations"])]:
+        recording.add(evaluation)
+    return recording
+
+
+def rewound(recording: PracticeRecording, step: int) -> PracticeRecording:
+    """What the recording was after `step` steps, for a training that goes on from there."""
+    earlier = PracticeRecording(recording.rest_qpos)
+    records: list[StepTaken | Evaluated] = [*recording.steps, *recording.evaluations]
+    for record in records:
+        if record.step <= step:
+            earlier.add(record)
+    return earlier
+
+
+def _steps(arrays: Arrays) -> list[StepTaken]:
+    motions = _motions(arrays)
+    known = iter(_knowledge(arrays))
+    steps = []
+    for number, row in enumerate(arrays["scalars"].tolist()):
+        step, episode, epsilon, reward, distance = row
+        steps.append(
+            StepTaken(
+                int(step),
+                int(episode),
+                epsilon,
+                tuple(arrays["observation"][number].tolist()),
+                Action(*arrays["action"][number].tolist()),
+                reward,
+                distance,
+                motions[number],
+                next(known) if arrays["is_known"][number] else None,
+            )
+        )
+    return steps
+
+
+def _knowledge(arrays: Arrays) -> list[Knowledge]:
+    if "values" not in arrays:
+        return []
+    both = zip(arrays["values"].astype(float), arrays["visits"].astype(float), strict=True)
+    return [Knowledge(values, visits) for values, visits in both]
+
+
+def _evaluations(arrays: Arrays) -> list[Evaluated]:
+    rows = zip(arrays["scalars"].tolist(), _motions(arrays), strict=True)
+    return [Evaluated(int(row[0]), row[1], row[2], motion) for row, motion in rows]
+
+
+def _motion_arrays(motions: Sequence[Motion | None]) -> Arrays:
+    """All motions after each other, with the number of frames of each; 0 where there is none."""
+    shown = [motion for motion in motions if motion is not None]
+    frames = [0 if motion is None else len(motion.time_s) for motion in motions]
+    arrays: Arrays = {"frames": np.array(frames, int)}
+    if shown:
+        arrays["time_s"] = np.concatenate([motion.time_s for motion in shown])
+        arrays["qpos"] = np.concatenate([motion.qpos for motion in shown])
+    return arrays
+
+
+def _motions(arrays: Arrays) -> list[Motion | None]:
+    frames: list[Any] = arrays["frames"].tolist()
+    starts = accumulate(frames, initial=0)
+    return [
+        Motion(arrays["time_s"][start : start + count], arrays["qpos"][start : start + count])
+        if count
+        else None
+        for start, count in zip(starts, frames, strict=False)
+    ]

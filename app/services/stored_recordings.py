@@ -1,0 +1,166 @@
+"""Recordings of runs whose job is over: kept in the store, and the newest looked at in memory."""
+
+import io
+import logging
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Callable, Iterator
+from typing import Generic, NamedTuple, TypeVar
+
+import numpy as np
+
+from app.domain.errors import HexapodError
+from app.runs.recording import (
+    Arrays,
+    LaneRecording,
+    PracticeRecording,
+    race_arrays,
+    race_recording,
+)
+from app.runs.stored_practice import evaluation_arrays, practice_arrays, practice_recording
+from app.services.errors import NotFound
+from app.services.store import RunStore
+
+RACE, PRACTICE = "race.npz", "practice.npz"
+EVALUATIONS_A_FILE = 20
+KEPT_IN_MEMORY = 4
+"""Of either kind: a long training's takes up to 80 MB."""
+_ASK_AGAIN_S = 1.0
+T = TypeVar("T")
+_logger = logging.getLogger(__name__)
+
+
+class StoredRecordings:
+    """What `Recordings` reads and writes. Safe to use from any thread."""
+
+    def __init__(self, store: RunStore) -> None:
+        self._store = store
+        self._trainings = _Newest[PracticeRecording](lambda run_id: _read_training(store, run_id))
+        self._races = _Newest[list[LaneRecording]](lambda run_id: _read_race(store, run_id))
+        self._evaluations: dict[str, int] = {}
+
+    def training(self, run_id: str) -> PracticeRecording | None:
+        """The recording of a training; None if there is none, or it is damaged."""
+        return self._trainings.get(run_id)
+
+    def race(self, run_id: str) -> list[LaneRecording] | None:
+        """The recordings of a race's lanes; None if there are none, or they are damaged."""
+        return self._races.get(run_id)
+
+    def write_training(self, run_id: str, recording: PracticeRecording) -> None:
+        """Keep a recording; of one that has grown since, only what is new is written.
+
+        Raises:
+            StorageFull, StorageFailed: if it cannot be kept.
+        """
+        evaluations = recording.evaluations
+        first = self._evaluations.get(run_id, 0) // EVALUATIONS_A_FILE
+        for number in range(first, -(-len(evaluations) // EVALUATIONS_A_FILE)):
+            some = evaluations[number * EVALUATIONS_A_FILE :][:EVALUATIONS_A_FILE]
+            self._write(run_id, _evaluations_file(number), evaluation_arrays(some))
+        # Last, since it says how many evaluations there are.
+        self._write(run_id, PRACTICE, practice_arrays(recording))
+        self._evaluations[run_id] = len(evaluations)
+
+    def write_race(self, run_id: str, lanes: list[LaneRecording]) -> None:
+        """Keep the recordings of a race's lanes.
+
+        Raises:
+            StorageFull, StorageFailed: if they cannot be kept.
+        """
+        self._write(run_id, RACE, race_arrays(lanes))
+
+    def remember_training(self, run_id: str, recording: PracticeRecording) -> None:
+        """This was kept, and grows no more."""
+        self._evaluations.pop(run_id, None)
+        self._trainings.put(run_id, recording)
+
+    def remember_race(self, run_id: str, lanes: list[LaneRecording]) -> None:
+        """These were kept, and grow no more."""
+        self._races.put(run_id, lanes)
+
+    def forget(self, run_id: str) -> None:
+        """What is in memory may not be what is in the store."""
+        self._evaluations.pop(run_id, None)
+        self._trainings.drop(run_id)
+        self._races.drop(run_id)
+
+    def _write(self, run_id: str, name: str, arrays: Arrays) -> None:
+        # Not compressed: it would save a tenth, and take a hundred times as long.
+        buffer = io.BytesIO()
+        np.savez(buffer, **arrays)  # type: ignore[arg-type]
+        self._store.put_artifact(run_id, name, buffer.getvalue())
+
+
+class _Found(NamedTuple, Generic[T]):
+    value: T | None
+    asked_s: float
+
+
+class _Newest(Generic[T]):
+    """The values that were asked for last; that there is none is believed for a second."""
+
+    def __init__(self, read: Callable[[str], T | None]) -> None:
+        self._read, self._lock = read, threading.Lock()
+        self._found: OrderedDict[str, _Found[T]] = OrderedDict()
+
+    def get(self, key: str) -> T | None:
+        with self._lock:
+            found, now = self._found.get(key), time.monotonic()
+            if found is None or (found.value is None and now - found.asked_s > _ASK_AGAIN_S):
+                found = _Found(self._tried(key), now)
+            self._put(key, found)
+            return found.value
+
+    def put(self, key: str, value: T) -> None:
+        with self._lock:
+            self._put(key, _Found(value, time.monotonic()))
+
+    def drop(self, key: str) -> None:
+        with self._lock:
+            self._found.pop(key, None)
+
+    def _put(self, key: str, found: _Found[T]) -> None:
+        self._found[key] = found
+        self._found.move_to_end(key)
+        while len(self._found) > KEPT_IN_MEMORY:
+            self._found.popitem(last=False)
+
+    def _tried(self, key: str) -> T | None:
+        try:
+            return self._read(key)
+        except NotFound:
+            return None
+        except HexapodError as error:
+            # Whoever draws thirty times a second has no use for an exception.
+            _logger.warning("No recording can be shown: %s", error, extra={"run_id": key})
+            return None
+
+
+def _read_training(store: RunStore, run_id: str) -> PracticeRecording | None:
+    data = store.artifact(run_id, PRACTICE)
+    if data is None:
+        return None
+    return practice_recording(_arrays(data), _evaluation_files(store, run_id))
+
+
+def _evaluation_files(store: RunStore, run_id: str) -> Iterator[Arrays]:
+    number = 0
+    while (data := store.artifact(run_id, _evaluations_file(number))) is not None:
+        yield _arrays(data)
+        number += 1
+
+
+def _read_race(store: RunStore, run_id: str) -> list[LaneRecording] | None:
+    data = store.artifact(run_id, RACE)
+    return None if data is None else race_recording(_arrays(data))
+
+
+def _evaluations_file(number: int) -> str:
+    return f"evaluations-{number:04}.npz"
+
+
+def _arrays(data: bytes) -> Arrays:
+    with np.load(io.BytesIO(data), allow_pickle=False) as file:
+        return {name: file[name] for name in file.files}

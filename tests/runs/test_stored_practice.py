@@ -1,0 +1,124 @@
+"""A training's recording goes into files and comes back, and goes on from where it was."""
+
+import io
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.assembly import build_learner
+from app.domain.simulator import Motion
+from app.runs.config import TrainingConfig
+from app.runs.recording import Arrays, PracticeRecording
+from app.runs.records import Evaluated, StepTaken
+from app.runs.stored_practice import (
+    evaluation_arrays,
+    practice_arrays,
+    practice_recording,
+    rewound,
+)
+from app.runs.training import train
+
+
+def practise(steps: int, simulator: str = "kinematic") -> PracticeRecording:
+    """A recording as a job makes it, with an evaluation every 10 steps."""
+    config = TrainingConfig(
+        gait="left-right-origin",
+        simulator=simulator,  # type: ignore[arg-type]
+        steps=steps,
+        evaluate_every=10,
+    )
+    recording = PracticeRecording(np.arange(25, dtype=np.float32))
+    for record in train(build_learner(config), config, record=True):
+        if isinstance(record, StepTaken | Evaluated):
+            recording.add(record)
+    return recording
+
+
+def through_a_file(arrays: Arrays) -> Arrays:
+    buffer = io.BytesIO()
+    np.savez(buffer, **arrays)  # type: ignore[arg-type]
+    with np.load(io.BytesIO(buffer.getvalue()), allow_pickle=False) as file:
+        return {name: file[name] for name in file.files}
+
+
+def stored(recording: PracticeRecording, a_file: int = 3) -> PracticeRecording:
+    evaluations = recording.evaluations
+    files = [
+        through_a_file(evaluation_arrays(evaluations[start : start + a_file]))
+        for start in range(0, len(evaluations), a_file)
+    ]
+    return practice_recording(through_a_file(practice_arrays(recording)), files)
+
+
+def assert_same(one: PracticeRecording, other: PracticeRecording) -> None:
+    assert np.array_equal(one.rest_qpos, other.rest_qpos)
+    assert len(one.steps) == len(other.steps)
+    for step, same in zip(one.steps, other.steps, strict=True):
+        assert replace(step, motion=None, knowledge=None) == replace(
+            same, motion=None, knowledge=None
+        )
+        assert_same_motion(step.motion, same.motion)
+        assert (step.knowledge is None) == (same.knowledge is None)
+        if step.knowledge and same.knowledge:
+            for name in ("values", "visits"):
+                before, after = getattr(step.knowledge, name), getattr(same.knowledge, name)
+                np.testing.assert_allclose(before, after, rtol=1e-6)
+    assert len(one.evaluations) == len(other.evaluations)
+    for evaluation, same_one in zip(one.evaluations, other.evaluations, strict=True):
+        assert replace(evaluation, motion=None) == replace(same_one, motion=None)
+        assert_same_motion(evaluation.motion, same_one.motion)
+
+
+def assert_same_motion(one: Motion | None, other: Motion | None) -> None:
+    assert (one is None) == (other is None)
+    if one is not None and other is not None:
+        assert np.array_equal(one.time_s, other.time_s)
+        assert np.array_equal(one.qpos, other.qpos)
+
+
+@pytest.mark.parametrize(("steps", "simulator"), [(35, "mujoco"), (700, "kinematic")])
+def test_all_that_was_shown_live_comes_back(steps: int, simulator: str) -> None:
+    recording = practise(steps, simulator)
+    assert recording.steps[0].knowledge is not None
+    assert recording.evaluations[0].motion is not None
+    assert_same(stored(recording), recording)
+
+
+def test_what_has_no_motion_or_knowledge_comes_back_without() -> None:
+    whole = practise(30)
+    bare = PracticeRecording(whole.rest_qpos)
+    for number, step in enumerate(whole.steps):
+        bare.add(
+            replace(
+                step,
+                motion=step.motion if number % 2 else None,
+                knowledge=step.knowledge if number % 3 else None,
+            )
+        )
+    for evaluation in whole.evaluations:
+        bare.add(replace(evaluation, motion=None))
+    assert_same(stored(bare), bare)
+
+
+def test_nothing_yet_comes_back_as_nothing_yet() -> None:
+    empty = PracticeRecording(np.zeros(25, np.float32))
+    assert_same(stored(empty), empty)
+
+
+def test_evaluations_that_came_after_the_steps_were_written_are_left_out() -> None:
+    early, late = practise(40), practise(80)
+    files = [through_a_file(evaluation_arrays(late.evaluations))]
+    assert_same(practice_recording(through_a_file(practice_arrays(early)), files), early)
+
+
+@pytest.mark.parametrize("step", [5, 45, 60])
+def test_it_can_go_on_from_a_checkpoint(step: int) -> None:
+    whole = practise(100)
+    again = rewound(whole, step)
+    assert [s.step for s in again.steps] == list(range(1, step + 1))
+    records: list[StepTaken | Evaluated] = [*whole.steps, *whole.evaluations]
+    for record in records:
+        if record.step > step:
+            again.add(record)
+    assert_same(again, whole)
