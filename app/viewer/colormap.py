@@ -9,14 +9,15 @@ Rgb = tuple[int, int, int]
 
 VIRIDIS = (
     "#440154",
-    "#482878",
-    "#3e4a89",
-    "#31688e",
-    "#26828e",
-    "#1f9e89",
-    "#35b779",
-    "#6dcd59",
-    "#b4de2c",
+    "#482475",
+    "#414487",
+    "#355f8d",
+    "#2a788e",
+    "#21918c",
+    "#22a884",
+    "#44bf70",
+    "#7ad151",
+    "#bddf26",
     "#fde725",
 )
 """From worth less to worth more, evenly spaced; between them colours are mixed linearly."""

@@ -14,8 +14,10 @@ from app.viewer.track import LAMP, SQUARE_M, WORLD, draw_ground, draw_lanes
 
 CAST = f"{WORLD}/cast"
 _EASE_S = 0.25
-_NEARER_M = 0.3
+_NEARER_M = 0.45
 """One robot leaves room to come closer to it."""
+_WIDE, _FARTHER_M = 3, 0.5
+"""More lanes than these do not fit side by side, but for each a step back."""
 
 Position = tuple[float, float, float]
 
@@ -82,7 +84,7 @@ class StageScene:
             y = aim + (before[1] - aim) * math.exp((before[0] - now) / _EASE_S)
         self._eased = (now, y)
         self._light(round(aim / SQUARE_M) * SQUARE_M)
-        nearer = _NEARER_M if len(frame.lanes) == 1 else 0.0
+        nearer = _NEARER_M if len(frame.lanes) == 1 else -_FARTHER_M * max(0, len(xs) - _WIDE)
         followed = {"leader": (0.0, y + nearer, 0.0)}
         for number, (lane, x) in enumerate(zip(frame.lanes, xs, strict=True), start=1):
             followed[str(number)] = (x + float(lane.qpos[0]), float(lane.qpos[1]) + _NEARER_M, 0.0)
