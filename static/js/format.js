@@ -2,12 +2,13 @@
 
 const MINUS = "\u2212";
 const NARROW = "\u202f";
+const NO_BREAK = "\u00a0";
 
 /** Metres to the centimetre: "0.38 m". */
 export function metres(value) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   const rounded = Math.round(value * 100) / 100;
-  return `${rounded < 0 ? MINUS : ""}${Math.abs(rounded).toFixed(2)} m`;
+  return `${rounded < 0 ? MINUS : ""}${Math.abs(rounded).toFixed(2)}${NO_BREAK}m`;
 }
 
 /** Whole millimetres without the unit, which the heading has: "52". */

@@ -8,15 +8,17 @@ import { readAddress, useDefaults, writeAddress } from "./form.js";
 import { html } from "./html.js";
 import { listenForKeys } from "./keys.js";
 import { announceOutcomes } from "./outcome.js";
-import { applyEvent, connection, options } from "./store.js";
+import { applyEvent, connection, isLockedOut, options } from "./store.js";
 import { followTheme } from "./theme.js";
 import { followTimeline } from "./timeline.js";
 
 async function loadOptions(attempt = 0) {
   try {
     options.value = await getOptions();
-  } catch {
-    setTimeout(loadOptions, Math.min(500 * 2 ** attempt, 5000), attempt + 1);
+    isLockedOut.value = false;
+  } catch (error) {
+    isLockedOut.value = error.status === 401 || error.status === 403;
+    setTimeout(loadOptions, Math.min(500 * 2 ** attempt, 8000), attempt + 1);
     return;
   }
   useDefaults(options.value);

@@ -30,7 +30,7 @@ const viewOf = (hash) => (hash === "#runs" ? "runs" : "race");
 export const place = signal(viewOf(location.hash));
 addEventListener("hashchange", () => (place.value = viewOf(location.hash)));
 
-const narrowScreen = matchMedia("(max-width: 900px)");
+const narrowScreen = matchMedia("(max-width: 1080px)");
 /** Whether the page is one column. */
 export const isNarrow = signal(narrowScreen.matches);
 narrowScreen.addEventListener("change", ({ matches }) => (isNarrow.value = matches));

@@ -4,6 +4,8 @@ import { batch, signal } from "@preact/signals";
 /** "connecting", "live" or "reconnecting". */
 export const connection = signal("connecting");
 export const version = signal(null);
+/** Whether this server shows itself only to those who have its link. */
+export const isLockedOut = signal(false);
 /** Null until the snapshot says; then "operator" or "spectator". */
 export const role = signal(null);
 export const viewers = signal(null);

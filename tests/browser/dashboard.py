@@ -12,7 +12,7 @@ PATIENCE_MS = 60_000
 
 expect.set_options(timeout=PATIENCE_MS)
 
-_METRES = re.compile(r"−?\d+\.\d\d m")
+_METRES = re.compile(r"−?\d+\.\d\d\sm")
 
 
 class Dashboard:

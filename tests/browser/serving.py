@@ -22,12 +22,14 @@ class Serving:
         address: where it is, with a slash at the end.
     """
 
-    def __init__(self, data: Path, port: int = 0, token: str = "") -> None:
+    def __init__(
+        self, data: Path, port: int = 0, token: str = "", spectators: str = "public"
+    ) -> None:
         """Start it, and wait until it says where it is."""
         environment = {k: v for k, v in os.environ.items() if not k.startswith("HEXAPODS_")}
         self._process = subprocess.Popen(
             [sys.executable, "-m", "app.cli", "serve", "--port", str(port), "--data", str(data)],
-            env={**environment, "HEXAPODS_TOKEN": token},
+            env={**environment, "HEXAPODS_TOKEN": token, "HEXAPODS_SPECTATORS": spectators},
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
@@ -74,9 +76,11 @@ class Serving:
 
 
 @contextmanager
-def serving(data: Path, port: int = 0, token: str = "") -> Iterator[Serving]:
+def serving(
+    data: Path, port: int = 0, token: str = "", spectators: str = "public"
+) -> Iterator[Serving]:
     """A server for as long as the block lasts."""
-    server = Serving(data, port, token)
+    server = Serving(data, port, token, spectators)
     try:
         yield server
     finally:

@@ -157,3 +157,13 @@ def test_spectators_get_no_controls(dashboard: Dashboard, tmp_path: Path) -> Non
         assert page.url == guarded.address
         expect(dashboard.primary).to_be_visible()
         assert dashboard.get("/api/v1/trainings")["items"] == []
+
+
+def test_a_guarded_page_says_what_it_needs(dashboard: Dashboard, tmp_path: Path) -> None:
+    with serving(tmp_path, token="for-the-operator", spectators="token") as guarded:
+        dashboard.page.goto(guarded.address)
+        expect(dashboard.page.get_by_role("heading", name="This show needs a link")).to_be_visible()
+        expect(dashboard.primary).to_have_count(0)
+        assert {complaint.split()[0] for complaint in dashboard.complaints} == {"401"}
+        dashboard.page.goto("about:blank")
+        dashboard.complaints.clear()

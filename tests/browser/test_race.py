@@ -4,7 +4,7 @@ import re
 from urllib.parse import urlencode
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Browser, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving
@@ -29,7 +29,7 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     dashboard.eventually(lambda: dashboard.picture() != before, "the robots move in the canvas")
     dashboard.eventually(dashboard.has_figures, "the scoreboard fills")
     headline = page.locator(".headline")
-    expect(headline).to_have_text(re.compile(r"at the finish with −?0\.\d\d m$"))
+    expect(headline).to_have_text(re.compile(r"at the finish with −?0\.\d\d\sm$"))
     expect(page.get_by_role("status").filter(has_text="at the finish")).to_be_attached()
     expect(
         page.get_by_role("img", name=re.compile("^Learning curve: .*greedy gets"))
@@ -99,3 +99,24 @@ def test_a_refusal_stands_beside_the_button(dashboard: Dashboard, server: Servin
     dashboard.complaints.clear()
     dashboard.button("Dismiss").click()
     expect(problem).to_have_count(0)
+
+
+def test_two_operators_and_one_stage(
+    dashboard: Dashboard, browser: Browser, server: Serving
+) -> None:
+    dashboard.open(f"{server.address}?{LONG}")
+    dashboard.button("Train only").click()
+    expect(dashboard.page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
+    held = dashboard.get("/api/v1/stage")["run_id"]
+
+    with browser.new_context() as context:
+        other = Dashboard(context.new_page())
+        other.open(f"{server.address}?{LONG}")
+        other.button("Train only").click()
+        expect(other.page.get_by_text("Another run is live on the stage")).to_be_visible()
+        assert other.get("/api/v1/stage")["run_id"] == held
+        other.button("Show on stage").click()
+        expect(other.page.get_by_text("Another run is live on the stage")).to_have_count(0)
+        assert other.get("/api/v1/stage")["run_id"] != held
+        assert other.complaints == []
+    expect(dashboard.page.get_by_text("Another run is live on the stage")).to_be_visible()

@@ -2,6 +2,7 @@
 import { announcement } from "../outcome.js";
 import { html } from "../html.js";
 import { place } from "../page.js";
+import { isLockedOut } from "../store.js";
 import { Header } from "./header.js";
 import { HelpDialog } from "./help.js";
 import { RaceView } from "./race-view.js";
@@ -14,14 +15,23 @@ export function App() {
     <a class="skip" href="#main" onClick=${skip}>Skip to the page</a>
     <${Header} />
     <main id="main" tabindex="-1">
-      <${RaceView} isHidden=${inRuns} />
-      ${inRuns && html`<${Runs} />`}
+      ${isLockedOut.value ? html`<${LockedOut} />` : html`
+        <${RaceView} isHidden=${inRuns} />
+        ${inRuns && html`<${Runs} />`}
+      `}
     </main>
     <${HelpDialog} />
     <${Toast} />
     <p class="sr-only" role="status">${announcement}</p>
   `;
 }
+
+const LockedOut = () => html`
+  <section class="panel locked">
+    <h2>This show needs a link</h2>
+    <p>Whoever runs this server shows it only to those who have its link. Open that link once, and this page remembers it.</p>
+  </section>
+`;
 
 /** The hash names the view, so the link moves the focus itself. */
 function skip(event) {

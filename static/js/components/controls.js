@@ -52,8 +52,9 @@ function Deeds() {
         ${!isBusy && html`<${Icon} name="play" />`}${label}
       </button>
       <${Problem} at="start" />
-      ${work.value ? html`<${Running} />` : html`<${Others} />`}
+      ${!myWork.value && html`<${Others} />`}
       <${Progress} />
+      ${work.value && html`<${Running} />`}
       <${Problem} at="work" />
       <${Problem} at="tune" />
       <${OffStage} />

@@ -6,7 +6,8 @@ const DOT_PX = 4;
 /**
  * A uPlot plugin.
  * @param labels gives [{text, color, x, y}] in the chart's units
- * @param marks gives [{x? or y?, color, ink?, text?, dash?}]: thin straight lines across
+ * @param marks gives [{x? or y?, color, ink?, text?, share?, dash?}]: thin straight lines across;
+ *   `share` of the width is where the text of a level one begins
  * @param colour resolves a custom property
  */
 export function lineLabels(labels, marks, colour) {
@@ -15,7 +16,7 @@ export function lineLabels(labels, marks, colour) {
   const drawMarks = (u) => {
     const { ctx, bbox } = u;
     const px = devicePixelRatio;
-    for (const { x, y, color, ink = color, dash = [], text } of marks()) {
+    for (const { x, y, color, ink = color, dash = [], text, share = 0 } of marks()) {
       ctx.save();
       ctx.strokeStyle = solid(color);
       ctx.fillStyle = solid(ink);
@@ -30,7 +31,7 @@ export function lineLabels(labels, marks, colour) {
           ctx.font = `600 ${12 * px}px system-ui, sans-serif`;
           ctx.textAlign = "left";
           ctx.textBaseline = "bottom";
-          ctx.fillText(text, bbox.left + 6 * px, at - 4 * px);
+          ctx.fillText(text, bbox.left + share * bbox.width + 6 * px, at - 4 * px);
         }
       } else {
         const at = u.valToPos(x, "x", true);

@@ -44,7 +44,9 @@ function Lines({ known, time }) {
   const end = Math.max(until, first ? Math.min(1.3 * first, longest) : Math.min(longest, 20), 1);
   const far = Math.max(line, ...lanes.map(({ shown }) => shown.at(-1)[1]));
   const labels = lanes.map(({ title, color, shown }) => ({ text: title, color, x: shown.at(-1)[0], y: shown.at(-1)[1] }));
-  const marks = [{ y: line, color: "--finish", text: "finish line" }];
+  // Where no line passes: at first on the left, later behind those who have arrived.
+  const share = first && until > 1.5 * first ? 0.55 : 0;
+  const marks = [{ y: line, color: "--finish", text: "finish line", share }];
   if (first && until >= first) marks.push({ x: first, color: "--dim", dash: [2, 3], text: "first is done" });
   const said = `The race after ${Math.round(until)} seconds: ${lanes.map(({ title, shown }) => `${title} ${metres(shown.at(-1)[1])}`).join(", ")}.`;
   return html`

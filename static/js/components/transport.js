@@ -37,7 +37,7 @@ export function Transport() {
 export const SharedChoices = () => isOperator.value && html`<${Speed} /><${ClockChoice} />`;
 
 const oneIsLeft = (now) =>
-  now?.kind === "race" && now.lanes?.length > 1 && now.duration_s &&
+  now?.kind === "race" && now.phase !== "finished" && now.lanes?.length > 1 && now.duration_s &&
   now.lanes.filter(({ done }) => !done).length === 1;
 
 function Seek({ now }) {
@@ -82,7 +82,7 @@ function Follow() {
 function Speed() {
   const speed = stage.value?.speed ?? 1;
   const numbers = SPEEDS.includes(speed) || typeof speed !== "number" ? SPEEDS : [...SPEEDS, speed].sort((a, b) => a - b);
-  const choices = [["time-lapse", "by itself"], ...numbers.map((n) => [n, `×${n}`])];
+  const choices = [["time-lapse", "auto"], ...numbers.map((n) => [n, `×${n}`])];
   return html`
     <${Choice} label="Speed" name="speed" value=${speed} choices=${choices} title="For everyone"
       onValue=${(value) => setStage({ speed: value === "time-lapse" ? value : Number(value) })} />
