@@ -57,6 +57,12 @@ def test_an_empty_variable_is_none() -> None:
         ({"PUBLIC_URL": "https://[x"}, ["https://hexapods.example"]),
         ({"ALLOWED_HOSTS": "https://a.example"}, ["host names"]),
         ({"ALLOWED_HOSTS": "*"}, ["host names"]),
+        ({"DATABASE_URL": "mysql://me:sesame@host/db"}, ["postgresql://", "SQLite"]),
+        ({"DATABASE_URL": "postgresql://me:sesame@host"}, ["postgresql://"]),
+        ({"DATABASE_URL": "postgresql://me:sesame@[host/db"}, ["postgresql://"]),
+        ({"QUOTA_MB": "9"}, ["at least 10"]),
+        ({"QUOTA_MB": "-1"}, ["whole number"]),
+        ({"QUOTA_MB": "1 GB"}, ["whole number of megabytes"]),
     ],
     ids=str,
 )
@@ -65,6 +71,7 @@ def test_what_is_refused(environ: dict[str, str], words: list[str]) -> None:
         read_settings({f"HEXAPODS_{name}": value for name, value in environ.items()})
     assert all(word in str(error.value) for word in words)
     assert "\n" not in str(error.value)
+    assert "sesame" not in str(error.value)
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "127.8.9.1", "localhost", "::1"])
@@ -79,3 +86,16 @@ def test_a_data_folder_that_cannot_be_written(where: str, tmp_path: Path) -> Non
     folder: Any = Path("/proc/hexapods") if where == "proc" else tmp_path / where
     with pytest.raises(InvalidInput, match="HEXAPODS_DATA"):
         Settings(data=folder).prepare_data()
+
+
+def test_secrets_are_not_shown() -> None:
+    url = "postgresql://me:sesame@host/db"
+    settings = read_settings({"HEXAPODS_TOKEN": TOKEN, "HEXAPODS_DATABASE_URL": url})
+    assert (settings.token, settings.database_url) == (TOKEN, url)
+    assert TOKEN not in repr(settings)
+    assert "sesame" not in repr(settings)
+
+
+def test_a_quota_is_in_megabytes() -> None:
+    assert read_settings({"HEXAPODS_QUOTA_MB": "500"}).quota_mb == 500
+    assert read_settings({}).quota_mb is None

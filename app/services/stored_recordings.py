@@ -58,7 +58,7 @@ class StoredRecordings:
         first = self._evaluations.get(run_id, 0) // EVALUATIONS_A_FILE
         for number in range(first, -(-len(evaluations) // EVALUATIONS_A_FILE)):
             some = evaluations[number * EVALUATIONS_A_FILE :][:EVALUATIONS_A_FILE]
-            self._write(run_id, _evaluations_file(number), evaluation_arrays(some))
+            self._write(run_id, evaluations_file(number), evaluation_arrays(some))
         # Last, since it says how many evaluations there are.
         self._write(run_id, PRACTICE, practice_arrays(recording))
         self._evaluations[run_id] = len(evaluations)
@@ -147,7 +147,7 @@ def _read_training(store: RunStore, run_id: str) -> PracticeRecording | None:
 
 def _evaluation_files(store: RunStore, run_id: str) -> Iterator[Arrays]:
     number = 0
-    while (data := store.artifact(run_id, _evaluations_file(number))) is not None:
+    while (data := store.artifact(run_id, evaluations_file(number))) is not None:
         yield _arrays(data)
         number += 1
 
@@ -157,7 +157,8 @@ def _read_race(store: RunStore, run_id: str) -> list[LaneRecording] | None:
     return None if data is None else race_recording(_arrays(data))
 
 
-def _evaluations_file(number: int) -> str:
+def evaluations_file(number: int) -> str:
+    """What the `number`th file of a training's evaluations is called, from 0 on."""
     return f"evaluations-{number:04}.npz"
 
 
