@@ -14,6 +14,7 @@ SPEED, LAST_LANE_SPEED = 2.0, 8.0
 PHOTO_FINISH_S = 3.0
 CUSHION_S = 0.5
 """How far, in real time, a race that still computes is shown behind it."""
+_AS_GOOD_AS_THERE_S = 0.002
 
 
 class RaceShow:
@@ -74,6 +75,8 @@ class RaceShow:
         limit = self._horizon_s
         self._waiting = not self._all_complete and self._hold_back(limit)
         target, first = self._time_s + elapsed_s * self._rate, self.first_finish_s
+        if elapsed_s and limit - target < _AS_GOOD_AS_THERE_S:
+            target = limit
         if first is not None and self._time_s < first <= target:
             self._photo_left_s = PHOTO_FINISH_S
             target = first
@@ -85,10 +88,7 @@ class RaceShow:
         Returns:
             Whether there is next to nothing left to show.
         """
-        left_s = limit - self._time_s
-        wanted, self._rate = self._rate, min(self._rate, left_s / CUSHION_S)
-        if left_s < 0.002:
-            self._time_s = limit
+        wanted, self._rate = self._rate, min(self._rate, (limit - self._time_s) / CUSHION_S)
         return self._rate < wanted / 4
 
     def seek(self, time_s: float) -> None:

@@ -115,7 +115,7 @@ def flag(height: float) -> Shape:
     top, low, out = height, 0.62 * height, 0.55 * height
     lean = 0.2 * height  # towards the light, which comes from above
     cloth = np.array([[0, lean, top], [0, -lean, low], [out, 0, (top + low) / 2]])
-    return joined([pole, _smooth(cloth, np.array([[0, 1, 2], [0, 2, 1]]))])
+    return joined([pole, _smooth(cloth, np.array([[0, 1, 2]]))])
 
 
 def _capsule(radius: float, half_length: float) -> Shape:

@@ -57,6 +57,14 @@ def draw_ground(server: viser.ViserServer) -> Ground:
         plane_opacity=0.28,
         shadow_opacity=0.4,
     )
+    lamp = _light(scene)
+    camera = server.initial_camera
+    camera.position, camera.look_at = (0.0, -1.52, 0.80), (0.0, 0.12, 0.05)
+    camera.fov = np.deg2rad(42)
+    return Ground(world, lamp)
+
+
+def _light(scene: viser.SceneApi) -> viser.SpotLightHandle:
     # viser's own sun has three shadow maps, which make a machine without a graphics card three
     # times slower than this lamp with its one.
     scene.configure_default_lights(enabled=False)
@@ -74,10 +82,7 @@ def draw_ground(server: viser.ViserServer) -> Ground:
     scene.add_light_hemisphere(
         f"{WORLD}/sky", sky_color=(255, 255, 255), ground_color=(150, 160, 175), intensity=1.6
     )
-    camera = server.initial_camera
-    camera.position, camera.look_at = (0.0, -1.52, 0.80), (0.0, 0.12, 0.05)
-    camera.fov = np.deg2rad(42)
-    return Ground(world, lamp)
+    return lamp
 
 
 def draw_lanes(server: viser.ViserServer, root: str, xs: list[float], width: float) -> None:
