@@ -35,6 +35,10 @@ test: $(DEV_STAMP) ## Run every check; this is the gate
 	$(BIN)/python tests/install_browser.py
 	$(BIN)/python -m pytest
 
+.PHONY: soak
+soak: $(DEV_STAMP) ## Show what is promised at its full length; it takes hours
+	HEXAPODS_SOAK=1 $(BIN)/python -m pytest tests/promises $(ARGS)
+
 .PHONY: format
 format: $(DEV_STAMP) ## Format the code and apply the linter's safe fixes
 	$(BIN)/ruff check --fix-only

@@ -76,7 +76,8 @@ def postgres_server() -> Iterator[PostgresServer]:
             _await_start(found, server, log)
             yield found
         finally:
-            server.send_signal(signal.SIGINT)
+            # At once: nothing in it is needed any more.
+            server.send_signal(signal.SIGQUIT)
             try:
                 server.wait(30)
             except subprocess.TimeoutExpired:

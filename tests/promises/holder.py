@@ -1,0 +1,30 @@
+"""Holds a database so that nobody else can write, for as long as it is told."""
+
+import sqlite3
+import sys
+import time
+
+import psycopg
+
+
+def main(where: str, seconds: float) -> None:
+    if where.startswith("postgresql:"):
+        with psycopg.connect(where) as server:
+            server.execute("LOCK TABLE runs, evaluations, artifacts IN ACCESS EXCLUSIVE MODE")
+            hold(seconds)
+            server.rollback()
+        return
+    file = sqlite3.connect(where, isolation_level=None)
+    file.execute("BEGIN EXCLUSIVE")
+    hold(seconds)
+    file.execute("ROLLBACK")
+
+
+def hold(seconds: float) -> None:
+    sys.stdout.write("held\n")
+    sys.stdout.flush()
+    time.sleep(seconds)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], float(sys.argv[2]))

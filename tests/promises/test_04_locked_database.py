@@ -1,0 +1,71 @@
+"""Promise 4: a locked database loses nothing.
+
+Promised: another process holds it for 5 s, 0 writes lost. Here 2 s; 5 s by `make soak`.
+Eight threads write meanwhile, each its own curve, and all of them race for the same runs.
+"""
+
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from app.services.database.opening import DATABASE_FILE
+from app.services.errors import Conflict
+from app.services.store import QUEUED
+from tests.postgresql import PostgresServer
+from tests.promises.length import at_length
+from tests.promises.processes import start_script
+from tests.services.stores import BACKENDS, database_url, opened, training
+
+HELD_S = at_length(2.0, 5.0)
+THREADS, WRITES = 8, 25
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_locked_database_loses_nothing(
+    backend: str, postgresql: PostgresServer, tmp_path: Path
+) -> None:
+    with database_url(backend, postgresql) as url, opened(tmp_path, url) as store:
+        contested = [f"c{number:02}" for number in range(WRITES)]
+        store.create(*(training(run_id) for run_id in contested))
+        store.create(*(training(f"t{thread}") for thread in range(THREADS)))
+        won: list[str] = []
+        failed: list[BaseException] = []
+
+        def write(thread: int) -> None:
+            try:
+                for number, run_id in enumerate(contested):
+                    row = {"step": number, "distance_m": 0.5, "epsilon": 0.5}
+                    store.append_evaluations(f"t{thread}", [row])
+                    store.put_artifact(f"t{thread}", "q-table.npz", bytes([number]) * 1000)
+                    try:
+                        store.change(run_id, QUEUED, "running", done=thread)
+                    except Conflict:
+                        continue
+                    won.append(run_id)
+            except BaseException as error:
+                failed.append(error)
+                raise
+
+        holder = start_script(
+            "tests.promises.holder", url or str(tmp_path / DATABASE_FILE), str(HELD_S)
+        )
+        assert holder.stdout is not None
+        assert holder.stdout.readline() == "held\n"
+        began = time.monotonic()
+        threads = [threading.Thread(target=write, args=(n,)) for n in range(THREADS)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        took_s = time.monotonic() - began
+        holder.communicate()
+
+        assert holder.returncode == 0
+        assert failed == []
+        assert took_s > HELD_S / 2, "nobody had to wait"
+        assert sorted(won) == contested, "each has one winner"
+        for number in range(THREADS):
+            assert [row["step"] for row in store.evaluations(f"t{number}")] == list(range(WRITES))
+            assert store.artifact(f"t{number}", "q-table.npz") == bytes([WRITES - 1]) * 1000

@@ -1,0 +1,71 @@
+"""Promise 5: a damaged Q-table is refused, in full: 1,000 bit flips and truncations.
+
+A stored table is checked against the SHA-256 that the database has of it, so that nothing
+depends on which of its bytes are hit.
+"""
+
+import random
+from pathlib import Path
+
+import pytest
+
+from app.assembly import build_learner
+from app.domain.errors import DamagedFile
+from app.runs.config import TrainingConfig
+from app.runs.tables import from_bytes, snapshot, to_bytes
+from app.runs.training import train
+from app.services.entries import load_table
+from app.services.store import TABLE
+from tests.services.stores import opened, training
+
+DAMAGES = 1000
+
+
+def a_table() -> bytes:
+    config = TrainingConfig(gait="left-right-origin", simulator="kinematic", steps=50)
+    learner = build_learner(config)
+    for _ in train(learner, config):
+        pass
+    return to_bytes(snapshot(learner, config))
+
+
+def damaged(data: bytes, chance: random.Random) -> bytes:
+    """The data with one bit flipped, or with its end missing."""
+    if chance.random() < 0.5:
+        return data[: chance.randrange(len(data))]
+    flipped = bytearray(data)
+    flipped[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
+    return bytes(flipped)
+
+
+def test_a_damaged_table_is_always_refused_by_name(tmp_path: Path) -> None:
+    chance, table = random.Random(5), a_table()
+    with opened(tmp_path, None) as store:
+        store.create(training("a", state="finished"))
+        store.put_artifact("a", TABLE, table)
+        (file,) = (path for path in tmp_path.glob("artifacts/*/*") if path.is_file())
+        for _ in range(DAMAGES):
+            file.write_bytes(damaged(table, chance))
+            with pytest.raises(DamagedFile) as error:
+                load_table(store, "a")
+            assert TABLE in str(error.value)
+            assert "run a" in str(error.value)
+        file.write_bytes(table)
+        assert load_table(store, "a").meta["step"] == 50
+
+
+def test_a_table_from_elsewhere_never_gives_other_values_than_were_written() -> None:
+    """No database knows its hash; what its own checksum does not cover, changes nothing in it."""
+    chance, table = random.Random(6), a_table()
+    whole = from_bytes(table, "it")
+    refused = 0
+    for _ in range(DAMAGES):
+        try:
+            read = from_bytes(damaged(table, chance), "q.npz")
+        except DamagedFile:
+            refused += 1
+        else:
+            assert read.meta == whole.meta
+            assert read.arrays.keys() == whole.arrays.keys()
+            assert all((read.arrays[k].tobytes() == a.tobytes()) for k, a in whole.arrays.items())
+    assert refused > 0.9 * DAMAGES
