@@ -1,0 +1,94 @@
+"""Runs behind the figures of the specification; module-level, so that a pool can do them."""
+
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from typing import Any, TypeVar
+
+import numpy as np
+
+from app.assembly import build_learner, build_walkers
+from app.domain.observation import Observation
+from app.domain.robot import robot
+from app.domain.types import FloatArray
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.tables import Checkpoint, from_bytes, snapshot, to_bytes
+from app.runs.training import evaluate, train, walk
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+H_M = 0.02
+"""Half the side of the default foot grid, in which kinematic distances are given."""
+GREEDY_H = 24.833
+WORKERS = 2
+
+
+def in_a_pool(run: Callable[[T], R], over: Iterable[T], chunk: int = 1) -> list[R]:
+    """`run` of each, in order."""
+    with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
+        return list(pool.map(run, over, chunksize=chunk))
+
+
+def interquartile_mean(values: FloatArray) -> float:
+    """Mean of the middle half."""
+    quarter, ordered = len(values) // 4, np.sort(values)
+    return float(ordered[quarter : len(values) - quarter].mean())
+
+
+def look_ahead(run: tuple[str, str, str, dict[str, float]]) -> float:
+    """How far an agent comes in 50 steps [m]: agent, gait, simulator, what its robot has."""
+    agent, gait, simulator, has = run
+    config = RaceConfig(
+        gait=gait,
+        simulator=simulator,  # type: ignore[arg-type]
+        robot=robot(has),
+        lanes=(LaneConfig(agent=agent),),
+    )
+    (walker,) = build_walkers(config, [None], threads=1)
+    distance_m, _ = walk(walker, record=False)
+    return distance_m
+
+
+def practise(config: TrainingConfig) -> float:
+    """How far a learner comes in 50 steps after its practice [m]."""
+    learner = build_learner(config)
+    for _ in train(learner, config):
+        pass
+    return evaluate(learner, config, 0.0).distance_m
+
+
+def _kinematic(seed: int, steps: int, observation: Observation, divisions: int = 2) -> Any:
+    return TrainingConfig(
+        gait="left-right-origin",  # the law is the same in all gaits
+        simulator="kinematic",
+        seed=seed,
+        steps=steps,
+        observation=observation,
+        divisions=divisions,
+        evaluate_every=0,
+    )
+
+
+def kinematic_rows(seed: int) -> dict[str, float]:
+    """One seed's entry in every row of kinematic Q-learning [h]."""
+    found: dict[str, float] = {}
+    for steps in (250, 500, 1000):
+        found[f"measured {steps}"] = practise(_kinematic(seed, steps, "measured"))
+        found[f"nine cells {steps}"] = practise(_kinematic(seed, steps, "measured", 3))
+    for steps in (500, 1000):
+        found[f"commanded {steps}"] = practise(_kinematic(seed, steps, "commanded"))
+    return {name: metres / H_M for name, metres in {**found, **_blocks(seed)}.items()}
+
+
+def _blocks(seed: int) -> dict[str, float]:
+    """As the paper's Figure 4: learn 250 steps, save, load, learn 250 more."""
+    config, found = _kinematic(seed, 250, "commanded"), {}
+    table: Checkpoint | None = None
+    for steps in (250, 500, 750, 1000):
+        learner = build_learner(config, table)
+        for _ in train(learner, config):
+            pass
+        found[f"block {steps}"] = evaluate(learner, config, 0.0).distance_m
+        table = from_bytes(to_bytes(snapshot(learner, config)), "block.npz")
+    return found

@@ -1,0 +1,85 @@
+"""The specification's figures for the kinematic simulator, over a thousand seeds.
+
+Distances are over 50 steps from rest, in units of h, half the side of the foot grid. About two
+minutes on two idle cores; all rows share one pass over the seeds.
+"""
+
+import numpy as np
+import pytest
+
+from app.domain.gait import NAMED_GAITS
+from app.domain.types import FloatArray
+from tests.figures import (
+    GREEDY_H,
+    H_M,
+    in_a_pool,
+    interquartile_mean,
+    kinematic_rows,
+    look_ahead,
+)
+
+SEEDS = 1000
+Rows = dict[str, FloatArray]
+
+pytestmark = pytest.mark.timeout(1800)
+
+
+@pytest.fixture(scope="module")
+def rows() -> Rows:
+    """For every row the distances of all seeds [h]."""
+    found = in_a_pool(kinematic_rows, range(SEEDS), chunk=20)
+    return {name: np.array([one[name] for one in found]) for name in found[0]}
+
+
+def share(values: FloatArray) -> float:
+    """Interquartile mean as a share of greedy [%]."""
+    return 100 * interquartile_mean(values) / GREEDY_H
+
+
+@pytest.mark.parametrize("gait", NAMED_GAITS)
+@pytest.mark.parametrize("agent", ["greedy", "two-step", "tests.own_agents:ThreeStep"])
+def test_looking_further_than_a_step_buys_nothing(agent: str, gait: str) -> None:
+    distance_m = look_ahead((agent, gait, "kinematic", {}))
+
+    assert distance_m / H_M == pytest.approx(24.833, abs=0.001)
+
+
+@pytest.mark.parametrize(("steps", "percent"), [(250, 60), (500, 74), (1000, 83)])
+def test_measured_q_learning(rows: Rows, steps: int, percent: float) -> None:
+    assert share(rows[f"measured {steps}"]) == pytest.approx(percent, rel=0.05)
+
+
+def test_measured_q_learning_seed_by_seed(rows: Rows) -> None:
+    after_500 = 100 * rows["measured 500"] / GREEDY_H
+
+    assert np.percentile(after_500, [25, 75]) == pytest.approx([65, 81], rel=0.05)
+    assert 100 * (after_500 > 50).mean() == pytest.approx(92, rel=0.05)
+
+
+@pytest.mark.parametrize(("steps", "percent"), [(250, 30), (500, 48), (1000, 62)])
+def test_measured_q_learning_on_nine_cells(rows: Rows, steps: int, percent: float) -> None:
+    assert share(rows[f"nine cells {steps}"]) == pytest.approx(percent, rel=0.05)
+
+
+def test_commanded_q_learning(rows: Rows) -> None:
+    after_500, after_1000 = (interquartile_mean(rows[f"commanded {n}"]) for n in (500, 1000))
+
+    assert after_500 == pytest.approx(3.2, rel=0.2)
+    assert 0.8 * 4.4 <= after_1000 <= 1.2 * 4.9
+    assert share(rows["commanded 500"]) == pytest.approx(13, rel=0.2)
+    assert share(rows["commanded 1000"]) == pytest.approx(19, rel=0.2)
+
+
+def test_commanded_q_learning_is_heavy_tailed(rows: Rows) -> None:
+    """Most shuffle on the spot, a few walk."""
+    shares = rows["commanded 1000"] / GREEDY_H
+
+    assert (shares < 0.25).mean() > 0.5
+    assert (shares > 0.8).mean() > 0.05
+
+
+@pytest.mark.parametrize(("steps", "distance_h"), [(250, 3.3), (500, 3.6), (750, 5.4), (1000, 6.9)])
+def test_commanded_q_learning_in_blocks_with_epsilon_restarted(
+    rows: Rows, steps: int, distance_h: float
+) -> None:
+    assert interquartile_mean(rows[f"block {steps}"]) == pytest.approx(distance_h, rel=0.2)
