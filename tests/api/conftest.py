@@ -12,20 +12,20 @@ from app.settings import Settings
 from tests.api.calls import ADDRESS, Api
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("data")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def api(data: Path) -> Iterator[Api]:
-    """One server for all tests that do not mind each other's runs."""
+    """One server for all tests of this folder that do not mind each other's runs."""
     app = create_app(Settings(data=data))
     with TestClient(app, base_url=ADDRESS) as client:
         yield Api(client)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def trained(api: Api) -> dict[str, Any]:
     """A training that is finished."""
     return api.finished(api.train(name="trained once"))
