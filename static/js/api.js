@@ -3,7 +3,7 @@
 const BASE = new URL("api/v1/", document.baseURI);
 
 /** A refusal. `message` is fit to be shown; `fields` says which of the form's fields it is about. */
-export class ApiError extends Error {
+class ApiError extends Error {
   constructor(status, problem) {
     super(problem.detail || problem.title || `The server answered ${status}.`);
     this.status = status;
@@ -12,7 +12,7 @@ export class ApiError extends Error {
 }
 
 /** Nobody answered: the server is away, or the network is. */
-export class Unreachable extends Error {
+class Unreachable extends Error {
   constructor() {
     super("The server does not answer. Nothing was changed; try again once the page says live.");
     this.status = 0;

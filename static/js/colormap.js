@@ -6,7 +6,7 @@ const STOPS = [
 ];
 
 /** The colour of a share from 0 to 1 as [red, green, blue]. */
-export function viridis(share) {
+function viridis(share) {
   const place = Math.min(Math.max(share, 0), 1) * (STOPS.length - 1);
   const below = Math.min(Math.floor(place), STOPS.length - 2);
   const rest = place - below;

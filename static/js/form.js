@@ -47,7 +47,7 @@ export const setMistake = (field, message) => {
   mistakes.value = message ? { ...others, [field]: message } : others;
 };
 
-export const isTouched = computed(() =>
+const isTouched = computed(() =>
   Object.keys(FIELDS).some((field) => written(form.value, field) !== written(defaults, field)),
 );
 

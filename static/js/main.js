@@ -1,4 +1,5 @@
 // Starts the page: what can be chosen, what happens, and what is drawn of it.
+import { effect } from "@preact/signals";
 import { render } from "preact";
 import { getOptions } from "./api.js";
 import { App } from "./components/app.js";
@@ -8,7 +9,7 @@ import { readAddress, useDefaults, writeAddress } from "./form.js";
 import { html } from "./html.js";
 import { listenForKeys } from "./keys.js";
 import { announceOutcomes } from "./outcome.js";
-import { applyEvent, connection, isLockedOut, options } from "./store.js";
+import { applyEvent, connection, isLockedOut, options, version } from "./store.js";
 import { followTheme } from "./theme.js";
 import { followTimeline } from "./timeline.js";
 
@@ -26,7 +27,17 @@ async function loadOptions(attempt = 0) {
   writeAddress();
 }
 
+/** A server of another version came back under this page, whose scripts may no longer fit. */
+function reloadAfterUpgrade() {
+  let first = null;
+  effect(() => {
+    first ??= version.value;
+    if (version.value !== first) location.reload();
+  });
+}
+
 followTheme();
+reloadAfterUpgrade();
 followCurves();
 followTimeline();
 announceOutcomes();

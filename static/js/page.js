@@ -34,5 +34,3 @@ const narrowScreen = matchMedia("(max-width: 1080px)");
 /** Whether the page is one column. */
 export const isNarrow = signal(narrowScreen.matches);
 narrowScreen.addEventListener("change", ({ matches }) => (isNarrow.value = matches));
-
-export const wantsLittleMotion = matchMedia("(prefers-reduced-motion: reduce)");

@@ -16,7 +16,7 @@ export const newestFirst = computed(() =>
 );
 
 /** Runs that this tab started, newest first. */
-export const mine = signal(recall());
+const mine = signal(recall());
 export const claim = (id) => {
   mine.value = [id, ...mine.value].slice(0, 50);
   try {
@@ -44,7 +44,7 @@ export const learns = (name) => agentOf(name).learns;
 export const clock = computed(() => stage.value?.clock ?? scene.value?.clock ?? "paper");
 
 /** The ids of the trainings that a race's learners bring. */
-export const trainingIds = (race) => [
+const trainingIds = (race) => [
   ...new Set([
     ...(race?.config?.lanes ?? []).map((lane) => lane.training_id),
     ...(race?.waiting_for ?? []),

@@ -134,7 +134,7 @@ function WatchOnly() {
   const shown = progress.value;
   const names = (shownRun.value?.config?.lanes ?? []).map(({ agent }) => agentOf(agent).title);
   return html`
-    <section class="panel watch" aria-label="What is happening">
+    <section class="panel" aria-label="What is happening">
       <h2>You are watching</h2>
       <p class="dim">${names.length ? `${names.join(", ")} race. ` : ""}The camera is yours; whoever has the operator’s link runs the show.</p>
       ${shown && html`<${Progress} />`}

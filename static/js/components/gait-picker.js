@@ -10,7 +10,7 @@ const titleOf = (gait) => (gait.title ?? gait.name).replace(/-(?=\w+$)/, " ");
 export function GaitPicker() {
   const gaits = options.value?.gaits ?? [];
   return html`
-    <fieldset class="gaits" onFocusIn=${showHelp("gait")} onPointerEnter=${showHelp("gait")}>
+    <fieldset onFocusIn=${showHelp("gait")} onPointerEnter=${showHelp("gait")}>
       <legend><h2>Gait</h2></legend>
       <div class="gait-row">
         ${gaits.length === 0 && [0, 1, 2, 3].map(() => html`<span class="gait loading" aria-hidden="true"></span>`)}

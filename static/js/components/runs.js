@@ -34,7 +34,7 @@ export function Runs() {
       </div>
       ${shown.length === 0
         ? html`<${NoRuns} isFiltered=${all.length > 0} />`
-        : html`<ul class="run-list">${shown.map((run) => html`<${RunRow} key=${run.id} run=${run} />`)}</ul>`}
+        : html`<ul>${shown.map((run) => html`<${RunRow} key=${run.id} run=${run} />`)}</ul>`}
       <${Older} count=${all.length} />
     </section>
   `;

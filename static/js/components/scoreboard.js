@@ -66,7 +66,7 @@ function Lane({ row, longest }) {
           </div>
           <p class="dim">
             <span>${row.isDone && html`<${Icon} name="flag" />`}${doing(row)}</span>
-            <span class="facts">${decision(row.decision_s)} a decision, ${whole(row.simulated)} simulated</span>
+            <span class="facts">${factsOf(row)}</span>
           </p>
           ${row.isMarching && html`<p class="marching"><b>Marching on the spot:</b> ${whyMarching(row)}</p>`}
         </td>
@@ -74,6 +74,11 @@ function Lane({ row, longest }) {
     </tbody>
   `;
 }
+
+/** What has no column of its own on a narrow screen. */
+const factsOf = ({ decision_s, simulated }) =>
+  [decision_s !== null && `${decision(decision_s)} a decision`, simulated !== null && `${whole(simulated)} simulated`]
+    .filter(Boolean).join(", ");
 
 function doing(row) {
   if (row.failure) return `Went no further: ${row.failure}`;

@@ -66,6 +66,6 @@ function Exploration() {
   const scheduled = evaluations.value[run.id]?.at(-1)?.epsilon ?? run.config.epsilon_start;
   return html`
     <${Slider} field="epsilon" label="Exploring now" symbol="ε" min=${0} max=${1} step=${0.01}
-      value=${rates.value[run.id]?.epsilon ?? scheduled} onValue=${(epsilon) => tune({ epsilon })} />
+      value=${Math.round(100 * (rates.value[run.id]?.epsilon ?? scheduled)) / 100} onValue=${(epsilon) => tune({ epsilon })} />
   `;
 }

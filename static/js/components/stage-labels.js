@@ -14,6 +14,7 @@ export function StageLabels() {
       <div class="chips">
         <p class="chip strong">${now?.label || "On the start line"}</p>
         ${now?.phase === "photo-finish" && html`<p class="chip accent">Photo finish</p>`}
+        ${now?.phase === "waiting" && html`<p class="chip">Waiting for a robot that still thinks</p>`}
         ${now?.replay && html`<p class="chip">Replay</p>`}
         ${isPaused
           ? html`<p class="chip">Paused</p>`
