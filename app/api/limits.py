@@ -8,12 +8,12 @@ from app.api.problems import problem
 MAX_BODY_BYTES = 1 << 20
 MAX_TABLE_BYTES = 64 << 20
 IMPORT_PATH = "/api/v1/trainings/import"
+ARCHIVE_PATH = "/api/v1/import"
 
 _CONTENT_POLICY = (
     "default-src 'none'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
     "base-uri 'none'; form-action 'self'; frame-ancestors 'self'"
 )
-_VIEWER_POLICY = "frame-ancestors 'self'; base-uri 'none'; object-src 'none'"
 
 
 class TooLarge(Exception):
@@ -32,7 +32,7 @@ class BodyLimit:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        limit = MAX_TABLE_BYTES if scope["path"] == IMPORT_PATH else MAX_BODY_BYTES
+        limit = MAX_TABLE_BYTES if scope["path"] in (IMPORT_PATH, ARCHIVE_PATH) else MAX_BODY_BYTES
         refusal = problem(413, f"The request's body may have at most {limit:,} bytes here.")
         length = Headers(scope=scope).get("content-length", "")
         if length.isdigit() and int(length[:18]) > limit:
@@ -75,8 +75,6 @@ class SecurityHeaders:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        is_viewer = scope["path"] == "/viewer" or scope["path"].startswith("/viewer/")
-        policy = _VIEWER_POLICY if is_viewer else _CONTENT_POLICY
 
         async def add(message: Message) -> None:
             if message["type"] == "http.response.start":
@@ -85,7 +83,7 @@ class SecurityHeaders:
                 headers.setdefault("X-Frame-Options", "SAMEORIGIN")
                 headers.setdefault("Referrer-Policy", "same-origin")
                 headers.setdefault("Cross-Origin-Resource-Policy", "same-origin")
-                headers.setdefault("Content-Security-Policy", policy)
+                headers.setdefault("Content-Security-Policy", _CONTENT_POLICY)
             await send(message)
 
         await self._app(scope, receive, add)

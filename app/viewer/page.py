@@ -12,6 +12,7 @@ from starlette.datastructures import QueryParams
 from starlette.responses import Response
 
 from app import assets
+from app.viewer.policy import content_policy
 
 _HEAD = "<head>"
 _TITLE = "<title>Viser</title>"
@@ -62,7 +63,9 @@ class ViewerPage:
         Raises:
             RuntimeError: The client is not of the form that the skin fits.
         """
-        html = _skinned(Path(viser.__file__).with_name("client") / "build" / "index.html")
+        page = _skinned(Path(viser.__file__).with_name("client") / "build" / "index.html")
+        self._policy = content_policy(page)
+        html = page.encode("utf-8")
         digest = hashlib.sha256(html).hexdigest()[:16]
         # An entity tag is of the bytes sent, so each encoding has its own.
         self._plain = (html, f'"{digest}"')
@@ -72,7 +75,13 @@ class ViewerPage:
         """Answer a request with these headers: the page, or 304 for who has it."""
         accepts_gzip = "gzip" in headers.get("accept-encoding", "")
         body, tag = self._gzipped if accepts_gzip else self._plain
-        answer = {"ETag": tag, "Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
+        answer = {
+            "ETag": tag,
+            "Cache-Control": "no-cache",
+            "Vary": "Accept-Encoding",
+            # With 304 too, which brings what is kept up to date.
+            "Content-Security-Policy": self._policy,
+        }
         if tag in headers.get("if-none-match", ""):
             return Response(status_code=304, headers=answer)
         if accepts_gzip:
@@ -80,14 +89,14 @@ class ViewerPage:
         return Response(body, media_type="text/html", headers=answer)
 
 
-def _skinned(client: Path) -> bytes:
+def _skinned(client: Path) -> str:
     html = client.read_text("utf-8")
     if html.count(_HEAD) != 1 or html.count(_TITLE) != 1:
         raise RuntimeError(f"viser {viser.__version__} has another page than the skin was made for")
     skin = f"<script>{skin_script()}</script><style>{skin_style()}</style>"
     html = html.replace(_TITLE, "<title>Racing Hexapods: the stage</title>")
     # First of all, since viser's loader starts while the page is still read.
-    return html.replace(_HEAD, _HEAD + skin).encode("utf-8")
+    return html.replace(_HEAD, _HEAD + skin)
 
 
 def _is_harmless(name: str, value: str) -> bool:

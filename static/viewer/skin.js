@@ -74,6 +74,13 @@
     }
   };
 
+  // ---- the page may not make code out of strings. viser's sorter of Gaussian splats would, as soon
+  // as it is loaded, and nothing on stage is a splat: it gets functions that do nothing
+  window.Function = new Proxy(Function, {
+    apply: () => () => () => {},
+    construct: () => () => () => {},
+  });
+
   // ---- the client reconnects only while it has the focus, which an iframe may never get
   document.hasFocus = () => !document.hidden;
   document.addEventListener("visibilitychange", () => dispatchEvent(new Event("focus")));

@@ -229,30 +229,32 @@ def test_a_full_house_is_told_to_the_dashboard(page: Page, stage: viser.ViserSer
         page.wait_for_function("heard.some((message) => message.status === 'full')")
 
 
-def test_other_pages_change_nothing(
-    dashboard: Page, viewer: Frame, address: Address, browser: Browser
-) -> None:
-    # Embedded by another origin: the same server, by another name.
-    port = address.port
+def test_other_pages_cannot_have_it_in_them(address: Address, browser: Browser) -> None:
+    # Another origin: the same server, by another name.
     with browser.new_context() as context:
         foreign = context.new_page()
         foreign.goto(f"http://{address.host}/")
-        foreign.evaluate(
-            f"document.querySelector('iframe').src = 'http://localhost:{port}/viewer/'"
-        )
-        [_, inner] = foreign.frames
-        inner.wait_for_url(f"http://localhost:{port}/viewer/*")
-        has(inner, "/world/box")
-        foreign.evaluate(
-            """document.querySelector("iframe").contentWindow
-                .postMessage({ type: "hexapods:show", theme: "light" }, "*")"""
-        )
-        # Messages arrive in order, so once this one is there, so was the other.
-        inner.evaluate("addEventListener('message', () => { window.told = true; })")
-        foreign.evaluate("document.querySelector('iframe').contentWindow.postMessage(0, '*')")
-        inner.wait_for_function("window.told")
+        with foreign.expect_event("console", lambda said: "frame-ancestors" in said.text):
+            foreign.evaluate(
+                "address => { document.querySelector('iframe').src = address; }",
+                f"http://localhost:{address.port}/viewer/",
+            )
+        assert address.hub.counters.viewers <= 1
 
-        assert inner.evaluate("document.documentElement.dataset.theme") is None
+
+def test_other_pages_change_nothing(page: Page, address: Address) -> None:
+    page.goto(f"http://{address.host}/")
+    with page.expect_popup() as opening:
+        page.evaluate(f"window.other = open('http://localhost:{address.port}/viewer/?view=2')")
+    other = opening.value
+    has(other, "/world/box")
+    page.evaluate("other.postMessage({ type: 'hexapods:show', theme: 'light' }, '*')")
+    # Messages arrive in order, so once this one is there, so was the other.
+    other.evaluate("addEventListener('message', () => { window.told = true; })")
+    page.evaluate("other.postMessage(0, '*')")
+    other.wait_for_function("window.told")
+
+    assert other.evaluate("document.documentElement.dataset.theme") is None
 
 
 def test_nothing_comes_from_elsewhere(page: Page, address: Address) -> None:
