@@ -28,8 +28,8 @@ _START_S = 60.0
 class PostgresServer:
     """A server that runs."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path, programs: Path) -> None:
+        self.folder, self._programs = folder, programs
 
     def url(self, database: str) -> str:
         """Of a database on it."""
@@ -44,6 +44,14 @@ class PostgresServer:
             yield self.url(name)
         finally:
             self._do(f"DROP DATABASE {name} WITH (FORCE)")
+
+    def dump(self, url: str) -> str:
+        """A database as SQL, without what is said to `psql` or to a session."""
+        asked = [str(self._programs / "pg_dump"), "--inserts", "--no-owner", "--dbname", url]
+        said = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
+        left_out = ("--", "\\", "SET ", "SELECT ")
+        lines = [line for line in said.splitlines() if line and not line.startswith(left_out)]
+        return "\n".join([*lines, ""])
 
     def _do(self, statement: str) -> None:
         with psycopg.connect(self.url("postgres"), autocommit=True) as connection:
@@ -72,7 +80,7 @@ def postgres_server() -> Iterator[PostgresServer]:
                 **nobody,
             )
         try:
-            found = PostgresServer(folder)
+            found = PostgresServer(folder, programs)
             _await_start(found, server, log)
             yield found
         finally:

@@ -28,6 +28,7 @@ class Room:
         """
         self._folder, self._quota_mb = folder, quota_mb
         self._reserve, self._lock = folder / _RESERVE, threading.Lock()
+        self._keeps_reserve = False
 
     def check(self, size: int) -> None:
         """Make sure that there is room for a new file.
@@ -49,6 +50,8 @@ class Room:
                 f"the disk of the data folder has {_mb(free)} left, too little for {_mb(size)} "
                 "more; delete runs, or make room there"
             )
+        if self._keeps_reserve:
+            self.reserve()
 
     def used_bytes(self) -> int:
         """What all in the folder takes."""
@@ -61,8 +64,9 @@ class Room:
         return total
 
     def reserve(self) -> None:
-        """Set the reserve aside, if it is not and there is room for it."""
+        """Set the reserve aside as soon as there is room for it, and again after each release."""
         with self._lock:
+            self._keeps_reserve = True
             if self._reserve.exists():
                 return
             try:

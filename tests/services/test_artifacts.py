@@ -100,3 +100,5 @@ def test_the_reserve_is_given_up_once(tmp_path: Path) -> None:
     assert room.release()
     assert room.used_bytes() == 0
     assert not room.release()
+    room.check(1)
+    assert room.used_bytes() == RESERVE_BYTES

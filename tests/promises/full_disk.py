@@ -1,0 +1,85 @@
+"""Lives through a full disk, and says as JSON what was still possible."""
+
+import contextlib
+import json
+import resource
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from app.services.database.store import SqlStore
+from app.services.errors import StorageFull
+from app.services.store import LIVE, TABLE
+from tests.services.stores import opened, training
+
+MB = 1_000_000
+LIMIT_BYTES = 1 * MB
+
+
+def main(folder: Path, how: str) -> None:
+    fill = full_of_others_files if how == "mount" else with_a_limit
+    with opened(folder, None) as store:
+        store.create(training("a", state="running"), training("b", state="running"))
+        store.put_artifact("a", TABLE, b"old" * 1000)
+        with fill(folder):
+            report = while_full(store)
+            report["reserve_is_left"] = (folder / "reserve").exists()
+        report["works_again"] = not refused(lambda: store.put_artifact("b", TABLE, bytes(2 * MB)))
+        store.create(training("c"))
+    with opened(folder, None) as store:
+        report["states"] = {run.id: run.state for run in store.list().items}
+        report["files"] = len([p for p in folder.glob("artifacts/*/*") if p.is_file()])
+    sys.stdout.write(json.dumps(report))
+
+
+def while_full(store: SqlStore) -> dict[str, object]:
+    messages = [refused(lambda: store.put_artifact("a", TABLE, bytes(2 * MB))) for _ in range(3)]
+    began = time.monotonic()
+    store.change("a", LIVE, "failed", error=messages[0])
+    failed_after_s = time.monotonic() - began
+    for done in range(50):
+        store.update("b", done=done)
+    return {
+        "messages": messages,
+        "failed_after_s": failed_after_s,
+        "updated": store.get("b").done,
+        "state": store.get("a").state,
+        "listed": len(store.list().items),
+        "old_file_is_whole": store.artifact("a", TABLE) == b"old" * 1000,
+    }
+
+
+def refused(write: Callable[[], None]) -> str | None:
+    """What a write is refused with; None if it is not."""
+    try:
+        write()
+    except StorageFull as error:
+        return str(error)
+    return None
+
+
+@contextmanager
+def full_of_others_files(folder: Path) -> Iterator[None]:
+    """To the last byte."""
+    filler = folder / "filler"
+    for size in (MB, 4096, 1):
+        with contextlib.suppress(OSError), filler.open("ab", buffering=0) as file:
+            while file.write(bytes(size)) == size:
+                pass
+    yield
+    filler.unlink()
+
+
+@contextmanager
+def with_a_limit(folder: Path) -> Iterator[None]:
+    """No file may grow over a limit."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (LIMIT_BYTES, hard))
+    yield
+    resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), sys.argv[2])

@@ -1,0 +1,1 @@
+"""Dumps of databases as every released version left them, with the runs that are in them."""

@@ -1,0 +1,45 @@
+"""What is in the dumps. New dumps have the same runs, as far as their schema can hold them."""
+
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+from app.services.database.store import SqlStore
+from app.services.store import TABLE, Run
+from tests.services.stores import ODD, race, training
+
+_T = datetime(2026, 2, 28, 23, 59, 59, 123456, tzinfo=UTC)
+RUNS: list[Run] = [
+    training(
+        "0pmz0000a0001",
+        name="Grüße, 'quoted' \\ and so on",
+        state="finished",
+        config=ODD,
+        done=500,
+        changes=({"step": 20, "alpha": 0.1}, {"step": 30, "pace": "max"}),
+        greedy_distance_m=0.4321,
+        result={"distance_m": float("nan"), "q_table_sha256": "ab" * 32},
+        created_at=_T,
+        started_at=_T + timedelta(seconds=1),
+        ended_at=_T + timedelta(hours=1),
+    ),
+    training(
+        "0pmz0000a0002",
+        state="failed",
+        continued_from="0pmz0000a0001",
+        error="The physics diverged.",
+        created_at=_T,
+    ),
+    race("0pmz0000a0003", state="stopped", result={"lanes": []}, created_at=_T, ended_at=_T),
+]
+CURVE: list[dict[str, Any]] = [
+    {"step": 50, "distance_m": 0.125, "epsilon": 1.0},
+    {"step": 100, "distance_m": -0.25, "epsilon": 0.9},
+]
+FILE = bytes(range(256)) * 4
+
+
+def put(store: SqlStore) -> None:
+    """Fill an empty store."""
+    store.create(*RUNS)
+    store.append_evaluations(RUNS[0].id, CURVE)
+    store.put_artifact(RUNS[0].id, TABLE, FILE)

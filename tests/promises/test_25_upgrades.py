@@ -1,0 +1,129 @@
+"""Promise 25: upgrades keep data, from every released schema, on SQLite and on PostgreSQL."""
+
+import shutil
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+import psycopg
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.runtime.migration import MigrationContext
+from alembic.script import ScriptDirectory
+from sqlalchemy import Connection, Engine, text
+
+from app.services.database import migrating
+from app.services.database.engine import Database, postgresql_engine, sqlite_engine
+from app.services.database.migrating import migrate, newest_revision
+from app.services.database.opening import DATABASE_FILE
+from app.services.database.schema import METADATA
+from app.services.database.store import SqlStore
+from app.services.store import TABLE
+from tests.postgresql import PostgresServer
+from tests.promises.released import sample
+from tests.services.stores import BACKENDS, database_url, opened, training
+
+FOLDER = Path(sample.__file__).parent
+SCRIPTS = ScriptDirectory(str(Path(migrating.__file__).with_name("migrations")))
+REVISIONS = [script.revision for script in SCRIPTS.walk_revisions()]
+
+on_both = pytest.mark.parametrize("backend", BACKENDS)
+
+
+def load(dump: Path, folder: Path, url: str | None) -> None:
+    """Make a data folder and a database as they were when the dump was taken."""
+    if url is None:
+        with closing(sqlite3.connect(folder / DATABASE_FILE)) as file:
+            file.executescript(dump.read_text())
+    else:
+        with psycopg.connect(url) as server:
+            server.execute(dump.read_bytes())
+    database = Database(database_engine(folder, url))
+    files = "SELECT about.id, artifacts.file FROM about, artifacts"
+    owner, name = database.read(lambda c: tuple(c.execute(text(files)).one()))
+    database.close()
+    (folder / "artifacts" / owner).mkdir(parents=True)
+    (folder / "artifacts" / owner / name).write_bytes(sample.FILE)
+
+
+def database_engine(folder: Path, url: str | None) -> Engine:
+    return sqlite_engine(folder / DATABASE_FILE) if url is None else postgresql_engine(url)
+
+
+def check(store: SqlStore) -> None:
+    newest = [run.id for run in reversed(sample.RUNS)]
+    assert [run.id for run in store.list().items] == newest
+    for run in sample.RUNS:
+        # NaN is not itself; as text it is.
+        assert repr(store.get(run.id)) == repr(run)
+    first = sample.RUNS[0].id
+    assert store.evaluations(first) == sample.CURVE
+    assert store.artifact(first, TABLE) == sample.FILE
+
+
+@on_both
+@pytest.mark.parametrize("revision", REVISIONS)
+def test_every_released_schema_migrates(
+    revision: str, backend: str, postgresql: PostgresServer, tmp_path: Path
+) -> None:
+    with database_url(backend, postgresql) as url:
+        load(FOLDER / f"{revision}.{backend}.sql", tmp_path, url)
+        for _ in range(2):
+            with opened(tmp_path, url) as store:
+                check(store)
+        with opened(tmp_path, url) as store:
+            store.create(training("z"))
+            store.delete(sample.RUNS[0].id)
+        database = Database(database_engine(tmp_path, url))
+        left = text("SELECT (SELECT count(*) FROM evaluations) + (SELECT count(*) FROM artifacts)")
+        assert database.read(lambda connection: connection.execute(left).scalar()) == 0
+        database.close()
+
+
+@on_both
+def test_the_migrations_lead_to_the_schema_that_is_used(
+    backend: str, postgresql: PostgresServer, tmp_path: Path
+) -> None:
+    with database_url(backend, postgresql) as url:
+        database = Database(database_engine(tmp_path, url))
+        migrate(database)
+
+        def differences(connection: Connection) -> object:
+            return compare_metadata(MigrationContext.configure(connection), METADATA)
+
+        assert database.read(differences) == []
+        database.close()
+
+
+@on_both
+def test_a_migration_that_fails_changes_nothing(
+    backend: str, postgresql: PostgresServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A further schema, made up here, that gives up halfway."""
+    broken = tmp_path / "migrations"
+    shutil.copytree(Path(migrating.__file__).with_name("migrations"), broken)
+    (broken / "versions" / "schema_9999.py").write_text(
+        "from alembic import op\n"
+        f"revision, down_revision = '9999', '{newest_revision()}'\n"
+        "def upgrade():\n"
+        "    op.execute('ALTER TABLE runs ADD COLUMN half INTEGER')\n"
+        "    op.execute('UPDATE runs SET half = 1')\n"
+        "    raise RuntimeError('halfway')\n"
+    )
+    made = migrating._config()
+    made.set_main_option("script_location", str(broken))
+    with database_url(backend, postgresql) as url:
+        with opened(tmp_path, url) as store:
+            sample.put(store)
+        with monkeypatch.context() as patch:
+            patch.setattr(migrating, "_config", lambda: made)
+            with pytest.raises(RuntimeError, match="halfway"), opened(tmp_path, url):
+                pass
+        with opened(tmp_path, url) as store:
+            check(store)
+            store.create(training("z"))
+
+
+def test_every_schema_has_its_dumps() -> None:
+    dumps = {path.name for path in FOLDER.glob("*.sql")}
+    assert dumps == {f"{revision}.{backend}.sql" for revision in REVISIONS for backend in BACKENDS}
