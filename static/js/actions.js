@@ -2,7 +2,7 @@
 import { computed, signal } from "@preact/signals";
 import * as api from "./api.js";
 import { form, link, mistakes, raceBody, set, trainingBody } from "./form.js";
-import { count } from "./format.js";
+import { count, whole } from "./format.js";
 import {
   claim, isActive, isOperator, learns, liveTraining, myWork, raceIsRun, shownRun, tableInHand, work,
 } from "./selectors.js";
@@ -46,7 +46,7 @@ export const nextDeed = computed(() => {
   if (!someoneLearns.value) return { label: "Race", run: () => startRace() };
   if (raceIsRun.value) {
     const continueFrom = tableInHand.value.id;
-    return { label: `Practise ${steps} more, race again`, run: () => startRace({ continueFrom }) };
+    return { label: `Practise ${whole(steps)} more, race again`, run: () => startRace({ continueFrom }) };
   }
   return { label: `Train ${count(steps, "step")}, then race`, run: () => startRace() };
 });
