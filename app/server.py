@@ -14,7 +14,7 @@ from fastapi import APIRouter, FastAPI
 
 from app import __version__, assets
 from app.agents.registry import registered
-from app.api import docs, events, health, options, pages, problems, races, stage, trainings
+from app.api import docs, events, health, moving, options, pages, problems, races, stage, trainings
 from app.api.auth import TokenGuard
 from app.api.deps import Services
 from app.api.limits import BodyLimit, SecurityHeaders
@@ -25,6 +25,7 @@ from app.services.jobs import Jobs
 from app.services.recordings import Recordings
 from app.services.stage import Stage
 from app.services.store import MemoryStore
+from app.services.whereabouts import note_address
 from app.settings import PREFIX, Settings
 from app.viewer.protocol import websocket_options
 from app.viewer.routes import viewer_routes
@@ -75,7 +76,8 @@ def create_app(settings: Settings) -> FastAPI:
 
 def _add_routes(app: FastAPI, theatre: Theatre) -> None:
     versioned = APIRouter(prefix="/api/v1")
-    for module in (trainings, races, stage, events, options):
+    # First: `import` is no run's id.
+    for module in (moving, trainings, races, stage, events, options):
         versioned.include_router(module.router)
     app.include_router(versioned)
     app.include_router(health.router)
@@ -126,20 +128,24 @@ def serve(settings: Settings) -> None:
         **websocket_options(),
     )
     with listener:
-        _Server(config, app, _address(settings, listener)).run(sockets=[listener])
+        _Server(config, app, settings, listener).run(sockets=[listener])
 
 
 class _Server(uvicorn.Server):
     """Tells where it is, and lets go of those who listen before it waits for them."""
 
-    def __init__(self, config: uvicorn.Config, app: FastAPI, address: str) -> None:
+    def __init__(
+        self, config: uvicorn.Config, app: FastAPI, settings: Settings, listener: socket.socket
+    ) -> None:
         super().__init__(config)
-        self._app, self._address = app, address
+        self._app, self._settings, self._listener = app, settings, listener
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
         if self.started:
-            sys.stdout.write(f"Racing Hexapods is at {self._address} (Ctrl-C stops it)\n")
+            note_address(self._settings.data, _local_address(self._listener))
+            address = self._settings.public_url or _local_address(self._listener, "localhost")
+            sys.stdout.write(f"Racing Hexapods is at {address} (Ctrl-C stops it)\n")
             sys.stdout.flush()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
@@ -184,10 +190,9 @@ def _listen(settings: Settings) -> socket.socket:
     return listener
 
 
-def _address(settings: Settings, listener: socket.socket) -> str:
-    if settings.public_url is not None:
-        return settings.public_url
+def _local_address(listener: socket.socket, any_address: str = "127.0.0.1") -> str:
+    """The server's address on this machine."""
     name, port = listener.getsockname()[:2]
     if name in ("0.0.0.0", "::"):  # noqa: S104 - compared, not bound
-        name = "localhost"
+        name = any_address
     return f"http://[{name}]:{port}/" if ":" in name else f"http://{name}:{port}/"

@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps({"config": as_json(config), "result": result}))
     else:
-        _tell(result, options.clock)
+        show_lanes(result, options.clock)
     return 0
 
 
@@ -87,7 +87,8 @@ def _race(walkers: Sequence[Walker], config: RaceConfig) -> list[LaneRecording]:
     return recording
 
 
-def _tell(result: dict[str, Any], clock: str) -> None:
+def show_lanes(result: dict[str, Any], clock: str) -> None:
+    """Print a race's result under a clock."""
     rows = []
     for lane in sorted(result["lanes"], key=lambda lane: lane["clocks"][clock]["rank"]):
         timed, total = lane["clocks"][clock], lane["total_distance_m"]

@@ -7,6 +7,7 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
+from rich.text import Text
 
 
 def progress() -> Progress:
@@ -29,5 +30,6 @@ def show_table(title: str, head: Sequence[str], rows: Sequence[Sequence[Any]]) -
     for place, name in enumerate(head):
         table.add_column(name, justify="left" if place == 0 else "right", no_wrap=place == 0)
     for row in rows:
-        table.add_row(*(str(cell) for cell in row))
+        # As text: in a name, [brackets] would be taken for markup.
+        table.add_row(*(Text(str(cell)) for cell in row))
     Console(file=sys.stdout).print(table)

@@ -11,19 +11,23 @@ from app.domain.errors import InvalidInput
 LOCK_FILE = "server.lock"
 
 
+class FolderInUse(InvalidInput):
+    """Another process has the data folder."""
+
+
 @contextmanager
 def lock_folder(folder: Path) -> Iterator[None]:
     """Keep others out. The system lets go of the lock when the process ends, however it ends.
 
     Raises:
-        InvalidInput: if another process has the folder.
+        FolderInUse: if another process has the folder.
     """
     # Never removed: another process may have opened it already, and would lock nothing.
     with (folder / LOCK_FILE).open("ab") as file:
         try:
             _lock(file)
         except OSError as error:
-            raise InvalidInput(
+            raise FolderInUse(
                 f"another server uses the data folder {folder}; stop it, or choose another "
                 "folder with --data or HEXAPODS_DATA"
             ) from error

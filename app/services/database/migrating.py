@@ -34,6 +34,22 @@ def migrate(database: Database) -> None:
     database.write(work)
 
 
+def check_current(connection: Connection) -> bool:
+    """Whether the database has this version's schema; False if it has none yet.
+
+    Raises:
+        InvalidInput: if another version made it.
+    """
+    _refuse_newer(connection)
+    heads = MigrationContext.configure(connection).get_current_heads()
+    if heads and newest_revision() not in heads:
+        raise InvalidInput(
+            "an older version of Racing Hexapods made this database; start `hexapods serve` once, "
+            "which brings it to this version"
+        )
+    return bool(heads)
+
+
 def newest_revision() -> str:
     """The schema of this version."""
     return str(ScriptDirectory.from_config(_config()).get_current_head())

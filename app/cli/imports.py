@@ -1,0 +1,64 @@
+"""`hexapods import`: takes in a run that `hexapods export` put into a file.
+
+Nothing of the file is believed before it is checked; see docs/operations.md.
+"""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from app.agents.registry import registered
+from app.cli.asking import ask_server
+from app.cli.runs import add_data
+from app.domain.errors import InvalidInput
+from app.services.archives import MAX_BYTES
+from app.settings import Settings, read_settings
+
+
+def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Describe the command."""
+    parser = commands.add_parser("import", help="take a run out of a file", description=__doc__)
+    parser.add_argument("file", metavar="RUN.ZIP", help="what `hexapods export` made")
+    add_data(parser)
+    parser.add_argument("--json", action="store_true", help="for programs")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Import a run.
+
+    Raises:
+        HexapodError: if the file is not what it should be, or cannot be kept.
+    """
+    shown = _import(read_settings(data=options.data), _read(options.file), options.file)
+    if options.json:
+        print(json.dumps(shown))
+    else:
+        print(f"{options.file} is {shown['kind']} {shown['id']} here, {shown['name']!r}.")
+    return 0
+
+
+def _read(path: str) -> bytes:
+    try:
+        with Path(path).open("rb") as file:
+            # One byte more than may be, so that a file that grows meanwhile is refused as well.
+            return file.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise InvalidInput(f"cannot read {path}: {error.strerror}") from error
+
+
+def _import(settings: Settings, data: bytes, said: str) -> dict[str, Any]:
+    # Databases take a moment to import, which other commands need not.
+    from app.services.database.folder_lock import FolderInUse  # noqa: PLC0415
+    from app.services.database.opening import open_store  # noqa: PLC0415
+    from app.services.ids import RunIds  # noqa: PLC0415
+    from app.services.moving import import_run  # noqa: PLC0415
+    from app.services.views import run_view  # noqa: PLC0415
+
+    try:
+        with open_store(settings) as store:
+            return run_view(import_run(store, data, RunIds(), registered(), said))
+    except FolderInUse:
+        answer: dict[str, Any] = ask_server(settings, "POST", "api/v1/import", data)
+        return answer

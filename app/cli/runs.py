@@ -1,0 +1,145 @@
+"""`hexapods runs`: the runs in the data folder, whether a server has it now or not.
+
+Looking needs no server and disturbs none. What changes something is done by the server that has
+the data folder, or, if none has, here.
+"""
+
+import argparse
+import json
+import sys
+from contextlib import AbstractContextManager
+from urllib.parse import quote
+
+from app.cli.asking import ask_server
+from app.cli.options import whole
+from app.cli.race import show_lanes
+from app.cli.terminal import show_table
+from app.domain.errors import InvalidInput
+from app.services.errors import NotFound
+from app.services.store import KINDS, STATES, Run, RunStore
+from app.services.views import run_view
+from app.settings import Settings, read_settings
+
+_LIMIT = 50
+_HEAD = ("run", "kind", "state", "steps", "result", "began", "name")
+
+
+def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Describe the command."""
+    parser = commands.add_parser("runs", help="list, show, delete runs", description=__doc__)
+    verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
+    listing = verbs.add_parser("list", help="the runs, newest first")
+    listing.add_argument("--kind", choices=KINDS, help="only these")
+    listing.add_argument("--state", choices=STATES, help="only those that are this now")
+    listing.add_argument("--limit", type=whole, default=_LIMIT, help=f"default {_LIMIT}")
+    showing = verbs.add_parser("show", help="all about a run")
+    deleting = verbs.add_parser("delete", help="forget a run that has ended, with all it has")
+    for verb, run in ((listing, _list), (showing, _show), (deleting, _delete)):
+        verb.set_defaults(run=run)
+        add_data(verb)
+        verb.add_argument("--json", action="store_true", help="for programs")
+    for verb in (showing, deleting):
+        verb.add_argument("run_id", metavar="RUN", help="its id, as `hexapods runs list` tells it")
+
+
+def add_data(parser: argparse.ArgumentParser) -> None:
+    """Which data folder."""
+    parser.add_argument("--data", help="data folder (default: the user's, or HEXAPODS_DATA)")
+
+
+def found(store: RunStore, run_id: str) -> Run:
+    """A run.
+
+    Raises:
+        InvalidInput: if there is none.
+    """
+    try:
+        return store.get(run_id)
+    except NotFound as error:
+        raise InvalidInput(f"{error}; `hexapods runs list` shows what there is") from error
+
+
+def looking(settings: Settings) -> AbstractContextManager[RunStore]:
+    """The store of a data folder, for who only reads."""
+    # Databases take a moment to import, which other commands need not.
+    from app.services.database.reading import look_into_store  # noqa: PLC0415
+
+    return look_into_store(settings)
+
+
+def _list(options: argparse.Namespace) -> int:
+    if options.limit < 1:
+        raise InvalidInput(f"--limit must be at least 1, not {options.limit}")
+
+    with looking(read_settings(data=options.data)) as store:
+        page = store.list(options.kind, options.state, options.limit)
+    if options.json:
+        items = [run_view(run) for run in page.items]
+        print(json.dumps({"items": items, "next_cursor": page.next_cursor}))
+        return 0
+    if not page.items:
+        print("There are no such runs.")
+        return 0
+    rows = [_row(run) for run in page.items]
+    if sys.stdout.isatty():
+        show_table("Newest first", _HEAD, rows)
+    else:
+        print("\n".join("\t".join(row) for row in rows))
+    if page.next_cursor is not None:
+        print(f"There are more; --limit {2 * options.limit} shows more of them.")
+    return 0
+
+
+def _row(run: Run) -> tuple[str, ...]:
+    steps = f"{run.total:,}" if run.done == run.total else f"{run.done:,} of {run.total:,}"
+    began = (run.started_at or run.created_at).astimezone().strftime("%Y-%m-%d %H:%M")
+    return (run.id, run.kind, run.state, steps, _outcome(run), began, run.name)
+
+
+def _outcome(run: Run) -> str:
+    """What came of it, in a word or two."""
+    if not run.result:
+        return ""
+    if run.kind == "training":
+        distance = run.result["distance_m"]
+        return "" if distance is None else f"{distance:.2f} m"
+    lanes = run.result["lanes"]
+    return next(str(lane["agent"]) for lane in lanes if lane["clocks"]["paper"]["rank"] == 1)
+
+
+def _show(options: argparse.Namespace) -> int:
+    with looking(read_settings(data=options.data)) as store:
+        run = found(store, options.run_id)
+        curve = store.evaluations(run.id)
+    shown = run_view(run)
+    if options.json:
+        print(json.dumps({**shown, "curve": list(curve)}))
+        return 0
+    progress, result = shown.pop("progress"), shown.pop("result")
+    shown["steps"] = f"{progress['done']:,} of {progress['total']:,}"
+    shown["evaluations"] = len(curve)
+    for name, value in shown.items():
+        if value:
+            print(f"{name:>18}  {value if isinstance(value, str) else json.dumps(value)}")
+    if result and "lanes" in result:
+        show_lanes(result, "paper")
+    elif result:
+        print(f"{'result':>18}  {json.dumps(result)}")
+    return 0
+
+
+def _delete(options: argparse.Namespace) -> int:
+    from app.services.database.folder_lock import FolderInUse  # noqa: PLC0415
+    from app.services.database.opening import open_store  # noqa: PLC0415
+
+    settings = read_settings(data=options.data)
+    # First, so that a wrong id is no reason to ask anyone for anything.
+    with looking(settings) as seen:
+        run = found(seen, options.run_id)
+    try:
+        with open_store(settings) as store:
+            store.delete(run.id)
+    except FolderInUse:
+        ask_server(settings, "DELETE", f"api/v1/{run.kind}s/{quote(run.id, safe='')}")
+    print(json.dumps({"deleted": run.id}) if options.json else f"Deleted {run.kind} {run.id}.")
+    return 0

@@ -1,0 +1,162 @@
+"""The files of a run in its archive: which there are, and that each is what it should be."""
+
+import io
+import re
+import zipfile
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.domain.errors import DamagedFile, HexapodError
+from app.domain.simulator import Motion
+from app.domain.types import Action, Cells
+from app.runs import tables
+from app.runs.config import RaceConfig, TrainingConfig, Walk
+from app.runs.recording import Arrays, race_recording
+from app.runs.records import Knowledge
+from app.runs.stored_practice import practice_recording
+from app.services.store import TABLE, Run, RunStore
+from app.services.stored_recordings import PRACTICE, RACE, evaluations_file
+
+MAX_EVALUATION_FILES = 100
+_EVALUATIONS = re.compile(r"evaluations-\d{4}\.npz", re.ASCII)
+
+
+def is_file_of(name: str, kind: str) -> bool:
+    """Whether a run of this kind may have a file of this name. Films are made anew."""
+    if kind == "race":
+        return name == RACE
+    return name in (TABLE, PRACTICE) or _EVALUATIONS.fullmatch(name) is not None
+
+
+def files_of(store: RunStore, run: Run) -> dict[str, bytes]:
+    """All files of a run that go with it.
+
+    Raises:
+        DamagedFile: if one is damaged, or missing.
+    """
+    names = [RACE]
+    if run.kind == "training":
+        names = [TABLE, PRACTICE, *map(evaluations_file, range(MAX_EVALUATION_FILES))]
+    found = {name: store.artifact(run.id, name) for name in names}
+    return {name: data for name, data in found.items() if data is not None}
+
+
+def check_files(run: Run, files: Mapping[str, bytes], said: str) -> None:
+    """Make sure that everything in the files can be shown, and gone on with.
+
+    Raises:
+        DamagedFile: if something cannot be.
+        TableMismatch: if a table was learned for another problem.
+    """
+    for name, data in files.items():
+        if not is_file_of(name, run.kind):
+            raise DamagedFile(f"{said} has {name}, which no {run.kind} has")
+        if name == TABLE:
+            _check_table(run, data, f"{name} of {said}")
+    try:
+        if isinstance(run.config, RaceConfig):
+            _check_race(run.config, files)
+        else:
+            _check_practice(run.config, files)
+    except Exception as error:  # NumPy does not say all that strange arrays make it raise
+        raise DamagedFile(f"{said} has a recording that cannot be shown: {error}") from error
+
+
+def _check_table(run: Run, data: bytes, said: str) -> None:
+    checkpoint, config = tables.from_bytes(data, said), run.config
+    if not isinstance(config, TrainingConfig):
+        return
+    try:
+        tables.check_fits(checkpoint, config, config.observation)
+        if checkpoint.meta["agent"] != config.agent:
+            raise ValueError("another agent learned it")
+        if "where" in tables.agent_state(checkpoint):
+            digest = tables.table_of(checkpoint).sha256()
+            if run.result is not None and run.result["q_table_sha256"] != digest:
+                raise ValueError("its values are not those of the run's result")
+    except HexapodError:
+        raise
+    except Exception as error:  # NumPy does not say all that strange arrays make it raise
+        raise DamagedFile(f"{said} does not hold together: {error}") from error
+
+
+def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
+    if RACE not in files:
+        return
+    lanes = race_recording(_arrays(files[RACE]))
+    if [lane.agent for lane in lanes] != [lane.agent for lane in config.lanes]:
+        raise ValueError("it has other lanes")
+    for lane in lanes:
+        if len(lane.steps) > config.steps:
+            raise ValueError("it has more steps than the race")
+        _check_poses(lane.rest_qpos[None], config)
+        for step in lane.steps:
+            _check_motion(step.motion, config)
+            _check_choice(step.observation, step.action, step.knowledge, config)
+
+
+def _check_practice(config: Walk, files: Mapping[str, bytes]) -> None:
+    if PRACTICE not in files:
+        return
+    later = sorted(name for name in files if _EVALUATIONS.fullmatch(name))
+    if later != [evaluations_file(number) for number in range(len(later))]:
+        raise ValueError("an evaluation is missing")
+    evaluations = [_arrays(files[name]) for name in later]
+    recording = practice_recording(_arrays(files[PRACTICE]), evaluations)
+    _check_poses(recording.rest_qpos[None], config)
+    for step in recording.steps:
+        _check_motion(step.motion, config)
+        _check_choice(step.observation, step.action, step.knowledge, config)
+    for evaluation in recording.evaluations:
+        _check_motion(evaluation.motion, config)
+
+
+def _arrays(data: bytes) -> Arrays:
+    """The arrays of a file, which cannot unpack to more than it is."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        members = archive.infolist()
+    if any(member.compress_type != zipfile.ZIP_STORED for member in members):
+        raise ValueError("it is compressed")
+    if sum(member.file_size for member in members) > len(data):
+        raise ValueError("it claims to be larger than it is")
+    with np.load(io.BytesIO(data), allow_pickle=False) as file:
+        return {name: file[name] for name in file.files}
+
+
+def _check_motion(motion: Motion | None, walk: Walk) -> None:
+    if motion is None:
+        return
+    _check_poses(motion.qpos, walk)
+    times = motion.time_s
+    if times.shape != (len(motion.qpos),) or not np.isfinite(times).all():
+        raise ValueError("its times are none")
+    if (np.diff(times) <= 0).any() or times[0] <= 0:
+        raise ValueError("its time does not go on")
+
+
+def _check_poses(qpos: NDArray[np.float32], walk: Walk) -> None:
+    """(frames, 7 + joints): a position, a quaternion, three joints a leg."""
+    if qpos.shape[1:] != (7 + 3 * len(walk.robot.legs),) or not len(qpos):
+        raise ValueError("its robot has other joints")
+    if qpos.dtype.kind != "f" or not np.isfinite(qpos).all():
+        raise ValueError("its poses are none")
+
+
+def _check_choice(
+    observation: Cells, action: Action, knowledge: Knowledge | None, walk: Walk
+) -> None:
+    pairs, cells = len(walk.resolved_gait.pairs), len(walk.grid)
+    if len(observation) != pairs or not _are_below(observation, cells):
+        raise ValueError("what it saw is on no foot grid")
+    if not _are_below([action.pair], pairs) or not _are_below([action.cell], cells):
+        raise ValueError("what it did cannot be done")
+    if knowledge is not None:
+        shapes = {np.shape(knowledge.values), np.shape(knowledge.visits)}
+        if shapes != {(pairs, cells)}:
+            raise ValueError("what it knew is of another problem")
+
+
+def _are_below(numbers: Iterable[object], limit: int) -> bool:
+    return all(isinstance(number, int) and 0 <= number < limit for number in numbers)

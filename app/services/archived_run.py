@@ -1,0 +1,219 @@
+"""A run as the `run.json` of its archive: one strict shape, so that nothing else gets in."""
+
+import unicodedata
+from collections.abc import Collection, Mapping, Sequence
+from datetime import datetime
+from typing import Annotated, Any, Literal
+
+import msgspec
+from msgspec import UNSET, Meta, Raw, UnsetType
+
+from app import __version__
+from app.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownName
+from app.runs.clocks import CLOCKS
+from app.runs.config import MAX_LANES, MAX_STEPS, RaceConfig, as_json, config_from_json
+from app.services.entries import check_walk
+from app.services.errors import Conflict
+from app.services.store import UNENDED, Kind, Run
+
+FORMAT = 1
+MAX_JSON_BYTES = 64_000_000
+_MAX_PART_BYTES = 256_000  # of what is not a curve
+
+_Count = Annotated[int, Meta(ge=0, le=MAX_STEPS * MAX_LANES)]
+_Step = Annotated[int, Meta(ge=0, le=MAX_STEPS)]
+_Id = Annotated[str, Meta(pattern="^[0-9a-z]{1,32}$")]
+_Moment = Annotated[datetime, Meta(tz=True)]
+# JSON has no NaN; msgspec writes null for it.
+_Measured = float | None
+
+
+class _Strict(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """Has the fields it has and no others."""
+
+
+class _Change(_Strict, frozen=True):
+    step: _Count
+    pace: float | Literal["max"] | UnsetType = UNSET
+    alpha: float | UnsetType = UNSET
+    gamma: float | UnsetType = UNSET
+    epsilon: float | UnsetType = UNSET
+
+
+class _Evaluation(_Strict, frozen=True):
+    step: _Step
+    distance_m: _Measured
+    epsilon: _Measured
+
+
+class _TrainingResult(_Strict, frozen=True):
+    distance_m: _Measured
+    greedy_distance_m: _Measured
+    q_table_sha256: Annotated[str, Meta(pattern="^[0-9a-f]{64}$")] | None
+
+
+class _Figures(_Strict, frozen=True):
+    finished_distance_m: _Measured
+    elapsed_s: _Measured
+    crossed_s: _Measured
+    rank: Annotated[int, Meta(ge=1, le=MAX_LANES)]
+
+
+class _LaneResult(_Strict, frozen=True):
+    agent: str
+    training_id: _Id | None
+    trained_robot: dict[str, Any] | None
+    steps: _Step
+    total_distance_m: _Measured
+    failure: str | None
+    decision_s: _Measured
+    simulated_transitions: Annotated[int, Meta(ge=0)]
+    clocks: dict[str, _Figures]
+
+
+class _RaceResult(_Strict, frozen=True):
+    lanes: list[_LaneResult]
+    shared_machine: bool
+
+
+class _Shape(_Strict, frozen=True):
+    """A `Run` that has ended."""
+
+    id: _Id
+    kind: Kind
+    name: Annotated[str, Meta(max_length=100)]
+    state: Literal["finished", "stopped", "failed", "interrupted"]
+    config: Raw
+    lane_training_ids: Annotated[list[_Id | None], Meta(max_length=MAX_LANES)]
+    continued_from: _Id | None
+    done: _Count
+    total: _Count
+    changes: Annotated[list[_Change], Meta(max_length=10_000)]
+    greedy_distance_m: _Measured
+    result: Raw
+    error: Annotated[str, Meta(max_length=10_000)] | None
+    created_at: _Moment
+    started_at: _Moment | None
+    ended_at: _Moment | None
+
+
+class _File(_Strict, frozen=True):
+    format: int
+    version: Annotated[str, Meta(max_length=100)]
+    run: _Shape
+    curve: list[_Evaluation]
+
+
+class _Head(msgspec.Struct):
+    format: int
+    version: str = ""
+
+
+def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
+    """A run that has ended, and its curve.
+
+    Raises:
+        Conflict: if it has not ended.
+        InvalidInput: if it is too long.
+    """
+    if run.state in UNENDED:
+        raise Conflict(f"{run.kind} {run.id} is {run.state}; stop it first", run.state)
+    own = {name: getattr(run, name) for name in _Shape.__struct_fields__}
+    own["config"] = as_json(run.config)
+    written = {"format": FORMAT, "version": __version__, "run": own, "curve": list(curve)}
+    data = msgspec.json.format(msgspec.json.encode(written), indent=1)
+    if len(data) > MAX_JSON_BYTES:
+        raise InvalidInput(f"{run.kind} {run.id} has too long a curve for an archive")
+    return data
+
+
+def read_run_json(
+    data: bytes, said: str, agents: Collection[str]
+) -> tuple[Run, list[dict[str, Any]]]:
+    """The run and its curve.
+
+    Args:
+        data: what `run_json` wrote.
+        said: what to call the file in messages.
+        agents: the names that are registered here.
+
+    Raises:
+        DamagedFile: if `run_json` of this version did not write it.
+        InvalidInput: if it is of an agent, a robot or a gait that cannot be here.
+    """
+    try:
+        if len(data) > MAX_JSON_BYTES:
+            raise ValueError("it is too long")
+        head = msgspec.json.decode(data, type=_Head)
+        if head.format != FORMAT:
+            raise DamagedFile(
+                f"{said} has format {head.format}, of version {head.version[:40]!r}; this version "
+                f"({__version__}) reads {FORMAT}"
+            )
+        file = msgspec.json.decode(data, type=_File)
+        run = _run(file.run)
+        curve: list[dict[str, Any]] = msgspec.to_builtins(file.curve)
+        _check(run, curve)
+    except DamagedFile:
+        raise
+    except HexapodError as error:
+        raise InvalidInput(f"{said} cannot be taken in: {error}") from error
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+        raise DamagedFile(f"{said} does not hold a run as it should: {error}") from error
+    _check_agents(run, agents)
+    nan = float("nan")
+    return run, [{k: nan if v is None else v for k, v in row.items()} for row in curve]
+
+
+def _run(shape: _Shape) -> Run:
+    config = config_from_json(_part(shape.config, dict[str, Any]))
+    check_walk(config)
+    kind = _RaceResult if isinstance(config, RaceConfig) else _TrainingResult
+    _part(shape.result, kind | None)  # checked only: what was written is kept as it is
+    result = _part(shape.result, Any)
+    values = {name: getattr(shape, name) for name in shape.__struct_fields__}
+    changes = tuple(msgspec.to_builtins(change) for change in shape.changes)
+    lanes = tuple(shape.lane_training_ids)
+    values |= {"config": config, "result": result, "changes": changes, "lane_training_ids": lanes}
+    return Run(**values)
+
+
+def _part(raw: Raw, kind: Any) -> Any:
+    if len(bytes(raw)) > _MAX_PART_BYTES:
+        raise ValueError("it is too long")
+    return msgspec.json.decode(raw, type=kind)
+
+
+def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
+    """What holds for every run, beyond the shape of each field."""
+    is_race = isinstance(run.config, RaceConfig)
+    if is_race != (run.kind == "race") or run.done > run.total:
+        raise ValueError("its kind, its config and its progress do not fit together")
+    if any(unicodedata.category(c) in ("Cc", "Cs") for c in run.name):
+        raise ValueError("its name has control characters")
+    steps = [row["step"] for row in curve]
+    if steps != sorted(set(steps)) or (is_race and steps):
+        raise ValueError("its curve is none")
+    if not isinstance(run.config, RaceConfig):
+        if run.lane_training_ids:
+            raise ValueError("it is a training, and has lanes")
+        return
+    agents = [lane.agent for lane in run.config.lanes]
+    if len(run.lane_training_ids) != len(agents):
+        raise ValueError("its lanes do not fit together")
+    for lane, agent in zip((run.result or {"lanes": ()})["lanes"], agents, strict=False):
+        if lane["agent"] != agent or lane["clocks"].keys() != set(CLOCKS):
+            raise ValueError("its result is of other lanes")
+    if run.result is not None and len(run.result["lanes"]) != len(agents):
+        raise ValueError("its result is of other lanes")
+
+
+def _check_agents(run: Run, agents: Collection[str]) -> None:
+    """An agent named by module would be imported, and so run, when someone goes on with it."""
+    config = run.config
+    used = (
+        [lane.agent for lane in config.lanes] if isinstance(config, RaceConfig) else [config.agent]
+    )
+    for name in used:
+        if name not in agents:
+            raise UnknownName("agent", name, agents)

@@ -1,0 +1,148 @@
+"""`hexapods runs`, `export` and `import`, as a user runs them."""
+
+import json
+import os
+import pty
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.services.database.store import SqlStore
+from app.services.store import TABLE
+from tests.cli.running import ROOT, hexapods, output, refusal
+from tests.services.ended import ended_race, ended_training
+from tests.services.stores import opened, training
+
+TRAINING, RACED = "00000000000t1", "00000000000r1"
+
+
+@pytest.fixture
+def data(tmp_path: Path) -> Path:
+    """A data folder in which a server has been."""
+    folder = tmp_path / "data"
+    with opened(folder, None) as store:
+        ended_training(store, TRAINING, "[b]old[/b]")
+        ended_race(store, RACED, TRAINING)
+    return folder
+
+
+@pytest.fixture
+def kept(data: Path) -> Iterator[SqlStore]:
+    """The same, while a server has it."""
+    with opened(data, None) as store:
+        yield store
+
+
+def test_runs_are_listed(data: Path, tmp_path: Path) -> None:
+    here = ("--data", str(data))
+    listed = output("runs", "list", *here, folder=tmp_path)
+    assert [run["id"] for run in listed["items"]] == [TRAINING, RACED]
+    assert listed["next_cursor"] is None
+    for filters, ids in (
+        (("--kind", "race"), [RACED]),
+        (("--state", "failed"), []),
+        (("--limit", "1"), [TRAINING]),
+    ):
+        listed = output("runs", "list", *here, *filters, folder=tmp_path)
+        assert [run["id"] for run in listed["items"]] == ids
+    lines = hexapods("runs", "list", *here, folder=tmp_path).stdout.splitlines()
+    assert lines[0].split("\t")[:4] == [TRAINING, "training", "finished", "120"]
+    assert lines[1].split("\t")[4] == "greedy"
+    assert "at least 1" in refusal("runs", "list", *here, "--limit", "0", folder=tmp_path)
+
+
+def test_a_terminal_gets_a_table(data: Path, tmp_path: Path) -> None:
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "app.cli", "runs", "list", "--data", str(data)]
+    environment = {"PYTHONPATH": str(ROOT), "TERM": "xterm", "COLUMNS": "120"}
+    subprocess.run(command, stdout=theirs, cwd=tmp_path, env=environment, check=True, timeout=60)
+    os.close(theirs)
+    shown = os.read(ours, 100_000).decode()
+    os.close(ours)
+    assert "Newest first" in shown
+    assert "[b]old[/b]" in shown
+
+
+def test_a_run_is_shown(data: Path, tmp_path: Path) -> None:
+    here = ("--data", str(data))
+    shown = output("runs", "show", TRAINING, *here, folder=tmp_path)
+    assert shown["name"] == "[b]old[/b]"
+    assert len(shown["curve"]) == 24
+    said = hexapods("runs", "show", RACED, *here, folder=tmp_path).stdout
+    assert "Ranked at the first finish, paper clock" in said
+    assert "16 of 16" in said
+
+
+@pytest.mark.parametrize("verb", [("runs", "show"), ("runs", "delete"), ("export", "--out", "x")])
+def test_an_unknown_run_is_refused_with_how_to_find_one(
+    verb: tuple[str, ...], data: Path, tmp_path: Path
+) -> None:
+    for folder in (data, tmp_path / "empty"):
+        sentence = refusal(*verb, "../nope", "--data", str(folder), folder=tmp_path)
+        assert "no run '../nope'" in sentence
+        assert "`hexapods runs list`" in sentence
+    assert not (tmp_path / "x").exists()
+    assert not (tmp_path / "empty").exists()
+
+
+def test_a_run_is_deleted(data: Path, tmp_path: Path) -> None:
+    here = ("--data", str(data))
+    assert output("runs", "delete", RACED, *here, folder=tmp_path) == {"deleted": RACED}
+    listed = output("runs", "list", *here, folder=tmp_path)
+    assert [run["id"] for run in listed["items"]] == [TRAINING]
+
+
+def test_a_run_moves_to_another_folder(data: Path, tmp_path: Path) -> None:
+    for run_id in (TRAINING, RACED):
+        out = ("--out", "run.zip", "--data", str(data))
+        assert output("export", run_id, *out, folder=tmp_path)["id"] == run_id
+        other = ("--data", str(tmp_path / "other"))
+        assert output("import", "run.zip", *other, folder=tmp_path)["id"] == run_id
+        there = [output("runs", "show", run_id, *at, folder=tmp_path) for at in (out[2:], other)]
+        assert there[0] == there[1]
+        again = output("import", "run.zip", *other, folder=tmp_path)
+        assert again["id"] != run_id
+    told = hexapods("import", "run.zip", "--data", str(data), folder=tmp_path)
+    assert "is race " in told.stdout
+    with opened(tmp_path / "other", None) as store:
+        assert store.artifact(TRAINING, TABLE) is not None
+        assert len(store.list().items) == 4
+
+
+def test_what_cannot_be_moved_is_one_sentence(data: Path, tmp_path: Path) -> None:
+    here = ("--data", str(data))
+    (tmp_path / "junk.zip").write_text("milk")
+    (tmp_path / "folder").mkdir()
+    for file, names in (
+        ("junk.zip", "junk.zip is no archive of a run"),
+        ("missing.zip", "cannot read missing.zip"),
+        ("folder", "cannot read folder"),
+    ):
+        assert names in refusal("import", file, *here, folder=tmp_path)
+    for out, names in (("no/such/x.zip", "can be written"), ("folder", "it is a folder")):
+        assert names in refusal("export", TRAINING, "--out", out, *here, folder=tmp_path)
+
+
+def test_looking_disturbs_no_server(kept: SqlStore, data: Path, tmp_path: Path) -> None:
+    here = ("--data", str(data))
+    kept.create(training("zz", state="running"))
+    listed = output("runs", "list", *here, "--state", "running", folder=tmp_path)
+    assert [run["id"] for run in listed["items"]] == ["zz"]
+    assert "stop it first" in refusal("export", "zz", "--out", "x", *here, folder=tmp_path)
+    assert output("export", RACED, "--out", "x", *here, folder=tmp_path)["id"] == RACED
+    assert kept.get("zz").state == "running"
+
+
+def test_nothing_is_changed_behind_a_server(kept: SqlStore, data: Path, tmp_path: Path) -> None:
+    here = ("--data", str(data))
+    output("export", RACED, "--out", "x.zip", *here, folder=tmp_path)
+    for command in (("runs", "delete", RACED), ("import", "x.zip")):
+        sentence = refusal(*command, *here, folder=tmp_path)
+        assert f"another process has the data folder {data}" in sentence
+    (data / "server.address").write_text(json.dumps({"address": "http://127.0.0.1:1/"}))
+    sentence = refusal("runs", "delete", RACED, *here, folder=tmp_path)
+    assert "does not answer at http://127.0.0.1:1/" in sentence
+    assert [run.id for run in kept.list().items] == [TRAINING, RACED]
