@@ -11,8 +11,9 @@ _TIME_DIGITS, _CHANCE_DIGITS = 9, 4
 class RunIds:
     """Makes ids out of the time [ms], which rises even if the clock does not, and chance."""
 
-    def __init__(self) -> None:
-        self._last_ms = 0
+    def __init__(self, after: str | None = None) -> None:
+        """Begin after an id that was made before, whatever the clock says by now."""
+        self._last_ms = _time_ms(after or "")
         self._lock = threading.Lock()
 
     def __call__(self) -> str:
@@ -22,6 +23,16 @@ class RunIds:
             made = self._last_ms
         chance = secrets.randbits(5 * _CHANCE_DIGITS)
         return _in_base_32(made, _TIME_DIGITS) + _in_base_32(chance, _CHANCE_DIGITS)
+
+
+def _time_ms(made: str) -> int:
+    """The time in an id; 0 for what is none."""
+    if len(made) != _TIME_DIGITS + _CHANCE_DIGITS or set(made) - set(_DIGITS):
+        return 0
+    time_ms = 0
+    for digit in made[:_TIME_DIGITS]:
+        time_ms = time_ms << 5 | _DIGITS.index(digit)
+    return time_ms
 
 
 def _in_base_32(number: int, digits: int) -> str:

@@ -4,7 +4,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Mapping
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from app.domain.robot import as_mapping
@@ -55,6 +55,8 @@ class Job:
         self.ended, self.gone = threading.Event(), threading.Event()
         self.child = Child(f"{run.kind} {run.id}", order, self._take)
         self._run, self._order = run, order
+        self._began_s = time.monotonic()
+        self._began_at = max(datetime.now(UTC), run.started_at or run.created_at)
         self._store, self._recordings, self._bus = store, recordings, bus
         self._answers: dict[int, threading.Event] = {}
         self._has_begun = False
@@ -91,9 +93,10 @@ class Job:
         """Give the run its last state, if it has none yet."""
         if self.ended.is_set():
             return
-        now = datetime.now(UTC)
+        # By a clock that nobody puts forward or back.
+        ended_at = self._began_at + timedelta(seconds=time.monotonic() - self._began_s)
         run = self._store.change(
-            self.run_id, LIVE, state, error=error, result=result, ended_at=now, eta_s=None
+            self.run_id, LIVE, state, error=error, result=result, ended_at=ended_at, eta_s=None
         )
         self.ended.set()
         self._publish(run)

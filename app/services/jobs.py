@@ -53,7 +53,8 @@ class Jobs:
         self._store, self._recordings, self._bus = store, recordings, bus
         self._on_queued = on_queued
         self.cores = cores or os.cpu_count() or 1
-        self.new_id = RunIds()
+        newest = store.list(limit=1).items
+        self.new_id = RunIds(after=newest[0].id if newest else None)
         self._waiting = WaitingRuns(store, self._publish)
         self._jobs: dict[str, Job] = {}
         self._closing = False
@@ -233,7 +234,8 @@ class Jobs:
 
     def _start(self, entry: Entry) -> None:
         """Let a process take over a run that has waited."""
-        run_id, now = entry.run.id, datetime.now(UTC)
+        # The clock may have been put back since.
+        run_id, now = entry.run.id, max(datetime.now(UTC), entry.run.created_at)
         run = self._store.change(run_id, QUEUED, "running", started_at=now, waiting_for=())
         try:
             job = Job(run, entry.make_order(), self._store, self._recordings, self._bus)

@@ -4,10 +4,11 @@ from collections.abc import Collection, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import Connection, Executable, delete, insert, select, update
+from sqlalchemy import Connection, Executable, case, delete, func, insert, literal, select, update
 
 from app.domain.errors import DamagedFile
 from app.services.artifacts import ArtifactFiles, Stored
+from app.services.database.columns import UtcTime
 from app.services.database.engine import Database
 from app.services.database.progress import Progress
 from app.services.database.rows import columns_of, row_of, run_of
@@ -56,6 +57,11 @@ class SqlStore:
         rows = self._database.read(lambda connection: _found(connection, wanted))
         runs = [self._as_run(row) for row in rows[:limit]]
         return Page(runs, runs[-1].id if len(rows) > limit else None)
+
+    def counts(self) -> Mapping[State, int]:
+        wanted = select(RUNS.c.state, func.count()).group_by(RUNS.c.state)
+        rows = self._database.read(lambda connection: connection.execute(wanted).all())
+        return {state: count for state, count in rows}  # noqa: C416 - as a dict of plain types
 
     def change(
         self, run_id: str, from_states: Collection[State], to_state: State, **fields: Any
@@ -175,11 +181,13 @@ class SqlStore:
         Returns:
             their ids.
         """
-        now = datetime.now(UTC)
+        now = literal(datetime.now(UTC), UtcTime)
+        # The clock may have been put back since it began.
+        ended_at = case((RUNS.c.started_at > now, RUNS.c.started_at), else_=now)
         statement = (
             update(RUNS)
             .where(RUNS.c.state.in_(UNENDED))
-            .values(state="interrupted", error=_DIED, eta_s=None, waiting_for=[], ended_at=now)
+            .values(state="interrupted", error=_DIED, eta_s=None, waiting_for=[], ended_at=ended_at)
             .returning(RUNS.c.id)
         )
         return self._database.write(
