@@ -66,6 +66,7 @@ def snapshot(learner: Learner, config: TrainingConfig, **more: Any) -> Checkpoin
         "step": learner.step,
         "episode_reward_m": learner.episode_reward_m,
         "greedy_distance_m": learner.greedy_distance_m,
+        "due_epsilon": learner.due_epsilon,
         "rng": seeding.dump(learner.rng),
         "config": as_json(config),
         **more,
@@ -81,6 +82,7 @@ def restore(learner: Learner, checkpoint: Checkpoint) -> None:
     seeding.load(learner.rng, meta["rng"])
     learner.step, learner.episode_reward_m = meta["step"], meta["episode_reward_m"]
     learner.greedy_distance_m = meta["greedy_distance_m"]
+    learner.due_epsilon = meta["due_epsilon"]
 
 
 def continue_from(learner: Learner, checkpoint: Checkpoint) -> None:

@@ -26,6 +26,8 @@ class Learner:
         rival: makes the walker of the one-step look-ahead agent on the same robot.
         step: how many steps it has learned.
         episode_reward_m: earned since the episode began.
+        greedy_distance_m: of the rival, once it was measured.
+        due_epsilon: ε of the newest step while its evaluation is yet to come; None if none is.
     """
 
     walker: Walker
@@ -35,6 +37,7 @@ class Learner:
     step: int = 0
     episode_reward_m: float = 0.0
     greedy_distance_m: float | None = None
+    due_epsilon: float | None = None
 
     @property
     def epsilon(self) -> float:
@@ -54,19 +57,31 @@ def train(
     Raises:
         Diverged: if the physics breaks.
     """
+    yield from _evaluate_if_due(learner, config, record)
     while learner.step < config.steps:
         epsilon, episode = learner.epsilon, learner.step // config.steps_per_episode
         taken, earned_m = _practise(learner, episode, epsilon, record), learner.episode_reward_m
         has_ended = learner.step % config.steps_per_episode == 0 or learner.step == config.steps
-        if has_ended:  # before the yield, after which the learner may be saved
+        # All before the yield, after which the learner may be saved.
+        learner.due_epsilon = epsilon if _is_due(learner.step, config) else None
+        if has_ended:
             learner.episode_reward_m = 0.0
         yield taken
         if has_ended:
             yield EpisodeEnded(episode, learner.step, epsilon, earned_m)
-        if _is_due(learner.step, config):
-            if learner.greedy_distance_m is None:
-                yield refer(learner)
-            yield evaluate(learner, config, epsilon, record)
+        yield from _evaluate_if_due(learner, config, record)
+
+
+def _evaluate_if_due(
+    learner: Learner, config: TrainingConfig, record: bool
+) -> Iterator[Reference | Evaluated]:
+    if learner.due_epsilon is None:
+        return
+    if learner.greedy_distance_m is None:
+        yield refer(learner)
+    evaluated = evaluate(learner, config, learner.due_epsilon, record)
+    learner.due_epsilon = None
+    yield evaluated
 
 
 def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> StepTaken:

@@ -14,6 +14,7 @@ from app.runs.config import SIMULATORS, SimulatorName, TrainingConfig
 from app.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
 from app.runs.tables import from_bytes, restore, snapshot, to_bytes
 from app.runs.training import Learner, train
+from app.runs.walker import Walker
 
 CONFIG = TrainingConfig(
     gait="left-right-vertical", simulator="kinematic", steps=200, seed=3, evaluate_every=50
@@ -200,6 +201,29 @@ def test_saved_midway_and_loaded_it_equals_the_unbroken_run(
     assert everything(second) == everything(unbroken)
     told = [r for r in records if isinstance(r, Reference) or r.step > broken_at]
     assert after == told[-len(after) :]
+
+
+def test_saved_in_the_middle_of_an_evaluation_it_makes_that_again() -> None:
+    config = replace(CONFIG, steps=150, steps_per_episode=50, evaluate_every=50)
+    unbroken, records = run(config)
+    saved = []
+    first = build_learner(config)
+    contender = first.contender
+
+    def saving(rng: np.random.Generator) -> Walker:
+        saved.append(to_bytes(snapshot(first, config)))
+        return contender(rng)
+
+    first.contender = saving
+    list(train(first, config))
+    for number, data in enumerate(saved):
+        second = build_learner(config)
+        restore(second, from_bytes(data, "evaluating.npz"))
+        after = list(train(second, config))
+        assert everything(second) == everything(unbroken)
+        assert [r for r in after if isinstance(r, Evaluated)] == [
+            r for r in records if isinstance(r, Evaluated)
+        ][number:]
 
 
 def test_changed_rates_survive_being_saved() -> None:
