@@ -22,20 +22,23 @@ class PhotoFinish:
         self, server: viser.ViserServer, root: str, cast: Cast, xs: Sequence[float]
     ) -> None:
         self._server, self._root, self._cast, self._xs = server, root, cast, xs
-        self._shown: viser.FrameHandle | None = None
+        self._shown: tuple[tuple[int, float], ...] = ()
+        self._frame: viser.FrameHandle | None = None
 
     def draw(self, frame: StageFrame) -> None:
-        """Show or hide it, as the frame says."""
-        wanted = frame.phase == "photo-finish"
-        if wanted == (self._shown is not None):
+        """Show or hide it, as the frame says; another clock has another photo."""
+        frozen = frame.phase == "photo-finish"
+        wanted = tuple((lane.rank, lane.distance_m) for lane in frame.lanes) if frozen else ()
+        if wanted == self._shown:
             return
-        if self._shown is not None:
-            self._shown.remove()
-            self._shown = None
+        if self._frame is not None:
+            self._frame.remove()
+            self._frame = None
+        self._shown = wanted
+        if not wanted:
             return
-        self._shown = self._server.scene.add_frame(self._root, show_axes=False)
-        for number, (lane, x) in enumerate(zip(frame.lanes, self._xs, strict=True)):
-            far = lane.distance_m
+        self._frame = self._server.scene.add_frame(self._root, show_axes=False)
+        for number, ((rank, far), x) in enumerate(zip(wanted, self._xs, strict=True)):
             bar = strip(_BAR_M, max(abs(far), 0.002))
             color = rgb(self._cast.roles[number].color)
             self._server.scene.add_mesh_simple(
@@ -49,7 +52,7 @@ class PhotoFinish:
             )
             self._server.scene.add_label(
                 f"{self._root}/far{number}",
-                f"{lane.rank}.  {far:.2f} m",
+                f"{rank}.  {far:.2f} m",
                 position=(x, -0.02, 0.0),
                 anchor="top-center",
                 font_screen_scale=_TEXT_SCALE,

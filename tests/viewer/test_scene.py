@@ -222,6 +222,16 @@ def test_a_photo_finish_draws_every_distance_and_goes_again(server: viser.ViserS
     assert not [name for name in told(server) if "/photo" in name]
 
 
+def test_a_photo_finish_under_another_clock_is_another_photo(server: viser.ViserServer) -> None:
+    scene, frame = StageScene(server), standing(race_of(3))
+    scene.draw(replace(frame, phase="photo-finish"))
+    retimed = tuple(replace(lane, distance_m=0.25, rank=2) for lane in frame.lanes)
+    scene.draw(replace(frame, phase="photo-finish", lanes=retimed))
+
+    said = [m["text"] for n, m in told(server).items() if "/photo/far" in n]
+    assert said == ["2.  0.25 m"] * 3
+
+
 def test_a_finished_lane_shows_its_flag(server: viser.ViserServer) -> None:
     cast, scene = race_of(1), StageScene(server)
     frame = standing(cast)
