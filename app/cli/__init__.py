@@ -5,10 +5,10 @@ import sys
 from collections.abc import Sequence
 
 from app import __version__
-from app.cli import bench, export, imports, race, runs, serve, train
+from app.cli import bench, doctor, export, imports, race, runs, serve, train
 from app.domain.errors import HexapodError
 
-COMMANDS = (serve, train, race, runs, export, imports, bench)
+COMMANDS = (serve, train, race, runs, export, imports, doctor, bench)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -10,12 +10,12 @@ ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "docs" / "examples"
 
 
-def hexapods(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """The finished command."""
+def hexapods(*arguments: str, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
+    """The finished command, with further variables in its environment."""
     return subprocess.run(
         [sys.executable, "-m", "app.cli", *arguments],
         cwd=folder,
-        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin"},
+        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin", **variables},
         capture_output=True,
         text=True,
         timeout=100,

@@ -1,0 +1,107 @@
+"""`hexapods doctor`, as a user runs it: what is well, and what to do about what is not."""
+
+import json
+import socket
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.services.database.folder_lock import lock_folder
+from app.services.database.opening import DATABASE_FILE
+from app.services.whereabouts import note_address
+from tests.cli.running import hexapods
+from tests.postgresql import PostgresServer
+from tests.services.stores import database_url, opened
+
+ANY_PORT = {"HEXAPODS_PORT": "0"}
+
+
+def examined(folder: Path, **variables: str) -> dict[str, Any]:
+    """The findings by name, in a data folder `data`."""
+    data = ("--data", str(folder / "data"))
+    done = hexapods("doctor", *data, "--json", folder=folder, **{**ANY_PORT, **variables})
+    found = json.loads(done.stdout)
+    assert done.returncode == (0 if found["ok"] else 1)
+    assert "Traceback" not in done.stderr
+    assert found["ok"] == all(check["ok"] for check in found["checks"])
+    return {check["name"]: (check["ok"], check["said"]) for check in found["checks"]}
+
+
+def trouble(found: dict[str, Any]) -> dict[str, str]:
+    """What is not well."""
+    return {name: said for name, (ok, said) in found.items() if not ok}
+
+
+def test_a_sound_machine_is_well_and_nothing_is_made(tmp_path: Path) -> None:
+    done = hexapods("doctor", "--data", "data", folder=tmp_path, **ANY_PORT)
+    assert done.returncode == 0, done.stdout
+    lines = done.stdout.splitlines()
+    assert all(line.startswith("✓ ") for line in lines)
+    names = [line[2:].partition(":")[0] for line in lines]
+    assert names[:6] == ["python", "packages", "physics", "browser", "cores", "settings"]
+    assert names[6:] == ["data folder", "room", "lock", "database", "address"]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_kept_is_looked_at(tmp_path: Path) -> None:
+    with opened(tmp_path / "data", None):
+        found = examined(tmp_path)
+    assert trouble(found) == {}
+    assert "a server has the data folder" in found["lock"][1]
+    (tmp_path / "data" / "big").write_bytes(bytes(9_500_000))
+    assert "raise HEXAPODS_QUOTA_MB" in trouble(examined(tmp_path, HEXAPODS_QUOTA_MB="10"))["room"]
+    (tmp_path / "data" / DATABASE_FILE).write_text("milk" * 1000)
+    assert "damaged" in trouble(examined(tmp_path))["database"]
+
+
+def test_a_folder_that_cannot_be_one_is_named(tmp_path: Path) -> None:
+    (tmp_path / "data").write_text("a file")
+    assert f"{tmp_path / 'data'} cannot be written" in trouble(examined(tmp_path))["data folder"]
+
+
+def test_an_address_that_is_taken_is_told_from_the_servers_own(tmp_path: Path) -> None:
+    folder = tmp_path / "data"
+    folder.mkdir()
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        found = trouble(examined(tmp_path, HEXAPODS_PORT=str(port)))
+        assert "something else listens" in found["address"]
+        note_address(folder, f"http://127.0.0.1:{port}/")
+        assert "address" in trouble(examined(tmp_path, HEXAPODS_PORT=str(port)))
+        with lock_folder(folder):
+            found = examined(tmp_path, HEXAPODS_PORT=str(port))
+    assert trouble(found) == {}
+    assert found["lock"][1].endswith(f"at http://127.0.0.1:{port}/")
+
+
+@pytest.mark.parametrize(
+    ("variables", "names"),
+    [
+        ({"HEXAPODS_HOST": "0.0.0.0"}, "set HEXAPODS_TOKEN"),
+        ({"HEXAPODS_PORT": "many"}, "from 0 to 65535"),
+        ({"HEXAPODS_PUBLIC_URL": "https://hexapods.example"}, "set HEXAPODS_TOKEN"),
+    ],
+)
+def test_settings_that_are_not_sane_are_named(
+    variables: dict[str, str], names: str, tmp_path: Path
+) -> None:
+    found = trouble(examined(tmp_path, **variables))
+    assert names in found["settings"]
+
+
+def test_a_postgresql_server_is_looked_at_and_its_password_shown_to_nobody(
+    postgresql: PostgresServer, tmp_path: Path
+) -> None:
+    with database_url("postgresql", postgresql) as url:
+        assert url is not None
+        assert "to be made" in examined(tmp_path, HEXAPODS_DATABASE_URL=url)["database"][1]
+        with opened(tmp_path / "data", url):
+            found = examined(tmp_path, HEXAPODS_DATABASE_URL=url)
+        assert trouble(found) == {}
+        assert "PostgreSQL can be read" in found["database"][1]
+    away = "postgresql://me:hunter2secret@127.0.0.1:1/hexapods"
+    done = hexapods("doctor", folder=tmp_path, **ANY_PORT, HEXAPODS_DATABASE_URL=away)
+    assert done.returncode == 1
+    assert "✗ database: the PostgreSQL server does not answer" in done.stdout
+    assert "hunter2" not in done.stdout + done.stderr
