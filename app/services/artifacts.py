@@ -37,6 +37,7 @@ class ArtifactFiles:
     def __init__(self, folder: Path, room: Room) -> None:
         """Use a folder, which is made if it is not there."""
         folder.mkdir(parents=True, exist_ok=True)
+        sync_folder(folder.parent)
         self._folder, self._room = folder, room
 
     def write(self, data: bytes) -> Stored:

@@ -1,6 +1,5 @@
 """Runs a function of the tests in a process of its own, which may be killed."""
 
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -21,7 +20,6 @@ def start_script(
     return subprocess.Popen(
         [*before, sys.executable, "-m", module, *arguments],
         cwd=ROOT,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,

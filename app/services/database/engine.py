@@ -3,12 +3,13 @@
 import sqlite3
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
 from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
 from sqlalchemy.exc import DBAPIError, IntegrityError, InterfaceError, OperationalError
+from sqlalchemy.exc import TimeoutError as PoolTimeout
 
 from app.domain.errors import DamagedFile, HexapodError
 from app.services.errors import StorageFailed, StorageFull
@@ -31,8 +32,7 @@ class Database:
     def __init__(self, engine: Engine, on_full: Callable[[], bool] = lambda: False) -> None:
         self.engine, self.on_full = engine, on_full
         # SQLite lets those who wait poll, and so starve; a lock is fair among our own threads.
-        is_file = engine.dialect.name == "sqlite"
-        self._turn = threading.Lock() if is_file else nullcontext()
+        self._turn = threading.Lock() if engine.dialect.name == "sqlite" else None
 
     def read(self, work: Callable[[Connection], T]) -> T:
         """Do what only reads; it sees one state of the database throughout.
@@ -58,8 +58,14 @@ class Database:
         return self._write(work)
 
     def _write(self, work: Callable[[Connection], T]) -> T:
-        with _in_plain_words(), self._turn, self.engine.begin() as connection:
-            return work(connection)
+        if self._turn is not None and not self._turn.acquire(timeout=BUSY_S):
+            raise _held()
+        try:
+            with _in_plain_words(), self.engine.begin() as connection:
+                return work(connection)
+        finally:
+            if self._turn is not None:
+                self._turn.release()
 
     @contextmanager
     def connected(self) -> Iterator[Connection]:
@@ -121,6 +127,8 @@ def _in_plain_words() -> Iterator[None]:
         raise
     except DBAPIError as error:
         raise _translated(error) from error
+    except PoolTimeout as error:
+        raise _held() from error
 
 
 def _translated(error: DBAPIError) -> HexapodError:

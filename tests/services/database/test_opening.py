@@ -1,6 +1,5 @@
 """Opening the store: who may, what a dead server left behind, and what is refused."""
 
-import os
 import sqlite3
 import subprocess
 import sys
@@ -98,7 +97,6 @@ def test_a_data_folder_has_one_server(tmp_path: Path) -> None:
         other = subprocess.run(
             [sys.executable, "-c", script],
             cwd=ROOT,
-            env={**os.environ, "PYTHONPATH": str(ROOT)},
             capture_output=True,
             text=True,
             check=False,
