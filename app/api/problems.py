@@ -16,10 +16,12 @@ from starlette.routing import compile_path
 
 from app.api.sentences import in_sentences
 from app.domain.errors import HexapodError, InvalidInput
-from app.services.errors import Busy, Conflict, NotFound
+from app.services.errors import Busy, Conflict, NotFound, StorageFailed, StorageFull
 
 MEDIA_TYPE = "application/problem+json"
 MAX_DETAIL = 1000
+_STORAGE_RETRY_S = 10
+_STATUSES: dict[type[HexapodError], int] = {InvalidInput: 422, NotFound: 404, StorageFull: 507}
 _logger = logging.getLogger(__name__)
 
 _DETAILS = {
@@ -71,14 +73,15 @@ async def _hexapod_error(request: Request, error: Exception) -> Response:
     message = str(error)
     sentence = message[:1].upper() + message[1:] + ("" if message.endswith((".", "!")) else ".")
     match error:
-        case InvalidInput():
-            return problem(422, sentence)
-        case NotFound():
-            return problem(404, sentence)
         case Conflict(state=state):
             return problem(409, sentence, state=state)
         case Busy(retry_after_s=seconds):
             return problem(429, sentence, headers={"Retry-After": str(seconds)})
+        case StorageFailed():
+            return problem(503, sentence, headers={"Retry-After": str(_STORAGE_RETRY_S)})
+    for kind, status in _STATUSES.items():
+        if isinstance(error, kind):
+            return problem(status, sentence)
     return await _unexpected(request, error)
 
 

@@ -1,0 +1,36 @@
+"""Every error of the product's own has a status, and says in its sentence what to do."""
+
+import asyncio
+import json
+
+import pytest
+from starlette.requests import Request
+
+from app.api.problems import _hexapod_error
+from app.domain.errors import DamagedFile, HexapodError, InvalidInput
+from app.services.errors import Busy, Conflict, JobFailed, NotFound, StorageFailed, StorageFull
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "headers"),
+    [
+        (InvalidInput("choose another"), 422, {}),
+        (DamagedFile("it is damaged"), 422, {}),
+        (NotFound("there is none"), 404, {}),
+        (Conflict("it runs", "running"), 409, {}),
+        (Busy("wait", 7), 429, {"retry-after": "7"}),
+        (StorageFull("the disk is full; make room"), 507, {}),
+        (StorageFailed("the database is held"), 503, {"retry-after": "10"}),
+        (JobFailed("killed"), 500, {}),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_an_error_has_its_status(error: HexapodError, status: int, headers: dict[str, str]) -> None:
+    request = Request({"type": "http", "method": "GET", "path": "/", "headers": []})
+    response = asyncio.run(_hexapod_error(request, error))
+    assert response.status_code == status
+    assert response.headers["content-type"] == "application/problem+json"
+    assert headers.items() <= dict(response.headers).items()
+    if status != 500:
+        said = json.loads(bytes(response.body))["detail"]
+        assert said == f"{str(error)[:1].upper()}{str(error)[1:]}."
