@@ -3,7 +3,6 @@
 import asyncio
 import contextlib
 import errno
-import logging
 import socket
 import sys
 from collections.abc import AsyncIterator
@@ -14,18 +13,33 @@ from fastapi import APIRouter, FastAPI
 
 from app import __version__, assets
 from app.agents.registry import registered
-from app.api import docs, events, health, moving, options, pages, problems, races, stage, trainings
+from app.api import (
+    docs,
+    events,
+    health,
+    metrics,
+    moving,
+    options,
+    pages,
+    problems,
+    races,
+    stage,
+    trainings,
+)
 from app.api.auth import TokenGuard
 from app.api.deps import Services
 from app.api.limits import BodyLimit, SecurityHeaders
 from app.api.origins import HostGuard
+from app.api.rates import RateLimit
 from app.domain.errors import InvalidInput
-from app.services.bus import EventBus
+from app.services import logs
 from app.services.jobs import Jobs
+from app.services.once import Once
 from app.services.recordings import Recordings
 from app.services.stage import Stage
 from app.services.store import MemoryStore
 from app.services.whereabouts import note_address
+from app.services.witness import Witness
 from app.settings import PREFIX, Settings
 from app.viewer.protocol import websocket_options
 from app.viewer.routes import viewer_routes
@@ -40,7 +54,7 @@ _DESCRIPTION = (
 
 def create_app(settings: Settings) -> FastAPI:
     """The whole application; jobs, stage and hub begin and end with its lifespan."""
-    store, recordings, bus = MemoryStore(), Recordings(), EventBus()
+    store, recordings, bus = MemoryStore(), Recordings(), Witness()
     show = Stage(store, recordings, bus)
     theatre = Theatre(show, bus, allowed_origins=_further_origins(settings))
     jobs = Jobs(store, recordings, bus, on_queued=show.offer)
@@ -59,15 +73,18 @@ def create_app(settings: Settings) -> FastAPI:
         bus=bus,
         jobs=jobs,
         stage=show,
+        once=Once(),
         agents=tuple(registered()),
-        viewers=lambda: theatre.hub.counters.viewers,
+        audience=lambda: theatre.hub.counters,
         ready=lambda: None if jobs.is_open else "The server is starting, or stopping.",
         film=theatre.film,
     )
+    app.state.metrics = metrics.registry_of(app.state.services)
     _add_routes(app, theatre)
     problems.install(app)
     # The last is the first to see a request.
     app.add_middleware(BodyLimit)
+    app.add_middleware(RateLimit, settings=settings)
     app.add_middleware(TokenGuard, settings=settings)
     app.add_middleware(HostGuard, settings=settings)
     app.add_middleware(SecurityHeaders)
@@ -81,6 +98,7 @@ def _add_routes(app: FastAPI, theatre: Theatre) -> None:
         versioned.include_router(module.router)
     app.include_router(versioned)
     app.include_router(health.router)
+    app.include_router(metrics.router)
     app.include_router(docs.router)
     app.router.routes += [*viewer_routes(theatre.hub), *pages.page_routes(assets.static_dir())]
 
@@ -113,9 +131,7 @@ def serve(settings: Settings) -> None:
     """
     settings.prepare_data()
     listener = _listen(settings)
-    logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
-    # viser's, which speaks of an address that is for nobody.
-    logging.getLogger("websockets").setLevel(logging.WARNING)
+    logs.install(settings.log_level)
     app = create_app(settings)
     config = uvicorn.Config(
         app,

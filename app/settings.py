@@ -19,9 +19,13 @@ import platformdirs
 from app.domain.errors import InvalidInput, UnknownName
 
 Spectators = Literal["public", "token"]
+LogLevel = Literal["debug", "info", "warning", "error"]
 
 PREFIX = "HEXAPODS_"
 MIN_QUOTA_MB = 10
+_CHOICES = {"spectators": get_args(Spectators), "log_level": get_args(LogLevel)}
+_WHOLE_NUMBERS = {"quota_mb": (MIN_QUOTA_MB, " of megabytes"), "starts_per_minute": (1, "")}
+"""By setting the least, and of what."""
 _TOKEN = re.compile(r"[\x21-\x7e]{8,200}")
 _HOST_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9_]([a-z0-9_-]*[a-z0-9_])?(\.[a-z0-9_-]+)*")
 
@@ -41,6 +45,8 @@ class Settings:
         allowed_hosts: further host names by which the server may be called.
         database_url: of a PostgreSQL database, which may hold a password; None for SQLite in the
             data folder.
+        starts_per_minute: how often one address may start something that costs the machine work.
+        log_level: below which records are left out of the log.
         quota_mb: how much the data folder may take, in MB; None for as much as the disk has.
     """
 
@@ -53,6 +59,8 @@ class Settings:
     allowed_hosts: tuple[str, ...] = ()
     database_url: str | None = field(default=None, repr=False)
     quota_mb: int | None = None
+    starts_per_minute: int = 1200
+    log_level: LogLevel = "info"
 
     def __post_init__(self) -> None:
         if isinstance(self.port, bool) or not 0 <= self.port <= 65535:
@@ -61,8 +69,9 @@ class Settings:
             raise InvalidInput(
                 f"{PREFIX}TOKEN must have 8 to 200 printable ASCII characters and no spaces"
             )
-        if self.spectators not in get_args(Spectators):
-            raise UnknownName(f"{PREFIX}SPECTATORS", self.spectators, get_args(Spectators))
+        for name, choices in _CHOICES.items():
+            if getattr(self, name) not in choices:
+                raise UnknownName(PREFIX + name.upper(), getattr(self, name), choices)
         if self.public_url is not None:
             _check_url(self.public_url)
         for name in self.allowed_hosts:
@@ -73,15 +82,18 @@ class Settings:
                 )
         if self.database_url is not None:
             _check_database_url(self.database_url)
-        if self.quota_mb is not None and self.quota_mb < MIN_QUOTA_MB:
-            raise InvalidInput(
-                f"{PREFIX}QUOTA_MB must be at least {MIN_QUOTA_MB}, not {self.quota_mb}"
-            )
+        self._check_numbers()
         if self.token is None and not is_loopback(self.host):
             raise InvalidInput(
                 f"refusing to listen on {self.host} without a token, since anyone there could "
                 f"start and delete runs: set {PREFIX}TOKEN, use --share, or bind 127.0.0.1"
             )
+
+    def _check_numbers(self) -> None:
+        for name, (least, _) in _WHOLE_NUMBERS.items():
+            number = getattr(self, name)
+            if number is not None and number < least:
+                raise InvalidInput(f"{PREFIX}{name.upper()} must be at least {least}, not {number}")
 
     @property
     def public_host(self) -> str | None:
@@ -129,8 +141,9 @@ def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Se
     given = {name: value for name, value in given.items() if value is not None}
     if isinstance(given.get("port"), str):
         given["port"] = _port(given["port"])
-    if isinstance(given.get("quota_mb"), str):
-        given["quota_mb"] = _quota_mb(given["quota_mb"])
+    for name, (_, what) in _WHOLE_NUMBERS.items():
+        if isinstance(given.get(name), str):
+            given[name] = _whole_number(name, what, given[name])
     if isinstance(given.get("allowed_hosts"), str):
         hosts = given["allowed_hosts"].lower().split(",")
         given["allowed_hosts"] = tuple(host.strip() for host in hosts if host.strip())
@@ -154,10 +167,10 @@ def _port(text: str) -> int:
     return int(text)
 
 
-def _quota_mb(text: str) -> int:
+def _whole_number(name: str, what: str, text: str) -> int:
     if not text.isascii() or not text.isdigit():
-        raise InvalidInput(f"{PREFIX}QUOTA_MB must be a whole number of megabytes, not {text!r}")
-    return int(text)
+        raise InvalidInput(f"{PREFIX}{name.upper()} must be a whole number{what}, not {text!r}")
+    return int(text[:18])
 
 
 def _check_database_url(url: str) -> None:

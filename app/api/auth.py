@@ -12,6 +12,8 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.problems import problem
+from app.api.rates import caller, too_many
+from app.services.buckets import Buckets
 from app.settings import Settings
 
 Role = Literal["operator", "spectator"]
@@ -21,6 +23,7 @@ _COOKIE_AGE_S = 30 * 24 * 3600
 _READS = frozenset({"GET", "HEAD", "OPTIONS"})
 _OPEN = ("/healthz", "/readyz")
 _OPEN_FOLDERS = ("/static/",)
+WRONG_TOKENS, WRONG_TOKENS_PER_S = 20, 0.2
 _HOW = (
     "send the server's token as Authorization: Bearer …, or open its page once with ?token=… "
     "in the address"
@@ -38,6 +41,7 @@ class TokenGuard:
         self._app = app
         self._token = settings.token
         self._all_may_watch = settings.token is None or settings.spectators == "public"
+        self._guesses = Buckets(WRONG_TOKENS, WRONG_TOKENS_PER_S)
         self._is_https = (settings.public_url or "").startswith("https:")
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -45,24 +49,33 @@ class TokenGuard:
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
-        if _offers_token(scope):
+        headers = Headers(scope=scope)
+        is_link = _offers_token(scope)
+        wait_s = self._guesses.wait_s(caller(scope)) if is_link or _bearer(headers) else 0.0
+        if wait_s > 0:
+            # Also for the right one: whoever guesses must not learn that it was.
+            await _too_many_guesses(scope, wait_s)(scope, receive, send)
+            return
+        if is_link:
             await self._let_in(Request(scope))(scope, receive, send)
             return
-        role = self._role(Headers(scope=scope))
+        role = self._role(headers, scope)
         if role == "operator" or self._may_anyone(scope):
             scope.setdefault("state", {})["role"] = role
             await self._app(scope, receive, send)
         elif scope["type"] == "websocket":
-            await send({"type": "websocket.close", "code": 1008, "reason": "token needed"})
+            await _refuse_websocket(scope, receive, send)
         else:
             await _unauthorized(f"This needs the operator: {_HOW}.")(scope, receive, send)
 
-    def _role(self, headers: Headers) -> Role:
+    def _role(self, headers: Headers, scope: Scope) -> Role:
         if self._token is None:
             return "operator"
-        scheme, _, token = headers.get("authorization", "").partition(" ")
-        if scheme.lower() == "bearer" and _same(token.strip(), self._token):
+        token = _bearer(headers)
+        if token and _same(token, self._token):
             return "operator"
+        if token:
+            self._guesses.take(caller(scope))
         if _same(_cookie(headers), _cookie_value(self._token)):
             return "operator"
         return "spectator"
@@ -86,6 +99,7 @@ class TokenGuard:
         if self._token is None:
             return response
         if not _same(given, self._token):
+            self._guesses.take(caller(request.scope))
             return _unauthorized("This is not the server's token; look at what its start printed.")
         response.set_cookie(
             COOKIE,
@@ -103,6 +117,22 @@ def _offers_token(scope: Scope) -> bool:
         return False
     query = scope["query_string"].decode("latin-1")
     return any(name == "token" for name, _ in parse_qsl(query, keep_blank_values=True))
+
+
+def _bearer(headers: Headers) -> str:
+    scheme, _, token = headers.get("authorization", "").partition(" ")
+    return token.strip() if scheme.lower() == "bearer" else ""
+
+
+def _too_many_guesses(scope: Scope, wait_s: float) -> ASGIApp:
+    if scope["type"] == "websocket":
+        return _refuse_websocket
+    return too_many("Too many wrong tokens came from this address; try again later.", wait_s)
+
+
+async def _refuse_websocket(scope: Scope, receive: Receive, send: Send) -> None:
+    del scope, receive
+    await send({"type": "websocket.close", "code": 1008, "reason": "token needed"})
 
 
 def _unauthorized(detail: str) -> Response:

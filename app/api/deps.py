@@ -2,22 +2,33 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, NamedTuple, Protocol
 
-from fastapi import Depends, Request
+from fastapi import Depends, Header, HTTPException, Request
+from starlette.requests import ClientDisconnect
 
 from app.api.auth import Role
+from app.api.sentences import VALID
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
-from app.services.bus import EventBus
 from app.services.jobs import Jobs
+from app.services.once import Once
 from app.services.recordings import Recordings
 from app.services.stage import Stage
-from app.services.store import RunStore
+from app.services.store import Run, RunStore
+from app.services.witness import Witness
 
 Film = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock], bytes]
 """From a race, its name and a clock to a file that viser's client plays."""
+
+
+class Audience(Protocol):
+    """Those who watch the stage, as the hub counts them."""
+
+    viewers: int
+    frames_sent: int
+    frames_merged: int
 
 
 @dataclass(frozen=True)
@@ -25,22 +36,36 @@ class Services:
     """All that the API stands on.
 
     Attributes:
-        store, recordings, bus, jobs, stage: the services.
+        store, recordings, bus, jobs, stage, once: the services.
         agents: the names that were registered when the server started.
-        viewers: counts who watches the stage now.
+        audience: counts who watches the stage, and what they were sent.
         ready: says what is not ready, or None.
         film: makes a race's recording playable.
     """
 
     store: RunStore
     recordings: Recordings
-    bus: EventBus
+    bus: Witness
     jobs: Jobs
     stage: Stage
+    once: Once
     agents: tuple[str, ...]
-    viewers: Callable[[], int]
+    audience: Callable[[], Audience]
     ready: Callable[[], str | None]
     film: Film
+
+
+class Asked(NamedTuple):
+    """A request to start something, as it was sent."""
+
+    address: str
+    body: bytes
+    key: str | None
+    """Chosen by the client, so that it can ask again without starting twice."""
+
+    def once(self, services: Services, start: Callable[[], Run]) -> Run:
+        """What `start` returns, or returned when this was asked for before."""
+        return services.once.run(self.key, self.address.encode() + b"\n" + self.body, start)
 
 
 def _services(request: Request) -> Services:
@@ -53,5 +78,20 @@ def _role(request: Request) -> Role:
     return role
 
 
+async def _asked(
+    request: Request,
+    idempotency_key: Annotated[
+        str | None,
+        Header(pattern=r"^[\x21-\x7e]{1,200}$", description=VALID["idempotency-key"]),
+    ] = None,
+) -> Asked:
+    try:
+        body = await request.body()
+    except ClientDisconnect as error:
+        raise HTTPException(400) from error
+    return Asked(f"{request.url.path}?{request.url.query}", body, idempotency_key)
+
+
 Given = Annotated[Services, Depends(_services)]
+Start = Annotated[Asked, Depends(_asked)]
 Who = Annotated[Role, Depends(_role)]

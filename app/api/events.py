@@ -49,7 +49,7 @@ def _snapshot(services: Services, role: str, run_id: str | None) -> dict[str, An
     shown: dict[str, Any] = {
         "version": __version__,
         "role": role,
-        "viewers": services.viewers(),
+        "viewers": services.audience().viewers,
         "runs": [run_view(run) for run in runs],
         "stage": services.stage.state(),
         "scene": services.stage.scene(),

@@ -1,11 +1,9 @@
 """Runs as files: out of one server, and into another."""
 
 from fastapi import APIRouter, Request
-from starlette.concurrency import run_in_threadpool
-from starlette.requests import ClientDisconnect
 from starlette.responses import JSONResponse, Response
 
-from app.api.deps import Given
+from app.api.deps import Given, Start
 from app.api.formats import attachment
 from app.api.runs import RunPath, find
 from app.domain.errors import InvalidInput
@@ -44,18 +42,15 @@ def export_race(services: Given, run_id: RunPath) -> Response:
         }
     },
 )
-async def import_archive(services: Given, request: Request) -> Response:
-    """The archive is the body. A run that is here already is not replaced: it comes twice."""
-    try:
-        data = await request.body()
-    except ClientDisconnect:
-        return Response(status_code=400)
-    if not data:
+def import_archive(services: Given, request: Request, asked: Start) -> Response:
+    """The archive is the body. A run that is here already is not replaced: it comes twice.
+
+    Unless it is the same request again, with the same `Idempotency-Key`.
+    """
+    if not asked.body:
         raise InvalidInput("send the .zip file of an exported run as the request's body")
-    store, agents = services.store, services.agents
-    run = await run_in_threadpool(
-        import_run, store, data, services.jobs.new_id, agents, "the archive"
-    )
+    store, agents, new_id = services.store, services.agents, services.jobs.new_id
+    run = asked.once(services, lambda: import_run(store, asked.body, new_id, agents, "the archive"))
     services.bus.publish("run", run_view(run), run.id)
     location = request.url_for(f"get_{run.kind}", run_id=run.id).path
     return JSONResponse(run_view(run), 201, {"Location": location})

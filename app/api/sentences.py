@@ -55,6 +55,7 @@ VALID: Mapping[str, str] = {
     "state": _one_of(STATES),
     "limit": f"a whole number from 1 to {MAX_PAGE}",
     "cursor": "the next_cursor of the page before",
+    "idempotency-key": "1 to 200 printable ASCII characters without spaces",
     "format": "a format that the description of the route names",
 }
 

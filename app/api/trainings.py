@@ -3,11 +3,9 @@
 from typing import Annotated, Literal
 
 from fastapi import Query, Request
-from starlette.concurrency import run_in_threadpool
-from starlette.requests import ClientDisconnect
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
-from app.api.deps import Given
+from app.api.deps import Given, Start
 from app.api.formats import attachment, chosen
 from app.api.runs import RunPath, accepted, find, run_routes
 from app.api.schemas import ChangeBody, Name, TrainingBody
@@ -24,9 +22,9 @@ router = run_routes("training")
 
 
 @router.post("", status_code=202, summary="Start a training")
-def start_training(services: Given, request: Request, body: TrainingBody) -> Response:
+def start_training(services: Given, request: Request, asked: Start, body: TrainingBody) -> Response:
     """Queue a training, and answer with its run."""
-    run = services.jobs.train(body.start(services.agents))
+    run = asked.once(services, lambda: services.jobs.train(body.start(services.agents)))
     return accepted(request, run)
 
 
@@ -41,17 +39,15 @@ def start_training(services: Given, request: Request, body: TrainingBody) -> Res
         }
     },
 )
-async def import_training(
-    services: Given, request: Request, name: Annotated[Name | None, Query()] = None
+def import_training(
+    services: Given, request: Request, asked: Start, name: Annotated[Name | None, Query()] = None
 ) -> Response:
     """Take the `.npz` that a training's q-table gives, or `hexapods train` wrote, as the body."""
-    try:
-        data = await request.body()
-    except ClientDisconnect:
-        return Response(status_code=400)
-    if not data:
+    if not asked.body:
         raise InvalidInput("send the .npz file of a Q-table as the request's body")
-    run = await run_in_threadpool(imports.adopt, services.jobs, data, services.agents, name)
+    run = asked.once(
+        services, lambda: imports.adopt(services.jobs, asked.body, services.agents, name)
+    )
     location = request.url_for("get_training", run_id=run.id).path
     return JSONResponse(run_view(run), 201, {"Location": location})
 

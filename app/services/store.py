@@ -2,6 +2,7 @@
 
 import math
 import threading
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
@@ -93,6 +94,9 @@ class RunStore(Protocol):
     ) -> Page:
         """Runs, newest first."""
 
+    def counts(self) -> Mapping[State, int]:
+        """How many runs there are in each state that any is in."""
+
     def change(
         self, run_id: str, from_states: Collection[State], to_state: State, **fields: Any
     ) -> Run:
@@ -176,6 +180,10 @@ class MemoryStore:
         found.sort(key=lambda run: run.id, reverse=True)
         more = len(found) > limit
         return Page(found[:limit], found[limit - 1].id if more else None)
+
+    def counts(self) -> Mapping[State, int]:
+        with self._lock:
+            return Counter(run.state for run in self._runs.values())
 
     def change(
         self, run_id: str, from_states: Collection[State], to_state: State, **fields: Any

@@ -77,7 +77,7 @@ def _from_base_88(text: bytes) -> bytes:
     whole = len(digits) // 5 * 5
     numbers = digits[:whole].reshape(-1, 5) @ 88 ** np.arange(4, -1, -1)
     rest = digits[whole:]
-    last = sum(int(digit) * 88**place for place, digit in enumerate(reversed(rest)))
+    last: int = sum(int(digit) * 88**place for place, digit in enumerate(reversed(rest)))
     first: bytes = numbers.astype(">u4").tobytes()
     return first + last.to_bytes(max(0, len(rest) - 1), "big")
 

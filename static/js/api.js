@@ -25,10 +25,11 @@ const fieldOf = (error) => {
   return String(Array.isArray(place) ? place.at(-1) : place.split(/[./]/).at(-1));
 };
 
-async function call(method, path, body) {
+async function call(method, path, body, headers = {}) {
+  const type = body === undefined ? {} : { "Content-Type": "application/json" };
   const response = await fetch(new URL(path, BASE), {
     method,
-    headers: body === undefined ? {} : { "Content-Type": "application/json" },
+    headers: { ...type, ...headers },
     body: body === undefined ? undefined : JSON.stringify(body),
   }).catch(() => {
     throw new Unreachable();
@@ -54,8 +55,15 @@ export const getRun = (run) => call("GET", address(run));
 export const listRuns = (kind, cursor) =>
   call("GET", `${collection(kind)}?limit=50${cursor ? `&cursor=${encodeURIComponent(cursor)}` : ""}`);
 
-export const startTraining = (body) => call("POST", "trainings", body);
-export const startRace = (body) => call("POST", "races", body);
+/** One key for one press: should the network send it twice, it is one run all the same. */
+const start = (path, body) => call("POST", path, body, { "Idempotency-Key": newKey() });
+
+// Not randomUUID, which pages have only over https and on loopback.
+const newKey = () =>
+  Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join("-");
+
+export const startTraining = (body) => start("trainings", body);
+export const startRace = (body) => start("races", body);
 export const tuneTraining = (id, changes) => call("PATCH", address({ kind: "training", id }), changes);
 
 /** `verb` is stop, pause or resume. */

@@ -50,6 +50,12 @@ def test_what_went_in_comes_out(store: RunStore) -> None:
     assert store.get("d").created_at.astimezone(UTC) == now
 
 
+def test_it_counts_runs_by_state(store: RunStore) -> None:
+    assert not store.counts()
+    store.create(training("a"), race("b"), training("c", state="failed"))
+    assert store.counts() == {"queued": 2, "failed": 1}
+
+
 def test_nan_is_kept(store: RunStore) -> None:
     store.create(training("a", result={"distance_m": math.nan, "lanes": [math.nan, -math.inf]}))
     result: Any = store.get("a").result

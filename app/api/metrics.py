@@ -1,0 +1,77 @@
+"""Figures for Prometheus, read from the services whenever they are asked for."""
+
+from collections.abc import Iterable
+
+from fastapi import APIRouter, Request
+from prometheus_client import (
+    CollectorRegistry,
+    GCCollector,
+    PlatformCollector,
+    ProcessCollector,
+    exposition,
+)
+from prometheus_client.metrics_core import (
+    CounterMetricFamily,
+    GaugeMetricFamily,
+    InfoMetricFamily,
+    Metric,
+)
+from prometheus_client.registry import Collector
+from starlette.responses import Response
+
+from app import __version__
+from app.api.deps import Services
+from app.services.store import STATES
+
+router = APIRouter(tags=["health"])
+
+
+@router.get("/metrics", summary="Figures for Prometheus")
+def get_metrics(request: Request) -> Response:
+    """Runs by state, steps, viewers, frames, the queue, and the server's own process."""
+    encode, content_type = exposition.choose_encoder(request.headers.get("accept", ""))
+    registry: CollectorRegistry = request.app.state.metrics
+    return Response(encode(registry), headers={"Content-Type": content_type})
+
+
+def registry_of(services: Services) -> CollectorRegistry:
+    """One registry for one app; nothing is global."""
+    registry = CollectorRegistry()
+    registry.register(_OfServices(services))
+    for of_process in (ProcessCollector, PlatformCollector, GCCollector):
+        of_process(registry=registry)
+    return registry
+
+
+class _OfServices(Collector):
+    def __init__(self, services: Services) -> None:
+        self._services = services
+
+    def collect(self) -> Iterable[Metric]:
+        services, counters = self._services, self._services.audience()
+        counts = services.store.counts()
+        runs = GaugeMetricFamily("hexapods_runs", "Runs that are kept, by state.", labels=["state"])
+        for state in STATES:
+            runs.add_metric([state], counts.get(state, 0))
+        yield runs
+        yield GaugeMetricFamily(
+            "hexapods_queue_depth", "Runs that wait for their turn.", counts.get("queued", 0)
+        )
+        yield CounterMetricFamily(
+            "hexapods_steps", "Robots' steps computed, of all runs.", services.bus.steps
+        )
+        yield GaugeMetricFamily(
+            "hexapods_steps_per_second",
+            "Robots' steps computed a second, over the last ten seconds.",
+            services.bus.steps_per_s,
+        )
+        yield GaugeMetricFamily("hexapods_viewers", "Who watches the stage.", counters.viewers)
+        yield CounterMetricFamily(
+            "hexapods_frames_sent", "Frames sent to viewers.", counters.frames_sent
+        )
+        yield CounterMetricFamily(
+            "hexapods_frames_merged",
+            "Frames that a viewer got as a part of a later one, because it was behind.",
+            counters.frames_merged,
+        )
+        yield InfoMetricFamily("hexapods", "The server.", {"version": __version__})
