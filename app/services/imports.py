@@ -5,9 +5,8 @@ from datetime import UTC, datetime
 from typing import Any
 
 from app.domain.errors import DamagedFile, HexapodError, UnknownName
-from app.domain.robot import robot
 from app.runs import tables
-from app.runs.config import TrainingConfig, gait_from_json
+from app.runs.config import TrainingConfig, config_from_json
 from app.services.entries import check_walk
 from app.services.jobs import Jobs
 from app.services.store import Run
@@ -27,7 +26,7 @@ def adopt(jobs: Jobs, data: bytes, agents: Collection[str], name: str | None = N
         InvalidInput: if it was learned by an agent, or on a robot, that cannot be here.
     """
     checkpoint = tables.from_bytes(data, "the file")
-    config = config_from_json(checkpoint.meta.get("config"))
+    config = _training(checkpoint.meta.get("config"))
     check_walk(config)
     if config.agent not in agents:
         raise UnknownName("agent", config.agent, agents)
@@ -60,18 +59,20 @@ def adopt(jobs: Jobs, data: bytes, agents: Collection[str], name: str | None = N
     return run
 
 
-def config_from_json(shown: Any) -> TrainingConfig:
-    """The training that `as_json` wrote.
+def _training(shown: Any) -> TrainingConfig:
+    """The training that a file says it is of.
 
     Raises:
-        DamagedFile: if it did not write this.
+        DamagedFile: if it says none.
     """
     if not isinstance(shown, Mapping):
         raise DamagedFile("the file does not say what was trained")
     try:
-        fields = {**shown, "gait": gait_from_json(shown["gait"]), "robot": robot(shown["robot"])}
-        return TrainingConfig(**fields)
+        config = config_from_json(shown)
     except HexapodError as error:
         raise DamagedFile(f"the file says of its training: {error}") from error
-    except (TypeError, KeyError, ValueError) as error:
+    except (KeyError, OverflowError, TypeError, ValueError) as error:
         raise DamagedFile(f"the file does not say what was trained ({error})") from error
+    if not isinstance(config, TrainingConfig):
+        raise DamagedFile("the file is of a race; give that of a training")
+    return config
