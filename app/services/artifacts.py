@@ -68,6 +68,14 @@ class ArtifactFiles:
             ) from error
         return Stored(name, len(data), hashlib.sha256(data).hexdigest())
 
+    def check_room(self, size: int) -> None:
+        """Make sure that there is room for so much more.
+
+        Raises:
+            StorageFull: if there is not.
+        """
+        self._room.check(size)
+
     def read(self, stored: Stored, said: str) -> bytes:
         """What was written.
 

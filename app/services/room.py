@@ -9,6 +9,8 @@ from pathlib import Path
 from app.services.errors import StorageFailed, StorageFull
 
 MB = 1_000_000
+START_BYTES = 5 * MB
+"""Room that has to be there for a run to start: what a usual one leaves behind."""
 KEPT_FREE_BYTES = 1 * MB
 """Arrays leave so much of the disk to the database."""
 RESERVE_BYTES = 1 * MB

@@ -75,6 +75,13 @@ class Page(NamedTuple):
 class RunStore(Protocol):
     """Where runs live. Safe to use from any thread."""
 
+    def check_room(self) -> None:
+        """Make sure that there is room for one more run.
+
+        Raises:
+            StorageFull: if there is not, or there may soon be none.
+        """
+
     def create(self, *runs: Run) -> None:
         """Add new runs, all or none."""
 
@@ -153,6 +160,9 @@ class MemoryStore:
         self._curves: dict[str, list[Mapping[str, Any]]] = {}
         self._artifacts: dict[str, dict[str, bytes]] = {}
         self._lock = threading.Lock()
+
+    def check_room(self) -> None:
+        pass
 
     def create(self, *runs: Run) -> None:
         with self._lock:

@@ -32,6 +32,7 @@ class WaitingRuns:
 
         Raises:
             Busy: if too many are waiting.
+            StorageFull: if there is no room for another run.
         """
         if len(self._entries) + len(entries) > MAX_QUEUED + free:
             raise Busy(
@@ -39,6 +40,7 @@ class WaitingRuns:
                 "to end, or stop one",
                 RETRY_AFTER_S,
             )
+        self._store.check_room()
         self._store.create(*(entry.run for entry in entries))
         self._entries += entries
         for entry in entries:

@@ -256,7 +256,7 @@ def test_recordings_that_cannot_be_drawn_are_refused(source: SqlStore) -> None:
 
 
 class _Full(MemoryStore):
-    def put_artifact(self, run_id: str, name: str, data: bytes) -> None:
+    def put_artifact(self, *given: Any, **fields: Any) -> None:
         raise StorageFull("the disk is full")
 
 

@@ -14,6 +14,7 @@ from app.services.database.progress import Progress
 from app.services.database.rows import columns_of, row_of, run_of
 from app.services.database.schema import ARTIFACTS, EVALUATIONS, RUNS
 from app.services.errors import Conflict, NotFound, StorageFull
+from app.services.room import START_BYTES
 from app.services.store import UNENDED, Kind, Page, Run, State
 
 _Row = dict[str, Any]
@@ -31,6 +32,9 @@ class SqlStore:
     def __init__(self, database: Database, files: ArtifactFiles) -> None:
         self._database, self._files = database, files
         self._progress = Progress()
+
+    def check_room(self) -> None:
+        self._files.check_room(START_BYTES)
 
     def create(self, *runs: Run) -> None:
         rows = [row_of(run) for run in runs]
