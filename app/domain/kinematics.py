@@ -32,9 +32,11 @@ class Legs:
         azimuth = np.deg2rad(gait.azimuths_deg)
         mounts = np.array([leg.radius_m for leg in robot.legs])
         sin, cos = np.sin(azimuth), np.cos(azimuth)
-        self.frames: FloatArray = np.array((robot.home_radius_m - mounts, -sin, cos, -cos, -sin))
-        """From an offset in the robot frame to the frame of each leg, (5, legs): how far along the
-        leg from its coxa joint home is [m], then what x and y add along the leg, then across."""
+        home = robot.home_radius_m - mounts
+        self.frames: FloatArray = np.array([(home, 0 * home), (-sin, -cos), (cos, -sin)])
+        """From the robot frame to the frame of each leg, (3, 2, legs): where home is from the coxa
+        joint [m], what x adds to that, what y adds; each along the leg, and across."""
+        self._frames = [frame.ravel().tolist() for frame in np.moveaxis(self.frames, -1, 0)]
 
     def joint_angles(self, offsets: FloatArray) -> FloatArray:
         """Inverse kinematics of all feet.
@@ -45,35 +47,35 @@ class Legs:
         Returns:
             (..., legs, 3) coxa, femur, tibia [rad]; NaN where a foot is out of reach.
         """
-        x, y, z = (np.ascontiguousarray(offsets[..., axis]) for axis in range(3))
-        return self.solve(x, y, z, self.frames)
+        x, y, z = np.ascontiguousarray(np.moveaxis(offsets, -1, 0))
+        frames = self.frames.reshape(3, 2, *(1 for _ in offsets.shape[:-2]), -1)
+        return self.solve(np.array((x, y)), z, frames)
 
-    def solve(self, x: FloatArray, y: FloatArray, z: FloatArray, frames: FloatArray) -> FloatArray:
+    def solve(self, places: FloatArray, heights: FloatArray, frames: FloatArray) -> FloatArray:
         """Inverse kinematics of any feet, each in the frame of its leg.
 
         The coordinates come apart and contiguous: NumPy's loops over strided numbers are slower,
-        and may differ in the last bit.
+        and may differ in the last bit. Few calls, since a step of training makes them anew.
 
         Args:
-            x: offset from home to the right, in the robot frame [m].
-            y: forward.
-            z: up; their shapes broadcast.
-            frames: a column of `self.frames` for each foot, (5, ...).
+            places: offsets from home to the right and forward in the robot frame [m], (2, ...).
+            heights: over the ground [m]; broadcasts with them.
+            frames: a column of `self.frames` for each foot, (3, 2, ...).
 
         Returns:
             (..., 3) coxa, femur, tibia [rad]; NaN where the foot is out of reach.
         """
-        home, x_along, y_along, x_across, y_across = frames
-        along = home + (x_along * x + y_along * y)
-        across = x_across * x + y_across * y
-        r = np.sqrt(along * along + across * across) - self.robot.coxa_m
-        fall = z - self.robot.body_height_m
+        home, of_x, of_y = frames
+        feet = home + (of_x * places[0] + of_y * places[1])  # (2, ...): along the leg, across
+        squares = feet * feet
+        r = np.sqrt(squares[0] + squares[1]) - self.robot.coxa_m
+        fall = heights - self.robot.body_height_m
         femur, tibia = self.robot.femur_m, self.robot.tibia_m
         bend = (r * r + fall * fall - (femur * femur + tibia * tibia)) / (2 * femur * tibia)
         with np.errstate(invalid="ignore"):
             drop = np.sqrt(1 - bend * bend)
         angles = np.empty((*r.shape, 3))
-        angles[..., 0] = np.arctan2(across, along)
+        angles[..., 0] = np.arctan2(feet[1], feet[0])
         angles[..., 1] = np.arctan2(fall, r) + np.arctan2(tibia * drop, femur + tibia * bend)
         angles[..., 2] = -np.arctan2(drop, bend)
         return angles
@@ -90,7 +92,7 @@ class Legs:
             For each leg (x, y, z), its foot's offset from home in the robot frame [m].
         """
         robot, offsets = self.robot, []
-        for leg, (home, x_along, y_along, x_across, y_across) in enumerate(self.frames.T.tolist()):
+        for leg, (home, _, x_along, x_across, y_along, y_across) in enumerate(self._frames):
             coxa, femur, tibia = angles[3 * leg : 3 * leg + 3]
             knee = femur + tibia
             r = robot.coxa_m + robot.femur_m * math.cos(femur) + robot.tibia_m * math.cos(knee)

@@ -59,15 +59,18 @@ class StepMotion:
         Returns:
             (n, substeps, legs · 3) [rad]; in each row legs in order, coxa, femur, tibia.
         """
-        samples = self._samples
-        swinging, rows = [plan.pair for plan in plans], np.arange(len(plans))[:, None]
+        samples, swinging = self._samples, [plan.pair for plan in plans]
         ways = np.array([_ways(plan) for plan in plans])  # (n, 4, 2 · pairs)
-        source = samples.source.take(swinging, 1) + rows * ways[0].size  # (4, n, samples)
-        from_x, from_y, to_x, to_y = ways.take(source)
-        x = from_x + samples.share * (to_x - from_x)  # of the leader
-        y = from_y + samples.share * (to_y - from_y)
-        angles = self.legs.solve(x, y, samples.lift, samples.frames.take(swinging, 1))
-        order = samples.order.take(swinging, 0) + rows * x.shape[1]  # (n, substeps · legs)
+        source = samples.source.take(swinging, 1)  # (4, n, samples)
+        order = samples.order.take(swinging, 0)  # (n, substeps · legs)
+        if len(plans) > 1:  # each has its own part of the flat arrays
+            rows = np.arange(len(plans))[:, None]
+            source += rows * ways[0].size
+            order += rows * samples.share.size
+        way = ways.take(source)
+        places = way[:2] + samples.share * (way[2:] - way[:2])  # of the leader, (2, n, samples)
+        frames = samples.frames.take(swinging, 2)
+        angles = self.legs.solve(places, samples.lift, frames)
         targets: FloatArray = angles.reshape(-1, 3).take(order, 0)
         return targets.reshape(len(plans), self._substeps, -1)
 
@@ -91,7 +94,7 @@ class _Samples(NamedTuple):
     """
 
     frames: FloatArray
-    """`Legs.frames` of the sample's leg, mirrored for a partner, (5, pairs, samples)."""
+    """`Legs.frames` of the sample's leg, mirrored for a partner, (3, 2, pairs, samples)."""
     source: IntArray
     """Where `_ways` has the sample's from x, from y, to x, to y, (4, pairs, samples)."""
     share: FloatArray
@@ -117,12 +120,12 @@ def _samples(robot: Robot, gait: Gait, frames: FloatArray) -> _Samples:
         in_shift = count + 2 * swing + np.arange(count * shift)
         order.append(np.concatenate((in_swing.ravel(), in_shift)))
     whose, place = np.array(legs), np.argsort(movers.ravel())
-    side = np.where(place % 2, -1.0, 1.0)  # a partner is at (−x, y)
-    mirrored = frames * np.array([np.ones(count), side, np.ones(count), side, np.ones(count)])
+    mirrored = frames.copy()
+    mirrored[1] *= np.where(place % 2, -1.0, 1.0)  # a partner is at (−x, y)
     in_phase = np.repeat((0, 0, len(movers)), (count, 2 * swing, count * shift))
     pair_of = (place // 2)[whose] + in_phase  # (pairs, samples)
     return _Samples(
-        mirrored[:, whose],
+        mirrored[:, :, whose],
         np.stack([pair_of + part * 2 * len(movers) for part in range(4)]),
         np.concatenate((still, ease(swung), ease(shifted))),
         np.concatenate(

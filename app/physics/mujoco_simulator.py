@@ -123,8 +123,8 @@ class MujocoSimulator:
     ) -> tuple[Expansion[MujocoState], FloatArray]:
         """Plan and carry out a step from each state; qpos of every substep where recorded."""
         plans, count = self._plans(states, actions), len(states)
-        before = np.array([state.row for state in states])
-        batch.state[:count] = before
+        for simulation, state in enumerate(states):
+            batch.state[simulation] = state.row
         recorded = batch.rollout(
             self._substeps,
             self._motion.joint_targets(plans),
@@ -136,7 +136,7 @@ class MujocoSimulator:
             MujocoState(row, plan.end, float(row[2]), state.steps + 1)
             for row, plan, state in zip(after, plans, states, strict=True)
         ]
-        rewards = [self._reward(b, a) for b, a in zip(before, after, strict=True)]
+        rewards = [self._reward(s.row, row) for s, row in zip(states, after, strict=True)]
         self._check(batch, rewards, [end.steps for end in ends])
         return Expansion(ends, np.array(rewards)), recorded.get("qpos", np.empty(0))
 
