@@ -31,13 +31,13 @@ from app.api.deps import Services
 from app.api.limits import BodyLimit, SecurityHeaders
 from app.api.origins import HostGuard
 from app.api.rates import RateLimit
-from app.domain.errors import InvalidInput
+from app.domain.errors import HexapodError, InvalidInput
 from app.services import logs
 from app.services.jobs import Jobs
 from app.services.once import Once
 from app.services.recordings import Recordings
 from app.services.stage import Stage
-from app.services.store import MemoryStore
+from app.services.store import MemoryStore, RunStore
 from app.services.whereabouts import note_address
 from app.services.witness import Witness
 from app.settings import PREFIX, Settings
@@ -76,7 +76,7 @@ def create_app(settings: Settings) -> FastAPI:
         once=Once(),
         agents=tuple(registered()),
         audience=lambda: theatre.hub.counters,
-        ready=lambda: None if jobs.is_open else "The server is starting, or stopping.",
+        ready=lambda: _trouble(jobs, store),
         film=theatre.film,
     )
     app.state.metrics = metrics.registry_of(app.state.services)
@@ -101,6 +101,18 @@ def _add_routes(app: FastAPI, theatre: Theatre) -> None:
     app.include_router(metrics.router)
     app.include_router(docs.router)
     app.router.routes += [*viewer_routes(theatre.hub), *pages.page_routes(assets.static_dir())]
+
+
+def _trouble(jobs: Jobs, store: RunStore) -> str | None:
+    """What keeps runs from being started, in a sentence."""
+    if not jobs.is_open:
+        return "The server is starting, or stopping."
+    try:
+        store.check_room()
+        store.list(limit=1)
+    except HexapodError as error:
+        return f"No run can be started, and what is kept may be looked at: {error}."
+    return None
 
 
 def _further_origins(settings: Settings) -> list[str]:
