@@ -20,12 +20,14 @@ class Serving:
 
     Attributes:
         address: where it is, with a slash at the end.
+        data: its folder.
     """
 
     def __init__(
         self, data: Path, port: int = 0, token: str = "", spectators: str = "public"
     ) -> None:
         """Start it, and wait until it says where it is."""
+        self.data = data
         environment = {k: v for k, v in os.environ.items() if not k.startswith("HEXAPODS_")}
         self._process = subprocess.Popen(
             [sys.executable, "-m", "app.cli", "serve", "--port", str(port), "--data", str(data)],
@@ -47,6 +49,11 @@ class Serving:
     def port(self) -> int:
         """The port that the system chose."""
         return int(self.address.rstrip("/").rsplit(":", 1)[1])
+
+    @property
+    def pid(self) -> int:
+        """Of its process."""
+        return self._process.pid
 
     def kill(self) -> None:
         """End it as a crash does."""

@@ -1,6 +1,18 @@
 """The promises are held against the same servers and pages as everything else."""
 
+from collections.abc import Iterator
+
+import pytest
+
 from tests.api.conftest import api, data, serve, trained
 from tests.browser.conftest import dashboard, server
+from tests.browser.serving import Serving, serving
 
 __all__ = ["api", "dashboard", "data", "serve", "server", "trained"]
+
+
+@pytest.fixture(scope="session")
+def quiet_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serving]:
+    """For the tests that start nothing on it."""
+    with serving(tmp_path_factory.mktemp("data")) as shared:
+        yield shared

@@ -1,0 +1,85 @@
+"""Promise 6: an upload bomb is refused from its header: 311 kB that unpack to 320 MB.
+
+In full: such a file, and others that claim more than they are; memory grows by less than 50 MB.
+"""
+
+import io
+import struct
+import zipfile
+from collections.abc import Callable
+
+import httpx2
+import numpy as np
+import pytest
+from numpy.lib import format as npy
+
+from tests.browser.serving import Serving
+from tests.promises.raw import watched_memory
+
+UNPACKED_BYTES = 320_000_000
+MOST_BYTES = 50_000_000
+
+
+def compressed() -> bytes:
+    """Zeros, packed into a thousandth."""
+    buffer = io.BytesIO()
+    with (
+        zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive,
+        archive.open("agent.values.npy", "w") as member,
+    ):
+        member.write(header(UNPACKED_BYTES))
+        for _ in range(UNPACKED_BYTES // 10_000_000):
+            member.write(bytes(10_000_000))
+    return buffer.getvalue()
+
+
+def header(size: int) -> bytes:
+    buffer = io.BytesIO()
+    shape = {"descr": "|u1", "fortran_order": False, "shape": (size,)}
+    npy.write_array_header_1_0(buffer, shape)
+    return buffer.getvalue()
+
+
+def lying() -> bytes:
+    """Says that it is stored as it is, and small; it is neither."""
+    data = bytearray(compressed())
+    for signature, offset in ((b"PK\x03\x04", 8), (b"PK\x01\x02", 10)):
+        at = data.index(signature)
+        data[at + offset : at + offset + 2] = struct.pack("<H", zipfile.ZIP_STORED)
+    return bytes(data)
+
+
+def promising() -> bytes:
+    """A few bytes that say they were a huge array."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        archive.writestr("agent.values.npy", header(10**12) + b"not so many")
+    return buffer.getvalue()
+
+
+def many() -> bytes:
+    """The same bytes under many names."""
+    buffer = io.BytesIO()
+    np.savez(buffer, values=np.zeros(1000))
+    data = bytearray(buffer.getvalue())
+    start = data.index(b"PK\x01\x02")
+    end = data.index(b"PK\x05\x06")
+    entry, tail = bytes(data[start:end]), data[end:]
+    count = 40_000
+    struct.pack_into("<HHI", tail, 8, count, count, len(entry) * count)
+    return bytes(data[:start]) + entry * count + bytes(tail)
+
+
+@pytest.mark.parametrize("bomb", [compressed, lying, promising, many])
+@pytest.mark.parametrize("path", ["/api/v1/trainings/import", "/api/v1/import"])
+def test_it_is_refused_and_costs_nothing(
+    bomb: Callable[[], bytes], path: str, quiet_server: Serving
+) -> None:
+    data = bomb()
+    if bomb is compressed:
+        assert 300_000 < len(data) < 320_000
+    with watched_memory(quiet_server.pid) as memory:
+        answer = httpx2.post(quiet_server.address[:-1] + path, content=data, timeout=60)
+
+    assert answer.status_code == 422, answer.text
+    assert memory.grown_bytes < MOST_BYTES

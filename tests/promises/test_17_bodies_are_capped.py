@@ -1,0 +1,67 @@
+"""Promise 17: bodies are capped: 1 MiB of JSON, chunked too: 413, memory flat.
+
+In full, for every route that changes something: 256 MiB are announced, or one chunk more than
+allowed is sent without an end.
+"""
+
+import http.client
+from collections.abc import Iterator
+from urllib.parse import urlsplit
+
+from app.api.limits import MAX_BODY_BYTES
+from app.server import create_app
+from app.settings import Settings
+from tests.browser.serving import Serving
+from tests.promises.raw import every_route, watched_memory
+
+OFFERED_BYTES = 256 << 20
+CHUNK = bytes(1 << 16)
+FLAT_BYTES = 20_000_000
+WRITING = ("POST", "PUT", "PATCH", "DELETE")
+
+
+def answer(server: Serving, method: str, path: str, *, chunked: bool) -> int:
+    """Offer more than is allowed, and stop when the server says so or hangs up."""
+    connection = http.client.HTTPConnection(urlsplit(server.address).netloc, timeout=60)
+    connection.putrequest(method, path)
+    connection.putheader("Content-Type", "application/json")
+    if chunked:
+        connection.putheader("Transfer-Encoding", "chunked")
+    else:
+        connection.putheader("Content-Length", str(OFFERED_BYTES))
+    connection.endheaders()
+    for chunk in chunks() if chunked else ():
+        try:
+            connection.send(chunk)
+        except (BrokenPipeError, ConnectionResetError):
+            break
+    try:
+        return connection.getresponse().status
+    finally:
+        connection.close()
+
+
+def chunks() -> Iterator[bytes]:
+    """Just over the limit, and not the end of it."""
+    for _ in range(MAX_BODY_BYTES // len(CHUNK) + 1):
+        yield f"{len(CHUNK):x}\r\n".encode() + CHUNK + b"\r\n"
+
+
+def test_every_body_is_capped(quiet_server: Serving) -> None:
+    app = create_app(Settings(data=quiet_server.data))
+    routes = [route for route in every_route(app) if route.method in WRITING]
+    assert len(routes) > 10
+    refused = 0
+    with watched_memory(quiet_server.pid) as memory:
+        for method, path in routes:
+            here = path.replace("{run_id}", "none")
+            assert answer(quiet_server, method, here, chunked=False) == 413, (method, path)
+            takes_files = here.endswith("/import")
+            if not takes_files and method != "DELETE":
+                # Or 404, from a route that takes no body and so reads none.
+                status = answer(quiet_server, method, here, chunked=True)
+                assert status in (404, 413), (method, path)
+                refused += status == 413
+
+    assert refused >= 4
+    assert memory.grown_bytes < FLAT_BYTES

@@ -1,0 +1,73 @@
+"""Promise 18: no path leaves the data folder: `..`, `%2e`, `%2f`, `\\`, raw paths: 0 escapes.
+
+In full: every way of writing "up" is tried in every route that takes a path or has a folder, over
+a raw socket, since clients tidy paths up before they send them.
+"""
+
+from itertools import product
+from pathlib import Path
+
+import pytest
+
+from app.server import create_app
+from app.settings import Settings
+from tests.browser.serving import Serving, serving
+from tests.promises.raw import every_route, send, status_of
+
+SECRET = "this-must-never-be-seen"
+UP = ["..", "%2e%2e", "%2E.", ".%2e", "%252e%252e", "..%00", "..;", "....//..", "%c0%ae%c0%ae"]
+SLASH = ["/", "%2f", "%2F", "\\", "%5c", "%252f", "//", "/./", "%c0%af"]
+FOLDERS = ["/static/", "/static/js/", "/viewer/", "/", "/api/v1/", "/docs/", "/static//"]
+AIMS = ["secret.txt", "etc/passwd", "data/hexapods.db", "pyproject.toml", "app/settings.py"]
+OTHERS = [
+    "/static",
+    "//etc/passwd",
+    "/static//etc/passwd",
+    "http://127.0.0.1/etc/passwd",
+    "/static/%00",
+    "/static/favicon.svg%00.txt",
+    "/static/js/main.js/../../../secret.txt",
+    "/static/file:///etc/passwd",
+    "/static/~root/.bashrc",
+    "/viewer/?playbackPath=../../../etc/passwd",
+    "/viewer/%2e%2e/%2e%2e/etc/passwd",
+    "*",
+    "../../etc/passwd",
+]
+GIVEN_AWAY = (SECRET.encode(), b"root:x:0:0", b"SQLite format 3", b"[build-system]", b'"""Settings')
+
+
+def paths(templates: list[str]) -> list[str]:
+    found = [*OTHERS]
+    for up, slash in product(UP, SLASH):
+        for depth in (1, 3, 8):
+            climb = (up + slash) * depth
+            found += [folder + climb + aim for folder, aim in product(FOLDERS, AIMS)]
+        one = f"{up}{slash}{up}{slash}secret.txt"
+        found += [template.replace("{run_id}", one) for template in templates]
+    return found
+
+
+@pytest.mark.timeout(300)
+def test_nothing_is_given_away_or_left_behind(tmp_path: Path) -> None:
+    (tmp_path / "secret.txt").write_text(SECRET)
+    data = tmp_path / "data"
+    app = create_app(Settings(data=data))
+    templates = sorted({route.path for route in every_route(app) if "{" in route.path})
+    tried = paths(templates)
+    assert len(tried) > 5_000
+    with serving(data) as server:
+        for number, path in enumerate(tried):
+            # In turns: each tenth also tries to change something there.
+            method = ("DELETE", "PUT", "POST", "PATCH")[number % 4] if number % 10 == 0 else "GET"
+            lines = [f"{method} {path} HTTP/1.1", "Host: 127.0.0.1", "Content-Length: 0"]
+            answer = send(server.port, *lines)
+            assert not any(word in answer for word in GIVEN_AWAY), path
+            assert status_of(answer) < 500, (path, answer)
+        assert _is_alive(server)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["data", "secret.txt"]
+    assert (tmp_path / "secret.txt").read_text() == SECRET
+
+
+def _is_alive(server: Serving) -> bool:
+    return status_of(send(server.port, "GET /healthz HTTP/1.1", "Host: 127.0.0.1")) == 200

@@ -1,0 +1,76 @@
+"""Promise 19: foreign pages get nowhere: Host and Origin over every route and websocket.
+
+In full, over raw sockets: 100 % refused.
+"""
+
+from app.server import create_app
+from app.settings import Settings
+from tests.browser.serving import Serving
+from tests.promises.raw import every_route, request_lines, send, status_of
+
+FOREIGN_HOSTS = [
+    "evil.example",
+    "evil.example:{port}",
+    "127.0.0.1.evil.example:{port}",
+    "localhost.evil.example",
+    "localhost@evil.example",
+    "evil.example/127.0.0.1",
+    "127.0.0.1:{port}, evil.example",
+    "[::1",
+    "",
+]
+FOREIGN_ORIGINS = [
+    "http://evil.example",
+    "https://evil.example:{port}",
+    "http://127.0.0.1.evil.example:{port}",
+    "http://127.0.0.1:{port}.evil.example",
+    "http://127.0.0.1:{port}@evil.example",
+    "http://203.0.113.7:{port}",
+    "chrome-extension://abcdefghijklmnop",
+    "file://",
+    "null",
+    "",
+    "http://127.0.0.1:{port}, http://evil.example",
+]
+
+
+def test_all_are_refused_everywhere(quiet_server: Serving) -> None:
+    port = quiet_server.port
+    own = f"127.0.0.1:{port}"
+    headers = [{"Host": host.format(port=port)} for host in FOREIGN_HOSTS]
+    headers += [{"Origin": origin.format(port=port)} for origin in FOREIGN_ORIGINS]
+    routes = every_route(create_app(Settings(data=quiet_server.data)))
+    assert {"WS"} < {route.method for route in routes}
+    let_in = []
+    for route in routes:
+        for foreign in headers:
+            answer = send(port, *request_lines(route, own, **foreign))
+            # uvicorn itself refuses a Host that is none.
+            if status_of(answer) not in (403, 400):
+                let_in.append((route, foreign, answer[:100]))
+    assert let_in == []
+
+
+def test_two_hosts_or_origins_are_none(quiet_server: Serving) -> None:
+    port = quiet_server.port
+    for more in (
+        [f"Host: 127.0.0.1:{port}", "Host: evil.example"],
+        ["Host: evil.example", f"Host: 127.0.0.1:{port}"],
+        [
+            f"Host: 127.0.0.1:{port}",
+            f"Origin: http://127.0.0.1:{port}",
+            "Origin: http://evil.example",
+        ],
+        [],
+    ):
+        answer = send(port, "GET /api/v1/stage HTTP/1.1", *more)
+        assert status_of(answer) in (400, 403), more
+
+
+def test_ones_own_page_gets_everywhere(quiet_server: Serving) -> None:
+    port = quiet_server.port
+    own = f"127.0.0.1:{port}"
+    for route in every_route(create_app(Settings(data=quiet_server.data))):
+        if route.method in ("GET", "HEAD", "WS"):
+            answer = send(port, *request_lines(route, own, Origin=f"http://{own}"))
+            assert status_of(answer) not in (400, 401, 403), (route, answer[:200])
