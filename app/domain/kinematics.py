@@ -49,7 +49,8 @@ class Legs:
         """
         x, y, z = np.ascontiguousarray(np.moveaxis(offsets, -1, 0))
         frames = self.frames.reshape(3, 2, *(1 for _ in offsets.shape[:-2]), -1)
-        return self.solve(np.array((x, y)), z, frames)
+        with np.errstate(invalid="ignore"):
+            return self.solve(np.array((x, y)), z, frames)
 
     def solve(self, places: FloatArray, heights: FloatArray, frames: FloatArray) -> FloatArray:
         """Inverse kinematics of any feet, each in the frame of its leg.
@@ -63,7 +64,8 @@ class Legs:
             frames: a column of `self.frames` for each foot, (3, 2, ...).
 
         Returns:
-            (..., 3) coxa, femur, tibia [rad]; NaN where the foot is out of reach.
+            (..., 3) coxa, femur, tibia [rad]; NaN where a foot is out of reach, with NumPy's
+            warning: `check_reach` has made sure that none is.
         """
         home, of_x, of_y = frames
         feet = home + (of_x * places[0] + of_y * places[1])  # (2, ...): along the leg, across
@@ -72,8 +74,7 @@ class Legs:
         fall = heights - self.robot.body_height_m
         femur, tibia = self.robot.femur_m, self.robot.tibia_m
         bend = (r * r + fall * fall - (femur * femur + tibia * tibia)) / (2 * femur * tibia)
-        with np.errstate(invalid="ignore"):
-            drop = np.sqrt(1 - bend * bend)
+        drop = np.sqrt(1 - bend * bend)
         angles = np.empty((*r.shape, 3))
         angles[..., 0] = np.arctan2(feet[1], feet[0])
         angles[..., 1] = np.arctan2(fall, r) + np.arctan2(tibia * drop, femur + tibia * bend)

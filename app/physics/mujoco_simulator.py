@@ -91,12 +91,12 @@ class MujocoSimulator:
         return MujocoState(_frozen(batch.state[0]), self._motion.at_home())
 
     def step(self, state: MujocoState, action: Action, record: bool = False) -> Step[MujocoState]:
-        expansion, motions = self._advance(self._single, [state], [action], record)
+        (end,), (reward,), recorded = self._advance(self._single, [state], [action], record)
         motion = None
         if record:
-            kept = motions[0, self._kept].astype(np.float32)
+            kept = recorded["qpos"][0, self._kept].astype(np.float32)
             motion = Motion(((self._kept + 1) * self.robot.dt_s).astype(np.float32), kept)
-        return Step(expansion.states[0], float(expansion.rewards_m[0]), motion)
+        return Step(end, reward, motion)
 
     def expand(
         self, states: Sequence[MujocoState], actions: Sequence[Action]
@@ -105,7 +105,8 @@ class MujocoSimulator:
             return Expansion([], np.empty(0))
         if len(states) > self._many.nsim:
             self._many = Batch(self.model, len(states), self._threads)
-        return self._advance(self._many, states, actions, record=False)[0]
+        ends, rewards, _ = self._advance(self._many, states, actions, record=False)
+        return Expansion(ends, np.array(rewards))
 
     def commands(self, states: Sequence[MujocoState], actions: Sequence[Action]) -> FloatArray:
         """What the servos are told over a step from each state, (n, substeps, 3 · legs) [rad]."""
@@ -120,8 +121,8 @@ class MujocoSimulator:
         states: Sequence[MujocoState],
         actions: Sequence[Action],
         record: bool,
-    ) -> tuple[Expansion[MujocoState], FloatArray]:
-        """Plan and carry out a step from each state; qpos of every substep where recorded."""
+    ) -> tuple[list[MujocoState], list[float], dict[str, FloatArray]]:
+        """Plan and carry out a step from each state: ends, rewards, and `qpos` if recorded."""
         plans, count = self._plans(states, actions), len(states)
         for simulation, state in enumerate(states):
             batch.state[simulation] = state.row
@@ -138,7 +139,7 @@ class MujocoSimulator:
         ]
         rewards = [self._reward(s.row, row) for s, row in zip(states, after, strict=True)]
         self._check(batch, rewards, [end.steps for end in ends])
-        return Expansion(ends, np.array(rewards)), recorded.get("qpos", np.empty(0))
+        return ends, rewards, recorded
 
     def _reward(self, before: FloatArray, after: FloatArray) -> float:
         """Displacement along the robot's horizontal forward direction at the start [m].
