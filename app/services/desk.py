@@ -2,15 +2,17 @@
 
 import queue
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal
 
 from app.agents.protocol import Tunable
 from app.runs.recording import NEWEST_STEPS
 from app.runs.records import RaceRecord, StepTaken, TrainingRecord
-from app.services.orders import Batch, Changed, Message, Word
+from app.services.orders import Batch, Changed, Checkpointed, Message, Word
 
 BATCHES_PER_S = 30
+CHECKPOINT_EVERY_S = 3.0
+"""A dead server loses what came after the last one: with a step and a busy machine under 5 s."""
 
 
 class Stopped(Exception):
@@ -22,11 +24,12 @@ class Desk:
 
     Attributes:
         stopped: whether the job was told to stop.
+        leaving: whether it was told to leave off, to go on another time.
         changes: what was changed while it ran, each with the steps that were done before.
     """
 
     def __init__(self, send: Callable[[Message], None], words: "queue.SimpleQueue[Word]") -> None:
-        self.stopped = False
+        self.stopped = self.leaving = False
         self.changes: list[dict[str, Any]] = []
         self.send = send
         self._words = words
@@ -37,11 +40,50 @@ class Desk:
         self._records: list[TrainingRecord | RaceRecord] = []
         self._done = 0
         self._sent_s = 0.0
+        self._save: Callable[[], Checkpointed] | None = None
+        self._saved_s = time.monotonic()
+        self._saved: tuple[int, int] | None = None
+        """The step and the number of changes of the newest checkpoint."""
+        self._to_repeat: list[Mapping[str, Any]] = []
 
     def keep_pace(self, pace: float | Literal["max"], step_s: float) -> None:
         """Let a step take as long as it would at `pace` times real time."""
         self._pace, self._step_s = pace, step_s
         self._due_s = time.monotonic()
+
+    def keep_safe(self, save: Callable[[], Checkpointed]) -> None:
+        """Send a checkpoint every few seconds in which something happened, and before a wait."""
+        self._save = save
+
+    def checkpoint(self) -> None:
+        """Send one now, after all that came before it."""
+        if self._save is not None:
+            self.flush()
+            self.send(self._save())
+            self._saved_s = time.monotonic()
+
+    def repeat(
+        self,
+        made: Iterable[Mapping[str, Any]],
+        later: Iterable[Mapping[str, Any]],
+        step: int,
+        agent: object,
+    ) -> None:
+        """Go on where someone else left off.
+
+        Args:
+            made: changes that are in force.
+            later: changes that were made afterwards, to be made again after the same steps.
+            step: how many steps are done.
+            agent: whose rates may be changed.
+        """
+        self.changes = [dict(change) for change in made]
+        for change in self.changes:
+            if "pace" in change:
+                self.keep_pace(change["pace"], self._step_s)
+        self._to_repeat = list(later)
+        self._saved = (step, len(self.changes))
+        self._repeat(step, agent)
 
     def report(self, record: TrainingRecord | RaceRecord, done: int) -> None:
         """Send a record, together with others if they come fast."""
@@ -65,36 +107,50 @@ class Desk:
             agent: whose rates may be changed.
 
         Returns:
-            False if the job is to stop.
+            False if the job is to stop, or to leave off.
         """
+        self._repeat(step, agent)
         while True:
             wait_s = self._wait_s()
             if wait_s is None or wait_s > 1 / BATCHES_PER_S:
                 self.flush()
+            self._checkpoint_if_due(step, wait_s)
             try:
                 word = self._next_word(wait_s)
             except queue.Empty:
                 self._set_due()
                 return True
             self._obey(word, step, agent)
-            if self.stopped:
+            if self.stopped or self.leaving:
                 return False
 
     def listen(self, step: int, agent: object) -> None:
         """Obey what there is to obey in the middle of an evaluation, which has no pace.
 
         Raises:
-            Stopped: if the job is to stop.
+            Stopped: if the job is to stop, or to leave off.
         """
-        while not self.stopped:
+        while not (self.stopped or self.leaving):
+            wait_s = None if self._paused else 0.0
+            self._checkpoint_if_due(step, wait_s)
             try:
-                word = self._next_word(None if self._paused else 0.0)
+                word = self._next_word(wait_s)
             except queue.Empty:
                 return
             self._obey(word, step, agent)
             if self._paused:
                 self.flush()
         raise Stopped
+
+    def _checkpoint_if_due(self, step: int, wait_s: float | None) -> None:
+        """If there is something new, and the next chance would come too late."""
+        state = (step, len(self.changes))
+        if self._save is None or state == self._saved:
+            return
+        due_s = self._saved_s + CHECKPOINT_EVERY_S
+        if wait_s is None or time.monotonic() + wait_s >= due_s:
+            self.checkpoint()
+            self._saved = state
 
     def _next_word(self, wait_s: float | None) -> Word:
         if wait_s is not None and wait_s <= 0:
@@ -117,6 +173,8 @@ class Desk:
     def _obey(self, word: Word, step: int, agent: object) -> None:
         if word.verb == "stop":
             self.stopped = True
+        elif word.verb == "leave":
+            self.leaving = True
         elif word.verb == "tune":
             self._tune(word, step, agent)
         else:
@@ -124,14 +182,21 @@ class Desk:
             self._due_s = time.monotonic()
 
     def _tune(self, word: Word, step: int, agent: object) -> None:
-        changes = dict(word.changes)
+        self._change(word.changes, step, agent)
+        self.send(Changed(word.token, step, dict(word.changes)))
+
+    def _repeat(self, step: int, agent: object) -> None:
+        while self._to_repeat and self._to_repeat[0]["step"] <= step:
+            change = dict(self._to_repeat.pop(0))
+            self._change({k: v for k, v in change.items() if k != "step"}, step, agent)
+
+    def _change(self, changes: Mapping[str, Any], step: int, agent: object) -> None:
         rates = {name: value for name, value in changes.items() if name != "pace"}
         if rates and isinstance(agent, Tunable):
             agent.tune(**rates)
         if "pace" in changes:
             self.keep_pace(changes["pace"], self._step_s)
         self.changes.append({"step": step, **changes})
-        self.send(Changed(word.token, step, changes))
 
 
 def _worth_sending(

@@ -62,11 +62,13 @@ class Entry:
         run: as it was stored.
         make_order: says what its process is to do, when its turn comes.
         waits_for: trainings that must finish before.
+        goes_on: whether it was interrupted, and so is in the store already.
     """
 
     run: Run
     make_order: Callable[[], Order]
     waits_for: set[str]
+    goes_on: bool = False
 
 
 def learns(agent: str) -> bool:

@@ -1,12 +1,15 @@
 """A job while it runs: what its process says becomes the run's state, recording and events."""
 
+import logging
 import threading
 import time
 from collections import deque
 from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
+from operator import itemgetter
 from typing import Any
 
+from app.domain.errors import HexapodError
 from app.domain.robot import as_mapping
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
@@ -17,6 +20,7 @@ from app.services.orders import (
     Batch,
     Began,
     Changed,
+    Checkpointed,
     Ended,
     Failed,
     Message,
@@ -27,11 +31,12 @@ from app.services.orders import (
 )
 from app.services.process import Child
 from app.services.recordings import Recordings
-from app.services.store import LIVE, TABLE, Run, RunStore, State
+from app.services.store import CHECKPOINT, LIVE, TABLE, Run, RunStore, State
 from app.services.views import run_view
 
 EVENTS_PER_S = 10
 _ETA_WINDOW_S = 5.0
+_logger = logging.getLogger(__name__)
 
 
 class Job:
@@ -82,6 +87,13 @@ class Job:
         else:
             self.child.kill()
 
+    def leave(self) -> None:
+        """End after the present step with a checkpoint, if it is a training that has begun."""
+        if self._has_begun and not self.is_race:
+            self.child.send(Word("leave"))
+        else:
+            self.child.kill()
+
     def tune(self, changes: Mapping[str, Any]) -> threading.Event:
         """Change rates or pace after the present step; the event is set once that is done."""
         token, answer = len(self._answers), threading.Event()
@@ -93,6 +105,7 @@ class Job:
         """Give the run its last state, if it has none yet."""
         if self.ended.is_set():
             return
+        self._keep_recording(state)
         # By a clock that nobody puts forward or back.
         ended_at = self._began_at + timedelta(seconds=time.monotonic() - self._began_s)
         run = self._store.change(
@@ -100,6 +113,15 @@ class Job:
         )
         self.ended.set()
         self._publish(run)
+
+    def _keep_recording(self, state: State) -> None:
+        try:
+            self._recordings.finish(self.run_id)
+        except HexapodError:
+            if state in ("finished", "stopped"):
+                raise
+            # It is lost, which is no reason to hide what was wrong in the first place.
+            _logger.warning("no recording was kept", extra={"run_id": self.run_id}, exc_info=True)
 
     def process_ended(self, how: str) -> None:
         """Give the run its last state if its process died before it could say one."""
@@ -118,6 +140,9 @@ class Job:
             self._begin(message)
         elif isinstance(message, Changed):
             self._take_change(message)
+        elif isinstance(message, Checkpointed):
+            self._recordings.save(self.run_id)
+            self._store.put_artifact(self.run_id, CHECKPOINT, message.data, done=message.step)
         elif isinstance(message, Saved):
             self._store.put_artifact(self.run_id, TABLE, message.table)
         elif isinstance(message, Ended):
@@ -133,7 +158,7 @@ class Job:
             lanes = [LaneRecording(lane.agent, pose) for lane, pose in poses]
             self._recordings.begin_race(self.run_id, lanes)
         else:
-            self._recordings.begin_training(self.run_id, began.rest_qpos[0])
+            self._recordings.begin_training(self.run_id, began.rest_qpos[0], began.after_step)
 
     def _take_records(self, batch: Batch) -> None:
         evaluated = [r for r in batch.records if isinstance(r, Evaluated)]
@@ -156,8 +181,9 @@ class Job:
 
     def _take_change(self, changed: Changed) -> None:
         change = {"step": changed.step, **changed.changes}
-        done = self._store.get(self.run_id).changes
-        run = self._store.update(self.run_id, changes=(*done, change))
+        # After a checkpoint some may be there already that are yet to be made again.
+        made = sorted((*self._store.get(self.run_id).changes, change), key=itemgetter("step"))
+        run = self._store.update(self.run_id, changes=tuple(made))
         self._progress.clear()
         self._tell("rates", **change)
         self._publish(run)

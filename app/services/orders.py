@@ -16,10 +16,19 @@ from app.runs.tables import Checkpoint
 
 @dataclass(frozen=True)
 class TrainingOrder:
-    """Train, from what a table holds if one is given."""
+    """Train, from what a table holds if one is given.
+
+    Attributes:
+        config: the training.
+        table: to begin with; it starts a training of its own.
+        checkpoint: where to go on with this same training.
+        changes: those that were made after the checkpoint, to be made again.
+    """
 
     config: TrainingConfig
     table: Checkpoint | None = None
+    checkpoint: Checkpoint | None = None
+    changes: tuple[Mapping[str, Any], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -36,7 +45,8 @@ Order = TrainingOrder | RaceOrder
 class Word(NamedTuple):
     """Something to obey between two steps."""
 
-    verb: Literal["pause", "resume", "stop", "tune"]
+    verb: Literal["pause", "resume", "stop", "tune", "leave"]
+    """`leave`: end with a checkpoint instead of a result."""
     token: int = 0
     """By which the answer to `tune` is known."""
     changes: Mapping[str, Any] = {}
@@ -50,6 +60,8 @@ class Began(NamedTuple):
     """All is built, and the robots stand at rest in these poses, one for each lane."""
 
     rest_qpos: tuple[NDArray[np.float32], ...]
+    after_step: int = 0
+    """How many steps a training had done that goes on."""
 
 
 class Batch(NamedTuple):
@@ -66,6 +78,13 @@ class Changed(NamedTuple):
     token: int
     step: int
     changes: Mapping[str, Any]
+
+
+class Checkpointed(NamedTuple):
+    """All that it takes to go on from here, as a file; what came before was sent before."""
+
+    data: bytes
+    step: int
 
 
 class Saved(NamedTuple):
@@ -87,4 +106,4 @@ class Failed(NamedTuple):
     reason: str
 
 
-Message = Began | Batch | Changed | Saved | Ended | Failed
+Message = Began | Batch | Changed | Checkpointed | Saved | Ended | Failed

@@ -22,8 +22,11 @@ PAUSED: frozenset[State] = frozenset({"paused"})
 LIVE = RUNNING | PAUSED
 """A process works on it."""
 UNENDED = QUEUED | LIVE
+INTERRUPTED: frozenset[State] = frozenset({"interrupted"})
 TABLE = "q-table.npz"
 """The artifact of a training that holds what was learned."""
+CHECKPOINT = "checkpoint.npz"
+"""The artifact of a training from which it goes on if it is interrupted."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,8 +148,11 @@ class RunStore(Protocol):
     def evaluations(self, run_id: str) -> Sequence[Mapping[str, Any]]:
         """A training's curve so far: `step`, `distance_m`, `epsilon`."""
 
-    def put_artifact(self, run_id: str, name: str, data: bytes) -> None:
-        """Keep a file of the run's, in place of what had this name."""
+    def forget_evaluations(self, run_id: str, after_step: int) -> None:
+        """Drop what a training's curve has after this step."""
+
+    def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
+        """Keep a file of the run's, in place of what had this name, and set fields, or neither."""
 
     def artifact(self, run_id: str, name: str) -> bytes | None:
         """A file of the run's; None if it has none of this name."""
@@ -233,9 +239,14 @@ class MemoryStore:
             self._run(run_id)
             return [*self._curves.get(run_id, ())]
 
-    def put_artifact(self, run_id: str, name: str, data: bytes) -> None:
+    def forget_evaluations(self, run_id: str, after_step: int) -> None:
         with self._lock:
-            self._run(run_id)
+            curve = self._curves.get(run_id, [])
+            self._curves[run_id] = [row for row in curve if row["step"] <= after_step]
+
+    def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
+        with self._lock:
+            self._runs[run_id] = replace(self._run(run_id), **fields)
             self._artifacts.setdefault(run_id, {})[name] = data
 
     def artifact(self, run_id: str, name: str) -> bytes | None:

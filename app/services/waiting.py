@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 
 from app.services.entries import Entry
 from app.services.errors import Busy
-from app.services.store import QUEUED, Run, RunStore, State
+from app.services.store import INTERRUPTED, QUEUED, Run, RunStore, State
 
 MAX_QUEUED = 32
 RETRY_AFTER_S = 10
@@ -41,10 +41,20 @@ class WaitingRuns:
                 RETRY_AFTER_S,
             )
         self._store.check_room()
-        self._store.create(*(entry.run for entry in entries))
+        self._store.create(*(entry.run for entry in entries if not entry.goes_on))
+        for entry in (entry for entry in entries if entry.goes_on):
+            entry.run = self._queue_again(entry.run)
         self._entries += entries
         for entry in entries:
             self._tell(entry.run)
+
+    def _queue_again(self, run: Run) -> Run:
+        """What came after the step from which it goes on comes again."""
+        fields = ("done", "waiting_for", "error", "result", "ended_at")
+        changed = {field: getattr(run, field) for field in fields}
+        queued = self._store.change(run.id, INTERRUPTED, "queued", **changed)
+        self._store.forget_evaluations(run.id, after_step=run.done)
+        return queued
 
     def take(self) -> Entry | None:
         """The first that waits for nothing but a core; it does not wait any more."""
@@ -53,6 +63,14 @@ class WaitingRuns:
         if entry is not None:
             self._entries.remove(entry)
         return entry
+
+    def interrupt(self, why: str) -> None:
+        """End all that wait, so that each may be resumed another time."""
+        for entry in self._entries:
+            now = max(datetime.now(UTC), entry.run.created_at)
+            changed = {"error": why, "ended_at": now, "waiting_for": ()}
+            self._tell(self._store.change(entry.run.id, QUEUED, "interrupted", **changed))
+        self._entries = []
 
     def needing(self, training_id: str) -> Run | None:
         """A race that waits, and needs the table of this training."""

@@ -21,12 +21,22 @@ from app.assembly import build_learner, build_walkers, finish_training
 from app.domain.errors import HexapodError
 from app.runs.racing import race
 from app.runs.records import LaneStep, StepTaken
-from app.runs.tables import snapshot, to_bytes
+from app.runs.tables import restore, snapshot, to_bytes
 from app.runs.training import Learner, train
 from app.runs.walker import Walker
 from app.services.desk import Desk, Stopped
 from app.services.listening import ListeningAgent
-from app.services.orders import Began, Ended, Failed, Order, RaceOrder, Saved, TrainingOrder, Word
+from app.services.orders import (
+    Began,
+    Checkpointed,
+    Ended,
+    Failed,
+    Order,
+    RaceOrder,
+    Saved,
+    TrainingOrder,
+    Word,
+)
 
 NICENESS = 15
 _PR_SET_PDEATHSIG = 1
@@ -59,19 +69,36 @@ def main(pipe: Connection) -> None:
 def _train(order: TrainingOrder, desk: Desk) -> None:
     config = order.config
     learner = build_learner(config, order.table, threads=0)
-    walker = learner.walker
-    desk.send(Began((_pose(walker),)))
+    walker, rest_qpos = learner.walker, _pose(learner.walker)
     desk.keep_pace(config.pace, config.robot.step_s)
+    made = ()
+    if order.checkpoint is not None:
+        restore(learner, order.checkpoint)
+        made = order.checkpoint.meta["changes"]
+    desk.repeat(made, order.changes, learner.step, walker.agent)
+    desk.send(Began((rest_qpos,), learner.step))
+    desk.keep_safe(lambda: Checkpointed(_saved(learner, order, desk), learner.step))
+    result = None
     with suppress(Stopped):
         for record in train(_attentive(learner, desk), config, record=True):
             desk.report(record, learner.step)
             if isinstance(record, StepTaken) and not desk.go_on(learner.step, walker.agent):
-                break
+                raise Stopped
+        desk.flush()
+        result = finish_training(learner, config)
     desk.flush()
-    # The rival's walk is long; who stops a training before its first evaluation waits for nothing.
-    result = finish_training(learner, config, measure_rival=not desk.stopped)
-    desk.send(Saved(to_bytes(snapshot(learner, config, changes=desk.changes))))
+    if desk.leaving and not desk.stopped:
+        desk.checkpoint()
+        return
+    if result is None:
+        # The rival's walk is long; who stops a training early waits for nothing.
+        result = finish_training(learner, config, measure_rival=False)
+    desk.send(Saved(_saved(learner, order, desk)))
     desk.send(Ended("stopped" if desk.stopped else "finished", result))
+
+
+def _saved(learner: Learner, order: TrainingOrder, desk: Desk) -> bytes:
+    return to_bytes(snapshot(learner, order.config, changes=desk.changes))
 
 
 def _attentive(learner: Learner, desk: Desk) -> Learner:
@@ -101,7 +128,8 @@ def _race(order: RaceOrder, desk: Desk) -> None:
         if not desk.go_on(done):
             break
     desk.flush()
-    desk.send(Ended("stopped" if desk.stopped else "finished", None))
+    if not desk.leaving:
+        desk.send(Ended("stopped" if desk.stopped else "finished", None))
 
 
 def _pose(walker: Walker) -> NDArray[np.float32]:

@@ -233,3 +233,24 @@ def test_ids_rise_even_within_a_millisecond() -> None:
     assert ids == sorted(ids)
     assert len(set(ids)) == 1000
     assert all(len(made) == 13 and made.isalnum() for made in ids)
+
+
+def test_a_file_and_what_goes_with_it_are_kept_together(store: RunStore) -> None:
+    run = a_run(store)
+    store.update_progress(run.id, 7, 2.0)
+    store.put_artifact(run.id, "checkpoint.npz", b"5", done=5)
+    store.put_artifact(run.id, "other", b"x")
+    kept = store.change(run.id, QUEUED, "interrupted")
+    assert (kept.done, store.artifact(run.id, "checkpoint.npz")) == (5, b"5")
+    with pytest.raises(NotFound):
+        store.put_artifact("none", "checkpoint.npz", b"5", done=5)
+
+
+def test_a_curve_is_cut_off_after_a_step(store: RunStore) -> None:
+    run, other = a_run(store), a_run(store)
+    for one in (run, other):
+        rows = [{"step": step, "distance_m": 0.1, "epsilon": 0.0} for step in (50, 100, 150)]
+        store.append_evaluations(one.id, rows)
+    store.forget_evaluations(run.id, after_step=100)
+    assert [row["step"] for row in store.evaluations(run.id)] == [50, 100]
+    assert [row["step"] for row in store.evaluations(other.id)] == [50, 100, 150]

@@ -144,8 +144,15 @@ class SqlStore:
             for row in self._database.read(work)
         ]
 
-    def put_artifact(self, run_id: str, name: str, data: bytes) -> None:
+    def forget_evaluations(self, run_id: str, after_step: int) -> None:
+        later = EVALUATIONS.c.run_id == run_id, EVALUATIONS.c.step > after_step
+        self._database.write(
+            lambda connection: connection.execute(delete(EVALUATIONS).where(*later))
+        )
+
+    def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
         self.get(run_id)
+        columns = columns_of({**self._progress.of(run_id), **fields}) if fields else {}
         stored = self._files.write(data)
         of_this_name = ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name
         row = {"run_id": run_id, "name": name, "written_at": datetime.now(UTC)}
@@ -156,6 +163,9 @@ class SqlStore:
             names = connection.execute(former).scalars().all()
             connection.execute(delete(ARTIFACTS).where(*of_this_name))
             connection.execute(insert(ARTIFACTS), [{**row, **stored._asdict()}])
+            if columns:
+                of_run = RUNS.c.id == run_id
+                connection.execute(update(RUNS).where(of_run).values(columns))
             return names
 
         try:
@@ -164,6 +174,8 @@ class SqlStore:
             # After any other error the database may have taken it, and the next start knows.
             self._files.remove(stored.file)
             raise
+        if columns:
+            self._progress.take(run_id)
         self._files.remove(*former)
 
     def artifact(self, run_id: str, name: str) -> bytes | None:

@@ -1,0 +1,74 @@
+"""From runs that were interrupted to runs that can be queued again.
+
+A training goes on from its newest checkpoint, or from its start if it has none: with the changes
+that were made since, after the same steps, and so to the same end. A race begins anew, since it is
+short and the same again; trainings that it still waits for go on before it.
+"""
+
+from dataclasses import replace
+
+from app.runs.config import RaceConfig, TrainingConfig
+from app.runs.tables import Checkpoint, from_bytes
+from app.services.entries import Entry, load_table
+from app.services.errors import Conflict, NotFound
+from app.services.orders import RaceOrder, TrainingOrder
+from app.services.store import CHECKPOINT, INTERRUPTED, UNENDED, Run, RunStore
+
+
+def resumed_entries(run: Run, store: RunStore) -> list[Entry]:
+    """An interrupted run, ready to be queued again, after the trainings that it waits for.
+
+    Raises:
+        Conflict: if it is not interrupted, or what it needs is gone.
+        InvalidInput: if what it needs is gone, or damaged.
+    """
+    if run.state not in INTERRUPTED:
+        raise Conflict(f"{run.kind} {run.id} is {run.state}, not interrupted", run.state)
+    if isinstance(run.config, RaceConfig):
+        return _race(run, run.config, store)
+    return [_training(run, run.config, store)]
+
+
+def _training(run: Run, config: TrainingConfig, store: RunStore) -> Entry:
+    checkpoint = _checkpoint(run, store)
+    if checkpoint is None:
+        table = None if run.continued_from is None else load_table(store, run.continued_from)
+        order, step = TrainingOrder(config, table, changes=run.changes), 0
+    else:
+        since = run.changes[len(checkpoint.meta["changes"]) :]
+        order = TrainingOrder(config, checkpoint=checkpoint, changes=since)
+        step = checkpoint.meta["step"]
+    return Entry(_again(run, step), lambda: order, set(), goes_on=True)
+
+
+def _checkpoint(run: Run, store: RunStore) -> Checkpoint | None:
+    data = store.artifact(run.id, CHECKPOINT)
+    return None if data is None else from_bytes(data, f"the checkpoint of training {run.id}")
+
+
+def _race(run: Run, config: RaceConfig, store: RunStore) -> list[Entry]:
+    before: list[Entry] = []
+    waits_for = []
+    for training_id in dict.fromkeys(filter(None, run.lane_training_ids)):
+        try:
+            training = store.get(training_id)
+        except NotFound as error:
+            why = f"training {training_id}, whose table it needs, was deleted"
+            raise Conflict(f"race {run.id} cannot go on: {why}", run.state) from error
+        if training.state in INTERRUPTED:
+            before += resumed_entries(training, store)
+        elif training.state not in UNENDED:
+            load_table(store, training_id)
+            continue
+        waits_for.append(training_id)
+
+    def make_order() -> RaceOrder:
+        ids = run.lane_training_ids
+        return RaceOrder(config, tuple(None if i is None else load_table(store, i) for i in ids))
+
+    again = replace(_again(run, 0), waiting_for=tuple(waits_for))
+    return [*before, Entry(again, make_order, set(waits_for), goes_on=True)]
+
+
+def _again(run: Run, step: int) -> Run:
+    return replace(run, state="queued", done=step, error=None, result=None, ended_at=None)
