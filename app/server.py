@@ -33,6 +33,7 @@ from app.api.origins import HostGuard
 from app.api.rates import RateLimit
 from app.domain.errors import HexapodError, InvalidInput
 from app.services import logs
+from app.services.database.opening import open_store
 from app.services.jobs import Jobs
 from app.services.once import Once
 from app.services.recordings import Recordings
@@ -52,9 +53,15 @@ _DESCRIPTION = (
 )
 
 
-def create_app(settings: Settings) -> FastAPI:
-    """The whole application; jobs, stage and hub begin and end with its lifespan."""
-    store, recordings, bus = MemoryStore(), Recordings(), Witness()
+def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
+    """The whole application; jobs, stage and hub begin and end with its lifespan.
+
+    Args:
+        settings: of the server.
+        store: where runs are kept; None keeps them for as long as the application lives.
+    """
+    store = MemoryStore() if store is None else store
+    recordings, bus = Recordings(store), Witness()
     show = Stage(store, recordings, bus)
     theatre = Theatre(show, bus, allowed_origins=_further_origins(settings))
     jobs = Jobs(store, recordings, bus, on_queued=show.offer)
@@ -139,23 +146,25 @@ def serve(settings: Settings) -> None:
     """Serve until a signal says to stop.
 
     Raises:
-        InvalidInput: if the data folder cannot be written, or the address cannot be bound.
+        InvalidInput: if the data folder cannot be written or another server has it, or the
+            address cannot be bound.
+        DamagedFile, StorageFailed: if the database cannot be used.
     """
     settings.prepare_data()
     listener = _listen(settings)
     logs.install(settings.log_level)
-    app = create_app(settings)
-    config = uvicorn.Config(
-        app,
-        lifespan="on",
-        log_config=None,
-        log_level="warning",
-        access_log=False,
-        server_header=False,
-        timeout_graceful_shutdown=GRACE_S,
-        **websocket_options(),
-    )
-    with listener:
+    with listener, open_store(settings) as store:
+        app = create_app(settings, store)
+        config = uvicorn.Config(
+            app,
+            lifespan="on",
+            log_config=None,
+            log_level="warning",
+            access_log=False,
+            server_header=False,
+            timeout_graceful_shutdown=GRACE_S,
+            **websocket_options(),
+        )
         _Server(config, app, settings, listener).run(sockets=[listener])
 
 

@@ -1,86 +1,20 @@
 """The server as people run it: one process on loopback, its streams, its end, its refusals."""
 
-import json
-import os
 import signal
 import socket
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import httpx2
 import psutil
 import pytest
 import viser
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-LONG_S = 60.0
-BODY = {"gait": "left-right-origin", "simulator": "kinematic"}
-ENDLESS = {**BODY, "steps": 10_000_000, "pace": 20, "evaluate_every": 0}
-HEXAPODS = [sys.executable, "-c", "import sys; from app.cli import main; sys.exit(main())"]
-Events = Iterator[tuple[str, Any, str]]
-
-
-def environ(**variables: str) -> dict[str, str]:
-    kept = {name: value for name, value in os.environ.items() if not name.startswith("HEXAPODS_")}
-    return {**kept, **variables}
-
-
-class Served:
-    """`hexapods serve` on a port that the system chose."""
-
-    def __init__(self, data: Path, **variables: str) -> None:
-        command = [*HEXAPODS, "serve", "--port", "0", "--data", str(data)]
-        self.process = subprocess.Popen(
-            command, stdout=subprocess.PIPE, text=True, env=environ(**variables)
-        )
-        assert self.process.stdout is not None
-        line = self.process.stdout.readline()
-        assert "Racing Hexapods is at http://127.0.0.1:" in line
-        self.address = line.split()[4].rstrip("/")
-        self.client = httpx2.Client(base_url=self.address, timeout=LONG_S, trust_env=False)
-
-    def start(self, body: dict[str, Any]) -> dict[str, Any]:
-        response = self.client.post("/api/v1/trainings", json=body)
-        assert response.status_code == 202, response.text
-        run: dict[str, Any] = response.json()
-        return run
-
-    def moving(self, run: dict[str, Any]) -> dict[str, Any]:
-        deadline = time.monotonic() + LONG_S
-        while True:
-            now: dict[str, Any] = self.client.get(f"/api/v1/trainings/{run['id']}").json()
-            if now["progress"]["done"] > 0:
-                return now
-            assert time.monotonic() < deadline
-            time.sleep(0.02)
-
-    def events(self, query: str = "", last: str | None = None) -> Events:
-        headers = {} if last is None else {"Last-Event-ID": last}
-        path = f"/api/v1/events{query}"
-        with self.client.stream("GET", path, headers=headers) as response:
-            assert response.status_code == 200
-            assert response.headers["content-type"].startswith("text/event-stream")
-            event: dict[str, str] = {}
-            for line in response.iter_lines():
-                name, _, value = line.partition(": ")
-                event[name] = value
-                if not line and "data" in event:
-                    yield event["event"], json.loads(event["data"]), event["id"]
-                    event = {}
-
-    def end(self, by: int = signal.SIGTERM) -> int:
-        self.client.close()
-        if self.process.poll() is None:
-            self.process.send_signal(by)
-        code = self.process.wait(LONG_S)
-        assert self.process.stdout is not None
-        self.process.stdout.close()
-        return code
+from tests.served import BODY, ENDLESS, HEXAPODS, LONG_S, Events, Served, environ
 
 
 @pytest.fixture

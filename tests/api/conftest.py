@@ -8,6 +8,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from app.server import create_app
+from app.services.database.opening import open_store
 from app.settings import Settings
 from tests.api.calls import ADDRESS, Api
 
@@ -20,9 +21,11 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="package")
 def api(data: Path) -> Iterator[Api]:
     """One server for all tests of this folder that do not mind each other's runs."""
-    app = create_app(Settings(data=data))
-    with TestClient(app, base_url=ADDRESS) as client:
-        yield Api(client)
+    settings = Settings(data=data)
+    with open_store(settings) as store:
+        app = create_app(settings, store)
+        with TestClient(app, base_url=ADDRESS) as client:
+            yield Api(client)
 
 
 @pytest.fixture(scope="package")

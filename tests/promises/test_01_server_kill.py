@@ -1,0 +1,59 @@
+"""Promise 1: kill -9 of the server loses at most one checkpoint, 5 s of training.
+
+Promised: 50 kills at random times. Here 3 of one training, 50 by `make soak`; what the store does
+with 50 kills is in `test_01_kill.py`. After each the training goes on from its newest checkpoint.
+"""
+
+import random
+import signal
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from app.runs.tables import from_bytes
+from app.services.store import CHECKPOINT
+from tests.promises.length import at_length
+from tests.served import BODY, Served
+from tests.services.stores import opened
+
+KILLS = at_length(3, 50)
+LOST_S = 5.0
+
+
+@pytest.mark.timeout(60 * KILLS)
+def test_a_kill_loses_at_most_one_checkpoint(launch: Callable[..., Served], tmp_path: Path) -> None:
+    chance = random.Random(1)
+    server = launch()
+    run = server.start({**BODY, "steps": 10_000_000, "pace": 100, "evaluate_every": 100})
+    for _ in range(KILLS):
+        seen = watched(server, run, chance.uniform(0, LOST_S + 2))
+        server.end(signal.SIGKILL)
+        acknowledged = max((done for at_s, done in seen if at_s <= seen[-1][0] - LOST_S), default=0)
+        with opened(tmp_path, None) as store:
+            kept = store.get(run["id"])
+            data = store.artifact(run["id"], CHECKPOINT)
+            step = 0 if data is None else from_bytes(data, "the checkpoint").meta["step"]
+            rows = [row["step"] for row in store.evaluations(run["id"])]
+        assert kept.state == "interrupted"
+        assert step >= acknowledged
+        assert rows == list(range(100, len(rows) * 100 + 1, 100)), "no gap and no double"
+        assert len(rows) >= step // 100 - 1, "a curve is not behind its checkpoint"
+        server = launch()
+        assert server.tell(run, "resume").json()["progress"]["done"] == step
+    server.after_step(run, step + 1)
+    assert server.tell(run, "stop").json()["state"] == "stopped"
+
+
+def watched(server: Served, run: dict[str, object], for_s: float) -> list[tuple[float, int]]:
+    """When it had done how much, from when it moves on until some time later."""
+    begun = server.look(run)["progress"]["done"]
+    server.after_step(run, begun + 1)
+    seen: list[tuple[float, int]] = []
+    until_s = time.monotonic() + for_s
+    while not seen or time.monotonic() < until_s:
+        done = server.look(run)["progress"]["done"]
+        seen.append((time.monotonic(), done))
+        time.sleep(0.05)
+    return seen

@@ -1,0 +1,52 @@
+"""Promise 9: of two operators who do the same at once, one wins and the other gets 409.
+
+Promised: 1,000 pairs. Here 60, of pause, resume and stop, and of resuming an interrupted run; by
+`make soak` 1,000. No process is left that nobody answers for.
+"""
+
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier
+
+import httpx2
+import pytest
+
+from tests.promises.length import at_length
+from tests.served import ENDLESS, LONG_S, Served
+
+RUNS = at_length(3, 10)
+PAIRS_A_RUN = at_length(20, 100)
+
+
+@pytest.mark.timeout(at_length(120, 1800))
+def test_one_of_two_operators_wins(launch: Callable[..., Served]) -> None:
+    server = launch()
+    with ThreadPoolExecutor(2) as operators:
+        meet = Barrier(2)
+
+        def at_once(path: str) -> list[int]:
+            def act(client: httpx2.Client) -> int:
+                meet.wait(LONG_S)
+                return client.post(path).status_code
+
+            return sorted(operators.map(act, clients))
+
+        clients = [
+            httpx2.Client(base_url=server.address, timeout=LONG_S, trust_env=False)
+            for _ in range(2)
+        ]
+        for _ in range(RUNS):
+            run = server.start(ENDLESS)
+            server.moving(run)
+            path = f"/api/v1/trainings/{run['id']}"
+            verbs = ["pause", "resume"] * (PAIRS_A_RUN // 2 - 1) + ["pause", "stop"]
+            for verb in verbs:
+                assert at_once(f"{path}/{verb}") == [202, 409], verb
+            assert server.look(run)["state"] == "stopped"
+        for client in clients:
+            client.close()
+    deadline = time.monotonic() + LONG_S
+    while server.jobs():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)

@@ -1,0 +1,56 @@
+"""What the promises about trainings compare: checkpoints, and a run that nothing ever stopped."""
+
+import sqlite3
+from collections.abc import Mapping, Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+from app.agents.protocol import Tunable
+from app.assembly import build_learner
+from app.runs.config import TrainingConfig, config_from_json
+from app.runs.records import Evaluated, StepTaken
+from app.runs.tables import from_bytes, snapshot, to_bytes
+from app.runs.training import train
+from app.services.database.opening import DATABASE_FILE
+from app.services.store import CHECKPOINT
+
+
+def unbroken(
+    shown: Mapping[str, Any], changes: Sequence[Mapping[str, Any]]
+) -> tuple[bytes, list[dict[str, Any]]]:
+    """A training from its start to its end in one go, in this process.
+
+    Args:
+        shown: its config, as the API shows it.
+        changes: of its rates, after which steps.
+
+    Returns:
+        the file of its table, with generator and robot; and its curve.
+    """
+    config = config_from_json({k: v for k, v in shown.items() if k != "continue_from"})
+    assert isinstance(config, TrainingConfig)
+    learner, curve, later = build_learner(config), [], list(changes)
+    agent = learner.walker.agent
+    assert isinstance(agent, Tunable)
+    for record in train(learner, config):
+        if isinstance(record, Evaluated):
+            row = {"step": record.step, "distance_m": record.distance_m, "epsilon": record.epsilon}
+            curve.append(row)
+        while isinstance(record, StepTaken) and later and later[0]["step"] == learner.step:
+            change = later.pop(0)
+            agent.tune(**{k: v for k, v in change.items() if k not in ("step", "pace")})
+    assert not later
+    return to_bytes(snapshot(learner, config, changes=list(changes))), curve
+
+
+def checkpoint_step(folder: Path, run_id: str) -> int | None:
+    """The step of a run's newest checkpoint, from beside a server that has the data folder."""
+    query = "SELECT file FROM artifacts WHERE run_id = ? AND name = ?"
+    with closing(sqlite3.connect(folder / DATABASE_FILE)) as connection:
+        row = connection.execute(query, (run_id, CHECKPOINT)).fetchone()
+    if row is None:
+        return None
+    (file,) = folder.glob(f"artifacts/*/{row[0]}")
+    step: int = from_bytes(file.read_bytes(), "the checkpoint").meta["step"]
+    return step
