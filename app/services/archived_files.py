@@ -19,6 +19,7 @@ from app.runs.stored_practice import practice_recording
 from app.services.store import TABLE, Run, RunStore
 from app.services.stored_recordings import PRACTICE, RACE, evaluations_file
 
+CHECKPOINT = "checkpoint.npz"
 MAX_EVALUATION_FILES = 100
 _EVALUATIONS = re.compile(r"evaluations-\d{4}\.npz", re.ASCII)
 
@@ -27,7 +28,7 @@ def is_file_of(name: str, kind: str) -> bool:
     """Whether a run of this kind may have a file of this name. Films are made anew."""
     if kind == "race":
         return name == RACE
-    return name in (TABLE, PRACTICE) or _EVALUATIONS.fullmatch(name) is not None
+    return name in (TABLE, CHECKPOINT, PRACTICE) or _EVALUATIONS.fullmatch(name) is not None
 
 
 def files_of(store: RunStore, run: Run) -> dict[str, bytes]:
@@ -39,6 +40,8 @@ def files_of(store: RunStore, run: Run) -> dict[str, bytes]:
     names = [RACE]
     if run.kind == "training":
         names = [TABLE, PRACTICE, *map(evaluations_file, range(MAX_EVALUATION_FILES))]
+        if run.state == "interrupted":
+            names.append(CHECKPOINT)
     found = {name: store.artifact(run.id, name) for name in names}
     return {name: data for name, data in found.items() if data is not None}
 
@@ -53,8 +56,8 @@ def check_files(run: Run, files: Mapping[str, bytes], said: str) -> None:
     for name, data in files.items():
         if not is_file_of(name, run.kind):
             raise DamagedFile(f"{said} has {name}, which no {run.kind} has")
-        if name == TABLE:
-            _check_table(run, data, f"{name} of {said}")
+        if name in (TABLE, CHECKPOINT):
+            _check_table(run, name, data, f"{name} of {said}")
     try:
         if isinstance(run.config, RaceConfig):
             _check_race(run.config, files)
@@ -64,7 +67,7 @@ def check_files(run: Run, files: Mapping[str, bytes], said: str) -> None:
         raise DamagedFile(f"{said} has a recording that cannot be shown: {error}") from error
 
 
-def _check_table(run: Run, data: bytes, said: str) -> None:
+def _check_table(run: Run, name: str, data: bytes, said: str) -> None:
     checkpoint, config = tables.from_bytes(data, said), run.config
     if not isinstance(config, TrainingConfig):
         return
@@ -72,9 +75,11 @@ def _check_table(run: Run, data: bytes, said: str) -> None:
         tables.check_fits(checkpoint, config, config.observation)
         if checkpoint.meta["agent"] != config.agent:
             raise ValueError("another agent learned it")
+        if not 0 <= checkpoint.meta["step"] <= run.total:
+            raise ValueError("it is of another step")
         if "where" in tables.agent_state(checkpoint):
             digest = tables.table_of(checkpoint).sha256()
-            if run.result is not None and run.result["q_table_sha256"] != digest:
+            if name == TABLE and run.result is not None and run.result["q_table_sha256"] != digest:
                 raise ValueError("its values are not those of the run's result")
     except HexapodError:
         raise

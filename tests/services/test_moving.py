@@ -113,6 +113,21 @@ def test_runs_of_every_end_move(source: SqlStore) -> None:
         export_run(source, "none")
 
 
+def test_what_was_interrupted_can_go_on_elsewhere(source: SqlStore) -> None:
+    store, target, saved = MemoryStore(), MemoryStore(), source.artifact(TRAINING, TABLE) or b""
+    config = source.get(TRAINING).config
+    for state in ("interrupted", "finished"):
+        store.create(training(state, state=state, config=config, done=120, total=120))
+        store.put_artifact(state, "checkpoint.npz", saved)
+        taken_in(export_run(store, state), target)
+    assert target.artifact("interrupted", "checkpoint.npz") == saved
+    # Nobody goes on from there, so that it is not carried along.
+    assert target.artifact("finished", "checkpoint.npz") is None
+    data = export_run(store, "interrupted")
+    assert "another step" in refusal(rewritten(data, _shorter))
+    assert "is not a Q-table" in refusal(repacked(data, checkpoint_npz=b"milk"))
+
+
 def test_odd_configs_move_and_foreign_agents_do_not() -> None:
     store = MemoryStore()
     store.create(training("a", state="finished", config=replace(ODD, agent="q-learning")))
@@ -136,6 +151,10 @@ def _set(name: str, value: Any, *path: str) -> Change:
         shown[name] = value
 
     return change
+
+
+def _shorter(shown: Any) -> None:
+    shown["run"] |= {"done": 119, "total": 119}
 
 
 @pytest.mark.parametrize(
