@@ -42,13 +42,14 @@ def send(port: int, *lines: str, body: bytes = b"") -> bytes:
         body: after them.
     """
     with socket.create_connection(("127.0.0.1", port), timeout=_PATIENCE_S) as sock:
-        head = "\r\n".join([*lines, "Connection: close"]) + "\r\n\r\n"
+        end = [] if "Upgrade: websocket" in lines else ["Connection: close"]
+        head = "\r\n".join([*lines, *end]) + "\r\n\r\n"
         sock.sendall(head.encode("latin-1") + body)
         answer = b""
         while len(answer) < 1 << 16 and (part := sock.recv(1 << 16)):
             answer += part
             if answer.startswith(b"HTTP/1.1 101") or b"text/event-stream" in answer:
-                break
+                break  # there is no end to wait for
         return answer
 
 

@@ -1,0 +1,162 @@
+"""Promise 20: nothing is unguarded: each route and websocket has its role.
+
+In full: they are enumerated from the app, so that one that is new is in here as well; spectators
+change nothing by any of them, and their page offers nothing that would fail.
+"""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi import FastAPI
+from playwright.sync_api import Page, Request, expect
+
+from app.server import create_app
+from app.settings import Settings
+from tests.api.calls import Api
+from tests.browser.dashboard import PATIENCE_MS, Dashboard
+from tests.browser.serving import Serving, serving
+from tests.promises.raw import Route, every_route, request_lines, send, status_of
+
+TOKEN = "a-token-for-tests"
+Serve = Callable[..., Api]
+READS = {"GET", "HEAD", "WS"}
+FOR_ANYONE = {"/", "/healthz", "/readyz", "/static/favicon.svg"}
+"""Even where spectators need the token: the page says so, and who watches over it can see it."""
+OPERATOR = f"Authorization: Bearer {TOKEN}"
+VALID_BODIES: dict[str, Any] = {
+    "/api/v1/trainings": {"gait": "left-right-origin", "simulator": "kinematic", "steps": 5},
+    "/api/v1/races": {"gait": "left-right-origin", "lanes": [{"agent": "greedy"}]},
+    "/api/v1/stage": {"playing": False, "speed": 4, "clock": "free"},
+    "/api/v1/trainings/{run_id}": {"pace": 1},
+}
+
+
+def role_of(route: Route) -> str:
+    """What is promised of it."""
+    if route.method not in READS:
+        return "operator"
+    return "anyone" if route.path in FOR_ANYONE else "spectator"
+
+
+def ask(server: Serving, route: Route, run_id: str, *headers: str) -> int:
+    """What a request that would work gets."""
+    lines = request_lines(
+        Route(route.method, route.path.replace("{run_id}", run_id)), f"127.0.0.1:{server.port}"
+    )
+    body = b""
+    if route.path in VALID_BODIES and route.method not in READS:
+        body = json.dumps(VALID_BODIES[route.path]).encode()
+        lines = [line for line in lines if not line.startswith("Content-Length")]
+        lines += ["Content-Type: application/json", f"Content-Length: {len(body)}"]
+    if route.method == "WS":
+        lines.append("Sec-WebSocket-Protocol: viser-v0")
+    return status_of(send(server.port, *lines, *headers, body=body))
+
+
+def state_of(server: Serving) -> Any:
+    """All that someone could have changed."""
+    paths = ("/api/v1/trainings", "/api/v1/races", "/api/v1/stage")
+    lines = [f"Host: 127.0.0.1:{server.port}", OPERATOR]
+    answers = [send(server.port, f"GET {path} HTTP/1.1", *lines) for path in paths]
+    state = [json.loads(answer.partition(b"\r\n\r\n")[2]) for answer in answers]
+    # It goes by itself.
+    for name in ("time_s", "ended", "live"):
+        state[2].pop(name)
+    return state
+
+
+def routes(data: Path) -> list[Route]:
+    app: FastAPI = create_app(Settings(data=data))
+    return every_route(app)
+
+
+@pytest.fixture
+def guarded(tmp_path: Path) -> Any:
+    with serving(tmp_path / "guarded", token=TOKEN, spectators="token") as server:
+        yield server
+
+
+@pytest.fixture
+def public(tmp_path: Path) -> Any:
+    with serving(tmp_path / "public", token=TOKEN) as server:
+        yield server
+
+
+def a_run(server: Serving) -> str:
+    """One that a request could change, or delete."""
+    body = json.dumps(VALID_BODIES["/api/v1/trainings"])
+    lines = ["Content-Type: application/json", f"Content-Length: {len(body)}", OPERATOR]
+    host = f"Host: 127.0.0.1:{server.port}"
+    answer = send(server.port, "POST /api/v1/trainings HTTP/1.1", host, *lines, body=body.encode())
+    run_id = str(json.loads(answer.partition(b"\r\n\r\n")[2])["id"])
+    look = (f"GET /api/v1/trainings/{run_id} HTTP/1.1", host, OPERATOR)
+    while b'"state":"finished"' not in send(server.port, *look):
+        pass
+    return run_id
+
+
+def test_each_has_its_role_and_spectators_change_nothing(public: Serving) -> None:
+    run_id = a_run(public)
+    before = state_of(public)
+    for route in routes(public.data):
+        status = ask(public, route, run_id)
+        if role_of(route) == "operator":
+            assert status == 401, route
+        else:
+            assert status not in (401, 403), route
+    for method in ("POST", "PUT", "PATCH", "DELETE", "TRACE", "CONNECT", "MKCOL", "get"):
+        for path in ("/nothing", "/metrics", "/viewer/", "/static/favicon.svg", "/docs"):
+            assert ask(public, Route(method, path), run_id) >= 400, (method, path)
+    assert state_of(public) == before
+
+
+def test_where_spectators_need_the_token_nothing_is_seen_without(guarded: Serving) -> None:
+    for route in routes(guarded.data):
+        status = ask(guarded, route, "none")
+        if role_of(route) == "anyone":
+            assert status in (200, 503), route
+        else:
+            assert status == (403 if route.method == "WS" else 401), route
+
+
+def test_operators_are_let_in_everywhere(guarded: Serving) -> None:
+    for route in routes(guarded.data):
+        assert ask(guarded, route, "none", OPERATOR) not in (401, 403), route
+
+
+def test_a_spectators_page_offers_nothing_that_would_fail(
+    page: Page, public: Serving, dashboard: Dashboard
+) -> None:
+    a_run(public)
+    asked: list[Request] = []
+    # A builtin is nothing that Playwright can take.
+    page.on("request", lambda request: asked.append(request))  # noqa: PLW0108
+    dashboard.open(public.address)
+    expect(page.locator(".live")).to_contain_text("live")
+    pressed = press_everything(page)
+    page.goto(f"{public.address}#runs")
+    expect(page.locator("li.run")).to_have_count(1, timeout=PATIENCE_MS)
+    pressed += press_everything(page)
+    for key in (" ", "r", "1", "2", "Enter", "s", "p", "ArrowRight", "Delete", "Escape"):
+        page.keyboard.press(key)
+
+    assert len(pressed) > 3
+    changing = [f"{one.method} {one.url}" for one in asked if one.method not in ("GET", "HEAD")]
+    assert changing == []
+    verbs = ("Train ", "Race", "Stop", "Pause", "Resume", "Delete", "Show on", "Start", "Go on")
+    assert not [words for words in pressed if words != "Races" and words.startswith(verbs)]
+
+
+def press_everything(page: Page) -> list[str]:
+    """Press all buttons that can be pressed, and say what they were."""
+    page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
+    pressed = []
+    for button in page.locator("button, [role=button], summary").all():
+        if button.is_visible() and button.is_enabled():
+            pressed.append(button.inner_text() or str(button.get_attribute("aria-label")))
+            button.evaluate("(one) => one.click()")
+            page.keyboard.press("Escape")
+    return pressed

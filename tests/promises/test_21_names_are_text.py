@@ -1,0 +1,157 @@
+"""Promise 21: names are text: 200 XSS payloads as run names in a real browser.
+
+In full: 0 scripts run, 0 policy violations, on every page of the server.
+"""
+
+import html
+from itertools import product
+from typing import Any
+
+import httpx2
+import pytest
+from playwright.sync_api import ConsoleMessage, Dialog, Frame, Page, expect
+
+from tests.browser.dashboard import PATIENCE_MS
+from tests.browser.serving import Serving
+from tests.promises.length import at_length
+
+PAYLOADS = 200
+ON_STAGE = at_length(3, PAYLOADS)
+"""How many of them are put on stage, where the name is drawn in 3D and stands over the picture."""
+
+RUNS = "window.xss=1"
+TAGS = [
+    "<script>{}</script>",
+    "<img src=x onerror={}>",
+    "<svg onload={}>",
+    "<svg><script>{}</script></svg>",
+    "<iframe srcdoc='<script>parent.{}</script>'>",
+    "<iframe src=javascript:parent.{}>",
+    "<a href=javascript:{} autofocus onfocus={}>x</a>",
+    "<input autofocus onfocus={}>",
+    "<details open ontoggle={}>",
+    "<video><source onerror={}>",
+    "<style onload={}></style>",
+    "<style>@import'//evil.example/{}'</style>",
+    "<math><mtext></form><img src onerror={}>",
+    "<template><img src onerror={}></template>",
+    "<object data=javascript:{}>",
+    "<base href=//evil.example/><!--{}",
+    "<meta http-equiv=refresh content=0;url=javascript:{}>",
+    "<link rel=stylesheet href=//evil.example/{}>",
+    "${{{}}}",
+    "{{{{constructor.constructor('{}')()}}}}",
+    "javascript:{}",
+    "`-({})-`",
+    "',{},'",
+    "<!--><img src onerror={}>",
+    "]]><script>{}</script>",
+]
+PREFIXES = ["", '"', "'", "'>", '">', "</title>", "</script>", "\u2028\u202e\ufeff"]
+
+
+def payloads() -> list[str]:
+    """All different, and as long as a name may be."""
+    found = [prefix + tag.replace("{}", RUNS) for prefix, tag in product(PREFIXES, TAGS)]
+    return list(dict.fromkeys(name[:100] for name in found))[:PAYLOADS]
+
+
+WATCH = """
+window.violations = [];
+addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) =>
+  violations.push(`${violatedDirective} ${blockedURI}`));
+"""
+
+
+class Watched:
+    """A page on which nothing may run that is not its own."""
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+        self.wrong: list[str] = []
+        page.set_default_timeout(PATIENCE_MS)
+        page.add_init_script(WATCH)
+        page.on("dialog", self._opened)
+        page.on("pageerror", lambda error: self.wrong.append(str(error)))
+        page.on("console", self._heard)
+        page.on("request", lambda request: self._asked(request.url))
+
+    def check(self) -> None:
+        for frame in self.page.frames:
+            self.wrong += self._of(frame)
+        assert self.wrong == []
+
+    def _of(self, frame: Frame) -> list[str]:
+        found: list[str] = frame.evaluate("[...(window.violations ?? ['not watched'])]")
+        return found + (["a script ran"] if frame.evaluate("'xss' in window") else [])
+
+    def _opened(self, dialog: Dialog) -> None:
+        self.wrong.append(dialog.message)
+        dialog.dismiss()
+
+    def _heard(self, message: ConsoleMessage) -> None:
+        if "Content Security Policy" in message.text:
+            self.wrong.append(message.text)
+
+    def _asked(self, url: str) -> None:
+        if "evil.example" in url:
+            self.wrong.append(url)
+
+
+@pytest.fixture
+def named(server: Serving) -> list[dict[str, Any]]:
+    """A run for each payload: imported, since that needs no process."""
+    names = payloads()
+    assert len(names) == PAYLOADS
+    with httpx2.Client(base_url=f"{server.address}api/v1", timeout=60) as client:
+        body = {"gait": "left-right-origin", "simulator": "kinematic", "steps": 20}
+        first = client.post("/trainings", json={**body, "name": names[0]}).json()
+        path = f"/trainings/{first['id']}"
+        while client.get(path).json()["state"] != "finished":
+            pass
+        table = client.get(f"{path}/q-table?format=npz").content
+        runs = []
+        for name in names:
+            answer = client.post("/trainings/import", params={"name": name}, content=table)
+            assert answer.status_code == 201, (name, answer.text)
+            runs.append(answer.json())
+        race = {**body, "steps": 3, "lanes": [{"agent": "greedy"}], "name": names[1]}
+        runs.append(client.post("/races", json=race).json())
+        while client.get(f"/races/{runs[-1]['id']}").json()["state"] != "finished":
+            pass
+    return runs
+
+
+@pytest.mark.timeout(900)
+def test_none_of_them_runs(page: Page, server: Serving, named: list[dict[str, Any]]) -> None:
+    watched = Watched(page)
+    page.goto(f"{server.address}#runs")
+    rows = page.locator("li.run")
+    while (shown := rows.count()) < len(named):
+        page.get_by_role("button", name="Show older runs").click()
+        expect(rows).not_to_have_count(shown)
+    text = page.locator("li.run .what b").all_text_contents()
+    assert {run["name"] for run in named} <= set(text)
+    watched.check()
+
+    page.goto(server.address)
+    for run in [named[-1], *named[:: len(named) // ON_STAGE]][: ON_STAGE + 1]:
+        put = {"run_id": run["id"]}
+        assert httpx2.put(f"{server.address}api/v1/stage", json=put).status_code == 200
+        expect(page.locator("body")).to_contain_text(run["name"].strip()[:20])
+        expect(page.locator(".stage")).to_have_attribute("data-status", "connected")
+        watched.check()
+
+    film = f"/api/v1/races/{named[-1]['id']}/recording%3Fformat%3Dviser"
+    page.goto(f"{server.address}viewer/?playbackPath={film}")
+    page.wait_for_selector(".mantine-Slider-root", state="visible")
+    watched.check()
+
+
+@pytest.mark.parametrize("path", ["docs", "nothing/", "viewer/", "api/v1/trainings/", "?x="])
+def test_what_an_address_says_is_text_too(page: Page, quiet_server: Serving, path: str) -> None:
+    watched = Watched(page)
+    for payload in payloads()[:: at_length(100, 1)]:
+        page.goto(quiet_server.address + path + html.escape(payload).replace("#", "%23"))
+        page.goto(quiet_server.address + path + payload.replace("#", "%23"))
+        watched.check()
