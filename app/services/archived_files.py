@@ -16,10 +16,9 @@ from app.runs.config import RaceConfig, TrainingConfig, Walk
 from app.runs.recording import Arrays, race_recording
 from app.runs.records import Knowledge
 from app.runs.stored_practice import practice_recording
-from app.services.store import TABLE, Run, RunStore
+from app.services.store import CHECKPOINT, TABLE, Run, RunStore
 from app.services.stored_recordings import PRACTICE, RACE, evaluations_file
 
-CHECKPOINT = "checkpoint.npz"
 MAX_EVALUATION_FILES = 100
 _EVALUATIONS = re.compile(r"evaluations-\d{4}\.npz", re.ASCII)
 

@@ -19,7 +19,7 @@ from app.services.errors import Conflict, NotFound, StorageFull
 from app.services.ids import RunIds
 from app.services.moving import RUN, export_run, import_run
 from app.services.recordings import Recordings
-from app.services.store import TABLE, MemoryStore, Run, RunStore
+from app.services.store import CHECKPOINT, TABLE, MemoryStore, Run, RunStore
 from app.services.stored_recordings import PRACTICE, RACE
 from tests.services.ended import ended_race, ended_training
 from tests.services.stores import ODD, opened, training
@@ -118,11 +118,11 @@ def test_what_was_interrupted_can_go_on_elsewhere(source: SqlStore) -> None:
     config = source.get(TRAINING).config
     for state in ("interrupted", "finished"):
         store.create(training(state, state=state, config=config, done=120, total=120))
-        store.put_artifact(state, "checkpoint.npz", saved)
+        store.put_artifact(state, CHECKPOINT, saved)
         taken_in(export_run(store, state), target)
-    assert target.artifact("interrupted", "checkpoint.npz") == saved
+    assert target.artifact("interrupted", CHECKPOINT) == saved
     # Nobody goes on from there, so that it is not carried along.
-    assert target.artifact("finished", "checkpoint.npz") is None
+    assert target.artifact("finished", CHECKPOINT) is None
     data = export_run(store, "interrupted")
     assert "another step" in refusal(rewritten(data, _shorter))
     assert "is not a Q-table" in refusal(repacked(data, checkpoint_npz=b"milk"))

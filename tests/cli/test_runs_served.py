@@ -1,0 +1,110 @@
+"""`hexapods runs`, `export` and `import` beside a server, which does what only it may do."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.cli.running import hexapods, output, refusal
+from tests.served import Served
+from tests.services.ended import ended_race, ended_training
+from tests.services.stores import opened, training
+
+TRAINING, RACED, TOKEN = "00000000000t1", "00000000000r1", "a-token-for-tests"
+
+
+@pytest.fixture
+def data(tmp_path: Path) -> Path:
+    folder = tmp_path / "data"
+    with opened(folder, None) as store:
+        ended_training(store, TRAINING)
+        ended_race(store, RACED, TRAINING)
+    return folder
+
+
+@pytest.fixture
+def server(data: Path) -> Iterator[Served]:
+    served = Served(data, HEXAPODS_TOKEN=TOKEN)
+    yield served
+    served.end()
+
+
+def test_the_server_does_what_changes_something(server: Served, data: Path, tmp_path: Path) -> None:
+    here = ("--data", str(data))
+    output("export", RACED, "--out", "run.zip", *here, folder=tmp_path)
+    with server.client.stream("GET", "/api/v1/events") as events:
+        lines = events.iter_lines()
+        done = hexapods("runs", "delete", RACED, *here, folder=tmp_path, HEXAPODS_TOKEN=TOKEN)
+        assert done.stdout == f"Deleted race {RACED}.\n", done.stderr
+        assert any(line == "event: run-deleted" for line in lines), "the page was told"
+    assert server.client.get(f"/api/v1/races/{RACED}").status_code == 404
+    done = hexapods("import", "run.zip", "--json", *here, folder=tmp_path, HEXAPODS_TOKEN=TOKEN)
+    assert json.loads(done.stdout)["id"] == RACED, done.stderr
+    shown = server.client.get(f"/api/v1/races/{RACED}").json()
+    assert shown["result"]["lanes"][1]["agent"] == "greedy"
+    assert server.client.get(f"/api/v1/races/{RACED}/recording").status_code == 200
+    exported = server.client.get(f"/api/v1/races/{RACED}/export")
+    assert exported.content == (tmp_path / "run.zip").read_bytes()
+    assert "race-" in exported.headers["content-disposition"]
+
+
+def test_the_servers_refusals_are_passed_on(server: Served, data: Path, tmp_path: Path) -> None:
+    here = ("--data", str(data))
+    for token in ("", "another-token"):
+        done = hexapods("runs", "delete", RACED, *here, folder=tmp_path, HEXAPODS_TOKEN=token)
+        assert done.returncode == 2
+        assert "needs its token: set HEXAPODS_TOKEN" in done.stderr
+    (tmp_path / "junk.zip").write_bytes(b"milk")
+    done = hexapods("import", "junk.zip", *here, folder=tmp_path, HEXAPODS_TOKEN=TOKEN)
+    assert done.returncode == 2
+    assert "is no archive of a run" in done.stderr
+    assert server.address in done.stderr
+    listed = output("runs", "list", *here, folder=tmp_path)
+    assert [run["id"] for run in listed["items"]] == [TRAINING, RACED]
+
+
+def test_an_import_over_rest_is_bounded(server: Served) -> None:
+    bearer = {"Authorization": f"Bearer {TOKEN}"}
+    post: Any = server.client.post
+    assert post("/api/v1/import", content=b"x").status_code == 401
+    assert post("/api/v1/import", content=b"", headers=bearer).status_code == 422
+    assert post("/api/v1/import", content=b"PK\5\6" * 9, headers=bearer).status_code == 422
+    large = post("/api/v1/import", content=bytes((64 << 20) + 1), headers=bearer)
+    assert large.status_code == 413
+    assert server.client.get("/api/v1/trainings/import/export").status_code == 404
+
+
+def test_no_run_is_started_without_room(data: Path) -> None:
+    (data / "big").write_bytes(bytes(9_000_000))
+    server = Served(data, HEXAPODS_QUOTA_MB="10")
+    try:
+        ready = server.client.get("/readyz")
+        assert ready.status_code == 503
+        assert "raise HEXAPODS_QUOTA_MB" in ready.json()["detail"]
+        body = {"gait": "left-right-origin"}
+        refused = server.client.post("/api/v1/trainings", json=body)
+        assert refused.status_code == 507
+        assert "delete runs" in refused.json()["detail"]
+        assert server.client.get(f"/api/v1/trainings/{TRAINING}").json()["state"] == "finished"
+        (data / "big").unlink()
+        assert server.client.get("/readyz").status_code == 200
+        assert server.client.post("/api/v1/trainings", json=body).status_code == 202
+    finally:
+        server.end()
+
+
+def test_after_a_crash_there_is_no_server_to_ask(data: Path, tmp_path: Path) -> None:
+    server = Served(data)
+    server.end(by=9)
+    here = ("--data", str(data))
+    assert len(output("runs", "list", *here, folder=tmp_path)["items"]) == 2
+    assert output("runs", "delete", RACED, *here, folder=tmp_path) == {"deleted": RACED}
+    with opened(data, None) as store:
+        store.create(training("zz", state="running"))
+    # No server has it, and so nobody works on it.
+    done = hexapods("runs", "delete", "zz", *here, folder=tmp_path)
+    assert (done.returncode, done.stdout) == (0, "Deleted training zz.\n")
+    assert "The last server died: 1 runs are interrupted" in done.stderr
+    assert "no run 'zz'" in refusal("runs", "show", "zz", *here, folder=tmp_path)

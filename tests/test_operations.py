@@ -1,0 +1,62 @@
+"""docs/operations.md, where it can be held to what it says."""
+
+import re
+import shutil
+import sqlite3
+from dataclasses import fields
+from pathlib import Path
+
+from app.cli import COMMANDS
+from app.services.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
+from app.services.store import TABLE
+from app.settings import PREFIX, Settings
+from tests.services.stores import opened, training
+
+TEXT = (Path(__file__).parent.parent / "docs" / "operations.md").read_text("utf-8")
+
+
+def test_every_setting_is_there_with_its_default() -> None:
+    rows = dict(re.findall(r"^\| `HEXAPODS_(\w+)` \| ([^|]+) \|", TEXT, flags=re.MULTILINE))
+    plain = Settings(data=Path())
+    assert {name.lower() for name in rows} == {field.name for field in fields(Settings)}
+    for name, said in rows.items():
+        default = getattr(plain, name.lower())
+        if isinstance(default, str | int):
+            assert said == f"`{default}`", name
+    assert set(re.findall(rf"{PREFIX}(\w+)", TEXT)) <= {*rows, "DATABASE_PASSWORD"}
+
+
+def test_every_command_is_one() -> None:
+    known = {command.__name__.rsplit(".", 1)[-1] for command in COMMANDS}
+    said = set(re.findall(r"hexapods (runs|export|import|serve|doctor|\w+ly)\b", TEXT))
+    assert said == {"runs", "export", "import", "serve", "doctor"}
+    assert said <= known | {"import"}
+
+
+def test_every_promise_is_there() -> None:
+    numbers = [int(number) for number in re.findall(r"^\| (\d+) \|", TEXT, flags=re.MULTILINE)]
+    assert numbers == [*range(1, 22), 24, 25]
+
+
+def test_a_backup_of_a_running_server_is_whole(tmp_path: Path) -> None:
+    """As it says there; `.backup` is what SQLite's own command calls it."""
+    data, copy = tmp_path / "data", tmp_path / "copy"
+    with opened(data, None) as store:
+        store.create(training("a"))
+        for number in range(3):
+            store.put_artifact("a", TABLE, bytes([number]) * 1000)
+        copied = shutil.copytree(data / ARTIFACTS_FOLDER, copy / ARTIFACTS_FOLDER)
+        store.put_artifact("a", TABLE, b"newest")
+        with (
+            sqlite3.connect(data / DATABASE_FILE) as source,
+            sqlite3.connect(copy / DATABASE_FILE) as target,
+        ):
+            source.backup(target)
+        source.close()
+        target.close()
+        shutil.copytree(data / ARTIFACTS_FOLDER, copied, dirs_exist_ok=True)
+        store.create(training("b"))
+    with opened(copy, None) as restored:
+        assert [run.id for run in restored.list().items] == ["a"]
+        assert restored.artifact("a", TABLE) == b"newest"
+        assert len([file for file in copied.rglob("*") if file.is_file()]) == 1
