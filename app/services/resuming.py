@@ -7,8 +7,9 @@ short and the same again; trainings that it still waits for go on before it.
 
 from dataclasses import replace
 
+from app.domain.errors import DamagedFile
 from app.runs.config import RaceConfig, TrainingConfig
-from app.runs.tables import Checkpoint, from_bytes
+from app.runs.tables import Checkpoint, check_fits, from_bytes
 from app.services.entries import Entry, load_table
 from app.services.errors import Conflict, NotFound
 from app.services.orders import RaceOrder, TrainingOrder
@@ -30,7 +31,7 @@ def resumed_entries(run: Run, store: RunStore) -> list[Entry]:
 
 
 def _training(run: Run, config: TrainingConfig, store: RunStore) -> Entry:
-    checkpoint = _checkpoint(run, store)
+    checkpoint = _checkpoint(run, config, store)
     if checkpoint is None:
         table = None if run.continued_from is None else load_table(store, run.continued_from)
         order, step = TrainingOrder(config, table, changes=run.changes), 0
@@ -41,9 +42,24 @@ def _training(run: Run, config: TrainingConfig, store: RunStore) -> Entry:
     return Entry(_again(run, step), lambda: order, set(), goes_on=True)
 
 
-def _checkpoint(run: Run, store: RunStore) -> Checkpoint | None:
-    data = store.artifact(run.id, CHECKPOINT)
-    return None if data is None else from_bytes(data, f"the checkpoint of training {run.id}")
+def _checkpoint(run: Run, config: TrainingConfig, store: RunStore) -> Checkpoint | None:
+    """It may have come from another machine, so it is checked as a table from there is."""
+    data, said = store.artifact(run.id, CHECKPOINT), f"the checkpoint of training {run.id}"
+    if data is None:
+        return None
+    checkpoint = from_bytes(data, said)
+    meta = checkpoint.meta
+    try:
+        check_fits(checkpoint, config, config.observation)
+        is_whole = meta["agent"] == config.agent and 0 <= meta["step"] <= config.steps
+        steps = [change["step"] <= meta["step"] for change in meta["changes"]]
+        is_whole = is_whole and all(steps) and len(steps) <= len(run.changes)
+        is_whole = is_whole and {"due_epsilon", "episode_reward_m", "rng"} <= set(meta)
+    except (KeyError, TypeError) as error:
+        raise DamagedFile(f"{said} does not hold together ({error!r})") from error
+    if not is_whole:
+        raise DamagedFile(f"{said} does not hold together")
+    return checkpoint
 
 
 def _race(run: Run, config: RaceConfig, store: RunStore) -> list[Entry]:

@@ -2,11 +2,14 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+from dataclasses import replace
 
 import pytest
 
+from app.assembly import build_learner
 from app.domain.errors import DamagedFile, InvalidInput
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.tables import snapshot, to_bytes
 from app.services.bus import EventBus
 from app.services.entries import LaneStart, RaceStart, TrainingStart
 from app.services.errors import Conflict
@@ -106,6 +109,22 @@ def test_a_damaged_checkpoint_is_refused_by_name(
     with pytest.raises(DamagedFile, match="checkpoint of training a"):
         open_jobs().resume(run.id)
     assert store.get(run.id).state == "interrupted"
+
+
+@pytest.mark.parametrize(
+    "meta", [{"changes": None}, {"step": 10**9}, {"step": "1"}, {"agent": "greedy"}, {"legs": 4}]
+)
+def test_a_checkpoint_that_does_not_fit_its_training_is_refused(
+    meta: dict[str, object], store: MemoryStore, open_jobs: Callable[[], Jobs]
+) -> None:
+    run = interrupted(store, training("a", config=SHORT, total=60, state="interrupted"))
+    good = snapshot(build_learner(SHORT), SHORT, changes=[])
+    data = to_bytes(replace(good, meta={**good.meta, **meta}))
+    store.put_artifact(run.id, CHECKPOINT, data)
+    with pytest.raises(InvalidInput):
+        open_jobs().resume(run.id)
+    store.put_artifact(run.id, CHECKPOINT, to_bytes(good))
+    assert open_jobs().resume(run.id).state == "queued"
 
 
 def test_a_race_takes_its_practice_along(store: MemoryStore, open_jobs: Callable[[], Jobs]) -> None:
