@@ -160,6 +160,13 @@ export const showOnStage = (run) =>
 
 // ---- runs
 
+/** Let a run that a server left behind go on where its last checkpoint is. */
+export const goOn = (run) =>
+  attempt(run.id, async () => {
+    const answer = await api.tell(run, "resume");
+    if (answer?.id) take(answer);
+  });
+
 export const remove = (run) =>
   attempt(run.id, async () => {
     await api.deleteRun(run);

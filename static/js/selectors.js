@@ -99,6 +99,13 @@ export const work = computed(() => {
   return any ? working(any) : null;
 });
 
+/** A run that could go on: what is on stage, or the newest as long as nothing came after it. */
+export const interruptedRun = computed(() =>
+  work.value
+    ? null
+    : [shownRun.value, newestFirst.value[0]].find((run) => run?.state === "interrupted") ?? null,
+);
+
 /** The training whose rates can be moved right now. */
 export const liveTraining = computed(() => {
   const run = work.value?.now;

@@ -1,14 +1,14 @@
 // What one can do next: one primary button, and what runs already.
 import { useState } from "preact/hooks";
 import {
-  canStart, doNext, nextDeed, otherDeeds, pause, pending, resume, showOnStage, stop,
+  canStart, doNext, goOn, nextDeed, otherDeeds, pause, pending, resume, showOnStage, stop,
 } from "../actions.js";
 import { form } from "../form.js";
-import { count } from "../format.js";
+import { count, whole } from "../format.js";
 import { html } from "../html.js";
 import { isNarrow } from "../page.js";
 import { progress } from "../progress.js";
-import { agentOf, isOperator, myWork, offStage, shownRun, work } from "../selectors.js";
+import { agentOf, interruptedRun, isOperator, myWork, offStage, shownRun, work } from "../selectors.js";
 import { options, scene } from "../store.js";
 import { Icon } from "./icon.js";
 import { Problem } from "./problem.js";
@@ -59,6 +59,7 @@ function Deeds() {
       <${Problem} at="tune" />
       <${OffStage} />
       <${Failure} />
+      <${Interrupted} />
     </div>
   `;
 }
@@ -120,11 +121,25 @@ function OffStage() {
 
 function Failure() {
   const run = shownRun.value;
-  if (run?.state !== "failed" && run?.state !== "interrupted") return null;
+  if (run?.state !== "failed") return null;
   return html`
     <div class="notice bad">
-      <p><b>The ${run.kind} ${run.state === "failed" ? "failed" : "was interrupted"}.</b> ${run.error}</p>
+      <p><b>The ${run.kind} failed.</b> ${run.error}</p>
       <p>Change what it names, or start it again: everything else goes on.</p>
+    </div>
+  `;
+}
+
+function Interrupted() {
+  const run = interruptedRun.value;
+  if (!run) return null;
+  const { done, total } = run.progress;
+  const where = run.kind === "training" ? ` at step ${whole(done)} of ${whole(total)}` : "";
+  return html`
+    <div class="notice">
+      <p><b>The ${run.kind} was interrupted${where}.</b> ${run.error}</p>
+      <button class="secondary" disabled=${pending.value[run.id]} onClick=${() => goOn(run)}>Go on</button>
+      <${Problem} at=${run.id} />
     </div>
   `;
 }

@@ -1,6 +1,6 @@
 // One run of the list.
 import { useState } from "preact/hooks";
-import { isShown, pending, remove, showOnStage, useSettingsOf } from "../actions.js";
+import { goOn, isShown, pending, remove, showOnStage, useSettingsOf } from "../actions.js";
 import { downloads } from "../api.js";
 import { ago, count, listed, metres, whole } from "../format.js";
 import { html } from "../html.js";
@@ -12,7 +12,7 @@ export function RunRow({ run }) {
   const title = run.name || `${run.kind === "race" ? "Race" : "Training"}`;
   return html`
     <li class="run">
-      <p class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${run.state}</p>
+      <p class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${run.state}${run.queue_position ? html` <span class="dim">no. ${run.queue_position}</span>` : ""}</p>
       <div class="what">
         <p><b>${title}</b> ${!title.includes(run.config.gait) && html`<span class="dim">${gaitOf(run)}</span>`}</p>
         <p class="dim">${about(run)}</p>
@@ -56,6 +56,9 @@ function Deeds({ run }) {
   const mayTake = run.kind === "race" ? run.state === "finished" : hasTable(run);
   return html`
     <div class="run-deeds">
+      ${isOperator.value && run.state === "interrupted" && html`
+        <button class="secondary compact" disabled=${pending.value[run.id]} onClick=${() => goOn(run)}>Go on</button>
+      `}
       ${isOperator.value && html`
         <button class="secondary compact" disabled=${pending.value[run.id] || run.state === "queued"} onClick=${() => showOnStage(run)}>
           ${isShown(run) ? "On stage" : "Show"}

@@ -1,0 +1,54 @@
+"""What a dead server left behind is offered on the page, and goes on at a click."""
+
+import json
+from pathlib import Path
+from urllib.request import Request, urlopen
+
+from playwright.sync_api import expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import serving
+
+ENDLESS = {
+    "gait": "left-right-origin",
+    "simulator": "kinematic",
+    "steps": 10_000_000,
+    "pace": 20,
+    "evaluate_every": 0,
+}
+
+
+def start(address: str) -> None:
+    body = json.dumps(ENDLESS).encode()
+    headers = {"Content-Type": "application/json"}
+    with urlopen(Request(f"{address}api/v1/trainings", body, headers)) as answer:
+        assert answer.status == 202
+
+
+def test_an_interrupted_training_goes_on_at_a_click(tmp_path: Path, dashboard: Dashboard) -> None:
+    page = dashboard.page
+    with serving(tmp_path) as server:
+        start(server.address)
+        dashboard.open(server.address)
+        # Its process has begun; only then is there a step to come back to.
+        dashboard.eventually(lambda: done(dashboard) > 0, "a first step")
+        page.goto("about:blank")
+    with serving(tmp_path) as server:
+        dashboard.open(server.address)
+        expect(page.locator(".notice")).to_contain_text("The training was interrupted at step")
+        page.goto(f"{server.address}#runs")
+        row = page.locator(".run")
+        expect(row.locator(".state")).to_have_text("interrupted")
+        expect(row.get_by_role("button", name="Go on", exact=True)).to_be_visible()
+        page.goto(f"{server.address}#")
+        left_at = done(dashboard)
+        dashboard.button("Go on").click()
+        expect(page.locator(".notice")).to_have_count(0)
+        dashboard.eventually(lambda: done(dashboard) > left_at, "another step")
+        dashboard.button("Stop").click()
+
+
+def done(dashboard: Dashboard) -> int:
+    (run,) = dashboard.get("api/v1/trainings")["items"]
+    steps: int = run["progress"]["done"]
+    return steps
