@@ -104,7 +104,8 @@ def _outcome(run: Run) -> str:
         distance = run.result["distance_m"]
         return "" if distance is None else f"{distance:.2f} m"
     lanes = run.result["lanes"]
-    return next(str(lane["agent"]) for lane in lanes if lane["clocks"]["paper"]["rank"] == 1)
+    first = [str(lane["agent"]) for lane in lanes if lane["clocks"]["paper"]["rank"] == 1]
+    return ", ".join(first)
 
 
 def _show(options: argparse.Namespace) -> int:

@@ -97,6 +97,7 @@ def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
             raise ValueError("it has more steps than the race")
         _check_poses(lane.rest_qpos[None], config)
         for step in lane.steps:
+            _check_finite(step.reward_m, step.distance_m, step.decision_s)
             _check_motion(step.motion, config)
             _check_choice(step.observation, step.action, step.knowledge, config)
 
@@ -111,6 +112,7 @@ def _check_practice(config: Walk, files: Mapping[str, bytes]) -> None:
     recording = practice_recording(_arrays(files[PRACTICE]), evaluations)
     _check_poses(recording.rest_qpos[None], config)
     for step in recording.steps:
+        _check_finite(step.reward_m, step.distance_m, step.epsilon)
         _check_motion(step.motion, config)
         _check_choice(step.observation, step.action, step.knowledge, config)
     for evaluation in recording.evaluations:
@@ -127,6 +129,12 @@ def _arrays(data: bytes) -> Arrays:
         raise ValueError("it claims to be larger than it is")
     with np.load(io.BytesIO(data), allow_pickle=False) as file:
         return {name: file[name] for name in file.files}
+
+
+def _check_finite(*numbers: float) -> None:
+    """What goes into JSON has to be a number there."""
+    if not np.isfinite(numbers).all():
+        raise ValueError("it measured what is no number")
 
 
 def _check_motion(motion: Motion | None, walk: Walk) -> None:

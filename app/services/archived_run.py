@@ -24,8 +24,7 @@ _Count = Annotated[int, Meta(ge=0, le=MAX_STEPS * MAX_LANES)]
 _Step = Annotated[int, Meta(ge=0, le=MAX_STEPS)]
 _Id = Annotated[str, Meta(pattern="^[0-9a-z]{1,32}$")]
 _Moment = Annotated[datetime, Meta(tz=True)]
-# JSON has no NaN; msgspec writes null for it.
-_Measured = float | None
+_Known = float | None  # null if it never came about; JSON has no NaN
 
 
 class _Strict(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
@@ -42,20 +41,20 @@ class _Change(_Strict, frozen=True):
 
 class _Evaluation(_Strict, frozen=True):
     step: _Step
-    distance_m: _Measured
-    epsilon: _Measured
+    distance_m: float
+    epsilon: float
 
 
 class _TrainingResult(_Strict, frozen=True):
-    distance_m: _Measured
-    greedy_distance_m: _Measured
+    distance_m: _Known
+    greedy_distance_m: _Known
     q_table_sha256: Annotated[str, Meta(pattern="^[0-9a-f]{64}$")] | None
 
 
 class _Figures(_Strict, frozen=True):
-    finished_distance_m: _Measured
-    elapsed_s: _Measured
-    crossed_s: _Measured
+    finished_distance_m: float
+    elapsed_s: float
+    crossed_s: _Known
     rank: Annotated[int, Meta(ge=1, le=MAX_LANES)]
 
 
@@ -64,9 +63,9 @@ class _LaneResult(_Strict, frozen=True):
     training_id: _Id | None
     trained_robot: dict[str, Any] | None
     steps: _Step
-    total_distance_m: _Measured
+    total_distance_m: _Known
     failure: str | None
-    decision_s: _Measured
+    decision_s: float
     simulated_transitions: Annotated[int, Meta(ge=0)]
     clocks: dict[str, _Figures]
 
@@ -89,7 +88,7 @@ class _Shape(_Strict, frozen=True):
     done: _Count
     total: _Count
     changes: Annotated[list[_Change], Meta(max_length=10_000)]
-    greedy_distance_m: _Measured
+    greedy_distance_m: _Known
     result: Raw
     error: Annotated[str, Meta(max_length=10_000)] | None
     created_at: _Moment
@@ -161,8 +160,7 @@ def read_run_json(
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
         raise DamagedFile(f"{said} does not hold a run as it should: {error}") from error
     _check_agents(run, agents)
-    nan = float("nan")
-    return run, [{k: nan if v is None else v for k, v in row.items()} for row in curve]
+    return run, curve
 
 
 def _run(shape: _Shape) -> Run:

@@ -136,14 +136,6 @@ def test_odd_configs_move_and_foreign_agents_do_not() -> None:
     assert "q-learning, greedy, two-step" in refusal(export_run(store, "b"))
 
 
-def test_a_curve_with_nan_moves() -> None:
-    store, target = MemoryStore(), MemoryStore()
-    store.create(training("a", state="failed"))
-    store.append_evaluations("a", [{"step": 5, "distance_m": float("nan"), "epsilon": 0.5}])
-    taken_in(export_run(store, "a"), target)
-    assert repr(target.evaluations("a")[0]["distance_m"]) == "nan"
-
-
 def _set(name: str, value: Any, *path: str) -> Change:
     def change(shown: Any) -> None:
         for part in path:
@@ -187,6 +179,7 @@ def _shorter(shown: Any) -> None:
         (_set("q_table_sha256", "0" * 64, "run", "result"), "not those of the run's result"),
         (_set("curve", [{"step": 5, "distance_m": 1, "epsilon": 0}] * 2), "curve"),
         (_set("curve", [{"step": 5}]), "distance_m"),
+        (_set("curve", [{"step": 5, "distance_m": None, "epsilon": 0}]), "distance_m"),
         (_set("lane_training_ids", [None], "run"), "has lanes"),
         (lambda shown: shown.pop("run"), "run"),
     ],
@@ -204,6 +197,7 @@ def test_a_run_that_says_something_else_is_refused(
         _set("lanes", [], "run", "result"),
         _set("curve", [{"step": 5, "distance_m": 1, "epsilon": 0}]),
         lambda shown: shown["run"]["result"]["lanes"].reverse(),
+        lambda shown: shown["run"]["result"]["lanes"][0].update(decision_s=None),
         lambda shown: shown["run"]["result"]["lanes"][0]["clocks"].pop("wall"),
         lambda shown: shown["run"]["config"]["lanes"].pop(),
         lambda shown: shown["run"]["config"]["lanes"].reverse(),
@@ -263,6 +257,7 @@ def test_recordings_that_cannot_be_drawn_are_refused(source: SqlStore) -> None:
         put("lane0.observation", lambda a: a[:, :-1]),
         put("lane0.action", lambda a: a - 100),
         put("lane0.action", lambda a: a * 0.5),
+        put("lane0.scalars", lambda a: a * np.nan),
         put("lane0.values", lambda a: a[:, :1]),
         put("meta", lambda a: np.array("[]")),
         put("meta", lambda a: np.array("[" * 100_000)),
