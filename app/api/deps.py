@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Annotated, NamedTuple, Protocol
+from typing import Annotated, NamedTuple, Protocol, TypeVar
 
 from fastapi import Depends, Header, HTTPException, Request
 from starlette.requests import ClientDisconnect
@@ -16,9 +16,10 @@ from app.services.jobs import Jobs
 from app.services.once import Once
 from app.services.recordings import Recordings
 from app.services.stage import Stage
-from app.services.store import Run, RunStore
+from app.services.store import RunStore
 from app.services.witness import Witness
 
+T = TypeVar("T")
 Film = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock], bytes]
 """From a race, its name and a clock to a file that viser's client plays."""
 
@@ -63,7 +64,7 @@ class Asked(NamedTuple):
     key: str | None
     """Chosen by the client, so that it can ask again without starting twice."""
 
-    def once(self, services: Services, start: Callable[[], Run]) -> Run:
+    def once(self, services: Services, start: Callable[[], T]) -> T:
         """What `start` returns, or returned when this was asked for before."""
         return services.once.run(self.key, self.address.encode() + b"\n" + self.body, start)
 

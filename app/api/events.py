@@ -10,7 +10,6 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 from app import __version__
 from app.api.deps import Given, Services, Who
 from app.api.sentences import VALID
-from app.services.views import run_view
 
 NEWEST_RUNS = 50
 RETRY_MS = 1000
@@ -50,7 +49,7 @@ def _snapshot(services: Services, role: str, run_id: str | None) -> dict[str, An
         "version": __version__,
         "role": role,
         "viewers": services.audience().viewers,
-        "runs": [run_view(run) for run in runs],
+        "runs": [services.jobs.view(run) for run in runs],
         "stage": services.stage.state(),
         "scene": services.stage.scene(),
     }

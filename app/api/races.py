@@ -23,8 +23,9 @@ router = run_routes("race")
 @router.post("", status_code=202, summary="Start a race, and the practice that it needs")
 def start_race(services: Given, request: Request, asked: Start, body: RaceBody) -> Response:
     """Queue the trainings of its lanes and then the race, and answer with the race's run."""
-    run = asked.once(services, lambda: services.jobs.race(body.start(services.agents)))
-    return accepted(request, run)
+    jobs = services.jobs
+    shown = asked.once(services, lambda: jobs.view(jobs.race(body.start(services.agents))))
+    return accepted(request, shown)
 
 
 @router.get("/{run_id}/recording", summary="What a replay needs; also as .npz and for viser")

@@ -11,7 +11,6 @@ from app.api.sentences import MAX_PAGE, VALID
 from app.services.errors import NotFound
 from app.services.jobs import Jobs
 from app.services.store import Kind, Run, State
-from app.services.views import run_view
 
 RunPath = Annotated[str, Path(description="of the run")]
 
@@ -31,10 +30,10 @@ def find(services: Services, kind: Kind, run_id: str) -> Run:
     return run
 
 
-def accepted(request: Request, run: Run) -> Response:
+def accepted(request: Request, shown: dict[str, Any]) -> Response:
     """The answer to who started a run."""
-    location = request.url_for(f"get_{run.kind}", run_id=run.id).path
-    return JSONResponse(run_view(run), 202, {"Location": location})
+    location = request.url_for(f"get_{shown['kind']}", run_id=shown["id"]).path
+    return JSONResponse(shown, 202, {"Location": location})
 
 
 def run_routes(kind: Kind) -> APIRouter:
@@ -49,12 +48,12 @@ def run_routes(kind: Kind) -> APIRouter:
         cursor: Annotated[str | None, Query(max_length=64, description=VALID["cursor"])] = None,
     ) -> Response:
         page = services.store.list(kind, state, limit, cursor)
-        items = [run_view(run) for run in page.items]
+        items = [services.jobs.view(run) for run in page.items]
         return JSONResponse({"items": items, "next_cursor": page.next_cursor})
 
     @router.get("/{run_id}", summary=f"A {kind}", name=f"get_{kind}")
     def get_run(services: Given, run_id: RunPath) -> Response:
-        return JSONResponse(run_view(find(services, kind, run_id)))
+        return JSONResponse(services.jobs.view(find(services, kind, run_id)))
 
     @router.delete(
         "/{run_id}", status_code=204, summary=f"Delete a {kind} that has ended", name=f"del_{kind}"
@@ -87,6 +86,6 @@ def _command(kind: Kind, verb: str) -> Callable[..., Any]:
 
     def command(services: Given, run_id: RunPath) -> Response:
         find(services, kind, run_id)
-        return JSONResponse(run_view(act(services.jobs, run_id)), 202)
+        return JSONResponse(services.jobs.view(act(services.jobs, run_id)), 202)
 
     return command

@@ -15,7 +15,6 @@ from app.services import curves, imports
 from app.services.entries import load_table
 from app.services.errors import Conflict
 from app.services.store import TABLE
-from app.services.views import run_view
 
 # Before the routes that all runs have: `import` is no run's id.
 router = run_routes("training")
@@ -24,8 +23,9 @@ router = run_routes("training")
 @router.post("", status_code=202, summary="Start a training")
 def start_training(services: Given, request: Request, asked: Start, body: TrainingBody) -> Response:
     """Queue a training, and answer with its run."""
-    run = asked.once(services, lambda: services.jobs.train(body.start(services.agents)))
-    return accepted(request, run)
+    jobs = services.jobs
+    shown = asked.once(services, lambda: jobs.view(jobs.train(body.start(services.agents))))
+    return accepted(request, shown)
 
 
 @router.post(
@@ -49,14 +49,14 @@ def import_training(
         services, lambda: imports.adopt(services.jobs, asked.body, services.agents, name)
     )
     location = request.url_for("get_training", run_id=run.id).path
-    return JSONResponse(run_view(run), 201, {"Location": location})
+    return JSONResponse(services.jobs.view(run), 201, {"Location": location})
 
 
 @router.patch("/{run_id}", summary="Change pace or rates while it runs")
 def change_training(services: Given, run_id: RunPath, body: ChangeBody) -> Response:
     """Obeyed between two steps, and kept with the step's number in `changes`."""
     find(services, "training", run_id)
-    return JSONResponse(run_view(services.jobs.change(run_id, body.changes())))
+    return JSONResponse(services.jobs.view(services.jobs.change(run_id, body.changes())))
 
 
 @router.get("/{run_id}/curve", summary="The learning curve; also as CSV")

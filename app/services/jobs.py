@@ -72,6 +72,10 @@ class Jobs:
         """Start no more, and end every process with a checkpoint: all is `interrupted` then."""
         self._crew.close()
 
+    def view(self, run: Run) -> dict[str, Any]:
+        """The resource of a run, with its place in the queue."""
+        return run_view(run, self._waiting.position(run.id))
+
     def train(self, start: TrainingStart) -> Run:
         """Queue a training.
 
@@ -212,4 +216,4 @@ class Jobs:
         return job
 
     def _publish(self, run: Run) -> None:
-        self._bus.publish("run", run_view(run), run.id)
+        self._bus.publish("run", self.view(run), run.id)

@@ -6,12 +6,13 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any, TypeVar
 
 from app.domain.errors import InvalidInput
-from app.services.store import Run
 
 KEPT_S = 24 * 3600.0
 MAX_KEPT = 10_000
+T = TypeVar("T")
 
 
 @dataclass
@@ -19,7 +20,7 @@ class _Start:
     digest: bytes
     began_s: float
     lock: threading.Lock = field(default_factory=threading.Lock)
-    run: Run | None = None
+    made: Any = None
 
 
 class Once:
@@ -38,7 +39,7 @@ class Once:
         self._starts: OrderedDict[str, _Start] = OrderedDict()
         self._lock = threading.Lock()
 
-    def run(self, key: str | None, request: bytes, start: Callable[[], Run]) -> Run:
+    def run(self, key: str | None, request: bytes, start: Callable[[], T]) -> T:
         """What `start` returns, or returned when it was called with this key before.
 
         Whoever comes with the same key meanwhile waits. A start that fails is not remembered as
@@ -47,7 +48,7 @@ class Once:
         Args:
             key: chosen by who asks; None starts in any case.
             request: what is asked for.
-            start: starts it.
+            start: starts it, and says something about it that is not None.
 
         Raises:
             InvalidInput: if something else was asked for with this key.
@@ -56,9 +57,10 @@ class Once:
             return start()
         known = self._known(key, hashlib.sha256(request).digest())
         with known.lock:
-            if known.run is None:
-                known.run = start()
-            return known.run
+            if known.made is None:
+                known.made = start()
+            made: T = known.made
+            return made
 
     def _known(self, key: str, digest: bytes) -> _Start:
         now = self._now()

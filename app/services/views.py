@@ -7,14 +7,20 @@ from app.runs.config import RaceConfig, as_json
 from app.services.store import Run
 
 
-def run_view(run: Run) -> dict[str, Any]:
-    """The resource of a run. Times are ISO 8601 in UTC."""
+def run_view(run: Run, queue_position: int | None = None) -> dict[str, Any]:
+    """The resource of a run. Times are ISO 8601 in UTC.
+
+    Args:
+        run: as it is now.
+        queue_position: of a run that waits, 1 for the next.
+    """
     shown: dict[str, Any] = {
         "id": run.id,
         "kind": run.kind,
         "name": run.name,
         "state": run.state,
         "config": _config(run),
+        "queue_position": queue_position,
         "progress": {"done": run.done, "total": run.total},
         "eta_s": run.eta_s,
         "result": run.result,

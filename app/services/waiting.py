@@ -62,7 +62,13 @@ class WaitingRuns:
         entry = next(ready, None)
         if entry is not None:
             self._entries.remove(entry)
+            self._tell_all()
         return entry
+
+    def position(self, run_id: str) -> int | None:
+        """Its place among those that wait, 1 for the first; from any thread."""
+        ids = [entry.run.id for entry in self._entries]
+        return ids.index(run_id) + 1 if run_id in ids else None
 
     def interrupt(self, why: str) -> None:
         """End all that wait, so that each may be resumed another time."""
@@ -101,5 +107,11 @@ class WaitingRuns:
         self._entries = [entry for entry in self._entries if entry.run.id != run.id]
         run = self._store.change(run.id, QUEUED, state, error=error, ended_at=now)
         self._tell(run)
+        self._tell_all()
         self.settle(run)
         return run
+
+    def _tell_all(self) -> None:
+        """All who wait have moved up, or some of them."""
+        for entry in self._entries:
+            self._tell(self._store.get(entry.run.id))

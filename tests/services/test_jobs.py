@@ -93,6 +93,9 @@ def test_the_queue_is_bounded(jobs: Jobs, store: MemoryStore) -> None:
         jobs.race(RaceStart(WALK, lanes, 50, 0))
     queued = store.list(state="queued").items
     assert len(queued) == MAX_QUEUED
+    places = [jobs.view(run)["queue_position"] for run in reversed(queued)]
+    assert places == list(range(1, MAX_QUEUED + 1))
+    assert jobs.view(store.get(first.id))["queue_position"] is None
     for run in queued:
         assert jobs.stop(run.id).state == "stopped"
     jobs.stop(first.id)
