@@ -4,6 +4,7 @@ Promised: 1,000 pairs. Here 60, of pause, resume and stop, and of resuming an in
 `make soak` 1,000. No process is left that nobody answers for.
 """
 
+import signal
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -32,10 +33,7 @@ def test_one_of_two_operators_wins(launch: Callable[..., Served]) -> None:
 
             return sorted(operators.map(act, clients))
 
-        clients = [
-            httpx2.Client(base_url=server.address, timeout=LONG_S, trust_env=False)
-            for _ in range(2)
-        ]
+        clients = make_clients(server)
         for _ in range(RUNS):
             run = server.start(ENDLESS)
             server.moving(run)
@@ -44,9 +42,25 @@ def test_one_of_two_operators_wins(launch: Callable[..., Served]) -> None:
             for verb in verbs:
                 assert at_once(f"{path}/{verb}") == [202, 409], verb
             assert server.look(run)["state"] == "stopped"
+        left = server.start(ENDLESS)
+        server.moving(left)
+        for client in clients:
+            client.close()
+        assert server.end(signal.SIGTERM) == 0
+        server = launch()
+        clients = make_clients(server)
+        assert at_once(f"/api/v1/trainings/{left['id']}/resume") == [202, 409]
+        assert at_once(f"/api/v1/trainings/{left['id']}/stop") == [202, 409]
         for client in clients:
             client.close()
     deadline = time.monotonic() + LONG_S
     while server.jobs():
         assert time.monotonic() < deadline
         time.sleep(0.05)
+
+
+def make_clients(server: Served) -> list[httpx2.Client]:
+    """One for each operator."""
+    return [
+        httpx2.Client(base_url=server.address, timeout=LONG_S, trust_env=False) for _ in range(2)
+    ]
