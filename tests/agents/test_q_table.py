@@ -70,6 +70,16 @@ def test_the_hash_is_of_values_alone_states_then_actions_illegal_ones_nan() -> N
     assert table.sha256() != hashlib.sha256(written).hexdigest()
 
 
+def test_the_hash_of_a_table_of_many_states_is_that_of_its_rows() -> None:
+    table = QTable(3, 22)
+    table.q[:] = np.random.default_rng(1).normal(size=table.q.shape)
+    digest = hashlib.sha256()
+    for _, values, _ in table.rows():
+        digest.update(values.astype("<f8").tobytes())
+
+    assert table.sha256() == digest.hexdigest()
+
+
 def test_a_dump_holds_what_was_visited_and_loads_the_same() -> None:
     table, copy = QTable(3, 5), QTable(3, 5)
     table.q[7, 3], table.n[7, 3] = -0.25, 2
