@@ -1,14 +1,17 @@
 """The jobs at work: started as cores become free, heard to their end, sent home together."""
 
+import logging
 import os
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from datetime import UTC, datetime
 
 from app.domain.errors import HexapodError
 from app.services.bus import EventBus
 from app.services.entries import Entry
+from app.services.errors import Conflict, StorageFailed, StorageFull
 from app.services.job import Job
 from app.services.recordings import Recordings
 from app.services.store import LIVE, QUEUED, Run, RunStore
@@ -17,6 +20,9 @@ from app.services.waiting import WaitingRuns
 _LEAVE_S = 4.0
 """To write a last checkpoint; with all else that ends, a server is gone within 10 s."""
 _DIE_S = 1.5
+_AGAIN_S = 1.0
+_NO_STORE = (StorageFailed, StorageFull)
+_logger = logging.getLogger(__name__)
 
 
 class Crew:
@@ -112,8 +118,17 @@ class Crew:
                 entry = self._waiting.take() if self.running < self.cores else None
                 if entry is None:
                     self.changed.wait()
-                else:
+                    continue
+                try:
                     self._start(entry)
+                except _NO_STORE:
+                    _logger.exception("a run cannot be started now", extra=_about(entry.run.id))
+                    self._waiting.put_back(entry)
+                    self.changed.wait(_AGAIN_S)
+                except Conflict:
+                    _logger.exception("a run waits no more", extra=_about(entry.run.id))
+                with suppress(*_NO_STORE):
+                    self._waiting.tell_all()
             # The thread outlives those that it started, or they would end at once.
             self.changed.wait_for(lambda: not self._jobs)
 
@@ -137,18 +152,33 @@ class Crew:
         self._publish(run)
 
     def _process_ended(self, job: Job, how: str) -> None:
+        while not self._see_off(job, how):
+            with self.changed:
+                self.changed.wait(_AGAIN_S)
+        with self.changed:
+            del self._jobs[job.run_id]
+            self.changed.notify_all()
+        job.gone.set()
+
+    def _see_off(self, job: Job, how: str) -> bool:
+        """Note how a run ended; False if the store cannot be used, and it is worth another try."""
         try:
             if self._closing:
                 job.end("interrupted", "The server was stopped while it ran.")
-            else:
-                job.process_ended(how)
-        finally:
+                return True
+            job.process_ended(how)
             with self.changed:
-                del self._jobs[job.run_id]
                 if not self._closing:
                     self._waiting.settle(self._store.get(job.run_id))
-                self.changed.notify_all()
-            job.gone.set()
+        except _NO_STORE:
+            _logger.exception("how a run ended cannot be noted", extra=_about(job.run_id))
+            # The next start notes that it was interrupted.
+            return self._closing
+        return True
+
+
+def _about(run_id: str) -> dict[str, str]:
+    return {"run_id": run_id}
 
 
 def _wait(jobs: list[Job], at_most_s: float) -> None:

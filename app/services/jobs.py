@@ -18,7 +18,7 @@ from app.services.views import run_view
 from app.services.waiting import WaitingRuns
 
 MAX_PAUSED = 16
-STOP_GRACE_S = 10.0
+STOP_GRACE_S = 20.0
 _ANSWER_S = 5.0
 _DIE_S = 2.0
 

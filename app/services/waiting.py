@@ -62,8 +62,16 @@ class WaitingRuns:
         entry = next(ready, None)
         if entry is not None:
             self._entries.remove(entry)
-            self._tell_all()
         return entry
+
+    def put_back(self, entry: Entry) -> None:
+        """It could not be started after all, and is the first again."""
+        self._entries.insert(0, entry)
+
+    def tell_all(self) -> None:
+        """All who wait have moved up, or some of them."""
+        for entry in self._entries:
+            self._tell(self._store.get(entry.run.id))
 
     def position(self, run_id: str) -> int | None:
         """Its place among those that wait, 1 for the first; from any thread."""
@@ -107,11 +115,6 @@ class WaitingRuns:
         self._entries = [entry for entry in self._entries if entry.run.id != run.id]
         run = self._store.change(run.id, QUEUED, state, error=error, ended_at=now)
         self._tell(run)
-        self._tell_all()
+        self.tell_all()
         self.settle(run)
         return run
-
-    def _tell_all(self) -> None:
-        """All who wait have moved up, or some of them."""
-        for entry in self._entries:
-            self._tell(self._store.get(entry.run.id))

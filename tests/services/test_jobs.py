@@ -14,7 +14,7 @@ from app.domain.errors import InvalidInput
 from app.runs.config import TrainingConfig, Walk
 from app.services.bus import EventBus
 from app.services.entries import LaneStart, RaceStart, TrainingStart
-from app.services.errors import Busy, Conflict
+from app.services.errors import Busy, Conflict, StorageFailed
 from app.services.jobs import Jobs
 from app.services.recordings import Recordings
 from app.services.store import UNENDED, MemoryStore, Run
@@ -236,3 +236,33 @@ def test_a_process_is_modest(jobs: Jobs, store: MemoryStore) -> None:
 def test_an_agent_without_rates_has_none_to_change(jobs: Jobs) -> None:
     with pytest.raises(InvalidInput, match="does not learn"):
         jobs.train(training(agent="greedy"))
+
+
+class ShakyStore(MemoryStore):
+    """A store that cannot be used for a while."""
+
+    failures = 0
+
+    def change(self, *args: Any, **fields: Any) -> Run:
+        if self.failures:
+            self.failures -= 1
+            raise StorageFailed("another program holds the database")
+        return super().change(*args, **fields)
+
+
+def test_a_store_that_cannot_be_used_for_a_while_costs_no_run() -> None:
+    store = ShakyStore()
+    jobs = Jobs(store, Recordings(), EventBus(), cores=1)
+    jobs.open()
+    try:
+        store.failures = 1
+        late = jobs.train(training())
+        assert ended(store, late).state == "finished"
+        run = jobs.train(endless())
+        moving(store, run)
+        store.failures = 2
+        os.kill(pid_of(jobs, run), signal.SIGKILL)
+        assert "SIGKILL" in (ended(store, run).error or "")
+        assert ended(store, jobs.train(training())).state == "finished"
+    finally:
+        jobs.close()
