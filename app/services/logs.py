@@ -6,6 +6,8 @@ import sys
 from datetime import UTC, datetime
 from typing import Any, TextIO
 
+from app.services.store import KINDS
+
 _KNOWN = frozenset(vars(logging.makeLogRecord({}))) | {"message", "asctime", "taskName"}
 
 
@@ -27,7 +29,7 @@ def install(level: str, stream: TextIO | None = None) -> None:
 class LineFormatter(logging.Formatter):
     """A record as one line: time, level, logger and message, then what was given as `extra`.
 
-    A record that is about a run has its id as `run_id`.
+    A record that is about a run, or comes from its job, has its id as `run_id`.
     """
 
     def __init__(self, as_json: bool) -> None:
@@ -42,12 +44,24 @@ class LineFormatter(logging.Formatter):
             "logger": record.name,
             "message": record.getMessage(),
         }
+        run_id = _run_of(record)
+        if run_id is not None:
+            said["run_id"] = run_id
         said |= {name: value for name, value in vars(record).items() if name not in _KNOWN}
         if record.exc_info:
             said["traceback"] = self.formatException(record.exc_info)
         if self._as_json:
             return json.dumps(said, default=str)
         return " ".join(f"{name}={_quoted(value)}" for name, value in said.items())
+
+
+def _run_of(record: logging.LogRecord) -> str | None:
+    """The run that a job's process or thread works on: both are named by it."""
+    for name in (record.processName, record.threadName):
+        kind, _, run_id = (name or "").partition(" ")
+        if kind in KINDS and run_id:
+            return run_id
+    return None
 
 
 def _quoted(value: object) -> str:

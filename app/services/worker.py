@@ -24,6 +24,7 @@ from app.runs.records import LaneStep, StepTaken
 from app.runs.tables import restore, snapshot, to_bytes
 from app.runs.training import Learner, train
 from app.runs.walker import Walker
+from app.services import logs
 from app.services.desk import Desk, Stopped
 from app.services.listening import ListeningAgent
 from app.services.orders import (
@@ -46,6 +47,7 @@ _logger = logging.getLogger(__name__)
 def main(pipe: Connection) -> None:
     """Work on the order that comes first through the pipe, and end the process."""
     _be_modest()
+    logs.install("warning")
     order: Order = pipe.recv()
     words: queue.SimpleQueue[Word] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(pipe, words), daemon=True).start()

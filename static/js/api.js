@@ -55,8 +55,19 @@ export const getRun = (run) => call("GET", address(run));
 export const listRuns = (kind, cursor) =>
   call("GET", `${collection(kind)}?limit=50${cursor ? `&cursor=${encodeURIComponent(cursor)}` : ""}`);
 
-/** One key for one press: should the network send it twice, it is one run all the same. */
-const start = (path, body) => call("POST", path, body, { "Idempotency-Key": newKey() });
+const RETRY_MS = 500;
+
+/** One key for one press: where no answer came it is asked for once more, and is one run still. */
+async function start(path, body) {
+  const key = { "Idempotency-Key": newKey() };
+  try {
+    return await call("POST", path, body, key);
+  } catch (error) {
+    if (!(error instanceof Unreachable)) throw error;
+    await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
+    return call("POST", path, body, key);
+  }
+}
 
 // Not randomUUID, which pages have only over https and on loopback.
 const newKey = () =>

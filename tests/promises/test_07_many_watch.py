@@ -1,5 +1,5 @@
 """Promise 7: many watch: 200 viewers for 10 minutes: in the median 20 frames/s or more each, and
-95 % of the API's answers in under 250 ms.
+95 % of commands, and of the API's other answers, in under 250 ms.
 
 In full by `make soak`. The gate's shorter form has 30 viewers for 5 s; the machine may do other
 things as well, so it asks for 8 frames/s, and for 1 s.
@@ -7,6 +7,11 @@ things as well, so it asks for 8 frames/s, and for 1 s.
 
 import argparse
 import asyncio
+import statistics
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import httpx2
@@ -44,11 +49,36 @@ def move(server: Serving) -> None:
         pass
 
 
+@contextmanager
+def controlled(server: Serving) -> Iterator[list[float]]:
+    """Command the stage all the while, and time that [s]."""
+    latencies_s: list[float] = []
+    over = threading.Event()
+
+    def command() -> None:
+        with httpx2.Client(base_url=server.address, timeout=60) as client:
+            while not over.wait(0.05):
+                began_s = time.perf_counter()
+                client.put("api/v1/stage", json={"playing": True})
+                latencies_s.append(time.perf_counter() - began_s)
+
+    commander = threading.Thread(target=command, daemon=True)
+    commander.start()
+    try:
+        yield latencies_s
+    finally:
+        over.set()
+        commander.join()
+
+
 @pytest.mark.timeout(1200)
 def test_they_see_it_move_and_the_server_answers(server: Serving) -> None:
     move(server)
-    seen = watch(server, VIEWERS, SECONDS)
+    with controlled(server) as latencies_s:
+        seen = watch(server, VIEWERS, SECONDS)
 
+    assert len(latencies_s) > 10
+    assert statistics.quantiles(latencies_s, n=20)[-1] * 1e3 < MOST_P95_MS
     assert seen["viewers_lost"] == 0
     assert seen["frames_per_s_median"] >= LEAST_FRAMES_PER_S
     assert seen["healthz_p95_ms"] < MOST_P95_MS

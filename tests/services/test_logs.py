@@ -54,6 +54,13 @@ def test_words_for_people() -> None:
     assert "\n" not in line
 
 
+def test_a_job_s_process_and_thread_say_which_run_it_is() -> None:
+    formatter = LineFormatter(as_json=True)
+    for where in ({"processName": "training abc"}, {"threadName": "race abc"}):
+        assert json.loads(formatter.format(record("broken", **where)))["run_id"] == "abc"
+    assert "run_id" not in json.loads(formatter.format(record("x", threadName="jobs")))
+
+
 def test_runs_are_counted_and_told_to_the_log(written: io.StringIO) -> None:
     clock = [0.0]
     bus = Witness(lambda: clock[0])
