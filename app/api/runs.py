@@ -77,7 +77,7 @@ def run_routes(kind: Kind) -> APIRouter:
 _VERBS = {
     "stop": "End a {} with what has come of it",
     "pause": "Let a {} wait",
-    "resume": "Let a paused {} go on",
+    "resume": "Let a paused or interrupted {} go on",
 }
 
 
