@@ -95,7 +95,7 @@ def test_of_what_the_description_leads_to(calm: Api) -> None:
 
 def run_cases(strategy: Any, act: Callable[[Any], None], operations: int) -> None:
     # More than are wanted of each, since some operations have but a few that differ.
-    most = max(2, at_length(1, 3) * CASES // operations)
+    most = max(2, at_length(1, 2) * CASES // operations)
     settings: Any = hypothesis.settings(
         max_examples=most,
         deadline=None,
