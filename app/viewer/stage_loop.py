@@ -9,6 +9,8 @@ from app.services.stage import Stage
 from app.viewer.scene import StageScene
 
 FRAMES_PER_S, IDLE_FRAMES_PER_S, SCENES_PER_S = 30.0, 10.0, 5.0
+_STILL_FRAMES = 15
+"""A pause between two steps is no reason to go slower."""
 
 _logger = logging.getLogger(__name__)
 
@@ -45,13 +47,13 @@ class StageLoop:
         self.stop()
 
     def _run(self) -> None:
-        due_s = time.monotonic()
+        due_s, still = time.monotonic(), 0
         while not self._stop.is_set():
-            moved = self._draw()
-            due_s += 1 / (FRAMES_PER_S if moved else IDLE_FRAMES_PER_S)
-            # Frames that came too late are left out; the show goes by the clock anyway.
-            due_s = max(due_s, time.monotonic())
-            self._stop.wait(due_s - time.monotonic())
+            still = 0 if self._draw() else still + 1
+            due_s += 1 / (FRAMES_PER_S if still < _STILL_FRAMES else IDLE_FRAMES_PER_S)
+            # One late frame is made up for; more are left out, the show goes by the clock anyway.
+            due_s = max(due_s, time.monotonic() - 1 / FRAMES_PER_S)
+            self._stop.wait(max(0.0, due_s - time.monotonic()))
 
     def _draw(self) -> bool:
         now = time.monotonic()
