@@ -117,7 +117,7 @@ def _type(kind: Mapping[str, Any], schema: Mapping[str, Any]) -> str:
         return f"list of {_type(kind.get('items', {}), schema)}"
     low = kind.get("minimum", kind.get("exclusiveMinimum"))
     high = kind.get("maximum", kind.get("exclusiveMaximum"))
-    limits = "" if low is None else f" from {low:g}"
-    limits += "" if high is None else f" to {high:,}"
+    limits = "" if low is None else f" from {low:,.10g}"
+    limits += "" if high is None else f" to {high:,.10g}"
     default = f", default {json.dumps(kind['default'])}" if "default" in kind else ""
     return f"{kind.get('type', 'any')}{limits}{default}"
