@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -102,3 +103,17 @@ class Served:
         assert self.process.stdout is not None
         self.process.stdout.close()
         return code
+
+
+@contextmanager
+def serving_from(data: Path) -> Iterator[Callable[..., Served]]:
+    """Starts servers on a data folder, one after another; none outlives the test."""
+    served: list[Served] = []
+
+    def make(**variables: str) -> Served:
+        served.append(Served(data, **variables))
+        return served[-1]
+
+    yield make
+    for one in served:
+        one.end(signal.SIGKILL)

@@ -14,20 +14,13 @@ import viser
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from tests.served import BODY, ENDLESS, HEXAPODS, LONG_S, Events, Served, environ
+from tests.served import BODY, ENDLESS, HEXAPODS, LONG_S, Events, Served, environ, serving_from
 
 
 @pytest.fixture
 def serve(tmp_path: Path) -> Iterator[Callable[..., Served]]:
-    served: list[Served] = []
-
-    def make(**variables: str) -> Served:
-        served.append(Served(tmp_path, **variables))
-        return served[-1]
-
-    yield make
-    for one in served:
-        one.end(signal.SIGKILL)
+    with serving_from(tmp_path) as make:
+        yield make
 
 
 def test_a_stream_begins_with_a_snapshot_and_goes_on_with_what_happens(

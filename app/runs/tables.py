@@ -190,9 +190,7 @@ def from_bytes(data: bytes, name: str) -> Checkpoint:
             than it is.
     """
     try:
-        _refuse_compressed(data)
-        with np.load(io.BytesIO(data), allow_pickle=False) as file:
-            members = {key: file[key] for key in file.files}
+        members = read_arrays(data)
         digest = str(members.pop("digest"))
         whole = digest == _digest(members)
         meta = json.loads(str(members.pop("meta")))
@@ -206,13 +204,20 @@ def from_bytes(data: bytes, name: str) -> Checkpoint:
     return Checkpoint(meta, members)
 
 
-def _refuse_compressed(data: bytes) -> None:
+def read_arrays(data: bytes) -> Arrays:
+    """The arrays of an `.npz` file, which cannot unpack to more than it is.
+
+    Raises:
+        ValueError: if it could; and whatever zipfile and NumPy make of damage.
+    """
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         members = archive.infolist()
     if any(member.compress_type != zipfile.ZIP_STORED for member in members):
         raise ValueError("its members are compressed; write it with numpy.savez")
     if sum(member.file_size for member in members) > len(data):
         raise ValueError("its members claim to be larger than the file")
+    with np.load(io.BytesIO(data), allow_pickle=False) as file:
+        return {name: file[name] for name in file.files}
 
 
 def _digest(members: Arrays) -> str:

@@ -1,8 +1,6 @@
 """The files of a run in its archive: which there are, and that each is what it should be."""
 
-import io
 import re
-import zipfile
 from collections.abc import Iterable, Mapping
 
 import numpy as np
@@ -13,7 +11,7 @@ from app.domain.simulator import Motion
 from app.domain.types import Action, Cells
 from app.runs import tables
 from app.runs.config import RaceConfig, TrainingConfig, Walk
-from app.runs.recording import Arrays, race_recording
+from app.runs.recording import race_recording
 from app.runs.records import Knowledge
 from app.runs.stored_practice import practice_recording
 from app.services.store import CHECKPOINT, TABLE, Run, RunStore
@@ -89,7 +87,7 @@ def _check_table(run: Run, name: str, data: bytes, said: str) -> None:
 def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
     if RACE not in files:
         return
-    lanes = race_recording(_arrays(files[RACE]))
+    lanes = race_recording(tables.read_arrays(files[RACE]))
     if [lane.agent for lane in lanes] != [lane.agent for lane in config.lanes]:
         raise ValueError("it has other lanes")
     for lane in lanes:
@@ -108,8 +106,8 @@ def _check_practice(config: Walk, files: Mapping[str, bytes]) -> None:
     later = sorted(name for name in files if _EVALUATIONS.fullmatch(name))
     if later != [evaluations_file(number) for number in range(len(later))]:
         raise ValueError("an evaluation is missing")
-    evaluations = [_arrays(files[name]) for name in later]
-    recording = practice_recording(_arrays(files[PRACTICE]), evaluations)
+    evaluations = [tables.read_arrays(files[name]) for name in later]
+    recording = practice_recording(tables.read_arrays(files[PRACTICE]), evaluations)
     _check_poses(recording.rest_qpos[None], config)
     for step in recording.steps:
         _check_finite(step.reward_m, step.distance_m, step.epsilon)
@@ -117,18 +115,6 @@ def _check_practice(config: Walk, files: Mapping[str, bytes]) -> None:
         _check_choice(step.observation, step.action, step.knowledge, config)
     for evaluation in recording.evaluations:
         _check_motion(evaluation.motion, config)
-
-
-def _arrays(data: bytes) -> Arrays:
-    """The arrays of a file, which cannot unpack to more than it is."""
-    with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        members = archive.infolist()
-    if any(member.compress_type != zipfile.ZIP_STORED for member in members):
-        raise ValueError("it is compressed")
-    if sum(member.file_size for member in members) > len(data):
-        raise ValueError("it claims to be larger than it is")
-    with np.load(io.BytesIO(data), allow_pickle=False) as file:
-        return {name: file[name] for name in file.files}
 
 
 def _check_finite(*numbers: float) -> None:
