@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from importlib.metadata import entry_points
 from typing import Any
 
-from app.agents.lookahead import Greedy, TwoStep
+from app.agents.lookahead import Greedy, LookAhead, TwoStep
 from app.agents.protocol import Agent
 from app.agents.q_learning import QLearning
 from app.domain.errors import InvalidInput, UnknownName
@@ -57,6 +57,15 @@ def find(name: str) -> AgentClass:
     if missing:
         raise InvalidInput(f"agent {name!r} lacks {', '.join(missing)} of the agent protocol")
     return agent  # type: ignore[no-any-return]
+
+
+def learns(name: str) -> bool:
+    """Whether an agent has anything from practice.
+
+    Raises:
+        UnknownName, InvalidInput: as `find`.
+    """
+    return not issubclass(find(name), LookAhead)  # type: ignore[arg-type]
 
 
 def asks_for(agent: AgentClass) -> set[str]:

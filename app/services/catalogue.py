@@ -4,6 +4,7 @@ from collections.abc import Collection
 from typing import Any
 
 from app import __version__
+from app.agents.registry import learns
 from app.domain.gait import NAMED_GAITS, resolve
 from app.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, MIN_SIDE_M
 from app.domain.robot import PRESETS, Robot, as_mapping
@@ -14,7 +15,6 @@ from app.runs.config import (
     TrainingConfig,
     as_json,
 )
-from app.services.entries import learns
 from app.services.palette import lane_colors
 
 _GAITS = {

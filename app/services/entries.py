@@ -3,9 +3,8 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from app.agents import registry
-from app.agents.lookahead import LookAhead
 from app.agents.q_table import MAX_VALUES
+from app.agents.registry import learns
 from app.domain.errors import InvalidInput, TableMismatch
 from app.domain.kinematics import check_reach
 from app.domain.observation import Observation
@@ -69,15 +68,6 @@ class Entry:
     make_order: Callable[[], Order]
     waits_for: set[str]
     goes_on: bool = False
-
-
-def learns(agent: str) -> bool:
-    """Whether an agent has anything from practice.
-
-    Raises:
-        UnknownName: if there is no such agent.
-    """
-    return not issubclass(registry.find(agent), LookAhead)  # type: ignore[arg-type]
 
 
 def training_entry(start: TrainingStart, store: RunStore, new_id: Callable[[], str]) -> Entry:

@@ -1,0 +1,203 @@
+"""From an experiment to its trials: every setting, every seed, in the order that fills a report."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from app.agents.registry import learns
+from app.domain.errors import InvalidInput
+from app.domain.kinematics import check_reach
+from app.domain.observation import Observation
+from app.domain.robot import Robot
+from app.experiments.config import GRID, MAX_TRIALS, ExperimentConfig
+from app.experiments.trial import TrialConfig
+from app.runs.config import TrainingConfig, Walk
+
+Role = Literal["learner", "reference", "timed"]
+"""`learner`: once a seed; `reference`: an agent that looks ahead, and so once; `timed`:
+once and alone, for the wall clock."""
+
+RIVALS = ("greedy", "two-step")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setting:
+    """All that a trial's result depends on, but for its seed.
+
+    Attributes:
+        key: names the setting in files, tables and on the page.
+        role: what it is there for.
+        robot: the robot's label in this experiment.
+        trial: with seed 0.
+    """
+
+    key: str
+    role: Role
+    robot: str
+    trial: TrialConfig
+
+    @property
+    def training(self) -> TrainingConfig:
+        """What is practised."""
+        return self.trial.training
+
+    @property
+    def gait(self) -> str:
+        """The gait's name."""
+        return self.training.resolved_gait.name
+
+
+class Trial(NamedTuple):
+    """One trial of a plan."""
+
+    key: str
+    """The setting's key and the seed's number: `…#12`."""
+    setting: Setting
+    seed_number: int
+    config: TrialConfig
+
+
+class Plan:
+    """The settings of an experiment, and their trials."""
+
+    def __init__(self, config: ExperimentConfig) -> None:
+        """Lay out everything; nothing is run.
+
+        Raises:
+            InvalidInput, UnknownName, Unreachable: if a setting cannot be, or they are too many.
+        """
+        self.config = config
+        self.settings: Sequence[Setting] = _settings(config)
+        self.total = sum(self.count(setting) for setting in self.settings)
+        if self.total > MAX_TRIALS:
+            raise InvalidInput(
+                f"the grid has {self.total:,} trials, the most is {MAX_TRIALS:,}; choose fewer "
+                "values or fewer seeds"
+            )
+
+    def count(self, setting: Setting) -> int:
+        """How many trials a setting has."""
+        return self.config.seeds if setting.role == "learner" else 1
+
+    def trials(self) -> Iterator[Trial]:
+        """All trials: references first, then seed by seed, at last those that measure time."""
+        for role in ("reference", "learner", "timed"):
+            numbered = [(i, s) for i, s in enumerate(self.settings) if s.role == role]
+            for seed_number in range(max((self.count(s) for _, s in numbered), default=0)):
+                for index, setting in numbered:
+                    yield self._trial(index, setting, seed_number)
+
+    def _trial(self, index: int, setting: Setting, seed_number: int) -> Trial:
+        seed = trial_seed(self.config.seed, index, seed_number)
+        config = replace(setting.trial, training=replace(setting.training, seed=seed))
+        return Trial(f"{setting.key}#{seed_number}", setting, seed_number, config)
+
+
+def trial_seed(seed: int, setting: int, seed_number: int) -> int:
+    """The seed of a trial, as by `SeedSequence.spawn` of an experiment's, then of a setting's.
+
+    It has 53 bits, so that every JSON reader keeps it.
+    """
+    sequence = np.random.SeedSequence(seed, spawn_key=(setting, seed_number))
+    return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(11))
+
+
+def _settings(config: ExperimentConfig) -> list[Setting]:
+    learners, references, timed = [], [], []
+    for place in _places(config):
+        references += [_setting(place, agent, blocks=0) for agent in _looking_ahead(config)]
+        here = [
+            _setting(place, agent, blocks=config.blocks, **rates)
+            for rates in _rates(config)
+            for agent in config.agents
+            if learns(agent)
+        ]
+        learners += here
+        if config.experiment == "table1":
+            timed.append(_timed(here[0]))
+    settings = [*references, *learners, *timed]
+    key, count = Counter(setting.key for setting in settings).most_common(1)[0]
+    if count > 1:
+        raise InvalidInput(f"the setting {key} is there twice; name each value once")
+    return settings
+
+
+class _Place(NamedTuple):
+    """Where agents are compared with each other: the walking problem and how it is observed."""
+
+    walk: Walk
+    observation: Observation
+    robot: str
+    """Its label."""
+
+
+def _places(config: ExperimentConfig) -> Iterator[_Place]:
+    for gait, observation, (label, robot), divisions, side_m in product(
+        config.gaits, config.observations, _labelled(config), config.divisions, config.grid_side_m
+    ):
+        walk = Walk(
+            gait=gait,
+            robot=robot,
+            simulator=config.simulator,
+            divisions=divisions,
+            grid_side_m=side_m,
+        )
+        check_reach(robot, walk.resolved_gait, walk.grid)
+        yield _Place(walk, observation, label)
+
+
+def _labelled(config: ExperimentConfig) -> list[tuple[str, Robot]]:
+    """Robots under names of their own: two that differ from one preset share its name."""
+    names = [robot.name for robot in config.robots]
+    return [
+        (name if names.count(name) == 1 else f"{name} {1 + names[:place].count(name)}", robot)
+        for place, (name, robot) in enumerate(zip(names, config.robots, strict=True))
+    ]
+
+
+def _looking_ahead(config: ExperimentConfig) -> list[str]:
+    """Greedy is what all are compared with, so that it is always there."""
+    if config.experiment == "table1":
+        return list(RIVALS)
+    return ["greedy", *(a for a in config.agents if not learns(a) and a != "greedy")]
+
+
+def _rates(config: ExperimentConfig) -> list[dict[str, Any]]:
+    """Every combination of what is not part of the walking problem."""
+    names = [name for name in GRID if name not in Walk.__dataclass_fields__]
+    return [
+        dict(zip(names, values, strict=True))
+        for values in product(*(getattr(config, name) for name in names))
+    ]
+
+
+def _setting(place: _Place, agent: str, blocks: int, **rates: Any) -> Setting:
+    training = TrainingConfig(
+        **vars(place.walk), observation=place.observation, agent=agent, evaluate_every=0, **rates
+    )
+    parts = [training.resolved_gait.name, place.observation, place.robot]
+    parts += [
+        f"{name}={getattr(training, name):g}"
+        for name in ("divisions", "grid_side_m")
+        if getattr(training, name) != getattr(TrainingConfig, name)
+    ]
+    parts.append(agent)
+    if blocks:
+        parts.append(f"{blocks}x{training.steps}" if blocks > 1 else f"{training.steps}")
+        parts += [
+            f"{name}={value:g}"
+            for name, value in rates.items()
+            if name != "steps" and value != getattr(TrainingConfig, name)
+        ]
+    role: Role = "learner" if blocks else "reference"
+    trial = TrialConfig(training=training, blocks=blocks)
+    return Setting(key="/".join(parts), role=role, robot=place.robot, trial=trial)
+
+
+def _timed(setting: Setting) -> Setting:
+    trial = replace(setting.trial, rivals=RIVALS)
+    return replace(setting, key=f"{setting.key}/timed", role="timed", trial=trial)

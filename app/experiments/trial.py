@@ -1,0 +1,162 @@
+"""One trial: an agent practises, walks 50 steps, and is timed; pure, and small enough to send."""
+
+import tempfile
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from app.assembly import build_learner, build_walkers
+from app.domain.errors import Diverged
+from app.runs.clocks import Timetable, distance_at
+from app.runs.config import RACE_STEPS, LaneConfig, RaceConfig, TrainingConfig, Walk
+from app.runs.racing import record_race
+from app.runs.recording import LaneRecording
+from app.runs.results import race_result
+from app.runs.tables import Checkpoint, from_bytes, snapshot, to_bytes
+from app.runs.training import evaluate, train
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrialConfig:
+    """What one trial does.
+
+    Attributes:
+        training: a block of practice with its seed; of an agent that does not learn only the
+            agent, how it observes, and the walking problem count.
+        blocks: how many blocks are practised one after the other, the table saved to a file and
+            loaded between them, ε restarting in each (paper §5, Figure 4); 0 is no practice.
+        rivals: agents that it races, so that everyone's decisions are measured in wall time.
+    """
+
+    training: TrainingConfig
+    blocks: int = 1
+    rivals: tuple[str, ...] = ()
+
+    @property
+    def must_be_alone(self) -> bool:
+        """Whether it measures time, so that nothing else may run meanwhile."""
+        return bool(self.rivals)
+
+
+@dataclass(frozen=True)
+class TrialResult:
+    """What came of a trial. All but `wall` is the same whenever and wherever it is run.
+
+    Attributes:
+        distances_m: over 50 steps from rest after each block; one entry without practice.
+        finished_distance_m: where the agent is, under the paper clock, when one that decides at
+            once has taken its 50 steps; None where no race was walked.
+        elapsed_s: under the paper clock, for its 50 steps; None where no race was walked.
+        transitions: that it simulated to decide on its 50 steps.
+        wall: with rivals, for each lane `agent`, `decision_s`, and under the wall clock
+            `finished_distance_m`, `elapsed_s` and `rank`.
+        failure: why there are no distances, in a sentence.
+    """
+
+    distances_m: tuple[float, ...] = ()
+    finished_distance_m: float | None = None
+    elapsed_s: float | None = None
+    transitions: int = 0
+    wall: tuple[Mapping[str, Any], ...] | None = None
+    failure: str | None = None
+
+    def as_json(self) -> dict[str, Any]:
+        """In plain types; `from_json` reads it back as the same."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, shown: Mapping[str, Any]) -> "TrialResult":
+        """What `as_json` wrote.
+
+        Raises:
+            KeyError, TypeError, ValueError: if it did not.
+        """
+        wall = shown["wall"]
+        return cls(
+            **{
+                **shown,
+                "distances_m": tuple(float(distance) for distance in shown["distances_m"]),
+                "wall": None if wall is None else tuple(dict(lane) for lane in wall),
+            }
+        )
+
+
+def run_trial(config: TrialConfig, timer: Callable[[], float] = time.perf_counter) -> TrialResult:
+    """Do what a trial says; broken physics, or an agent that fails, is a result too.
+
+    Args:
+        config: the trial.
+        timer: seconds, to measure decisions with, where there are rivals.
+
+    Raises:
+        HexapodError: if the trial cannot be: an unknown agent, a grid out of reach.
+    """
+    try:
+        table, distances = _practise(config)
+        if config.blocks > 1:
+            return TrialResult(distances_m=distances)
+        lanes = _race(config, table, timer)
+    except Diverged as error:
+        return TrialResult(failure=str(error))
+    failures = [f"{lane.agent}: {lane.failure}" for lane in lanes if lane.failure]
+    if failures:
+        return TrialResult(failure="; ".join(failures))
+    return _result(lanes, _wall(lanes) if config.rivals else None)
+
+
+def _practise(config: TrialConfig) -> tuple[Checkpoint | None, tuple[float, ...]]:
+    """The table after all blocks, and the distance [m] after each if there are several."""
+    table, distances = None, []
+    for _ in range(config.blocks):
+        learner = build_learner(config.training, table)
+        for _ in train(learner, config.training):
+            pass
+        table = _through_a_file(snapshot(learner, config.training))
+        if config.blocks > 1:
+            distances.append(evaluate(learner, config.training, learner.epsilon).distance_m)
+    return table, tuple(distances)
+
+
+def _through_a_file(table: Checkpoint) -> Checkpoint:
+    with tempfile.TemporaryDirectory(prefix="hexapods-") as folder:
+        path = Path(folder) / "q.npz"
+        path.write_bytes(to_bytes(table))
+        return from_bytes(path.read_bytes(), path.name)
+
+
+def _race(
+    config: TrialConfig, table: Checkpoint | None, timer: Callable[[], float]
+) -> list[LaneRecording]:
+    training = config.training
+    walk = {name: getattr(training, name) for name in Walk.__dataclass_fields__}
+    lanes = tuple(
+        LaneConfig(agent=agent, observation=training.observation)
+        for agent in (training.agent, *config.rivals)
+    )
+    race = RaceConfig(**walk, lanes=lanes, seed=training.seed)
+    walkers = build_walkers(race, [table, *(None for _ in config.rivals)], threads=1)
+    *_, recorded = record_race(walkers, race, timer)
+    return recorded
+
+
+def _result(lanes: list[LaneRecording], wall: tuple[Mapping[str, Any], ...] | None) -> TrialResult:
+    lane = lanes[0]
+    timetable = Timetable.of(lane.steps, "paper")
+    at_once_s = Timetable.of(lane.steps, "free").total_s
+    return TrialResult(
+        distances_m=(lane.distance_m,),
+        finished_distance_m=distance_at(lane, timetable, at_once_s),
+        elapsed_s=timetable.total_s,
+        transitions=sum(step.transitions for step in lane.steps),
+        wall=wall,
+    )
+
+
+def _wall(lanes: list[LaneRecording]) -> tuple[Mapping[str, Any], ...]:
+    shown = []
+    for lane in race_result(lanes, RACE_STEPS)["lanes"]:
+        timed = {k: lane["clocks"]["wall"][k] for k in ("finished_distance_m", "elapsed_s", "rank")}
+        shown.append({"agent": lane["agent"], "decision_s": lane["decision_s"], **timed})
+    return tuple(shown)
