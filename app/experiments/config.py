@@ -8,11 +8,10 @@ from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import OBSERVATIONS, Observation
 from app.domain.robot import Robot, as_mapping, robot
-from app.runs.config import SimulatorName, TrainingConfig, gait_from_json
+from app.runs.config import SimulatorName, TrainingConfig, check_whole, gait_from_json
 
 ExperimentName = Literal["table1", "figure4", "sweep"]
 EXPERIMENTS: tuple[ExperimentName, ...] = get_args(ExperimentName)
-MIN_FOR_INTERVALS = 30
 MAX_SEEDS = 10_000
 MAX_TRIALS = 200_000
 FIGURE4_BLOCKS = 8
@@ -68,14 +67,8 @@ class ExperimentConfig:
     def __post_init__(self) -> None:
         if self.experiment not in EXPERIMENTS:
             raise UnknownName("experiment", self.experiment, EXPERIMENTS)
-        whole = isinstance(self.seeds, int) and not isinstance(self.seeds, bool)
-        if not whole or not 1 <= self.seeds <= MAX_SEEDS:
-            raise InvalidInput(
-                f"seeds must be a whole number from 1 to {MAX_SEEDS:,}, not {self.seeds!r}; "
-                f"intervals want {MIN_FOR_INTERVALS} or more"
-            )
-        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
-            raise InvalidInput(f"seed must be a whole number, at least 0, not {self.seed!r}")
+        check_whole("seeds", self.seeds, 1, MAX_SEEDS)
+        check_whole("seed", self.seed, 0, None)
         for name in ("agents", "gaits", "observations", "robots", *GRID):
             values = getattr(self, name)
             if not values:

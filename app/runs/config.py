@@ -77,10 +77,10 @@ class TrainingConfig(Walk):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_observation(self.observation)
-        _whole("steps", self.steps, 1, MAX_STEPS)
-        _whole("seed", self.seed, 0, None)
-        _whole("steps_per_episode", self.steps_per_episode, 1, MAX_STEPS)
-        _whole("evaluate_every", self.evaluate_every, 0, MAX_STEPS)
+        check_whole("steps", self.steps, 1, MAX_STEPS)
+        check_whole("seed", self.seed, 0, None)
+        check_whole("steps_per_episode", self.steps_per_episode, 1, MAX_STEPS)
+        check_whole("evaluate_every", self.evaluate_every, 0, MAX_STEPS)
         check_rates(self.alpha, self.gamma, self.epsilon_start, self.epsilon_end)
         check_pace(self.pace)
 
@@ -111,8 +111,8 @@ class RaceConfig(Walk):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _whole("steps", self.steps, 1, MAX_STEPS)
-        _whole("seed", self.seed, 0, None)
+        check_whole("steps", self.steps, 1, MAX_STEPS)
+        check_whole("seed", self.seed, 0, None)
         if not 1 <= len(self.lanes) <= MAX_LANES:
             raise InvalidInput(f"a race has 1 to {MAX_LANES} lanes, not {len(self.lanes)}")
 
@@ -169,7 +169,8 @@ def gait_from_json(value: str | Mapping[str, Any]) -> str | GaitSpec:
     return GaitSpec(**fields)
 
 
-def _whole(name: str, value: int, low: int, high: int | None) -> None:
+def check_whole(name: str, value: int, low: int, high: int | None) -> None:
+    """Raise `InvalidInput` unless value is a whole number in these limits."""
     if isinstance(value, bool) or not isinstance(value, int):
         raise InvalidInput(f"{name} must be a whole number, not {value!r}")
     if value < low or (high is not None and value > high):
