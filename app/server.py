@@ -35,10 +35,11 @@ from app.domain.errors import HexapodError, InvalidInput
 from app.services import logs
 from app.services.database.opening import open_store
 from app.services.jobs import Jobs
+from app.services.memory_store import MemoryStore
 from app.services.once import Once
 from app.services.recordings import Recordings
 from app.services.stage import Stage
-from app.services.store import MemoryStore, RunStore
+from app.services.store import RunStore
 from app.services.whereabouts import note_address
 from app.services.witness import Witness
 from app.settings import PREFIX, Settings

@@ -1,21 +1,13 @@
 """What requests may say. The only Pydantic models; services get frozen dataclasses."""
 
-import unicodedata
 from collections.abc import Collection
 from typing import Annotated, Any, Literal
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    ConfigDict,
-    Discriminator,
-    Field,
-    Tag,
-    model_validator,
-)
+from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
-from app.api.sentences import MAX_NAME, VALID
+from app.api.fields import Alpha, Body, Epsilon, Gamma, Name, Pace, RunId, Seed, Steps, number
+from app.api.sentences import VALID
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import GaitSpec, Symmetry
 from app.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, MIN_SIDE_M
@@ -31,46 +23,6 @@ from app.runs.config import (
     Walk,
 )
 from app.services.entries import LaneStart, RaceStart, TrainingStart
-
-
-def _printable(text: str) -> str:
-    if any(unicodedata.category(character) in ("Cc", "Cs") for character in text):
-        raise ValueError("control character")
-    return text.strip()
-
-
-def _number(**limits: Any) -> Any:
-    return Field(strict=True, allow_inf_nan=False, **limits)
-
-
-Name = Annotated[
-    str,
-    Field(max_length=MAX_NAME, description=VALID["name"]),
-    AfterValidator(_printable),
-]
-RunId = Annotated[str, Field(min_length=1, max_length=64)]
-Steps = Annotated[int, Field(strict=True, ge=1, le=MAX_STEPS, description=VALID["steps"])]
-Seed = Annotated[int, Field(strict=True, ge=0, description=VALID["seed"])]
-Alpha = Annotated[float, _number(gt=0, le=1, description=VALID["alpha"])]
-Gamma = Annotated[float, _number(ge=0, lt=1, description=VALID["gamma"])]
-Epsilon = Annotated[float, _number(ge=0, le=1, description=VALID["epsilon"])]
-Pace = Literal["max"] | Annotated[float, _number(ge=0.01, le=1000)]
-
-
-class Body(BaseModel):
-    """A JSON object without a field that nobody knows."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _know_all_fields(cls, value: Any) -> Any:
-        unknown = [n for n in value if n not in cls.model_fields] if isinstance(value, dict) else []
-        if unknown:
-            message = str(UnknownName("field", unknown[0][:MAX_NAME], cls.model_fields))
-            # As a value and not as a template: a name may have braces in it.
-            raise PydanticCustomError("unknown_field", "{message}", {"message": message})
-        return value
 
 
 class GaitBody(Body):
@@ -111,7 +63,7 @@ class WalkBody(Body):
     divisions: Annotated[int, Field(strict=True, ge=MIN_DIVISIONS, le=MAX_DIVISIONS)] = (
         Walk.divisions
     )
-    grid_side_m: Annotated[float, _number(ge=MIN_SIDE_M)] = Walk.grid_side_m
+    grid_side_m: Annotated[float, number(ge=MIN_SIDE_M)] = Walk.grid_side_m
 
     def walk(self) -> Walk:
         """As the loops know it.
@@ -244,9 +196,9 @@ class StageBody(Body):
     """What everyone is to be shown; what is left out stays as it is."""
 
     run_id: RunId | None = None
-    time_s: Annotated[float, _number(ge=0)] | None = None
+    time_s: Annotated[float, number(ge=0)] | None = None
     playing: Annotated[bool, Field(strict=True)] | None = None
-    speed: Literal["time-lapse"] | Annotated[float, _number(ge=0.25, le=64)] | None = None
+    speed: Literal["time-lapse"] | Annotated[float, number(ge=0.25, le=64)] | None = None
     clock: Clock | None = None
 
 

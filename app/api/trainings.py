@@ -6,9 +6,10 @@ from fastapi import Query, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from app.api.deps import Given, Start
+from app.api.fields import Name
 from app.api.formats import attachment, chosen
 from app.api.runs import RunPath, accepted, find, run_routes
-from app.api.schemas import ChangeBody, Name, TrainingBody
+from app.api.schemas import ChangeBody, TrainingBody
 from app.domain.errors import InvalidInput
 from app.runs import tables
 from app.services import curves, imports

@@ -1,15 +1,11 @@
-"""Runs and what they leave behind, behind one interface; here in memory."""
+"""Runs and what they leave behind, behind one interface."""
 
-import math
-import threading
-from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any, Literal, NamedTuple, Protocol, get_args
 
 from app.runs.config import RaceConfig, TrainingConfig
-from app.services.errors import Conflict, NotFound
 
 Kind = Literal["training", "race"]
 State = Literal["queued", "running", "paused", "finished", "stopped", "failed", "interrupted"]
@@ -156,105 +152,3 @@ class RunStore(Protocol):
 
     def artifact(self, run_id: str, name: str) -> bytes | None:
         """A file of the run's; None if it has none of this name."""
-
-
-class MemoryStore:
-    """Implements `RunStore` for as long as the process lives."""
-
-    def __init__(self) -> None:
-        self._runs: dict[str, Run] = {}
-        self._curves: dict[str, list[Mapping[str, Any]]] = {}
-        self._artifacts: dict[str, dict[str, bytes]] = {}
-        self._lock = threading.Lock()
-
-    def check_room(self) -> None:
-        pass
-
-    def create(self, *runs: Run) -> None:
-        with self._lock:
-            self._runs |= {run.id: run for run in runs}
-
-    def get(self, run_id: str) -> Run:
-        with self._lock:
-            return self._run(run_id)
-
-    def list(
-        self,
-        kind: Kind | None = None,
-        state: State | None = None,
-        limit: int = 50,
-        cursor: str | None = None,
-    ) -> Page:
-        with self._lock:
-            found = [
-                run
-                for run in self._runs.values()
-                if (kind is None or run.kind == kind)
-                and (state is None or run.state == state)
-                and (cursor is None or run.id < cursor)
-            ]
-        found.sort(key=lambda run: run.id, reverse=True)
-        more = len(found) > limit
-        return Page(found[:limit], found[limit - 1].id if more else None)
-
-    def counts(self) -> Mapping[State, int]:
-        with self._lock:
-            return Counter(run.state for run in self._runs.values())
-
-    def change(
-        self, run_id: str, from_states: Collection[State], to_state: State, **fields: Any
-    ) -> Run:
-        with self._lock:
-            run = self._run(run_id)
-            if run.state not in from_states:
-                raise Conflict(f"{run.kind} {run_id} is {run.state}", run.state)
-            self._runs[run_id] = replace(run, state=to_state, **fields)
-            return self._runs[run_id]
-
-    def update(self, run_id: str, **fields: Any) -> Run:
-        with self._lock:
-            self._runs[run_id] = replace(self._run(run_id), **fields)
-            return self._runs[run_id]
-
-    def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> Run:
-        return self.update(run_id, done=done, eta_s=eta_s)
-
-    def delete(self, run_id: str) -> None:
-        with self._lock:
-            run = self._run(run_id)
-            if run.state in UNENDED:
-                raise Conflict(f"{run.kind} {run_id} is {run.state}; stop it first", run.state)
-            for kept in (self._runs, self._curves, self._artifacts):
-                kept.pop(run_id, None)
-
-    def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
-        with self._lock:
-            self._run(run_id)
-            first = min((row["step"] for row in rows), default=math.inf)
-            before = [row for row in self._curves.get(run_id, ()) if row["step"] < first]
-            self._curves[run_id] = [*before, *rows]
-
-    def evaluations(self, run_id: str) -> Sequence[Mapping[str, Any]]:
-        with self._lock:
-            self._run(run_id)
-            return [*self._curves.get(run_id, ())]
-
-    def forget_evaluations(self, run_id: str, after_step: int) -> None:
-        with self._lock:
-            curve = self._curves.get(run_id, [])
-            self._curves[run_id] = [row for row in curve if row["step"] <= after_step]
-
-    def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
-        with self._lock:
-            self._runs[run_id] = replace(self._run(run_id), **fields)
-            self._artifacts.setdefault(run_id, {})[name] = data
-
-    def artifact(self, run_id: str, name: str) -> bytes | None:
-        with self._lock:
-            self._run(run_id)
-            return self._artifacts.get(run_id, {}).get(name)
-
-    def _run(self, run_id: str) -> Run:
-        if run_id not in self._runs:
-            raise NotFound(f"there is no run {run_id!r} (any more)")
-        return self._runs[run_id]

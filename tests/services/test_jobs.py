@@ -16,8 +16,9 @@ from app.services.bus import EventBus
 from app.services.entries import LaneStart, RaceStart, TrainingStart
 from app.services.errors import Busy, Conflict, StorageFailed
 from app.services.jobs import Jobs
+from app.services.memory_store import MemoryStore
 from app.services.recordings import Recordings
-from app.services.store import UNENDED, MemoryStore, Run
+from app.services.store import UNENDED, Run
 from app.services.waiting import MAX_QUEUED
 
 WALK = Walk(gait="left-right-origin", simulator="kinematic")

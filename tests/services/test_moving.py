@@ -17,9 +17,10 @@ from app.services import archives
 from app.services.database.store import SqlStore
 from app.services.errors import Conflict, NotFound, StorageFull
 from app.services.ids import RunIds
+from app.services.memory_store import MemoryStore
 from app.services.moving import RUN, export_run, import_run
 from app.services.recordings import Recordings
-from app.services.store import CHECKPOINT, TABLE, MemoryStore, Run, RunStore
+from app.services.store import CHECKPOINT, TABLE, Run, RunStore
 from app.services.stored_recordings import PRACTICE, RACE
 from tests.services.ended import ended_race, ended_training
 from tests.services.stores import ODD, opened, training

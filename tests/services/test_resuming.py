@@ -14,8 +14,9 @@ from app.services.bus import EventBus
 from app.services.entries import LaneStart, RaceStart, TrainingStart
 from app.services.errors import Conflict
 from app.services.jobs import Jobs
+from app.services.memory_store import MemoryStore
 from app.services.recordings import Recordings
-from app.services.store import CHECKPOINT, TABLE, MemoryStore, Run, RunStore
+from app.services.store import CHECKPOINT, TABLE, Run, RunStore
 from tests.services.stores import training
 from tests.services.test_jobs import WALK, ended, moving, until
 

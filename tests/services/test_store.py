@@ -12,7 +12,8 @@ import pytest
 
 from app.services.errors import Conflict, NotFound
 from app.services.ids import RunIds
-from app.services.store import LIVE, QUEUED, RUNNING, UNENDED, MemoryStore, Run, RunStore, State
+from app.services.memory_store import MemoryStore
+from app.services.store import LIVE, QUEUED, RUNNING, UNENDED, Run, RunStore, State
 from tests.services.stores import BACKENDS, ODD, database_url, opened, race, training
 
 new_id = RunIds()

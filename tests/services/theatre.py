@@ -14,9 +14,10 @@ from app.runs.records import StepTaken
 from app.runs.training import train
 from app.services.bus import EventBus
 from app.services.frames import StageFrame
+from app.services.memory_store import MemoryStore
 from app.services.recordings import Recordings
 from app.services.stage import Stage
-from app.services.store import MemoryStore, Run
+from app.services.store import Run
 
 Walk = Callable[[], bool]
 """Takes a run's next step; False at the end."""

@@ -10,9 +10,9 @@ import pytest
 
 from app.services.bus import EventBus
 from app.services.frames import StageFrame
+from app.services.memory_store import MemoryStore
 from app.services.recordings import Recordings
 from app.services.stage import Stage
-from app.services.store import MemoryStore
 from app.viewer.loopback import loopback_viser
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop

@@ -15,8 +15,9 @@ from app.services.database.migrating import check_current
 from app.services.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
 from app.services.database.schema import ABOUT
 from app.services.database.store import SqlStore
+from app.services.memory_store import MemoryStore
 from app.services.room import Room
-from app.services.store import MemoryStore, RunStore
+from app.services.store import RunStore
 from app.settings import Settings
 
 

@@ -4,20 +4,21 @@ from collections.abc import Collection, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import Connection, Executable, case, delete, func, insert, literal, select, update
+from sqlalchemy import Connection, case, delete, func, insert, literal, select, update
 
 from app.domain.errors import DamagedFile
 from app.services.artifacts import ArtifactFiles, Stored
 from app.services.database.columns import UtcTime
+from app.services.database.curves import Curves
 from app.services.database.engine import Database
+from app.services.database.finding import Row, found, row_of_run
 from app.services.database.progress import Progress
 from app.services.database.rows import columns_of, row_of, run_of
-from app.services.database.schema import ARTIFACTS, EVALUATIONS, RUNS
+from app.services.database.schema import ARTIFACTS, RUNS
 from app.services.errors import Conflict, NotFound, StorageFull
 from app.services.room import START_BYTES
 from app.services.store import UNENDED, Kind, Page, Run, State
 
-_Row = dict[str, Any]
 _DIED = "The server ended before the run did."
 _FILE = (ARTIFACTS.c.file, ARTIFACTS.c.size, ARTIFACTS.c.sha256)
 
@@ -32,6 +33,7 @@ class SqlStore:
     def __init__(self, database: Database, files: ArtifactFiles) -> None:
         self._database, self._files = database, files
         self._progress = Progress()
+        self._curves = Curves(database)
 
     def check_room(self) -> None:
         self._files.check_room(START_BYTES)
@@ -42,7 +44,7 @@ class SqlStore:
             self._database.write(lambda connection: connection.execute(insert(RUNS), rows))
 
     def get(self, run_id: str) -> Run:
-        return self._as_run(self._database.read(lambda connection: _row(connection, run_id)))
+        return self._as_run(self._database.read(lambda connection: row_of_run(connection, run_id)))
 
     def list(
         self,
@@ -58,7 +60,7 @@ class SqlStore:
             wanted = wanted.where(RUNS.c.state == state)
         if cursor is not None:
             wanted = wanted.where(RUNS.c.id < cursor)
-        rows = self._database.read(lambda connection: _found(connection, wanted))
+        rows = self._database.read(lambda connection: found(connection, wanted))
         runs = [self._as_run(row) for row in rows[:limit]]
         return Page(runs, runs[-1].id if len(rows) > limit else None)
 
@@ -75,10 +77,10 @@ class SqlStore:
 
         still = update(RUNS).where(RUNS.c.id == run_id, RUNS.c.state.in_(from_states))
 
-        def work(connection: Connection) -> _Row:
-            changed = _found(connection, still.values(columns).returning(RUNS))
+        def work(connection: Connection) -> Row:
+            changed = found(connection, still.values(columns).returning(RUNS))
             if not changed:
-                run = _row(connection, run_id)
+                run = row_of_run(connection, run_id)
                 raise Conflict(f"{run['kind']} {run_id} is {run['state']}", run["state"])
             return changed[0]
 
@@ -90,9 +92,9 @@ class SqlStore:
         columns = columns_of({**self._progress.of(run_id), **fields})
         statement = update(RUNS).where(RUNS.c.id == run_id).values(columns).returning(RUNS)
 
-        def work(connection: Connection) -> _Row:
-            changed = _found(connection, statement)
-            return changed[0] if changed else _row(connection, run_id)
+        def work(connection: Connection) -> Row:
+            changed = found(connection, statement)
+            return changed[0] if changed else row_of_run(connection, run_id)
 
         row = self._database.write(work)
         self._progress.take(run_id)
@@ -106,7 +108,7 @@ class SqlStore:
 
     def delete(self, run_id: str) -> None:
         def work(connection: Connection) -> Sequence[str]:
-            row = _row(connection, run_id, and_hold=True)
+            row = row_of_run(connection, run_id, and_hold=True)
             state = row["state"]
             if state in UNENDED:
                 raise Conflict(f"{row['kind']} {run_id} is {state}; stop it first", state)
@@ -119,36 +121,13 @@ class SqlStore:
         self._progress.take(run_id)
 
     def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
-        if not rows:
-            return
-        added = [{"run_id": run_id, **row} for row in rows]
-        first = min(row["step"] for row in rows)
-        repeated = EVALUATIONS.c.run_id == run_id, EVALUATIONS.c.step >= first
-
-        def work(connection: Connection) -> None:
-            _row(connection, run_id, and_hold=True)
-            connection.execute(delete(EVALUATIONS).where(*repeated))
-            connection.execute(insert(EVALUATIONS), added)
-
-        self._database.write(work)
+        self._curves.append(run_id, rows)
 
     def evaluations(self, run_id: str) -> Sequence[Mapping[str, Any]]:
-        curve = select(EVALUATIONS).where(EVALUATIONS.c.run_id == run_id)
-
-        def work(connection: Connection) -> Sequence[_Row]:
-            _row(connection, run_id)
-            return _found(connection, curve.order_by(EVALUATIONS.c.step))
-
-        return [
-            {name: _number(row[name]) for name in ("step", "distance_m", "epsilon")}
-            for row in self._database.read(work)
-        ]
+        return self._curves.of(run_id)
 
     def forget_evaluations(self, run_id: str, after_step: int) -> None:
-        later = EVALUATIONS.c.run_id == run_id, EVALUATIONS.c.step > after_step
-        self._database.write(
-            lambda connection: connection.execute(delete(EVALUATIONS).where(*later))
-        )
+        self._curves.forget(run_id, after_step)
 
     def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
         self.get(run_id)
@@ -158,7 +137,7 @@ class SqlStore:
         row = {"run_id": run_id, "name": name, "written_at": datetime.now(UTC)}
 
         def work(connection: Connection) -> Sequence[str]:
-            _row(connection, run_id, and_hold=True)
+            row_of_run(connection, run_id, and_hold=True)
             former = select(ARTIFACTS.c.file).where(*of_this_name)
             names = connection.execute(former).scalars().all()
             connection.execute(delete(ARTIFACTS).where(*of_this_name))
@@ -223,29 +202,12 @@ class SqlStore:
     def _stored(self, run_id: str, name: str) -> Stored | None:
         wanted = select(*_FILE).where(ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name)
 
-        def work(connection: Connection) -> Sequence[_Row]:
-            _row(connection, run_id)
-            return _found(connection, wanted)
+        def work(connection: Connection) -> Sequence[Row]:
+            row_of_run(connection, run_id)
+            return found(connection, wanted)
 
         rows = self._database.read(work)
         return Stored(**rows[0]) if rows else None
 
-    def _as_run(self, row: _Row) -> Run:
+    def _as_run(self, row: Row) -> Run:
         return run_of({**row, **self._progress.of(row["id"])})
-
-
-def _found(connection: Connection, statement: Executable) -> Sequence[_Row]:
-    return [{**row} for row in connection.execute(statement).mappings()]
-
-
-def _row(connection: Connection, run_id: str, and_hold: bool = False) -> _Row:
-    """The row of a run, which nobody else changes before the transaction ends if it is held."""
-    wanted = select(RUNS).where(RUNS.c.id == run_id)
-    rows = _found(connection, wanted.with_for_update() if and_hold else wanted)
-    if not rows:
-        raise NotFound(f"there is no run {run_id!r} (any more)")
-    return rows[0]
-
-
-def _number(value: float | None) -> float:
-    return float("nan") if value is None else value
