@@ -31,6 +31,13 @@ class Interval(NamedTuple):
     low: float | None = None
     high: float | None = None
 
+    def __neg__(self) -> "Interval":
+        """Of the negative number: to ask whether something is under a threshold."""
+        low, high = self.low, self.high
+        if low is None or high is None:
+            return Interval(-self.value)
+        return Interval(-self.value, -high, -low)
+
     def against(self, threshold: float) -> Verdict:
         """Whether the value is over a threshold, as far as the interval says."""
         if self.low is None or self.high is None:
@@ -64,13 +71,19 @@ def iqm_interval(strata: tuple[Points, ...], seed: int) -> Interval:
     return interval(strata, iqm_of_all, seed)
 
 
-def interval(strata: Sequence[Points], statistic: Callable[..., FloatArray], seed: int) -> Interval:
+def interval(
+    strata: Sequence[Points],
+    statistic: Callable[..., FloatArray],
+    seed: int,
+    confidence: float = CONFIDENCE,
+) -> Interval:
     """A statistic with its stratified bootstrap percentile interval.
 
     Args:
         strata: resampled each on its own.
         statistic: from one array (…, n) a stratum, and the `axis` of the seeds, to (…).
         seed: of the resampling.
+        confidence: of the interval.
     """
     arrays = [np.asarray(points, dtype=np.float64) for points in strata]
     value = float(statistic(*arrays))
@@ -81,12 +94,33 @@ def interval(strata: Sequence[Points], statistic: Callable[..., FloatArray], see
         statistic,
         n_resamples=RESAMPLES,
         batch=max(1, _BATCH_NUMBERS // sum(len(points) for points in strata)),
-        confidence_level=CONFIDENCE,
+        confidence_level=confidence,
         method="percentile",
         vectorized=True,
         rng=np.random.default_rng(seed),
     ).confidence_interval
     return Interval(value, float(found.low), float(found.high))
+
+
+def paired_interval(
+    strata: Sequence[FloatArray], statistic: Callable[[FloatArray], FloatArray], seed: int
+) -> Interval:
+    """The interval of a number that is made of several middles over the same seeds.
+
+    Args:
+        strata: (k, n) each: k numbers for each of n seeds, which are resampled together.
+        statistic: from the k interquartile means over all seeds, (k, …), to (…).
+        seed: of the resampling.
+    """
+
+    def of_seeds(*chosen: FloatArray, axis: int = -1) -> FloatArray:
+        taken = [
+            numbers[:, seeds.astype(np.int64)]
+            for numbers, seeds in zip(strata, chosen, strict=True)
+        ]
+        return statistic(iqm(np.concatenate(taken, axis=axis), axis))
+
+    return interval([tuple(map(float, range(one.shape[1]))) for one in strata], of_seeds, seed)
 
 
 @lru_cache(maxsize=_REMEMBERED)
@@ -116,7 +150,9 @@ def at_least(points: Sequence[float], limit: float) -> Interval:
 
 
 @lru_cache(maxsize=_REMEMBERED)
-def improvement(a: tuple[Points, ...], b: tuple[Points, ...], seed: int) -> Interval:
+def improvement(
+    a: tuple[Points, ...], b: tuple[Points, ...], seed: int, confidence: float = CONFIDENCE
+) -> Interval:
     """How likely a seed of `a` comes further than one of `b`: the mean over strata.
 
     As in Agarwal et al., "Deep RL at the edge of the statistical precipice" (2021).
@@ -125,6 +161,7 @@ def improvement(a: tuple[Points, ...], b: tuple[Points, ...], seed: int) -> Inte
         a: strata of the one.
         b: the same strata of the other.
         seed: of the resampling.
+        confidence: of the interval.
     """
 
     def mean_probability(*samples: FloatArray, axis: int = -1) -> FloatArray:
@@ -132,7 +169,7 @@ def improvement(a: tuple[Points, ...], b: tuple[Points, ...], seed: int) -> Inte
         found = [_probability(one, other, axis) for one, other in pairs]
         return np.asarray(np.mean(found, axis=0), dtype=np.float64)
 
-    return interval((*a, *b), mean_probability, seed)
+    return interval((*a, *b), mean_probability, seed, confidence)
 
 
 def quantile_of(published: float, points: Sequence[float]) -> float:

@@ -9,6 +9,7 @@ from itertools import combinations
 from typing import Any, NamedTuple
 
 from app.experiments.claims import judge
+from app.experiments.claims_of import CLAIMS_OF
 from app.experiments.config import GRID, ExperimentConfig, as_json
 from app.experiments.measures import Stratum, Yardstick, beside, curve, distances, measures
 from app.experiments.plan import Plan, Setting
@@ -99,7 +100,7 @@ def summarise(
         "versus": _versus(walked, config.seed),
         "timed": [_timed(one) for one in seen if one.setting.role == "timed" and one.good],
     }
-    shown["claims"] = judge(shown)
+    shown["claims"] = judge(shown, CLAIMS_OF[config.experiment])
     shown["story"] = tell(shown)
     return shown
 

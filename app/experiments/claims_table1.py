@@ -1,0 +1,190 @@
+"""What the paper says about its Table 1."""
+
+from collections.abc import Mapping
+from functools import partial
+from statistics import fmean, median
+from typing import Any
+
+from app.experiments.claims import Claim, Finding
+from app.experiments.claims_gaits import gaits
+from app.experiments.corners import PAPERS_AGENT, Corner
+from app.experiments.measures import REACHES
+from app.experiments.published import GAITS, published
+from app.experiments.statistics import Interval, Verdict, decided
+from app.experiments.words import (
+    counted,
+    distance,
+    gait_name,
+    listed,
+    metres,
+    percent,
+    shares,
+)
+
+AFTER = (500, 1000)
+
+
+def _dominates(corner: Corner) -> Finding | None:
+    raced = [
+        one
+        for one in corner.settings
+        if one["agent"] == PAPERS_AGENT and one["n"] and one["beats_greedy_total"]
+    ]
+    if not raced:
+        return None
+    verdicts = {one["beats_greedy_total"]["verdict"] for one in raced}
+    found: Verdict = (
+        "no" if "yes" in verdicts else "yes" if verdicts == {"no"} else ("not established")
+    )
+    pools = [(steps, corner.pool(steps)) for steps in AFTER]
+    shown = [
+        f"{shares(pool['relative'])} of greedy's total after {steps:,} steps"
+        for steps, pool in pools
+        if pool and pool["relative"]
+    ]
+    n = sum(one["n"] for one in raced)
+    wins = sum(one["n"] * one["beats_greedy_total"]["share"] for one in raced)
+    return Finding.of(
+        found,
+        f"Q-learning covers {listed(shown)}; {wins:.0f} of its {n} seeds came further than greedy.",
+    )
+
+
+def _real_time(corner: Corner, steps: int) -> Finding | None:
+    pool = corner.pool(steps)
+    if pool is None or pool["relative_finished"] is None:
+        return None
+    shown = pool["relative_finished"]
+    middle = Interval(shown["iqm"], shown["low"], shown["high"])
+    fewest = min(one["n"] for one in corner.settings if one["steps"] == steps)
+    return Finding.of(
+        decided(middle, REACHES, fewest),
+        f"When Q-learning has taken its 50 steps it has come {shares(shown)} as far as greedy, "
+        f"and {percent(pool['beats_greedy']['share'])} of the seeds are ahead. The paper's own "
+        f"four gaits average {percent(_papers_share(steps))}.",
+    )
+
+
+def _papers_share(steps: int) -> float:
+    """Finished distance of Q-learning as a share of greedy's, averaged over the paper's gaits."""
+    pairs = ((published(g, PAPERS_AGENT, steps), published(g, "greedy", 0)) for g in GAITS)
+    return fmean(q.finished_m / greedy.finished_m for q, greedy in pairs if q and greedy)
+
+
+def _beats(corner: Corner, gait: str) -> Finding | None:
+    q, greedy = corner.setting(gait, AFTER[1]), corner.setting(gait, 0, "greedy")
+    if q is None or greedy is None or q["beats_greedy"] is None:
+        return None
+    return Finding.of(
+        q["beats_greedy"]["verdict"],
+        f"{shares(q['beats_greedy'])} of {counted(q['n'], 'seed')} are ahead of greedy: "
+        f"{distance(q['finished'])} against {metres(greedy['finished']['iqm_m'])}. "
+        f"{_papers_race(gait)}",
+    )
+
+
+def _papers_race(gait: str) -> str:
+    q, greedy = published(gait, PAPERS_AGENT, AFTER[1]), published(gait, "greedy", 0)
+    if q is None or greedy is None:
+        return ""
+    return f"The paper's table has {q.finished_m:g} against {greedy.finished_m:g}."
+
+
+def _on_par(corner: Corner) -> Finding | None:
+    pool = corner.pool(AFTER[0])
+    if pool is None or pool["reaches_greedy"] is None:
+        return None
+    found = pool["reaches_greedy"]
+    finished = pool["beats_greedy"]
+    also = (
+        f" On finished distance {percent(finished['share'])} are ahead of greedy."
+        if finished
+        else ""
+    )
+    return Finding.of(
+        Interval(found["share"], found["low"], found["high"]).against(0.5),
+        f"After 500 steps {shares(found)} of {counted(pool['n'], 'seed')} reach "
+        f"{percent(REACHES)} of greedy's total distance.{also}",
+    )
+
+
+def _two_step(corner: Corner) -> Finding | None:
+    thinks = [_thinking(one["lanes"]) for one in corner.timed]
+    if not thinks:
+        return None
+    slowest, fastest = max(share for share, _ in thinks), min(share for share, _ in thinks)
+    found: Verdict = "yes" if fastest > 1 else "no" if slowest < 1 else "not established"
+    seconds = median(decided_s for _, decided_s in thinks)
+    return Finding.of(
+        found,
+        f"On this machine two-step thought {seconds:.2g} s in 50 steps, at most "
+        f"{percent(slowest)} of the time that it walked; {counted(len(thinks), 'race')} timed."
+        f"{_by_the_paper(corner)}",
+    )
+
+
+def _thinking(lanes: list[Mapping[str, Any]]) -> tuple[float, float]:
+    """Two-step's time to decide as a share of its walking, and in seconds."""
+    lane = next(one for one in lanes if one["agent"] == "two-step")
+    return lane["decision_s"] / (lane["elapsed_s"] - lane["decision_s"]), lane["decision_s"]
+
+
+def _by_the_paper(corner: Corner) -> str:
+    times = {
+        agent: [one["elapsed_s"] for one in corner.settings if one["agent"] == agent and one["n"]]
+        for agent in ("greedy", "two-step")
+    }
+    if not all(times.values()):
+        return ""
+    return (
+        f" Under the paper clock, fitted to its greedy agent, two-step's 50 steps take "
+        f"{median(times['two-step']):.0f} s and greedy's {median(times['greedy']):.0f} s."
+    )
+
+
+TABLE1_CLAIMS: tuple[Claim, ...] = (
+    Claim(
+        "greedy-dominates",
+        "“Greedy dominates the Q-Learning in total distance” (§5.1)",
+        "In every gait, after 500 and after 1,000 steps, most seeds end behind greedy.",
+        _dominates,
+    ),
+    *(
+        Claim(
+            f"real-time-{steps}",
+            f"“Q-Learning walks just as fast in real time” (§5.1), after {steps:,} steps",
+            f"Finished distance at least {percent(REACHES)} of greedy's, over all gaits, under the "
+            "paper clock.",
+            partial(_real_time, steps=steps),
+        )
+        for steps in AFTER
+    ),
+    Claim(
+        "text-beats-greedy",
+        "“beats the Greedy Agent for the LeftRight-Origin walking gait after 1000 trials” (§5.1, "
+        "text)",
+        "More than half of the seeds are ahead in finished distance.",
+        partial(_beats, gait="left-right-origin"),
+    ),
+    Claim(
+        "table-beats-greedy",
+        f"{gait_name('front-back-origin')} is where Q-learning beats greedy after 1,000 trials "
+        "(Table 1, against the text)",
+        "More than half of the seeds are ahead in finished distance.",
+        partial(_beats, gait="front-back-origin"),
+    ),
+    Claim(
+        "on-par-500",
+        "“on par with greedy search algorithms often in less than 500 steps” (§4)",
+        f"After 500 steps more than half of the seeds reach {percent(REACHES)} of greedy's total "
+        "distance.",
+        _on_par,
+    ),
+    Claim(
+        "two-step-slow",
+        "“Two-Step Agents are impractically slow to calculate” (§5.1)",
+        "On this machine it thinks longer than it walks, in every timed race.",
+        _two_step,
+    ),
+    *gaits(alike_after=1000, slow_after=500),
+)
