@@ -16,6 +16,7 @@ from app.agents.registry import registered
 from app.api import (
     docs,
     events,
+    experiments,
     health,
     metrics,
     moving,
@@ -102,7 +103,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
 def _add_routes(app: FastAPI, theatre: Theatre) -> None:
     versioned = APIRouter(prefix="/api/v1")
     # First: `import` is no run's id.
-    for module in (moving, trainings, races, stage, events, options):
+    for module in (moving, trainings, races, experiments, stage, events, options):
         versioned.include_router(module.router)
     app.include_router(versioned)
     app.include_router(health.router)

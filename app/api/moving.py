@@ -30,10 +30,20 @@ def export_race(services: Given, run_id: RunPath) -> Response:
     return attachment(data, archives.MEDIA_TYPE, f"race-{run.id}.zip")
 
 
+@router.get(
+    "/experiments/{run_id}/export", tags=["experiments"], summary="An experiment with all it has"
+)
+def export_experiment(services: Given, run_id: RunPath) -> Response:
+    """A `.zip` that another server's import, or `hexapods import`, takes in."""
+    run = find(services, "experiment", run_id)
+    data = export_run(services.store, run.id)
+    return attachment(data, archives.MEDIA_TYPE, f"experiment-{run.id}.zip")
+
+
 @router.post(
     "/import",
     status_code=201,
-    tags=["trainings", "races"],
+    tags=["trainings", "races", "experiments"],
     summary="Take in a run that was exported",
     openapi_extra={
         "requestBody": {

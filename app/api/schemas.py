@@ -127,7 +127,7 @@ class TrainingBody(PracticeBody, WalkBody):
         Raises:
             InvalidInput: for what cannot be.
         """
-        _check_agent(self.agent, agents)
+        check_agent(self.agent, agents)
         return self.practice(self.walk(), self.agent)
 
 
@@ -140,7 +140,7 @@ class LaneBody(Body):
 
     def start(self, walk: Walk, seed: int, agents: Collection[str]) -> LaneStart:
         """What the service is asked to start."""
-        _check_agent(self.agent, agents)
+        check_agent(self.agent, agents)
         if self.training is None:
             return LaneStart(self.agent, self.training_id)
         training = self.training.practice(walk, self.agent, seed)
@@ -202,6 +202,7 @@ class StageBody(Body):
     clock: Clock | None = None
 
 
-def _check_agent(name: str, agents: Collection[str]) -> None:
+def check_agent(name: str, agents: Collection[str]) -> None:
+    """Raise `UnknownName` unless an agent was registered when the server started."""
     if name not in agents:
         raise UnknownName("agent", name, agents)

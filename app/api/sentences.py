@@ -7,6 +7,7 @@ from app.domain.gait import NAMED_GAITS
 from app.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, MIN_SIDE_M
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS
+from app.experiments.config import EXPERIMENTS, MAX_SEEDS
 from app.runs.clocks import CLOCKS
 from app.runs.config import MAX_LANES, MAX_STEPS, SIMULATORS
 from app.services.store import STATES
@@ -46,6 +47,13 @@ VALID: Mapping[str, str] = {
     "continue_from": "the id of a training that is finished or stopped",
     "training_id": "the id of a training that is finished or stopped",
     "training": "an object: a training's body without what the race says already",
+    "experiment": _one_of(EXPERIMENTS),
+    "seeds": f"a whole number from 1 to {MAX_SEEDS:,}",
+    "gaits": f"a list, each {_one_of(NAMED_GAITS)}, or an object",
+    "observations": f"a list, each {_one_of(OBSERVATIONS)}",
+    "robots": f"a list, each {_one_of(PRESETS)}, or an object that says what differs from one",
+    "agents": "a list of agents' names; GET /api/v1/options lists them",
+    "workers": "a whole number, from 1 to the number of cores",
     "lanes": f"a list of 1 to {MAX_LANES} lanes, each {{agent, training_id or training}}",
     "run_id": "the id of a run",
     "time_s": "a number of seconds, 0 or more",

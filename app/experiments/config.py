@@ -90,6 +90,11 @@ _MAY_SAY: Mapping[str, tuple[str, ...]] = {
 }
 
 
+def fields_of(experiment: ExperimentName) -> tuple[str, ...]:
+    """What an experiment may be told."""
+    return _MAY_SAY[experiment]
+
+
 def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentConfig:
     """An experiment with what is given, and its own defaults for the rest.
 

@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 from app.domain.errors import DamagedFile, HexapodError
 from app.domain.simulator import Motion
 from app.domain.types import Action, Cells
+from app.experiments.config import ExperimentConfig
 from app.runs import tables
 from app.runs.config import RaceConfig, TrainingConfig, Walk
 from app.runs.recording import race_recording
 from app.runs.records import Knowledge
 from app.runs.stored_practice import practice_recording
+from app.services.archived_trials import check_reported, is_reported, reported_files
 from app.services.store import CHECKPOINT, TABLE, Run, RunStore
 from app.services.stored_recordings import PRACTICE, RACE, evaluations_file
 
@@ -23,6 +25,8 @@ _EVALUATIONS = re.compile(r"evaluations-\d{4}\.npz", re.ASCII)
 
 def is_file_of(name: str, kind: str) -> bool:
     """Whether a run of this kind may have a file of this name. Films are made anew."""
+    if kind == "experiment":
+        return is_reported(name)
     if kind == "race":
         return name == RACE
     return name in (TABLE, CHECKPOINT, PRACTICE) or _EVALUATIONS.fullmatch(name) is not None
@@ -35,6 +39,8 @@ def files_of(store: RunStore, run: Run) -> dict[str, bytes]:
         DamagedFile: if one is damaged, or missing.
     """
     names = [RACE]
+    if run.kind == "experiment":
+        names = reported_files(run)
     if run.kind == "training":
         names = [TABLE, PRACTICE, *map(evaluations_file, range(MAX_EVALUATION_FILES))]
         if run.state == "interrupted":
@@ -50,6 +56,9 @@ def check_files(run: Run, files: Mapping[str, bytes], said: str) -> None:
         DamagedFile: if something cannot be.
         TableMismatch: if a table was learned for another problem.
     """
+    if isinstance(run.config, ExperimentConfig):
+        check_reported(run, files, said)
+        return
     for name, data in files.items():
         if not is_file_of(name, run.kind):
             raise DamagedFile(f"{said} has {name}, which no {run.kind} has")

@@ -10,11 +10,16 @@ from msgspec import UNSET, Meta, Raw, UnsetType
 
 from app import __version__
 from app.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownName
+from app.experiments.config import ExperimentConfig
 from app.runs.clocks import CLOCKS
-from app.runs.config import MAX_LANES, MAX_STEPS, RaceConfig, as_json, config_from_json
+from app.runs.config import MAX_LANES, MAX_STEPS, RaceConfig, TrainingConfig
+from app.services.archived_trials import ExperimentResult
+from app.services.configs import config_as_json, config_of
 from app.services.entries import check_walk
 from app.services.errors import Conflict
-from app.services.store import UNENDED, Kind, Run
+from app.services.experiment_entry import MAX_WORKERS, plan_of
+from app.services.store import UNENDED, Config, Kind, Run
+from app.services.strict import Strict
 
 FORMAT = 1
 MAX_JSON_BYTES = 64_000_000
@@ -27,11 +32,7 @@ _Moment = Annotated[datetime, Meta(tz=True)]
 _Known = float | None  # null if it never came about; JSON has no NaN
 
 
-class _Strict(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """Has the fields it has and no others."""
-
-
-class _Change(_Strict, frozen=True):
+class _Change(Strict, frozen=True):
     step: _Count
     pace: float | Literal["max"] | UnsetType = UNSET
     alpha: float | UnsetType = UNSET
@@ -39,26 +40,26 @@ class _Change(_Strict, frozen=True):
     epsilon: float | UnsetType = UNSET
 
 
-class _Evaluation(_Strict, frozen=True):
+class _Evaluation(Strict, frozen=True):
     step: _Step
     distance_m: float
     epsilon: float
 
 
-class _TrainingResult(_Strict, frozen=True):
+class _TrainingResult(Strict, frozen=True):
     distance_m: _Known
     greedy_distance_m: _Known
     q_table_sha256: Annotated[str, Meta(pattern="^[0-9a-f]{64}$")] | None
 
 
-class _Figures(_Strict, frozen=True):
+class _Figures(Strict, frozen=True):
     finished_distance_m: float
     elapsed_s: float
     crossed_s: _Known
     rank: Annotated[int, Meta(ge=1, le=MAX_LANES)]
 
 
-class _LaneResult(_Strict, frozen=True):
+class _LaneResult(Strict, frozen=True):
     agent: str
     training_id: _Id | None
     trained_robot: dict[str, Any] | None
@@ -70,12 +71,12 @@ class _LaneResult(_Strict, frozen=True):
     clocks: dict[str, _Figures]
 
 
-class _RaceResult(_Strict, frozen=True):
+class _RaceResult(Strict, frozen=True):
     lanes: list[_LaneResult]
     shared_machine: bool
 
 
-class _Shape(_Strict, frozen=True):
+class _Shape(Strict, frozen=True):
     """A `Run` that has ended."""
 
     id: _Id
@@ -94,9 +95,10 @@ class _Shape(_Strict, frozen=True):
     created_at: _Moment
     started_at: _Moment | None
     ended_at: _Moment | None
+    workers: Annotated[int, Meta(ge=1, le=MAX_WORKERS)] | None = None
 
 
-class _File(_Strict, frozen=True):
+class _File(Strict, frozen=True):
     format: int
     version: Annotated[str, Meta(max_length=100)]
     run: _Shape
@@ -118,7 +120,7 @@ def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
     if run.state in UNENDED:
         raise Conflict(f"{run.kind} {run.id} is {run.state}; stop it first", run.state)
     own = {name: getattr(run, name) for name in _Shape.__struct_fields__}
-    own["config"] = as_json(run.config)
+    own["config"] = config_as_json(run.config)
     written = {"format": FORMAT, "version": __version__, "run": own, "curve": list(curve)}
     data = msgspec.json.format(msgspec.json.encode(written), indent=1)
     if len(data) > MAX_JSON_BYTES:
@@ -163,11 +165,29 @@ def read_run_json(
     return run, curve
 
 
+_RESULTS: Mapping[Kind, Any] = {
+    "training": _TrainingResult,
+    "race": _RaceResult,
+    "experiment": ExperimentResult,
+}
+_CONFIGS: Mapping[Kind, type[Config]] = {
+    "training": TrainingConfig,
+    "race": RaceConfig,
+    "experiment": ExperimentConfig,
+}
+
+
 def _run(shape: _Shape) -> Run:
-    config = config_from_json(_part(shape.config, dict[str, Any]))
-    check_walk(config)
-    kind = _RaceResult if isinstance(config, RaceConfig) else _TrainingResult
-    _part(shape.result, kind | None)  # checked only: what was written is kept as it is
+    config = config_of(shape.kind, _part(shape.config, dict[str, Any]))
+    if not isinstance(config, _CONFIGS[shape.kind]) or shape.done > shape.total:
+        raise ValueError("its kind, its config and its progress do not fit together")
+    if isinstance(config, ExperimentConfig):
+        if plan_of(config).total != shape.total:
+            raise ValueError("its total is not that of its trials")
+    else:
+        check_walk(config)
+    # Checked only: what was written is kept as it is.
+    _part(shape.result, _RESULTS[shape.kind] | None)
     result = _part(shape.result, Any)
     values = {name: getattr(shape, name) for name in shape.__struct_fields__}
     changes = tuple(msgspec.to_builtins(change) for change in shape.changes)
@@ -184,17 +204,14 @@ def _part(raw: Raw, kind: Any) -> Any:
 
 def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
     """What holds for every run, beyond the shape of each field."""
-    is_race = isinstance(run.config, RaceConfig)
-    if is_race != (run.kind == "race") or run.done > run.total:
-        raise ValueError("its kind, its config and its progress do not fit together")
     if any(unicodedata.category(c) in ("Cc", "Cs") for c in run.name):
         raise ValueError("its name has control characters")
     steps = [row["step"] for row in curve]
-    if steps != sorted(set(steps)) or (is_race and steps):
+    if steps != sorted(set(steps)) or (steps and run.kind != "training"):
         raise ValueError("its curve is none")
     if not isinstance(run.config, RaceConfig):
         if run.lane_training_ids:
-            raise ValueError("it is a training, and has lanes")
+            raise ValueError(f"it is no race but a {run.kind}, and has lanes")
         return
     agents = [lane.agent for lane in run.config.lanes]
     if len(run.lane_training_ids) != len(agents):
@@ -209,9 +226,10 @@ def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
 def _check_agents(run: Run, agents: Collection[str]) -> None:
     """An agent named by module would be imported, and so run, when someone goes on with it."""
     config = run.config
-    used = (
-        [lane.agent for lane in config.lanes] if isinstance(config, RaceConfig) else [config.agent]
-    )
+    if isinstance(config, RaceConfig):
+        used: Collection[str] = [lane.agent for lane in config.lanes]
+    else:
+        used = config.agents if isinstance(config, ExperimentConfig) else [config.agent]
     for name in used:
         if name not in agents:
             raise UnknownName("agent", name, agents)

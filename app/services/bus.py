@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 RING_EVENTS = 4096
 MAX_PENDING = 2048
-_NEWEST_ONLY = frozenset({"run", "scene", "stage", "viewers"})
+_NEWEST_ONLY = frozenset({"run", "scene", "stage", "summary", "viewers"})
 """Events that say how something *is*: an older one is worth nothing once there is a newer."""
 
 
@@ -33,8 +33,8 @@ class Event(NamedTuple):
 class Subscription:
     """One listener: `async for event in subscription`, on the loop that it was made on.
 
-    A slow listener gets the newest of each `run`, `scene`, `stage` and `viewers`; one that is too
-    slow even for the others is let go, and comes back with `Last-Event-ID`.
+    A slow listener gets the newest of each `run`, `scene`, `stage`, `summary` and `viewers`; one
+    that is too slow even for the others is let go, and comes back with `Last-Event-ID`.
     """
 
     def __init__(self, bus: "EventBus", run_id: str | None) -> None:

@@ -15,6 +15,7 @@ from app.runs.config import (
     TrainingConfig,
     as_json,
 )
+from app.services.experiment_catalogue import HELP, experiment_limits, experiments
 from app.services.palette import lane_colors
 
 _GAITS = {
@@ -102,9 +103,10 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
         "simulators": _described(_SIMULATORS),
         "observations": _described(_OBSERVATIONS),
         "clocks": _described(_CLOCKS),
+        "experiments": experiments(),
         "defaults": {"training": _training_defaults(), "race": _race_defaults()},
-        "limits": _limits(),
-        "help": _HELP,
+        "limits": _limits() | experiment_limits(),
+        "help": _HELP | HELP,
     }
 
 

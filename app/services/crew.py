@@ -12,7 +12,9 @@ from app.domain.errors import HexapodError
 from app.services.bus import EventBus
 from app.services.entries import Entry
 from app.services.errors import Conflict, StorageFailed, StorageFull
+from app.services.experiment_job import ExperimentJob
 from app.services.job import Job
+from app.services.orders import ExperimentOrder, Order
 from app.services.recordings import Recordings
 from app.services.store import LIVE, QUEUED, Run, RunStore
 from app.services.waiting import WaitingRuns
@@ -139,7 +141,7 @@ class Crew:
         began_at = entry.run.started_at or now
         run = self._store.change(run_id, QUEUED, "running", started_at=began_at, waiting_for=())
         try:
-            job = Job(run, entry.make_order(), self._store, self._recordings, self._bus)
+            job = self._job(run, entry.make_order())
             job.child.start(lambda how: self._process_ended(job, how))
         except (HexapodError, OSError) as error:
             why = f"The {run.kind} could not be started: {error}"
@@ -150,6 +152,11 @@ class Crew:
         self._jobs[run_id] = job
         self.note_company()
         self._publish(run)
+
+    def _job(self, run: Run, order: Order) -> Job:
+        if isinstance(order, ExperimentOrder):
+            return ExperimentJob(run, order, self._store, self._recordings, self._bus)
+        return Job(run, order, self._store, self._recordings, self._bus)
 
     def _process_ended(self, job: Job, how: str) -> None:
         while not self._see_off(job, how):

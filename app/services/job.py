@@ -35,7 +35,7 @@ from app.services.store import CHECKPOINT, LIVE, TABLE, Run, RunStore, State
 from app.services.views import run_view
 
 EVENTS_PER_S = 10
-_ETA_WINDOW_S = 5.0
+_STOP_GRACE_S = 20.0
 _logger = logging.getLogger(__name__)
 
 
@@ -45,17 +45,22 @@ class Job:
     Attributes:
         run_id: of the run.
         is_race: what kind of run it is.
+        stop_grace_s: how long it may take to end when it is told to stop.
         paused: whether it was told to wait.
         stopping: whether it was told to stop.
         shared: whether another job ran at the same time.
+        eta_window_s: from how much of the past it is told how long it will take.
         ended: set when the run's last state is in the store.
         gone: set when its process is no more, and all have been told.
     """
+
+    eta_window_s = 5.0
 
     def __init__(
         self, run: Run, order: Order, store: RunStore, recordings: Recordings, bus: EventBus
     ) -> None:
         self.run_id, self.is_race = run.id, run.kind == "race"
+        self.stop_grace_s = _STOP_GRACE_S
         self.paused = self.stopping = self.shared = False
         self.ended, self.gone = threading.Event(), threading.Event()
         self.child = Child(f"{run.kind} {run.id}", order, self._take)
@@ -153,6 +158,8 @@ class Job:
     def _begin(self, began: Began) -> None:
         self._has_begun = True
         config = self._run.config
+        if not began.rest_qpos:
+            return
         if isinstance(config, RaceConfig):
             poses = zip(config.lanes, began.rest_qpos, strict=True)
             lanes = [LaneRecording(lane.agent, pose) for lane, pose in poses]
@@ -215,7 +222,7 @@ class Job:
         """From the newest seconds, since pace and machine change."""
         now = time.monotonic()
         self._progress.append((now, done))
-        while self._progress[0][0] < now - _ETA_WINDOW_S:
+        while self._progress[0][0] < now - self.eta_window_s:
             self._progress.popleft()
         began, before = self._progress[0]
         if done == before:

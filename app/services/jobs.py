@@ -9,16 +9,16 @@ from app.services.bus import EventBus
 from app.services.crew import Crew
 from app.services.entries import Entry, RaceStart, TrainingStart, race_entries, training_entry
 from app.services.errors import Conflict
+from app.services.experiment_entry import ExperimentStart, experiment_entry
 from app.services.ids import RunIds
 from app.services.job import Job
 from app.services.recordings import Recordings
 from app.services.resuming import resumed_entries
-from app.services.store import INTERRUPTED, LIVE, PAUSED, RUNNING, TABLE, Run, RunStore, State
+from app.services.store import LIVE, PAUSED, RESUMABLE, RUNNING, TABLE, Run, RunStore, State
 from app.services.views import run_view
 from app.services.waiting import WaitingRuns
 
 MAX_PAUSED = 16
-STOP_GRACE_S = 20.0
 _ANSWER_S = 5.0
 _DIE_S = 2.0
 
@@ -94,6 +94,15 @@ class Jobs:
         """
         return self._enqueue(race_entries(start, self._store, self.new_id))
 
+    def experiment(self, start: ExperimentStart) -> Run:
+        """Queue an experiment.
+
+        Raises:
+            InvalidInput: if it cannot be.
+            Busy: if too many runs are waiting.
+        """
+        return self._enqueue([experiment_entry(start, self.new_id)])
+
     def keep(self, run: Run, table: bytes) -> None:
         """Add a training that ended elsewhere, with its table."""
         self._store.create(run)
@@ -118,7 +127,7 @@ class Jobs:
         return run
 
     def resume(self, run_id: str) -> Run:
-        """Let a paused job go on, or queue an interrupted run again.
+        """Let a paused job go on, or queue a run again that did not come to its end.
 
         Raises:
             NotFound: if there is no such run.
@@ -127,9 +136,11 @@ class Jobs:
         """
         with self._changed:
             run = self._store.get(run_id)
-            if run.state in INTERRUPTED:
+            resumable = RESUMABLE[run.kind]
+            if run.state in resumable:
                 return self._enqueue(resumed_entries(run, self._store))
-            job = self._live(run_id, PAUSED, "resumed", "paused or interrupted")
+            choices = " or ".join(("paused", *sorted(resumable)))
+            job = self._live(run_id, PAUSED, "resumed", choices)
             run = self._store.change(run_id, PAUSED, "running")
             job.resume()
             self._crew.note_company()
@@ -152,7 +163,7 @@ class Jobs:
                 return self._waiting.stop(run)
             job = self._live(run_id, LIVE, "stopped")
             job.stop()
-        if not job.ended.wait(STOP_GRACE_S):
+        if not job.ended.wait(job.stop_grace_s):
             job.child.kill()
             job.ended.wait(_DIE_S)
         return self._store.get(run_id)
@@ -195,7 +206,7 @@ class Jobs:
             self._waiting.add(entries, max(0, self.cores - self._crew.running))
             self._changed.notify_all()
         run = entries[-1].run
-        if self._on_queued is not None:
+        if self._on_queued is not None and run.kind != "experiment":
             self._on_queued(run.id)
         return run
 

@@ -17,6 +17,7 @@ class MemoryStore:
     def __init__(self) -> None:
         self._runs: dict[str, Run] = {}
         self._curves: dict[str, list[Mapping[str, Any]]] = {}
+        self._trials: dict[str, dict[str, Mapping[str, Any]]] = {}
         self._artifacts: dict[str, dict[str, bytes]] = {}
         self._lock = threading.Lock()
 
@@ -77,7 +78,7 @@ class MemoryStore:
             run = self._run(run_id)
             if run.state in UNENDED:
                 raise Conflict(f"{run.kind} {run_id} is {run.state}; stop it first", run.state)
-            for kept in (self._runs, self._curves, self._artifacts):
+            for kept in (self._runs, self._curves, self._trials, self._artifacts):
                 kept.pop(run_id, None)
 
     def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
@@ -96,6 +97,16 @@ class MemoryStore:
         with self._lock:
             curve = self._curves.get(run_id, [])
             self._curves[run_id] = [row for row in curve if row["step"] <= after_step]
+
+    def append_trials(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
+        with self._lock:
+            self._run(run_id)
+            self._trials.setdefault(run_id, {}).update({row["key"]: dict(row) for row in rows})
+
+    def trials(self, run_id: str) -> Sequence[Mapping[str, Any]]:
+        with self._lock:
+            self._run(run_id)
+            return [row for _, row in sorted(self._trials.get(run_id, {}).items())]
 
     def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
         with self._lock:

@@ -3,11 +3,14 @@
 import threading
 from collections.abc import Callable, Collection
 from dataclasses import replace
+from typing import Any
 
 from app.domain.errors import DamagedFile
+from app.experiments.config import ExperimentConfig
 from app.services import archives
 from app.services.archived_files import check_files, files_of, is_file_of
 from app.services.archived_run import read_run_json, run_json
+from app.services.archived_trials import TRIALS, read_trials_json, trials_json
 from app.services.errors import NotFound
 from app.services.store import KINDS, Run, RunStore
 
@@ -26,6 +29,8 @@ def export_run(store: RunStore, run_id: str) -> bytes:
     """
     run = store.get(run_id)
     members = {RUN: run_json(run, store.evaluations(run_id))}
+    if run.kind == "experiment":
+        members[TRIALS] = trials_json(store.trials(run_id))
     return archives.pack(members | files_of(store, run))
 
 
@@ -54,6 +59,7 @@ def import_run(
     if RUN not in members:
         raise DamagedFile(f"{said} is no archive of a run: it has no {RUN}")
     run, curve = read_run_json(members.pop(RUN), f"{RUN} of {said}", agents)
+    trials = _trials(run, members, said)
     check_files(run, members, said)
     with _creating:
         if _is_taken(store, run.id):
@@ -61,6 +67,7 @@ def import_run(
         store.create(run)
     try:
         store.append_evaluations(run.id, curve)
+        store.append_trials(run.id, trials)
         for name, content in members.items():
             store.put_artifact(run.id, name, content)
     except BaseException:
@@ -70,8 +77,17 @@ def import_run(
     return store.get(run.id)
 
 
+def _trials(run: Run, members: dict[str, bytes], said: str) -> list[dict[str, Any]]:
+    """Take the trials out of the members, checked."""
+    if not isinstance(run.config, ExperimentConfig):
+        return []
+    if TRIALS not in members:
+        raise DamagedFile(f"{said} is no archive of an experiment: it has no {TRIALS}")
+    return read_trials_json(members.pop(TRIALS), run.config, f"{TRIALS} of {said}")
+
+
 def _is_known(name: str) -> bool:
-    return name == RUN or any(is_file_of(name, kind) for kind in KINDS)
+    return name in (RUN, TRIALS) or any(is_file_of(name, kind) for kind in KINDS)
 
 
 def _is_taken(store: RunStore, run_id: str) -> bool:

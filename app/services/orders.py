@@ -7,6 +7,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from app.experiments.config import ExperimentConfig
 from app.runs.config import RaceConfig, TrainingConfig
 from app.runs.records import RaceRecord, TrainingRecord
 from app.runs.tables import Checkpoint
@@ -39,7 +40,24 @@ class RaceOrder:
     tables: tuple[Checkpoint | None, ...]
 
 
-Order = TrainingOrder | RaceOrder
+@dataclass(frozen=True)
+class ExperimentOrder:
+    """Try what has not been tried yet, and report.
+
+    Attributes:
+        config: the experiment.
+        workers: how many trials at once; None is one for each core.
+        rows: the trials that are done, as the store has them.
+        wall_s: how long it ran before.
+    """
+
+    config: ExperimentConfig
+    workers: int | None = None
+    rows: tuple[Mapping[str, Any], ...] = ()
+    wall_s: float = 0.0
+
+
+Order = TrainingOrder | RaceOrder | ExperimentOrder
 
 
 class Word(NamedTuple):
@@ -57,7 +75,7 @@ class Word(NamedTuple):
 
 
 class Began(NamedTuple):
-    """All is built, and the robots stand at rest in these poses, one for each lane."""
+    """All is built, and the robots stand at rest in these poses, one for each lane if any."""
 
     rest_qpos: tuple[NDArray[np.float32], ...]
     after_step: int = 0
@@ -93,8 +111,22 @@ class Saved(NamedTuple):
     table: bytes
 
 
+class Tried(NamedTuple):
+    """Trials since the last of these, as the store takes them, and how many are done now."""
+
+    rows: tuple[Mapping[str, Any], ...]
+    done: int
+
+
+class Reported(NamedTuple):
+    """A file of an experiment's report; its summary also while it runs."""
+
+    name: str
+    data: bytes
+
+
 class Ended(NamedTuple):
-    """The job is done, or was stopped; the result is a training's."""
+    """The job is done, or was stopped; the result is a training's or an experiment's."""
 
     outcome: Literal["finished", "stopped"]
     result: dict[str, Any] | None
@@ -106,4 +138,4 @@ class Failed(NamedTuple):
     reason: str
 
 
-Message = Began | Batch | Changed | Checkpointed | Saved | Ended | Failed
+Message = Began | Batch | Changed | Checkpointed | Saved | Tried | Reported | Ended | Failed

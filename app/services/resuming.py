@@ -1,30 +1,35 @@
-"""From runs that were interrupted to runs that can be queued again.
+"""From runs that did not come to their end to runs that can be queued again.
 
 A training goes on from its newest checkpoint, or from its start if it has none: with the changes
 that were made since, after the same steps, and so to the same end. A race begins anew, since it is
-short and the same again; trainings that it still waits for go on before it.
+short and the same again; trainings that it still waits for go on before it. An experiment goes on
+with what it has not tried yet, however it ended.
 """
 
 from dataclasses import replace
 
 from app.domain.errors import DamagedFile
+from app.experiments.config import ExperimentConfig
 from app.runs.config import RaceConfig, TrainingConfig
 from app.runs.tables import Checkpoint, check_fits, from_bytes
 from app.services.entries import Entry, load_table
 from app.services.errors import Conflict, NotFound
-from app.services.orders import RaceOrder, TrainingOrder
-from app.services.store import CHECKPOINT, INTERRUPTED, UNENDED, Run, RunStore
+from app.services.experiment_entry import wall_s_of
+from app.services.orders import ExperimentOrder, RaceOrder, TrainingOrder
+from app.services.store import CHECKPOINT, INTERRUPTED, RESUMABLE, UNENDED, Run, RunStore
 
 
 def resumed_entries(run: Run, store: RunStore) -> list[Entry]:
-    """An interrupted run, ready to be queued again, after the trainings that it waits for.
+    """A run that can go on, ready to be queued again, after the trainings that it waits for.
 
     Raises:
-        Conflict: if it is not interrupted, or what it needs is gone.
+        Conflict: if it cannot, or what it needs is gone.
         InvalidInput: if what it needs is gone, or damaged.
     """
-    if run.state not in INTERRUPTED:
+    if run.state not in RESUMABLE[run.kind]:
         raise Conflict(f"{run.kind} {run.id} is {run.state}, not interrupted", run.state)
+    if isinstance(run.config, ExperimentConfig):
+        return [_experiment(run, run.config, store)]
     if isinstance(run.config, RaceConfig):
         return _race(run, run.config, store)
     return [_training(run, run.config, store)]
@@ -84,6 +89,14 @@ def _race(run: Run, config: RaceConfig, store: RunStore) -> list[Entry]:
 
     again = replace(_again(run, 0), waiting_for=tuple(waits_for))
     return [*before, Entry(again, make_order, set(waits_for), goes_on=True)]
+
+
+def _experiment(run: Run, config: ExperimentConfig, store: RunStore) -> Entry:
+    def make_order() -> ExperimentOrder:
+        rows = tuple(store.trials(run.id))
+        return ExperimentOrder(config, run.workers, rows, wall_s_of(store, run.id))
+
+    return Entry(_again(run, len(store.trials(run.id))), make_order, set(), goes_on=True)
 
 
 def _again(run: Run, step: int) -> Run:

@@ -8,7 +8,7 @@ from typing import Any
 
 from app.domain.errors import InvalidInput
 from app.runs.clocks import Clock, check_clock
-from app.runs.config import RaceConfig
+from app.runs.config import RaceConfig, TrainingConfig
 from app.services.bus import EventBus
 from app.services.casting import idle_cast, race_cast, rest_pose, training_cast
 from app.services.errors import NotFound
@@ -103,7 +103,7 @@ class Stage:
 
         Raises:
             NotFound: if there is no such run.
-            InvalidInput: if the speed, time or clock is none.
+            InvalidInput: if the speed, time or clock is none, or the run is an experiment.
         """
         own_speed = None if speed is None else _speed(speed)
         if clock is not None:
@@ -221,9 +221,9 @@ class Stage:
                 return
 
     def _put_on(self, bill: list[Run], replay: bool = False) -> None:
+        self._show = self._show_of(bill[0])
         self._bill, self._replay = bill, replay
         self._playing, self._speed, self._idle_since_s = True, None, None
-        self._show = self._show_of(bill[0])
         self._tell()
 
     def _show_of(self, run: Run) -> Show:
@@ -231,6 +231,8 @@ class Stage:
         if isinstance(config, RaceConfig):
             cast = race_cast(config)
             return RaceShow(cast, config.steps, self._clock, lambda: recordings.race(run.id))
+        if not isinstance(config, TrainingConfig):
+            raise InvalidInput(f"{run.id!r} is an {run.kind}; on stage are trainings and races")
         return PracticeShow(
             training_cast(config),
             config.steps,
@@ -243,7 +245,7 @@ class Stage:
         """How a training runs now: as it began, or as it was last told."""
         run = next(run for run in self._bill if run.id == run_id)
         paces = [change["pace"] for change in run.changes if change.get("pace") is not None]
-        first = "max" if isinstance(run.config, RaceConfig) else run.config.pace
+        first = run.config.pace if isinstance(run.config, TrainingConfig) else "max"
         pace: float | str = paces[-1] if paces else first
         return pace
 

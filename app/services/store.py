@@ -5,10 +5,13 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any, Literal, NamedTuple, Protocol, get_args
 
+from app.experiments.config import ExperimentConfig
 from app.runs.config import RaceConfig, TrainingConfig
 
-Kind = Literal["training", "race"]
+Kind = Literal["training", "race", "experiment"]
 State = Literal["queued", "running", "paused", "finished", "stopped", "failed", "interrupted"]
+
+Config = TrainingConfig | RaceConfig | ExperimentConfig
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
 STATES: tuple[State, ...] = get_args(State)
@@ -19,22 +22,34 @@ LIVE = RUNNING | PAUSED
 """A process works on it."""
 UNENDED = QUEUED | LIVE
 INTERRUPTED: frozenset[State] = frozenset({"interrupted"})
+RESUMABLE: Mapping[Kind, frozenset[State]] = {
+    "training": INTERRUPTED,
+    "race": INTERRUPTED,
+    # Its trials are kept one by one, so that none is repeated however it ended.
+    "experiment": INTERRUPTED | {"stopped", "failed"},
+}
+"""The states of an ended run from which it can be queued again."""
 TABLE = "q-table.npz"
 """The artifact of a training that holds what was learned."""
 CHECKPOINT = "checkpoint.npz"
 """The artifact of a training from which it goes on if it is interrupted."""
+SUMMARY = "summary.json"
+"""The artifact of an experiment that says what its trials so far show."""
+REPORT = "report.html"
+"""The artifact of an experiment that has ended: all of its report in one file."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """A training or a race, as everyone sees it.
+    """A training, a race or an experiment, as everyone sees it.
 
     Attributes:
         id: short, fit for a URL; later runs sort after earlier ones.
         lane_training_ids: for each lane of a race the training whose table it uses.
         waiting_for: trainings that must end before this race begins.
         continued_from: the training whose table this training went on from.
-        done, total: steps, of all lanes together.
+        done, total: steps, of all lanes together; trials, of an experiment.
+        workers: of an experiment's cluster; None is one for each core.
         eta_s: how much longer it will take, as far as that can be told.
         changes: rates and pace that were changed while it ran, each with the number of steps
             that were done before.
@@ -47,10 +62,11 @@ class Run:
     kind: Kind
     name: str
     state: State = "queued"
-    config: TrainingConfig | RaceConfig
+    config: Config
     lane_training_ids: tuple[str | None, ...] = ()
     waiting_for: tuple[str, ...] = ()
     continued_from: str | None = None
+    workers: int | None = None
     done: int = 0
     total: int
     eta_s: float | None = None
@@ -146,6 +162,25 @@ class RunStore(Protocol):
 
     def forget_evaluations(self, run_id: str, after_step: int) -> None:
         """Drop what a training's curve has after this step."""
+
+    def append_trials(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
+        """Add trials of an experiment, each in place of what had its key.
+
+        Args:
+            run_id: of the experiment.
+            rows: `key`, `result` (plain types, or None), `set_aside` (why there is none, or None)
+                and `compute_s`.
+
+        Raises:
+            NotFound: if there is no such run.
+        """
+
+    def trials(self, run_id: str) -> Sequence[Mapping[str, Any]]:
+        """The trials of an experiment so far, by key.
+
+        Raises:
+            NotFound: if there is no such run.
+        """
 
     def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
         """Keep a file of the run's, in place of what had this name, and set fields, or neither."""

@@ -3,7 +3,8 @@
 from datetime import UTC, datetime
 from typing import Any
 
-from app.runs.config import RaceConfig, as_json
+from app.runs.config import RaceConfig, TrainingConfig
+from app.services.configs import config_as_json
 from app.services.store import Run
 
 
@@ -31,6 +32,8 @@ def run_view(run: Run, queue_position: int | None = None) -> dict[str, Any]:
     }
     if run.kind == "race":
         shown["waiting_for"] = list(run.waiting_for)
+    elif run.kind == "experiment":
+        shown["workers"] = run.workers
     else:
         shown["greedy_distance_m"] = run.greedy_distance_m
         shown["changes"] = [dict(change) for change in run.changes]
@@ -38,11 +41,11 @@ def run_view(run: Run, queue_position: int | None = None) -> dict[str, Any]:
 
 
 def _config(run: Run) -> dict[str, Any]:
-    shown = as_json(run.config)
+    shown = config_as_json(run.config)
     if isinstance(run.config, RaceConfig):
         lanes = zip(shown["lanes"], run.lane_training_ids, strict=True)
         shown["lanes"] = [{**lane, "training_id": training} for lane, training in lanes]
-    else:
+    elif isinstance(run.config, TrainingConfig):
         shown["continue_from"] = run.continued_from
     return shown
 

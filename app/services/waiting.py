@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 
 from app.services.entries import Entry
 from app.services.errors import Busy
-from app.services.store import INTERRUPTED, QUEUED, Run, RunStore, State
+from app.services.store import QUEUED, RESUMABLE, Run, RunStore, State
 
 MAX_QUEUED = 32
 RETRY_AFTER_S = 10
@@ -52,7 +52,7 @@ class WaitingRuns:
         """What came after the step from which it goes on comes again."""
         fields = ("done", "waiting_for", "error", "result", "ended_at")
         changed = {field: getattr(run, field) for field in fields}
-        queued = self._store.change(run.id, INTERRUPTED, "queued", **changed)
+        queued = self._store.change(run.id, RESUMABLE[run.kind], "queued", **changed)
         self._store.forget_evaluations(run.id, after_step=run.done)
         return queued
 

@@ -63,7 +63,7 @@ class Witness(EventBus):
             self._seen[run_id] = (state, done)
             now = self._now()
             self._forget(now)
-            if done > done_before:
+            if done > done_before and run["kind"] != "experiment":
                 self._steps += done - done_before
                 self._newest.append((now, done - done_before))
         if state != state_before:

@@ -26,11 +26,13 @@ from app.runs.training import Learner, train
 from app.runs.walker import Walker
 from app.services import logs
 from app.services.desk import Desk, Stopped
+from app.services.experimenting import experiment
 from app.services.listening import ListeningAgent
 from app.services.orders import (
     Began,
     Checkpointed,
     Ended,
+    ExperimentOrder,
     Failed,
     Order,
     RaceOrder,
@@ -55,6 +57,8 @@ def main(pipe: Connection) -> None:
     try:
         if isinstance(order, TrainingOrder):
             _train(order, desk)
+        elif isinstance(order, ExperimentOrder):
+            experiment(order, desk.send, words)
         else:
             _race(order, desk)
     except HexapodError as error:

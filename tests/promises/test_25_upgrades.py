@@ -21,7 +21,7 @@ from app.services.database.store import SqlStore
 from app.services.store import TABLE
 from tests.postgresql import PostgresServer
 from tests.promises.released import sample
-from tests.services.stores import BACKENDS, database_url, opened, training
+from tests.services.stores import BACKENDS, TRIALS, database_url, opened, training
 
 FOLDER = Path(sample.__file__).parent
 SCRIPTS = ScriptDirectory(str(Path(migrating.__file__).with_name("migrations")))
@@ -50,12 +50,20 @@ def database_engine(folder: Path, url: str | None) -> Engine:
     return sqlite_engine(folder / DATABASE_FILE) if url is None else postgresql_engine(url)
 
 
-def check(store: SqlStore) -> None:
-    newest = [run.id for run in reversed(sample.RUNS)]
-    assert [run.id for run in store.list().items] == newest
-    for run in sample.RUNS:
+def rows_in(table: str, database: Database) -> int:
+    count = text(f"SELECT count(*) FROM {table}")
+    found: int = database.read(lambda connection: connection.execute(count).scalar_one())
+    return found
+
+
+def check(store: SqlStore, revision: str) -> None:
+    runs = [*sample.RUNS, *([sample.EXPERIMENT] if revision >= "0002" else [])]
+    assert [run.id for run in store.list().items] == [run.id for run in reversed(runs)]
+    for run in runs:
         # NaN is not itself; as text it is.
         assert repr(store.get(run.id)) == repr(run)
+    if revision >= "0002":
+        assert store.trials(sample.EXPERIMENT.id) == TRIALS
     first = sample.RUNS[0].id
     assert store.evaluations(first) == sample.CURVE
     assert store.artifact(first, TABLE) == sample.FILE
@@ -70,13 +78,15 @@ def test_every_released_schema_migrates(
         load(FOLDER / f"{revision}.{backend}.sql", tmp_path, url)
         for _ in range(2):
             with opened(tmp_path, url) as store:
-                check(store)
+                check(store, revision)
         with opened(tmp_path, url) as store:
             store.create(training("z"))
             store.delete(sample.RUNS[0].id)
+            if revision >= "0002":
+                store.delete(sample.EXPERIMENT.id)
         database = Database(database_engine(tmp_path, url))
-        left = text("SELECT (SELECT count(*) FROM evaluations) + (SELECT count(*) FROM artifacts)")
-        assert database.read(lambda connection: connection.execute(left).scalar()) == 0
+        for table in ("evaluations", "trials", "artifacts"):
+            assert rows_in(table, database) == 0
         database.close()
 
 
@@ -120,7 +130,7 @@ def test_a_migration_that_fails_changes_nothing(
             with pytest.raises(RuntimeError, match="halfway"), opened(tmp_path, url):
                 pass
         with opened(tmp_path, url) as store:
-            check(store)
+            check(store, newest_revision())
             store.create(training("z"))
 
 

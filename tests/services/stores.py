@@ -7,6 +7,7 @@ from typing import Any
 
 from app.domain.gait import GaitSpec
 from app.domain.robot import robot
+from app.experiments.config import ExperimentConfig
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
 from app.services.database.opening import open_store
 from app.services.database.store import SqlStore
@@ -40,6 +41,47 @@ def race(run_id: str, **fields: Any) -> Run:
     """A race, queued unless it is said otherwise."""
     fields = {"name": f"race {run_id}", "config": RACE, "total": 100, **fields}
     return Run(id=run_id, kind="race", lane_training_ids=("abc", None), **fields)
+
+
+SWEEP = ExperimentConfig(
+    experiment="sweep",
+    seeds=3,
+    seed=2**80,
+    agents=("q-learning", "my.module:Agent"),
+    gaits=("left-right-origin", ODD.gait),
+    observations=("commanded",),
+    robots=(robot("stiff"), ODD.robot),
+    simulator="kinematic",
+    alpha=(0.1, 0.3),
+    divisions=(2, 3),
+)
+TRIALS: list[dict[str, Any]] = [
+    {
+        "key": "left-right-origin/commanded/stiff/greedy#0",
+        "result": {
+            "distances_m": [0.49666, -0.25],
+            "finished_distance_m": None,
+            "elapsed_s": 1.5,
+            "transitions": 600,
+            "wall": [{"agent": "greedy", "rank": 1}],
+            "failure": None,
+        },
+        "set_aside": None,
+        "compute_s": 0.0125,
+    },
+    {
+        "key": "left-right-origin/commanded/stiff/q-learning/500/α=0.1#12",
+        "result": None,
+        "set_aside": "it ended its worker's process 3 times",
+        "compute_s": 0.0,
+    },
+]
+
+
+def experiment(run_id: str, **fields: Any) -> Run:
+    """An experiment, queued unless it is said otherwise."""
+    fields = {"name": f"experiment {run_id}", "config": SWEEP, "total": 100, **fields}
+    return Run(id=run_id, kind="experiment", **fields)
 
 
 @contextmanager

@@ -148,6 +148,7 @@ def test_it_waits_for_a_lane_that_still_computes(theatre: Theatre) -> None:
 
 def test_before_anything_is_recorded_they_stand_on_the_start_line(theatre: Theatre) -> None:
     config = theatre.race().config
+    assert isinstance(config, RaceConfig)
     theatre.stage.show(theatre.create(config).id)
 
     frame = theatre.look()

@@ -14,7 +14,16 @@ from app.services.errors import Conflict, NotFound
 from app.services.ids import RunIds
 from app.services.memory_store import MemoryStore
 from app.services.store import LIVE, QUEUED, RUNNING, UNENDED, Run, RunStore, State
-from tests.services.stores import BACKENDS, ODD, database_url, opened, race, training
+from tests.services.stores import (
+    BACKENDS,
+    ODD,
+    TRIALS,
+    database_url,
+    experiment,
+    opened,
+    race,
+    training,
+)
 
 new_id = RunIds()
 
@@ -42,6 +51,7 @@ def test_what_went_in_comes_out(store: RunStore) -> None:
         training("b", result={"nan": math.inf, "more": [1, None, {"a": True}]}, error="It broke."),
         race("c", waiting_for=("a", "b"), state="interrupted", done=2**40, eta_s=1.25),
         training("d", name="ü 🕷 <b>'--", created_at=now, started_at=now, ended_at=now),
+        experiment("d2", workers=2, done=7),
         training("e", greedy_distance_m=-0.1, state="failed", config=replace(ODD, pace="max")),
     ]
     store.create(*runs)
@@ -73,6 +83,9 @@ def test_what_is_not_there_is_said(store: RunStore) -> None:
             store.get,
             store.delete,
             store.evaluations,
+            store.trials,
+            lambda i: store.append_trials(i, TRIALS),
+            lambda i: store.append_trials(i, []),
             lambda i: store.update(i, done=1),
             lambda i: store.update_progress(i, 1),
             lambda i: store.change(i, UNENDED, "failed"),
@@ -135,6 +148,24 @@ def test_a_curve_grows_and_what_is_evaluated_again_takes_its_place(store: RunSto
     assert store.evaluations(run.id) == [row(50, 0.1), row(100, 0.2), row(150, 0.3)]
     store.append_evaluations(run.id, [row(100, 0.25)])
     assert store.evaluations(run.id) == [row(50, 0.1), row(100, 0.25)]
+
+
+def test_trials_come_as_they_end_and_one_that_comes_again_is_one(store: RunStore) -> None:
+    store.create(experiment("a"), experiment("b"))
+    assert store.trials("a") == []
+    first, second = TRIALS
+    store.append_trials("a", [second])
+    store.append_trials("a", [first])
+    store.append_trials("b", [first])
+    assert store.trials("a") == TRIALS
+    better = {**second, "result": first["result"], "set_aside": None}
+    store.append_trials("a", [better, second, better])
+    assert store.trials("a") == [first, better]
+    store.change("a", QUEUED, "stopped")
+    store.delete("a")
+    assert store.trials("b") == [first]
+    store.create(experiment("a"))
+    assert store.trials("a") == []
 
 
 def test_a_file_takes_the_place_of_the_one_before(store: RunStore) -> None:

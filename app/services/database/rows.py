@@ -5,9 +5,9 @@ from dataclasses import fields
 from typing import Any
 
 from app.domain.errors import HexapodError
-from app.runs.config import Walk, as_json, config_from_json
+from app.services.configs import config_as_json, config_of
 from app.services.errors import StorageFailed
-from app.services.store import Run
+from app.services.store import Config, Run
 
 _TUPLES = ("lane_training_ids", "waiting_for", "changes")
 
@@ -20,9 +20,9 @@ def row_of(run: Run) -> dict[str, Any]:
 def columns_of(values: Mapping[str, Any]) -> dict[str, Any]:
     """Some fields of a run as the columns take them."""
     columns = dict(values)
-    config = columns.get("config")
-    if isinstance(config, Walk):
-        columns["config"] = as_json(config)
+    config: Config | None = columns.get("config")
+    if config is not None:
+        columns["config"] = config_as_json(config)
     for name in _TUPLES:
         if name in columns:
             columns[name] = [dict(v) if isinstance(v, Mapping) else v for v in columns[name]]
@@ -37,7 +37,7 @@ def run_of(row: Mapping[str, Any]) -> Run:
     """
     values = dict(row)
     try:
-        values["config"] = config_from_json(row["config"])
+        values["config"] = config_of(row["kind"], row["config"])
         values |= {name: tuple(row[name]) for name in _TUPLES}
     except (HexapodError, KeyError, TypeError, ValueError) as error:
         raise StorageFailed(

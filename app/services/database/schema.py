@@ -25,6 +25,7 @@ RUNS = Table(
     Column("lane_training_ids", Plain, nullable=False),
     Column("waiting_for", Plain, nullable=False),
     Column("continued_from", Words),
+    Column("workers", BigInteger),
     Column("done", BigInteger, nullable=False),
     Column("total", BigInteger, nullable=False),
     Column("eta_s", Double),
@@ -48,6 +49,16 @@ EVALUATIONS = Table(
     # NULL is NaN: SQLite knows no other.
     Column("distance_m", Double),
     Column("epsilon", Double),
+)
+
+TRIALS = Table(
+    "trials",
+    METADATA,
+    Column("run_id", Words, ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True),
+    Column("key", Words, primary_key=True),
+    Column("result", Plain),
+    Column("set_aside", Words),
+    Column("compute_s", Double, nullable=False),
 )
 
 ARTIFACTS = Table(

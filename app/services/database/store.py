@@ -15,6 +15,7 @@ from app.services.database.finding import Row, found, row_of_run
 from app.services.database.progress import Progress
 from app.services.database.rows import columns_of, row_of, run_of
 from app.services.database.schema import ARTIFACTS, RUNS
+from app.services.database.trials import Trials
 from app.services.errors import Conflict, NotFound, StorageFull
 from app.services.room import START_BYTES
 from app.services.store import UNENDED, Kind, Page, Run, State
@@ -33,7 +34,7 @@ class SqlStore:
     def __init__(self, database: Database, files: ArtifactFiles) -> None:
         self._database, self._files = database, files
         self._progress = Progress()
-        self._curves = Curves(database)
+        self._curves, self._trials = Curves(database), Trials(database)
 
     def check_room(self) -> None:
         self._files.check_room(START_BYTES)
@@ -128,6 +129,12 @@ class SqlStore:
 
     def forget_evaluations(self, run_id: str, after_step: int) -> None:
         self._curves.forget(run_id, after_step)
+
+    def append_trials(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
+        self._trials.append(run_id, rows)
+
+    def trials(self, run_id: str) -> Sequence[Mapping[str, Any]]:
+        return self._trials.of(run_id)
 
     def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
         self.get(run_id)

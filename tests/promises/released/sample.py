@@ -5,7 +5,7 @@ from typing import Any
 
 from app.services.database.store import SqlStore
 from app.services.store import TABLE, Run
-from tests.services.stores import ODD, race, training
+from tests.services.stores import ODD, TRIALS, experiment, race, training
 
 _T = datetime(2026, 2, 28, 23, 59, 59, 123456, tzinfo=UTC)
 RUNS: list[Run] = [
@@ -31,6 +31,10 @@ RUNS: list[Run] = [
     ),
     race("0pmz0000a0003", state="stopped", result={"lanes": []}, created_at=_T, ended_at=_T),
 ]
+EXPERIMENT = experiment(
+    "0pmz0000a0004", state="interrupted", workers=2, done=2, created_at=_T, ended_at=_T
+)
+"""Since 0002, with `TRIALS`."""
 CURVE: list[dict[str, Any]] = [
     {"step": 50, "distance_m": 0.125, "epsilon": 1.0},
     {"step": 100, "distance_m": -0.25, "epsilon": 0.9},
@@ -40,6 +44,7 @@ FILE = bytes(range(256)) * 4
 
 def put(store: SqlStore) -> None:
     """Fill an empty store."""
-    store.create(*RUNS)
+    store.create(*RUNS, EXPERIMENT)
+    store.append_trials(EXPERIMENT.id, TRIALS)
     store.append_evaluations(RUNS[0].id, CURVE)
     store.put_artifact(RUNS[0].id, TABLE, FILE)

@@ -1,0 +1,124 @@
+"""Experiments: start, watch the summary fill, and take the report away."""
+
+from typing import Annotated, Any, Literal
+
+from fastapi import Path, Query, Request
+from starlette.responses import JSONResponse, Response
+
+from app.api.deps import Given, Start
+from app.api.experiment_body import ExperimentBody
+from app.api.formats import attachment, chosen
+from app.api.runs import RunPath, accepted, find, run_routes
+from app.services import trial_rows
+from app.services.configs import config_as_json
+from app.services.errors import Conflict, NotFound
+from app.services.store import REPORT, SUMMARY, UNENDED, Run
+
+REPORT_POLICY = (
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'self'; sandbox allow-popups"
+)
+"""A report is one file without scripts, and what pretends to be one gets to do nothing."""
+_TYPES = {
+    ".html": "text/html; charset=utf-8",
+    ".json": "application/json",
+    ".csv": "text/csv; charset=utf-8",
+    ".png": "image/png",
+    ".svg": "image/svg+xml",
+    ".pdf": "application/pdf",
+}
+
+router = run_routes("experiment")
+
+
+@router.post("", status_code=202, summary="Start an experiment over many seeds")
+def start_experiment(
+    services: Given, request: Request, asked: Start, body: ExperimentBody
+) -> Response:
+    """Queue it, and answer with its run."""
+    jobs = services.jobs
+    shown = asked.once(services, lambda: jobs.view(jobs.experiment(body.start(services.agents))))
+    return accepted(request, shown)
+
+
+@router.get("/{run_id}/summary", summary="What its trials show so far")
+def get_summary(services: Given, run_id: RunPath) -> Response:
+    """The newest summary; it is made again every few seconds while trials come in."""
+    run = find(services, "experiment", run_id)
+    summary = services.store.artifact(run_id, SUMMARY)
+    if summary is None:
+        return JSONResponse(_nothing_yet(run))
+    return Response(summary, media_type="application/json")
+
+
+@router.get("/{run_id}/report", summary="Its report, as one HTML file")
+def get_report(services: Given, run_id: RunPath) -> Response:
+    """All of it in one file, once the experiment has ended."""
+    run = find(services, "experiment", run_id)
+    return _file(run, REPORT, _reported(services, run, REPORT), "inline")
+
+
+@router.get("/{run_id}/files/{name:path}", summary="A file of its report")
+def get_file(
+    services: Given, run_id: RunPath, name: Annotated[str, Path(description="of the file")]
+) -> Response:
+    """One of those that the run's `result` names in `files`."""
+    run = find(services, "experiment", run_id)
+    return _file(run, name, _reported(services, run, name), "attachment")
+
+
+@router.get("/{run_id}/trials", summary="Its trials so far; also as CSV")
+def get_trials(
+    services: Given,
+    request: Request,
+    run_id: RunPath,
+    format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
+) -> Response:
+    """By key: the setting and the number of the seed."""
+    find(services, "experiment", run_id)
+    rows = services.store.trials(run_id)
+    if chosen(request, format, ("json", "csv")) == "csv":
+        name = f"trials-{run_id}.csv"
+        return attachment(trial_rows.as_csv(rows), "text/csv; charset=utf-8", name)
+    return JSONResponse({"trials": list(rows)})
+
+
+def _nothing_yet(run: Run) -> dict[str, Any]:
+    """A summary of no trials, without what nobody has computed yet."""
+    lists = ("settings", "pooled", "curves", "versus", "timed", "claims", "story")
+    config = config_as_json(run.config)
+    return {
+        "format": 1,
+        "experiment": config["experiment"],
+        "config": config,
+        "versions": {},
+        "machine": {},
+        "trials": {"done": 0, "total": run.total, "failed": 0, "set_aside": []},
+        "cost": None,
+        **{name: [] for name in lists},
+    }
+
+
+def _reported(services: Given, run: Run, name: str) -> bytes:
+    if run.state in UNENDED or run.state == "interrupted":
+        raise Conflict(
+            f"experiment {run.id} is {run.state}; its report can be had once it is finished or "
+            "stopped",
+            run.state,
+        )
+    files = (run.result or {}).get("files", [])
+    data = services.store.artifact(run.id, name) if name in files else None
+    if data is None:
+        there_are = ", ".join(files) or "none"
+        raise NotFound(f"experiment {run.id} has no such file; there are: {there_are}")
+    return data
+
+
+def _file(run: Run, name: str, data: bytes, disposition: str) -> Response:
+    last = name.rpartition("/")[2]
+    stem, dot, suffix = last.rpartition(".")
+    headers = {
+        "Content-Disposition": f'{disposition}; filename="{stem}-{run.id}{dot}{suffix}"',
+        "Content-Security-Policy": REPORT_POLICY,
+    }
+    return Response(data, headers=headers, media_type=_TYPES.get(f"{dot}{suffix}"))
