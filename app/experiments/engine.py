@@ -3,7 +3,7 @@
 import queue
 import time
 import uuid
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, islice
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -50,7 +50,7 @@ class Done(NamedTuple):
 
 def run_trials(
     trials: Iterable[Trial], where: Where, go_on: Callable[[], bool] = lambda: True
-) -> Iterator[Outcome]:
+) -> Generator[Outcome, None, None]:
     """Run trials, and tell of each as it ends, in whatever order that is.
 
     A trial whose worker died is tried again, alone; one that ended its worker three times, or

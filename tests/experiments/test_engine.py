@@ -123,6 +123,6 @@ def test_a_consumer_that_leaves_takes_the_workers_with_it(trials: list[Trial]) -
     running = run_trials(trials, TWO)
     next(running)
     assert len(workers_of(psutil.Process())) == 2
-    running.close()  # type: ignore[attr-defined]
+    running.close()
     assert not workers_of(psutil.Process())
     assert os.environ.get("DASK_SCHEDULER_ADDRESS") is None

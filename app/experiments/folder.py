@@ -1,0 +1,230 @@
+"""A folder with an experiment's results: each trial is kept as it ends, and none is run twice."""
+
+import errno
+import json
+import os
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import IO, Any
+
+from app.domain.errors import DamagedFile, HexapodError, InvalidInput
+from app.experiments.config import ExperimentConfig, as_json, from_json
+from app.experiments.engine import Outcome
+from app.experiments.trial import TrialResult
+from app.experiments.versions import difference, versions
+
+FORMAT = 1
+TRIALS = "trials.jsonl"
+"""A head, then a line a trial; only ever added to."""
+SUMMARY = "summary.json"
+
+_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+_SYNC_S = 0.5
+_CHOOSE = "choose another folder"
+
+
+class NotKept(HexapodError):
+    """A result cannot be written; those before it are kept."""
+
+
+class ResultsFolder:
+    """Results of one experiment. Made by `open_results`.
+
+    Attributes:
+        path: the folder.
+        results: of all trials that are done, by key.
+        set_aside: why others have none, by key.
+        compute_s: that workers computed, in all.
+        worked_s: from the beginning to the newest result, without the time between sessions.
+    """
+
+    def __init__(self, path: Path, file: IO[bytes]) -> None:
+        self.path, self._file = path, file
+        self.results: dict[str, TrialResult] = {}
+        self.set_aside: dict[str, str] = {}
+        self.compute_s, self.worked_s = 0.0, 0.0
+        self._began_s, self._synced_s = time.monotonic(), 0.0
+        self._end = 0
+
+    def add(self, outcome: Outcome) -> None:
+        """Keep what became of a trial. A process may be killed then; for power loss count 0.5 s.
+
+        Raises:
+            NotKept: if it cannot be written.
+        """
+        result = None if outcome.result is None else outcome.result.as_json()
+        self.worked_s = time.monotonic() - self._began_s
+        self._write(
+            {
+                "key": outcome.key,
+                "result": result,
+                "set_aside": outcome.set_aside,
+                "compute_s": round(outcome.compute_s, 6),
+                "worked_s": round(self.worked_s, 3),
+            }
+        )
+        self._take(outcome)
+
+    def begin(self, config: ExperimentConfig) -> None:
+        """Read what is there, or write the head of a new file.
+
+        Raises:
+            InvalidInput: if it has the results of another experiment or version.
+            DamagedFile: if it was not written by `add`.
+            NotKept: if the head cannot be written.
+        """
+        lines = self._file.read().splitlines(keepends=True)
+        if lines and not lines[-1].endswith(b"\n"):
+            lines.pop()  # it was being written when its process was killed
+        self._end = sum(map(len, lines))
+        self._file.truncate(self._end)
+        if not lines:
+            self._write({"format": FORMAT, "versions": versions(), "config": as_json(config)})
+            return
+        self._check(self._head(lines[0]), config)
+        for number, line in enumerate(lines[1:], start=2):
+            self._read(number, line)
+        self._began_s = time.monotonic() - self.worked_s
+
+    def sync(self) -> None:
+        """Let all that was added outlast a loss of power."""
+        with suppress(OSError):
+            os.fsync(self._file.fileno())
+        self._synced_s = time.monotonic()
+
+    def _write(self, line: Mapping[str, Any]) -> None:
+        data = json.dumps(line, allow_nan=False).encode() + b"\n"
+        try:
+            self._file.seek(self._end)
+            rest = memoryview(data)
+            while rest:  # a disk that is nearly full takes a part
+                rest = rest[self._file.write(rest) :]
+        except OSError as error:
+            with suppress(OSError):
+                self._file.truncate(self._end)
+            why = "the disk is full" if error.errno in _FULL else error.strerror
+            raise NotKept(
+                f"cannot write to {self.path / TRIALS}: {why}; what was done is kept, and the "
+                "same command goes on once it can be written"
+            ) from error
+        self._end += len(data)
+        if time.monotonic() - self._synced_s > _SYNC_S:
+            self.sync()
+
+    def _take(self, outcome: Outcome) -> None:
+        self.compute_s += outcome.compute_s
+        if outcome.result is None:
+            self.set_aside[outcome.key] = str(outcome.set_aside)
+        else:
+            self.results[outcome.key] = outcome.result
+            self.set_aside.pop(outcome.key, None)
+
+    def _head(self, line: bytes) -> dict[str, Any]:
+        try:
+            head = json.loads(line)
+            if {"format", "versions", "config"} <= set(head):
+                return dict(head)
+        except (ValueError, TypeError):
+            pass
+        raise DamagedFile(
+            f"{self.path / TRIALS} does not begin as results of an experiment do; {_CHOOSE}"
+        )
+
+    def _check(self, head: Mapping[str, Any], config: ExperimentConfig) -> None:
+        if head["format"] != FORMAT:
+            raise InvalidInput(
+                f"{self.path} has results in format {head['format']}, and this version writes "
+                f"format {FORMAT}; {_CHOOSE}"
+            )
+        differs = difference(versions(), head["versions"])
+        if differs is not None:
+            raise InvalidInput(f"{self.path} has results of {differs}; {_CHOOSE}")
+        try:
+            there = as_json(from_json(head["config"]))
+        except (HexapodError, KeyError, TypeError, ValueError) as error:
+            raise DamagedFile(f"{self.path / TRIALS} has a damaged head ({error})") from error
+        here = as_json(config)
+        # Seeds are spawned by number, so that further ones go with those that are there.
+        names = [name for name in here if name != "seeds" and here[name] != there[name]]
+        if names:
+            raise InvalidInput(
+                f"{self.path} has results of another experiment, which differs in "
+                f"{', '.join(names)}; {_CHOOSE}"
+            )
+
+    def _read(self, number: int, line: bytes) -> None:
+        try:
+            kept = json.loads(line)
+            result = kept["result"]
+            outcome = Outcome(
+                str(kept["key"]),
+                None if result is None else TrialResult.from_json(result),
+                kept["set_aside"],
+                float(kept["compute_s"]),
+            )
+            self.worked_s = float(kept["worked_s"])
+        except (KeyError, TypeError, ValueError) as error:
+            raise DamagedFile(
+                f"{self.path / TRIALS} is damaged in line {number}; delete that line, and its "
+                "trial is run again"
+            ) from error
+        self._take(outcome)
+
+
+@contextmanager
+def open_results(path: Path, config: ExperimentConfig) -> Iterator[ResultsFolder]:
+    """The results of an experiment in a folder, which is made if it is not there.
+
+    Results of the same experiment with fewer or more seeds belong to it.
+
+    Raises:
+        InvalidInput: if the folder cannot be used, is used by another process, or has something
+            else in it.
+        DamagedFile: if what is in it cannot be read.
+        NotKept: if nothing can be written.
+    """
+    with _opened(path) as file:
+        try:
+            _lock(file)
+        except OSError as error:
+            raise InvalidInput(
+                f"another process is adding results to {path}; wait for it, or {_CHOOSE}"
+            ) from error
+        folder = ResultsFolder(path, file)
+        folder.begin(config)
+        try:
+            yield folder
+        finally:
+            folder.sync()
+
+
+def _opened(path: Path) -> IO[bytes]:
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        known = {entry.name for entry in path.iterdir()}
+        if known and not known & {TRIALS, SUMMARY}:
+            raise InvalidInput(f"{path} is not empty, and has no results in it; {_CHOOSE}")
+        # Unbuffered, so that what failed to be written is not tried again when it is closed.
+        return (path / TRIALS).open("r+b" if TRIALS in known else "x+b", buffering=0)
+    except OSError as error:
+        raise InvalidInput(
+            f"cannot keep results in {path} ({error.strerror}); {_CHOOSE}"
+        ) from error
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def _lock(file: IO[bytes]) -> None:
+        file.seek(2**40)  # behind all that is read and written
+        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        file.seek(0)
+
+else:
+    import fcntl
+
+    def _lock(file: IO[bytes]) -> None:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
