@@ -26,6 +26,7 @@ from app.api import (
     races,
     stage,
     trainings,
+    what_if,
 )
 from app.api.auth import TokenGuard
 from app.api.deps import Services
@@ -35,12 +36,14 @@ from app.api.rates import RateLimit
 from app.domain.errors import HexapodError, InvalidInput
 from app.services import logs
 from app.services.database.opening import open_store
+from app.services.helpers import Helpers
 from app.services.jobs import Jobs
 from app.services.memory_store import MemoryStore
 from app.services.once import Once
 from app.services.recordings import Recordings
 from app.services.stage import Stage
 from app.services.store import RunStore
+from app.services.what_if import WhatIf
 from app.services.whereabouts import note_address
 from app.services.witness import Witness
 from app.settings import PREFIX, Settings
@@ -87,6 +90,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
         audience=lambda: theatre.hub.counters,
         ready=lambda: _trouble(jobs, store),
         film=theatre.film,
+        what_if=WhatIf(Helpers()),
     )
     app.state.metrics = metrics.registry_of(app.state.services)
     _add_routes(app, theatre)
@@ -103,7 +107,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
 def _add_routes(app: FastAPI, theatre: Theatre) -> None:
     versioned = APIRouter(prefix="/api/v1")
     # First: `import` is no run's id.
-    for module in (moving, trainings, races, experiments, stage, events, options):
+    for module in (moving, trainings, races, experiments, stage, events, what_if, options):
         versioned.include_router(module.router)
     app.include_router(versioned)
     app.include_router(health.router)
@@ -141,6 +145,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
             yield
         finally:
             services.bus.close()
+            await asyncio.to_thread(services.what_if.close)
             await asyncio.to_thread(services.jobs.close)
 
 

@@ -17,6 +17,7 @@ from app.services.once import Once
 from app.services.recordings import Recordings
 from app.services.stage import Stage
 from app.services.store import RunStore
+from app.services.what_if import WhatIf
 from app.services.witness import Witness
 
 T = TypeVar("T")
@@ -41,6 +42,7 @@ class Services:
         agents: the names that were registered when the server started.
         audience: counts who watches the stage, and what they were sent.
         ready: says what is not ready, or None.
+        what_if: tries settings out.
         film: makes a race's recording playable.
     """
 
@@ -54,6 +56,7 @@ class Services:
     audience: Callable[[], Audience]
     ready: Callable[[], str | None]
     film: Film
+    what_if: WhatIf
 
 
 class Asked(NamedTuple):

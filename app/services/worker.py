@@ -3,11 +3,9 @@
 Ends when the job does or when the server does, however that ends.
 """
 
-import ctypes
 import logging
 import os
 import queue
-import signal
 import sys
 import threading
 import time
@@ -28,6 +26,7 @@ from app.services import logs
 from app.services.desk import Desk, Stopped
 from app.services.experimenting import experiment
 from app.services.listening import ListeningAgent
+from app.services.modest import be_modest
 from app.services.orders import (
     Began,
     Checkpointed,
@@ -41,14 +40,12 @@ from app.services.orders import (
     Word,
 )
 
-NICENESS = 15
-_PR_SET_PDEATHSIG = 1
 _logger = logging.getLogger(__name__)
 
 
 def main(pipe: Connection) -> None:
     """Work on the order that comes first through the pipe, and end the process."""
-    _be_modest()
+    be_modest()
     logs.install("warning")
     order: Order = pipe.recv()
     words: queue.SimpleQueue[Word] = queue.SimpleQueue()
@@ -140,16 +137,6 @@ def _race(order: RaceOrder, desk: Desk) -> None:
 
 def _pose(walker: Walker) -> NDArray[np.float32]:
     return walker.simulator.pose(walker.state).astype(np.float32)
-
-
-def _be_modest() -> None:
-    """Let the server go first, and end with it."""
-    with suppress(OSError):
-        os.nice(NICENESS)
-    # Ctrl-C reaches every process of a terminal; the server says what becomes of its jobs.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 def _listen(pipe: Connection, words: "queue.SimpleQueue[Word]") -> None:

@@ -1,0 +1,18 @@
+"""What if one learned so: an answer while the slider is still warm."""
+
+from fastapi import APIRouter
+from starlette.responses import JSONResponse, Response
+
+from app.api.deps import Given
+from app.api.schemas import TrainingBody
+from app.domain.errors import InvalidInput
+
+router = APIRouter(prefix="/what-if", tags=["what-if"])
+
+
+@router.post("", summary="How far 30 seeds would come after a practice, and by default")
+def ask(services: Given, body: TrainingBody) -> Response:
+    """A training's body, of at most 2,000 steps; always computed in the kinematic simulator."""
+    if body.continue_from is not None:
+        raise InvalidInput("a what-if begins with an empty table; leave out continue_from")
+    return JSONResponse(services.what_if.ask(body.start(services.agents).config))
