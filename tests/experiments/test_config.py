@@ -1,0 +1,105 @@
+"""What an experiment can be, and what is filled in."""
+
+import json
+from typing import Any
+
+import pytest
+
+from app.domain.errors import InvalidInput, UnknownName
+from app.domain.gait import NAMED_GAITS, GaitSpec
+from app.domain.robot import robot
+from app.experiments.config import (
+    EXPERIMENTS,
+    GRID,
+    MAX_SEEDS,
+    ExperimentConfig,
+    as_json,
+    experiment_config,
+    from_json,
+)
+
+
+def test_table_1_is_the_papers_and_both_readings_of_it() -> None:
+    config = experiment_config("table1", {})
+    assert config.seeds == 30
+    assert config.gaits == tuple(NAMED_GAITS)
+    assert config.observations == ("measured", "commanded")
+    assert [one.name for one in config.robots] == ["stiff", "compliant"]
+    assert (config.steps, config.blocks) == ((500, 1000), 1)
+
+
+def test_figure_4_practises_2000_steps_in_blocks() -> None:
+    config = experiment_config("figure4", {"agents": ("q-learning", "tests.own_agents:Restless")})
+    assert (config.steps, config.blocks) == ((250,), 8)
+    assert len(config.agents) == 2
+
+
+def test_a_sweep_varies_whatever_it_is_told_to() -> None:
+    grid: dict[str, Any] = {
+        "steps": (100, 200),
+        "alpha": (0.1, 0.3),
+        "gamma": (0.5,),
+        "epsilon_start": (1.0, 0.5),
+        "epsilon_end": (0.0, 0.1),
+        "steps_per_episode": (25, 50),
+        "divisions": (2, 3),
+        "grid_side_m": (0.03, 0.04),
+    }
+    assert set(grid) == set(GRID)
+    config = experiment_config("sweep", grid)
+    assert {name: getattr(config, name) for name in grid} == grid
+    assert config.observations == ("measured",)
+
+
+def test_none_counts_as_not_given() -> None:
+    given = {"seeds": None, "robots": None, "seed": 0}
+    assert experiment_config("table1", given) == experiment_config("table1", {})
+
+
+_OWN: dict[str, Any] = {
+    "seeds": 7,
+    "seed": 2**60,
+    "gaits": (
+        "front-back-origin",
+        GaitSpec(right_leg=1, left_leg=2, symmetry="origin"),
+        GaitSpec(right_leg=1, left_leg=2, pairs=((1, 4), (2, 5), (3, 6))),
+    ),
+    "robots": (robot("slippery"), robot({"preset": "compliant", "femur_m": 0.09})),
+    "simulator": "kinematic",
+}
+
+
+@pytest.mark.parametrize("experiment", EXPERIMENTS)
+@pytest.mark.parametrize("given", [{}, _OWN], ids=["defaults", "own"])
+def test_json_gives_back_the_same_experiment(experiment: str, given: dict[str, Any]) -> None:
+    config = experiment_config(experiment, given)
+    assert from_json(json.loads(json.dumps(as_json(config)))) == config
+
+
+@pytest.mark.parametrize(
+    ("experiment", "given", "names"),
+    [
+        ("table2", {}, "table1, figure4, sweep"),
+        ("table1", {"seeds": 0}, f"seeds must be from 1 to {MAX_SEEDS:,}"),
+        ("table1", {"seeds": MAX_SEEDS + 1}, f"from 1 to {MAX_SEEDS:,}"),
+        ("table1", {"seeds": 2.5}, "a whole number"),
+        ("table1", {"seeds": True}, "a whole number"),
+        ("table1", {"seed": -1}, "seed must be at least 0"),
+        ("table1", {"alpha": (0.1,)}, "seeds, seed, gaits, observations, robots, simulator"),
+        ("figure4", {"steps": (100,)}, "agents"),
+        ("sweep", {"blocks": 3}, "grid_side_m"),
+        ("sweep", {"alpha": ()}, "alpha must name at least one"),
+        ("sweep", {"gaits": ()}, "gaits must name at least one"),
+        ("sweep", {"alpha": (0.1, 0.3, 0.1)}, "alpha names something twice"),
+        ("sweep", {"robots": (robot("stiff"), robot("stiff"))}, "robots names something twice"),
+    ],
+)
+def test_what_cannot_be_is_one_sentence(experiment: str, given: dict[str, Any], names: str) -> None:
+    with pytest.raises(InvalidInput) as refused:
+        experiment_config(experiment, given)
+    assert names in str(refused.value)
+
+
+def test_an_unknown_experiment_is_an_unknown_name() -> None:
+    with pytest.raises(UnknownName):
+        ExperimentConfig(experiment="table2")  # type: ignore[arg-type]

@@ -1,0 +1,130 @@
+"""One trial: pure, small enough to send, and what the specification's figures say."""
+
+import json
+import pickle
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.domain.errors import UnknownName
+from app.experiments.config import experiment_config
+from app.experiments.plan import Plan, Trial
+from app.experiments.trial import TrialConfig, TrialResult, run_trial
+from app.runs.config import TrainingConfig
+from tests.figures import GREEDY_H, H_M, interquartile_mean, kinematic_rows
+
+
+def practice(**given: Any) -> TrainingConfig:
+    fields: dict[str, Any] = {"simulator": "kinematic", "evaluate_every": 0, **given}
+    return TrainingConfig(**{"gait": "left-right-origin", **fields})
+
+
+def trials(experiment: str, **given: Any) -> list[Trial]:
+    fields = {"simulator": "kinematic", "gaits": ("left-right-origin",), **given}
+    return list(Plan(experiment_config(experiment, fields)).trials())
+
+
+def distances_h(found: list[Trial]) -> Any:
+    """(seeds, blocks) in half grid sides, of the learners among some trials."""
+    learners = [one.config for one in found if one.setting.role == "learner"]
+    return np.array([run_trial(config).distances_m for config in learners]) / H_M
+
+
+@pytest.mark.parametrize("simulator", ["kinematic", "mujoco"])
+def test_a_trial_gives_the_same_whenever_it_is_run(simulator: str) -> None:
+    config = TrialConfig(training=practice(simulator=simulator, steps=40, seed=5), blocks=2)
+    result = run_trial(config)
+    assert result.failure is None
+    assert len(result.distances_m) == 2
+    assert run_trial(pickle.loads(pickle.dumps(config))) == result
+
+
+def test_a_trial_gives_the_same_in_another_process() -> None:
+    config = TrialConfig(training=practice(steps=100, seed=5))
+    script = (
+        "import pickle, sys; from app.experiments.trial import run_trial; "
+        "config = pickle.load(sys.stdin.buffer); "
+        "sys.stdout.buffer.write(pickle.dumps(run_trial(config)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], input=pickle.dumps(config), capture_output=True, check=True
+    )
+    assert pickle.loads(done.stdout) == run_trial(config)
+
+
+def test_a_result_is_the_same_after_json() -> None:
+    walked = run_trial(TrialConfig(training=practice(steps=60)))
+    (timed,) = [
+        one
+        for one in trials(
+            "table1",
+            seeds=1,
+            observations=("measured",),
+            robots=experiment_config("sweep", {}).robots,
+        )
+        if one.config.must_be_alone
+    ]
+    for result in (walked, run_trial(timed.config), TrialResult(failure="it fell")):
+        assert TrialResult.from_json(json.loads(json.dumps(result.as_json()))) == result
+
+
+@pytest.mark.parametrize(("agent", "transitions"), [("greedy", 600), ("two-step", 7800)])
+@pytest.mark.parametrize("gait", ["left-right-origin", "front-back-vertical"])
+def test_look_ahead_walks_as_far_as_can_be(agent: str, transitions: int, gait: str) -> None:
+    result = run_trial(TrialConfig(training=practice(agent=agent, gait=gait), blocks=0))
+    assert result.distances_m[0] / H_M == pytest.approx(GREEDY_H, abs=0.001)
+    assert result.transitions == transitions
+
+
+def test_the_paper_clock_charges_for_what_was_simulated() -> None:
+    learner = run_trial(TrialConfig(training=practice(steps=30)))
+    greedy = run_trial(TrialConfig(training=practice(agent="greedy"), blocks=0))
+    # 50 motions of 0.32 s, and 0.03 motions for each of 12 transitions a step
+    assert learner.elapsed_s == pytest.approx(50 * 0.32)
+    assert greedy.elapsed_s == pytest.approx(50 * 0.32 * 1.36)
+    assert learner.finished_distance_m == learner.distances_m[0]
+    assert greedy.finished_distance_m is not None
+    assert greedy.finished_distance_m / greedy.distances_m[0] == pytest.approx(0.72, abs=0.02)
+
+
+def test_practice_agrees_with_the_specification() -> None:
+    seeds = 80
+    found = distances_h(trials("sweep", seeds=seeds, steps=(250, 500), observations=("measured",)))
+    shares = [100 * interquartile_mean(row) / GREEDY_H for row in found.reshape(seeds, 2).T]
+    assert shares == pytest.approx([60, 74], rel=0.05)
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_blocks_are_those_whose_figures_are_checked_over_a_thousand_seeds(seed: int) -> None:
+    config = TrialConfig(training=practice(observation="commanded", steps=250, seed=seed), blocks=4)
+    rows = kinematic_rows(seed)
+    expected = [rows[f"block {steps}"] for steps in (250, 500, 750, 1000)]
+    assert np.array(run_trial(config).distances_m) / H_M == pytest.approx(expected, abs=1e-12)
+
+
+def test_rivals_are_timed_by_the_wall() -> None:
+    config = TrialConfig(training=practice(steps=60), rivals=("greedy", "two-step"))
+    ticks = iter(range(10_000))
+    result = run_trial(config, timer=lambda: float(next(ticks)))
+    assert config.must_be_alone
+    assert result.wall is not None
+    assert [lane["agent"] for lane in result.wall] == ["q-learning", "greedy", "two-step"]
+    assert [lane["decision_s"] for lane in result.wall] == [50.0, 50.0, 50.0]
+    alone = run_trial(TrialConfig(training=practice(steps=60)))
+    assert result.distances_m == alone.distances_m, "who else races changes nothing"
+
+
+def test_an_agent_that_fails_on_its_walk_is_a_result() -> None:
+    clumsy = practice(agent="tests.own_agents:Clumsy", steps=1)
+    result = run_trial(TrialConfig(training=clumsy, blocks=0))
+    assert result.distances_m == ()
+    assert result.failure is not None
+    assert "I tripped" in result.failure
+
+
+def test_an_agent_that_there_is_not_is_refused() -> None:
+    with pytest.raises(UnknownName, match="q-learning, greedy, two-step"):
+        run_trial(TrialConfig(training=practice(agent="skynet")))
