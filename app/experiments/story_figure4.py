@@ -22,8 +22,8 @@ def one_seed(places: Sequence[Corner]) -> str | None:
         f"The paper draws one curve a gait. Here every curve is {counted(len(last), 'seed')}: "
         "the line is the middle of them, the band its interval, the faint lines are the seeds. "
         f"{gait_name(one['gait'])} with {at}: after {one['steps'][-1]:,} steps the worst seed "
-        f"covers {metres(min(last))}, the best {metres(max(last))}. A single seed's curve goes down "
-        f"from one block to the next in {percent(sum(down for down, _ in falls) / blocks)} of "
+        f"covers {metres(min(last))}, the best {metres(max(last))}. A single seed's curve goes "
+        f"down from one block to the next in {percent(sum(down for down, _ in falls) / blocks)} of "
         "cases; who draws one curve draws these dents as well."
     )
 

@@ -45,9 +45,10 @@ def one_seed(places: Sequence[Corner]) -> str | None:
         worst = max(min(share, 1 - share) for share in shares_)
         said.append(
             f"In {len(shares_)} of {len(settled)} settings the seeds together settle who is "
-            f"ahead when the race ends, Q-learning or greedy; one seed alone would name the wrong one in "
-            f"{percent(wrong)} of cases, and in {percent(worst)} in the worst of these settings. In "
-            f"the other {len(settled) - len(shares_)} one seed would name a winner where there is "
+            "ahead when the race ends, Q-learning or greedy; one seed alone would name the wrong "
+            f"one in {percent(wrong)} of cases, and in {percent(worst)} in the worst of these "
+            f"settings. In the other {len(settled) - len(shares_)} one seed would name a winner "
+            "where there is "
             "none to name."
         )
     return "\n".join([*said, *_backwards(places)])

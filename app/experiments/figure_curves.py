@@ -1,0 +1,131 @@
+"""Figure 4 drawn: distance against practice, every seed, the middle and its interval."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from app.experiments.corners import Corner
+from app.experiments.drawing import INK, MUTED, Picture, colours, figure, quiet
+from app.experiments.words import agent_name, gait_name, metres
+
+Curve = Mapping[str, Any]
+PANEL_IN = (3.2, 2.7)
+
+
+def panels(corner: Corner, highest_m: float, name: str) -> list[Picture]:
+    """One picture a gait."""
+    made = []
+    for number, gait in enumerate(_gaits(corner)):
+        one = figure(*PANEL_IN)
+        ax = one.subplots()
+        draw(ax, corner, gait, highest_m)
+        ax.set_title(gait_name(gait))
+        made.append(Picture(f"{name}-{number + 1}", gait_name(gait), _alt(corner, gait), one))
+    return made
+
+
+def sheet(places: Sequence[Corner]) -> Picture:
+    """A row of gaits for each corner."""
+    columns = max(len(_gaits(corner)) for corner in places)
+    width, height = PANEL_IN
+    one = figure(columns * width * 0.85, len(places) * height + 0.9)
+    rows = one.subfigures(len(places), 1, squeeze=False).ravel()
+    limit = highest(places)
+    for row, corner in zip(rows, places, strict=True):
+        row.suptitle(
+            corner.label[:1].upper() + corner.label[1:], x=0.01, ha="left", weight="bold", color=INK
+        )
+        axes = row.subplots(1, columns, squeeze=False, sharey=True).ravel()
+        for ax, gait in zip(axes, _gaits(corner), strict=False):
+            draw(ax, corner, gait, limit)
+            ax.set_title(gait_name(gait), size=10, weight="normal")
+            if ax is not axes[0]:
+                ax.set_ylabel("")
+    _key(one, places)
+    alt = " ".join(_alt(corner, gait) for corner in places for gait in _gaits(corner))
+    return Picture("figure4", "Distance against practice", alt, one)
+
+
+def highest(places: Sequence[Corner]) -> float:
+    """The top of all axes [m]."""
+    greedy = [one["greedy_m"] for corner in places for one in corner.curves if one["greedy_m"]]
+    points = [
+        point
+        for corner in places
+        for one in corner.curves
+        for block in one["points_m"]
+        for point in block
+    ]
+    return float(1.08 * max([0.05, *greedy, *points]))
+
+
+def draw(ax: Axes, corner: Corner, gait: str, highest_m: float) -> None:
+    """The curves of all agents in one gait."""
+    curves = [one for one in corner.curves if one["gait"] == gait]
+    colour = colours([one["agent"] for one in curves])
+    for one in curves:
+        _curve(ax, one, colour[one["agent"]], alone=len(curves) == 1)
+    greedy = next((one["greedy_m"] for one in curves if one["greedy_m"]), None)
+    steps = max((one["steps"][-1] for one in curves if one["steps"]), default=2000)
+    if greedy is not None:
+        ax.plot([0, steps], [greedy] * 2, color=colours([])["greedy"], lw=2, ls=(0, (4, 2)))
+        ax.text(0, greedy + 0.012 * highest_m, "greedy", va="bottom", size=9, color=MUTED)
+    ax.set_xlim(0, steps * 1.02)
+    ax.set_ylim(min(0.0, *_lowest(curves)), highest_m)
+    ax.set_xticks([0, steps / 2, steps], ["0", f"{steps // 2:,}", f"{steps:,}"])
+    ax.set_xlabel("steps of practice")
+    ax.set_ylabel("distance [m]")
+    quiet(ax, "y")
+
+
+def _curve(ax: Axes, one: Curve, colour: str, alone: bool) -> None:
+    if not one["steps"]:
+        return
+    for seed in zip(*one["points_m"], strict=True):
+        ax.plot(one["steps"], seed, color=colour, lw=0.7, alpha=0.3 if alone else 0.12)
+    if one["low_m"][0] is not None:
+        ax.fill_between(one["steps"], one["low_m"], one["high_m"], color=colour, alpha=0.4, lw=0)
+    ax.plot(one["steps"], one["iqm_m"], color=INK if alone else colour, lw=2, marker="o", ms=3.5)
+
+
+def _lowest(curves: Sequence[Curve]) -> list[float]:
+    return [0.0, *(min(block) * 1.1 for one in curves for block in one["points_m"])]
+
+
+def _gaits(corner: Corner) -> list[str]:
+    return list(dict.fromkeys(one["gait"] for one in corner.curves))
+
+
+def _key(one: Figure, places: Sequence[Corner]) -> None:
+    agents = list(dict.fromkeys(c["agent"] for corner in places for c in corner.curves))
+    colour, alone = colours(agents), len(agents) == 1
+    handles: list[Any] = []
+    for agent in agents:
+        shade, name = colour[agent], agent_name(agent)
+        line = INK if alone else shade
+        handles += [
+            Line2D(
+                [], [], color=line, lw=2, marker="o", ms=4, label=f"{name}, middle of the seeds"
+            ),
+            Patch(color=shade, alpha=0.4, lw=0, label="its 95 % interval"),
+            Line2D([], [], color=shade, lw=0.9, alpha=0.6, label="one seed"),
+        ]
+    one.legend(handles=handles, loc="outside lower center", ncols=3, labelcolor=MUTED)
+
+
+def _alt(corner: Corner, gait: str) -> str:
+    said = [
+        f"{agent_name(one['agent'])}: "
+        + ", ".join(
+            f"{metres(middle)} after {steps:,} steps"
+            for steps, middle in zip(one["steps"], one["iqm_m"], strict=True)
+        )
+        + (f"; greedy {metres(one['greedy_m'])}." if one["greedy_m"] else ".")
+        for one in corner.curves
+        if one["gait"] == gait and one["steps"]
+    ]
+    return f"{gait_name(gait)} with {corner.label}. {' '.join(said) or 'No trials yet.'}"

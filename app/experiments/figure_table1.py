@@ -1,0 +1,135 @@
+"""Table 1 drawn: every seed of every setting beside greedy and the printed number."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from app.experiments.corners import Corner
+from app.experiments.drawing import INK, MUTED, PAPER, Picture, colours, figure, quiet, spread
+from app.experiments.words import agent_name, gait_name, metres
+
+Setting = Mapping[str, Any]
+PANEL_IN = (4.7, 4.6)
+_ROW, _HEAD, _GAP = 1.0, 0.85, 0.35
+_POINTS = 0.28
+"""How far points lie over and under their row."""
+
+
+def panels(places: Sequence[Corner]) -> list[Picture]:
+    """One picture a corner."""
+    made = []
+    limits = _limits(places)
+    for number, corner in enumerate(places):
+        one = figure(*_size(corner))
+        draw(one.subplots(), corner, limits)
+        made.append(Picture(f"table1-{number + 1}", corner.label, _alt(corner), one))
+    return made
+
+
+def sheet(places: Sequence[Corner]) -> Picture:
+    """All corners on one sheet, two beside each other."""
+    columns = min(2, len(places))
+    rows = -(-len(places) // columns)
+    width, height = _size(places[0])
+    one = figure(columns * width, rows * height + 0.5)
+    axes = one.subplots(rows, columns, squeeze=False).ravel()
+    limits = _limits(places)
+    for ax, corner in zip(axes, places, strict=False):
+        draw(ax, corner, limits)
+        ax.set_title(corner.label[:1].upper() + corner.label[1:], pad=10)
+    for ax in axes[len(places) :]:
+        ax.set_visible(False)
+    one.get_layout_engine().set(hspace=0.05, wspace=0.04)  # type: ignore[union-attr,call-arg]
+    _key(one)
+    alt = " ".join(_alt(corner) for corner in places)
+    return Picture("table1", "Total distance, every seed", alt, one)
+
+
+def draw(ax: Axes, corner: Corner, limits: tuple[float, float]) -> None:
+    """A block of rows a gait, from top to bottom."""
+    learners = [one for one in corner.settings if one["role"] == "learner"]
+    colour = colours([one["agent"] for one in learners])
+    y, ticks, names = 0.0, [], []
+    for gait in dict.fromkeys(one["gait"] for one in learners):
+        rows = [one for one in learners if one["gait"] == gait]
+        ax.text(0, y, gait_name(gait), va="center", weight="bold", color=INK)
+        bottom = y - _HEAD - _ROW * (len(rows) - 1)
+        _greedy(ax, corner.setting(gait, 0, "greedy"), y - 0.35, bottom - 0.45)
+        for place, one in enumerate(rows):
+            at = y - _HEAD - _ROW * place
+            ticks.append(at)
+            names.append(f"{one['steps']:,} steps")
+            _row(ax, one, at, colour[one["agent"]])
+        y = bottom - _ROW - _GAP
+    ax.set_yticks(ticks, names)
+    ax.set_ylim(y + 0.3, 0.5)
+    ax.set_xlim(*limits)
+    ax.set_xlabel("distance in 50 steps [m]")
+    quiet(ax, "x")
+
+
+def _row(ax: Axes, one: Setting, at: float, colour: str) -> None:
+    found = one["total"]
+    if found is not None:
+        points = sorted(found["points_m"])
+        heights = [at + off for off in spread(len(points), _POINTS)]
+        ax.plot(points, heights, "o", ms=4, mew=0, color=colour, alpha=0.55)
+        if found["low_m"] is not None:
+            ax.plot([found["low_m"], found["high_m"]], [at, at], color=INK, lw=2.2)
+        ax.plot([found["iqm_m"]], [at], "o", ms=5.5, color=INK)
+    if one["published"] and one["published"]["total_m"] is not None:
+        ax.plot([one["published"]["total_m"]], [at], "D", ms=7.5, mfc=PAPER, mec=INK, mew=1.4)
+
+
+def _greedy(ax: Axes, greedy: Setting | None, top: float, bottom: float) -> None:
+    if greedy is None:
+        return
+    blue = colours([])["greedy"]
+    ax.plot([greedy["total"]["iqm_m"]] * 2, [bottom, top], color=blue, lw=2.4)
+    if greedy["finished"] is not None:
+        ax.plot(
+            [greedy["finished"]["iqm_m"]] * 2, [bottom, top], color=blue, lw=1.8, ls=(0, (2, 2))
+        )
+
+
+def key_lines() -> list[Line2D]:
+    """What the marks mean."""
+    blue, orange = colours([])["greedy"], colours([])["q-learning"]
+    return [
+        Line2D([], [], ls="", marker="o", ms=5, mew=0, color=orange, label="a seed of Q-learning"),
+        Line2D([], [], color=INK, lw=2.2, marker="o", ms=5.5, label="middle, 95 % interval"),
+        Line2D([], [], ls="", marker="D", ms=7, mfc=PAPER, mec=INK, label="printed in the paper"),
+        Line2D([], [], color=blue, lw=2.4, label="greedy, 50 steps"),
+        Line2D([], [], color=blue, lw=1.8, ls=(0, (2, 2)), label="greedy, when Q-learning ends"),
+    ]
+
+
+def _key(one: Figure) -> None:
+    one.legend(handles=key_lines(), loc="outside lower center", ncols=3, labelcolor=MUTED)
+
+
+def _size(corner: Corner) -> tuple[float, float]:
+    gaits = {one["gait"] for one in corner.settings}
+    rows = sum(one["role"] == "learner" for one in corner.settings)
+    return PANEL_IN[0], 0.8 + 0.3 * (rows + len(gaits) * (_HEAD + _GAP))
+
+
+def _limits(places: Sequence[Corner]) -> tuple[float, float]:
+    """One axis for all panels, from zero or what lies under it."""
+    totals = [s["total"] for corner in places for s in corner.settings if s["total"]]
+    points = [point for one in totals for point in one["points_m"]] or [0.5]
+    return min(0.0, *points) - 0.015, max(0.05, *points) * 1.04
+
+
+def _alt(corner: Corner) -> str:
+    said = [
+        f"{gait_name(one['gait'])}, {agent_name(one['agent'])} after {one['steps']:,} steps: "
+        f"{one['n']} seeds from {metres(min(one['total']['points_m']))} to "
+        f"{metres(max(one['total']['points_m']))}, middle {metres(one['total']['iqm_m'])}."
+        for one in corner.settings
+        if one["role"] == "learner" and one["total"]
+    ]
+    return f"Distances with {corner.label}. {' '.join(said) or 'No trials yet.'}"

@@ -1,0 +1,170 @@
+"""The report as one page that needs nothing beside it: no scripts, no other files, no network."""
+
+import json
+import shlex
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
+from markupsafe import Markup
+
+from app.experiments import tables
+from app.experiments.config import GRID, as_json, experiment_config
+from app.experiments.corners import Corner, corners
+from app.experiments.drawing import Picture, inlined
+from app.experiments.figures import panels
+from app.experiments.words import counted, gait_name, listed
+
+TITLES: Mapping[str, str] = {
+    "table1": "Table 1, many times over",
+    "figure4": "Figure 4, many times over",
+    "sweep": "A sweep",
+}
+POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
+"""The page's Content-Security-Policy; it says so itself too."""
+_OPTIONS = {
+    "agents": "agent",
+    "gaits": "gait",
+    "observations": "observation",
+    "robots": "robot",
+    **{name: name.replace("_", "-") for name in ("seeds", "seed", "simulator", *GRID)},
+}
+
+
+def page(summary: Mapping[str, Any]) -> str:
+    """The whole page as HTML; every name in it is text."""
+    places = corners(summary)
+    shown: Mapping[str, Any] = {
+        "summary": summary,
+        "title": TITLES[summary["experiment"]],
+        "policy": POLICY,
+        "lead": _lead(summary),
+        "in_short": _in_short(summary["claims"]),
+        "figures": [(heading, _inlined(group)) for heading, group in panels(summary)],
+        "corners": places,
+        "units": tables.UNITS,
+        "table1": _of("table1", tables.table1, summary, places),
+        "plain_tables": _of("figure4", tables.curves, summary, places)
+        + _of("sweep", tables.sweep, summary, places),
+        "versus": tables.versus(summary) if summary["versus"] else None,
+        "story": [
+            {"heading": told["heading"], "paragraphs": told["text"].split("\n")}
+            for told in summary["story"]
+        ],
+        "command": command(summary["config"]),
+    }
+    return _environment().get_template("report.html").render(shown)
+
+
+def command(config: Mapping[str, Any]) -> str:
+    """What to type for the same experiment: all that differs from its defaults, and the seeds."""
+    name = config["experiment"]
+    usual = as_json(experiment_config(name, {}))
+    said = ["hexapods", *(["sweep"] if name == "sweep" else ["experiment", name])]
+    for field, option in _OPTIONS.items():
+        if field in ("seeds", "seed") or config[field] != usual[field]:
+            said += [f"--{option}", _as_option(config[field])]
+    return shlex.join(said)
+
+
+def _as_option(value: Any) -> str:
+    if isinstance(value, list):
+        return ",".join(_as_option(one) for one in value)
+    if isinstance(value, Mapping):
+        return str(value["preset"]) if set(value) == {"preset"} else json.dumps(value)
+    return str(value)
+
+
+def _of(
+    experiment: str, table: Any, summary: Mapping[str, Any], places: Sequence[Corner]
+) -> list[Any]:
+    return [table(corner) for corner in places] if summary["experiment"] == experiment else []
+
+
+def _lead(summary: Mapping[str, Any]) -> str:
+    """What was run, in one line."""
+    config, trials = summary["config"], summary["trials"]
+    gaits = [g if isinstance(g, str) else None for g in config["gaits"]]
+    named = (
+        listed(gait_name(g) for g in gaits if g)
+        if len(gaits) <= 2 and all(gaits)
+        else counted(len(gaits), "gait")
+    )
+    simulator = "MuJoCo" if config["simulator"] == "mujoco" else "the kinematic simulator"
+    done = f"{trials['done']:,} of {trials['total']:,} trials"
+    return (
+        f"{counted(config['seeds'], 'seed')} a setting, {named}, "
+        f"{counted(len(config['observations']), 'reading')} of the state, "
+        f"{counted(len(config['robots']), 'robot')}, in {simulator}; {done}."
+    )
+
+
+def _in_short(claims: Sequence[Mapping[str, Any]]) -> str:
+    """How the claims came out, counted."""
+    if not claims:
+        return ""
+    count = Counter(
+        claim["verdict"] if len({one["verdict"] for one in claim["where"]}) == 1 else "depends"
+        for claim in claims
+    )
+    words = {
+        "holds": "{} in every case that was tried",
+        "does not hold": "{} in none",
+        "depends": "{} depending on how the state is read, or on the robot",
+        "not established": "for {} these seeds do not settle it",
+    }
+    said = {
+        "holds": _verb(count["holds"], "holds", "hold"),
+        "does not hold": _verb(count["does not hold"], "holds", "hold"),
+        "depends": _verb(count["depends"], "holds", "hold"),
+        "not established": counted(count["not established"], "claim"),
+    }
+    parts = [words[one].format(said[one]) for one in words if count[one]]
+    return f"Of {counted(len(claims), 'claim')} of the paper, {listed(parts)}."
+
+
+def _verb(count: int, one: str, many: str) -> str:
+    return f"{count} {one if count == 1 else many}"
+
+
+def _inlined(group: Sequence[Picture]) -> list[dict[str, Any]]:
+    return [
+        # Our own drawing; what users named in it, matplotlib has escaped.
+        {
+            "title": one.title,
+            "alt": one.alt,
+            "name": one.name,
+            "svg": Markup(inlined(one.figure, one.name)),  # noqa: S704
+        }
+        for one in group
+    ]
+
+
+@lru_cache(maxsize=1)
+def _environment() -> Environment:
+    made = Environment(
+        loader=FileSystemLoader(Path(__file__).parent / "templates"),
+        autoescape=select_autoescape(),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    made.filters["cost"] = _cost
+    made.filters["capitalize"] = lambda text: text[:1].upper() + text[1:]
+    return made
+
+
+def _cost(cost: Mapping[str, Any]) -> str:
+    """Whatever of the cost is known, in words."""
+    parts = (
+        ("wall_s", "{:,.0f} s from start to end"),
+        ("compute_s", "{:,.0f} s of computing"),
+        ("trials_per_s", "{:.2f} trials a second"),
+    )
+    said = [words.format(cost[k]) for k, words in parts if cost.get(k) is not None]
+    if cost.get("workers") is not None:
+        said.append(counted(cost["workers"], "worker"))
+    return ", ".join(said)

@@ -1,0 +1,197 @@
+"""The report's tables, cell by cell, in the words and numbers that are printed."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from app.experiments.corners import Corner
+from app.experiments.published import COLUMNS, DISTANCES, published
+from app.experiments.statistics import CONFIDENCE
+from app.experiments.story_sweep import named
+from app.experiments.words import agent_name, gait_name, metres, percent, shares
+
+UNITS: Mapping[str, str] = {
+    "m": "metres",
+    "h": "half grid sides",
+    "r": "of greedy",
+}
+MOST_ROWS = 200
+_NONE = "–"
+
+
+class Number(NamedTuple):
+    """One number in one unit."""
+
+    unit: str
+    value: str
+    span: str
+    """Its interval; empty without one."""
+    printed: str
+    """What the paper has; empty if nothing."""
+
+
+class Cell(NamedTuple):
+    """Ours beside the paper's."""
+
+    numbers: Sequence[Number]
+    quantile: str
+    """`P10`: so many percent of our seeds lie under the printed value; empty without one."""
+    outside: bool
+    """Whether the printed value lies outside the central 95 % of our seeds."""
+
+
+def table1(corner: Corner) -> dict[str, Any]:
+    """The paper's Table 1 for a corner: gaits, and in each a row a distance."""
+    steps = {one["steps"] for one in corner.settings if one["role"] == "learner"}
+    columns = [one for one in COLUMNS if one[1] in steps or not one[1]]
+    gaits = dict.fromkeys(one["gait"] for one in corner.settings)
+    return {
+        "label": corner.label,
+        "columns": [name for _, _, name in columns],
+        "gaits": [
+            {
+                "name": gait_name(gait),
+                "rows": [
+                    {
+                        "name": kind.capitalize(),
+                        "cells": [_cell(corner, gait, kind, agent, n) for agent, n, _ in columns],
+                    }
+                    for kind in DISTANCES
+                ],
+            }
+            for gait in gaits
+        ],
+    }
+
+
+def _cell(corner: Corner, gait: str, kind: str, agent: str, steps: int) -> Cell:
+    one, greedy = corner.setting(gait, steps, agent), corner.setting(gait, 0, "greedy")
+    found = one[kind] if one else None
+    half_m = next(s["half_side_m"] for s in corner.settings)
+    papers = _papers(gait, kind, agent, steps)
+    numbers = []
+    for unit, by, papers_by in (
+        ("m", 1.0, 1.0),
+        ("h", half_m, half_m),
+        ("r", _middle(greedy, kind), _papers(gait, kind, "greedy", 0)),
+    ):
+        value, span = _in(unit, found, by)
+        numbers.append(Number(unit, value, span, _printed(unit, papers, papers_by, gait)))
+    quantile = one["published"][f"{kind}_quantile"] if one and one["published"] else None
+    tail = (1 - CONFIDENCE) / 2
+    return Cell(
+        numbers,
+        "" if quantile is None else f"P{100 * quantile:.0f}",
+        quantile is not None and not tail <= quantile <= 1 - tail,
+    )
+
+
+def _in(unit: str, found: Mapping[str, Any] | None, by: float | None) -> tuple[str, str]:
+    if found is None or not by:
+        return _NONE, ""
+    value = _shown(unit, found["iqm_m"] / by)
+    if found["low_m"] is None:
+        return value, ""
+    low, high = (_shown(unit, found[end] / by).removesuffix(" %") for end in ("low_m", "high_m"))
+    return value, f"{low} to {high}"
+
+
+def _shown(unit: str, value: float) -> str:
+    if unit == "r":
+        return percent(value)
+    return metres(value).removesuffix(" m") if unit == "m" else f"{round(value, 1) + 0.0:.1f}"
+
+
+def _printed(unit: str, papers: float | None, by: float | None, gait: str) -> str:
+    if papers is None:
+        return "" if published(gait, "two-step", 0) is None else "unfinished"
+    if not by:
+        return ""
+    return f"{papers:g}" if unit == "m" else _shown(unit, papers / by)
+
+
+def _papers(gait: str, kind: str, agent: str, steps: int) -> float | None:
+    cell = published(gait, agent, steps)
+    return None if cell is None else (cell.total_m if kind == "total" else cell.finished_m)
+
+
+def _middle(one: Mapping[str, Any] | None, kind: str) -> float | None:
+    return float(one[kind]["iqm_m"]) if one and one[kind] else None
+
+
+def curves(corner: Corner) -> dict[str, Any]:
+    """Figure 4 in numbers: a row a curve, at a few places."""
+    shown = [one for one in corner.curves if one["steps"]]
+    steps = shown[0]["steps"] if shown else []
+    chosen = [at for at in (250, 500, 1000, 2000) if at in steps] or steps
+    several = len({one["agent"] for one in shown}) > 1
+    return {
+        "label": corner.label,
+        "columns": [f"{at:,} steps" for at in chosen] + ["Walk", "Greedy"],
+        "rows": [
+            {
+                "name": gait_name(one["gait"])
+                + (f", {agent_name(one['agent'])}" if several else ""),
+                "cells": [_at(one, steps.index(at)) for at in chosen]
+                + [
+                    (_NONE if one["walkers"][-1] is None else percent(one["walkers"][-1]), ""),
+                    (_NONE if one["greedy_m"] is None else metres(one["greedy_m"])[:-2], ""),
+                ],
+            }
+            for one in shown
+        ],
+        "left_out": 0,
+    }
+
+
+def _at(curve: Mapping[str, Any], block: int) -> tuple[str, str]:
+    value, low, high = (
+        metres(curve[k][block])[:-2] if curve[k][block] is not None else None
+        for k in ("iqm_m", "low_m", "high_m")
+    )
+    return value or _NONE, f"{low} to {high}" if low and high else ""
+
+
+def sweep(corner: Corner) -> dict[str, Any]:
+    """Every combination over all gaits, the best first."""
+    found = [one for one in corner.pooled if one["relative"]]
+    best = sorted(found, key=lambda one: -float(one["relative"]["iqm"]))
+    return {
+        "label": corner.label,
+        "columns": ["Of greedy's distance", "Walk", "Ahead at the finish", "Seeds"],
+        "rows": [
+            {
+                "name": named(one, corner.pooled),
+                "cells": [
+                    (shares(one["relative"]), ""),
+                    (shares(one["walkers"]), ""),
+                    (shares(one["beats_greedy"]) if one["beats_greedy"] else _NONE, ""),
+                    (f"{one['n']:,}", ""),
+                ],
+            }
+            for one in best[:MOST_ROWS]
+        ],
+        "left_out": max(0, len(best) - MOST_ROWS),
+    }
+
+
+def versus(summary: Mapping[str, Any]) -> dict[str, Any]:
+    """Agent against agent."""
+    said = {"yes": "the first", "no": "the second", "not established": "not established"}
+    pairs = summary["versus"]
+    return {
+        "label": "",
+        "columns": ["Probability", "Further"],
+        "rows": [
+            {
+                "name": f"{agent_name(one['a'])} before {agent_name(one['b'])}, "
+                f"{gait_name(one['gait'])}, {one['observation']}, {one['robot']}, "
+                f"{one['blocks'] * one['steps']:,} steps",
+                "cells": [
+                    (shares({**one, "share": one["probability"]}), ""),
+                    (said[one["verdict"]], ""),
+                ],
+            }
+            for one in pairs[:MOST_ROWS]
+        ],
+        "left_out": max(0, len(pairs) - MOST_ROWS),
+    }

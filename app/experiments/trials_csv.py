@@ -1,0 +1,75 @@
+"""Every trial as a row of numbers that anyone can compute with."""
+
+import csv
+from collections.abc import Iterator, Mapping
+from io import StringIO
+from typing import Any
+
+from app.experiments.config import GRID, ExperimentConfig
+from app.experiments.plan import Plan, Trial
+from app.experiments.trial import TrialResult
+
+_FIRST = ("trial", "role", "gait", "observation", "robot", "agent")
+_RATES = tuple(name for name in GRID if name != "steps")
+_LAST = (
+    "seed_number",
+    "seed",
+    "practised_steps",
+    "distance_m",
+    "finished_distance_m",
+    "elapsed_s",
+    "transitions",
+    "failure",
+)
+COLUMNS = (*_FIRST, *_RATES, *_LAST)
+
+
+def trials_csv(
+    config: ExperimentConfig, results: Mapping[str, TrialResult], set_aside: Mapping[str, str]
+) -> bytes:
+    """All trials that were done or set aside, in the order of the plan, a row a distance.
+
+    Args:
+        config: the experiment.
+        results: by trial key.
+        set_aside: why, by trial key.
+    """
+    out = StringIO()
+    writer = csv.writer(out)
+    writer.writerow(COLUMNS)
+    for trial in Plan(config).trials():
+        if trial.key in results:
+            writer.writerows(_rows(trial, results[trial.key]))
+        elif trial.key in set_aside:
+            why = f"set aside: {set_aside[trial.key]}"
+            writer.writerows(_rows(trial, TrialResult(failure=why)))
+    return out.getvalue().encode()
+
+
+def _rows(trial: Trial, result: TrialResult) -> Iterator[list[Any]]:
+    training, setting = trial.config.training, trial.setting
+    learns = setting.role != "reference"
+    named = [trial.key, setting.role, setting.gait, training.observation, setting.robot]
+    rates = [
+        getattr(training, name) if learns or name in ("divisions", "grid_side_m") else None
+        for name in _RATES
+    ]
+    for block, distance_m in enumerate(result.distances_m or (None,)):
+        yield [
+            *map(_text, named),
+            _text(training.agent),
+            *rates,
+            trial.seed_number,
+            training.seed,
+            training.steps * (1 + block) if learns else 0,
+            distance_m,
+            result.finished_distance_m,
+            result.elapsed_s,
+            result.transitions or None,
+            _text(result.failure or ""),
+        ]
+
+
+def _text(value: str) -> str:
+    """A spreadsheet takes text that begins like this for a formula; a name never needs to."""
+    return f"'{value}" if value.startswith(("=", "+", "-", "@", "\t", "\r")) else value
