@@ -8,6 +8,9 @@ BIN := $(VENV)/bin
 # Two installs into one environment: running must not wait for the tools of the tests.
 RUN_STAMP := $(VENV)/.installed-run
 DEV_STAMP := $(VENV)/.installed-dev
+# A third for the example with a deep network.
+DQN_STAMP := $(VENV)/.installed-dqn
+TORCH := torch==2.13.0
 
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 # One version of each package for every platform and Python, with the hashes of all its files,
@@ -24,10 +27,10 @@ run: $(RUN_STAMP) ## Serve the dashboard; options by ARGS="--port 9000 --share"
 	$(BIN)/hexapods serve $(ARGS)
 
 .PHONY: venv
-venv: $(DEV_STAMP) ## Make or update .venv with everything a developer needs
+venv: $(DQN_STAMP) ## Make or update .venv with everything a developer needs
 
 .PHONY: test
-test: $(DEV_STAMP) ## Run every check; this is the gate
+test: $(DQN_STAMP) ## Run every check; this is the gate
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
 	$(BIN)/mypy
@@ -48,11 +51,16 @@ format: $(DEV_STAMP) ## Format the code and apply the linter's safe fixes
 bench: $(RUN_STAMP) ## Measure speed; JSON by ARGS=--json
 	$(BIN)/hexapods bench $(ARGS)
 
+# The third is resolved as for Windows, where PyTorch depends on no CUDA packages.
 .PHONY: lock
 lock: $(DEV_STAMP) ## Pin the newest versions that pyproject.toml allows
 	$(COMPILE) --upgrade pyproject.toml --group build --output-file requirements.lock
 	$(COMPILE) --upgrade pyproject.toml --group dev --constraint requirements.lock \
 		--output-file requirements-dev.lock
+	printf 'stable-baselines3\n$(TORCH)\n' | \
+		$(subst --universal,--python-platform windows,$(COMPILE)) --upgrade - \
+		--constraint requirements-dev.lock --no-emit-package torch \
+		--output-file requirements-dqn.lock
 
 .PHONY: clean
 clean: ## Remove the environment and every cache
@@ -73,4 +81,13 @@ $(RUN_STAMP): requirements.lock pyproject.toml .ci/find-python
 $(DEV_STAMP): requirements-dev.lock $(RUN_STAMP)
 	@echo "Installing what the checks need into $(VENV)"
 	@$(INSTALL) --require-hashes --requirement requirements-dev.lock
+	@touch $@
+
+# PyTorch is in no lock: its build for Linux in the usual index brings gigabytes of CUDA packages,
+# which no check needs. pip takes a build for the processor alone (2.13.0+cpu) where it knows one.
+# All else that it depends on is pinned, and there before it.
+$(DQN_STAMP): requirements-dqn.lock $(DEV_STAMP)
+	@echo "Installing what the example of a deep network needs into $(VENV)"
+	@$(INSTALL) --no-deps --require-hashes --requirement requirements-dqn.lock
+	@$(INSTALL) $(TORCH)
 	@touch $@

@@ -10,18 +10,19 @@ from packaging.requirements import Requirement
 CHECKOUT = Path(__file__).parent.parent
 RUN_LOCK = CHECKOUT / "requirements.lock"
 DEV_LOCK = CHECKOUT / "requirements-dev.lock"
+DQN_LOCK = CHECKOUT / "requirements-dqn.lock"
 
 
 def pinned_versions(lock: Path) -> dict[str, str]:
     return dict(re.findall(r"^([a-z0-9-]+)==([^ ]+) ", lock.read_text(), flags=re.MULTILINE))
 
 
-@pytest.mark.parametrize("lock", [RUN_LOCK, DEV_LOCK], ids=lambda lock: lock.name)
+@pytest.mark.parametrize("lock", [RUN_LOCK, DEV_LOCK, DQN_LOCK], ids=lambda lock: lock.name)
 def test_every_package_is_pinned_by_hash_and_names_no_place(lock: Path) -> None:
     text = lock.read_text()
 
     assert "/" not in text  # neither an address nor a path
-    packages = re.findall(r"^[^ #].*\n(.*)", text, flags=re.MULTILINE)
+    packages = re.findall(r"^[^ #\n].*\n(.*)", text, flags=re.MULTILINE)
     assert len(packages) == len(pinned_versions(lock))
     assert all(line.startswith("    --hash=sha256:") for line in packages)
 
@@ -44,3 +45,22 @@ def test_the_lock_is_current(lock: Path, groups: list[str]) -> None:
         assert requirement.specifier.contains(pinned[requirement.name]), (
             f"run `make lock`: {wanted}"
         )
+
+
+def test_the_example_of_a_deep_network_changes_nothing_that_is_pinned_already() -> None:
+    pinned, dev = pinned_versions(DQN_LOCK), pinned_versions(DEV_LOCK)
+
+    assert {name: dev[name] for name in pinned.keys() & dev.keys()}.items() <= pinned.items()
+
+
+def test_pytorch_is_pinned_by_the_makefile_alone_and_brings_no_cuda() -> None:
+    extra = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"][
+        "optional-dependencies"
+    ]["dqn"]
+    pinned = pinned_versions(DQN_LOCK)
+    torch = re.search(r"^TORCH := torch==(.*)$", (CHECKOUT / "Makefile").read_text(), re.MULTILINE)
+
+    assert not [name for name in pinned if re.match("torch|triton|nvidia|cuda", name)]
+    assert torch
+    for requirement in map(Requirement, extra):
+        assert requirement.specifier.contains({**pinned, "torch": torch[1]}[requirement.name])

@@ -1,0 +1,101 @@
+"""A deep Q-network joins the race: Stable-Baselines3 trains it on the Gymnasium environment.
+
+    python dqn_agent.py --gait left-right-origin --steps 1000 --out dqn.npz
+    hexapods race --gait left-right-origin --lane dqn_agent:Agent=dqn.npz --lane greedy
+
+Only the first line needs `racing-hexapods[dqn]`; in the race the network is three matrices.
+"""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from app.assembly import build_learner, finish_training
+from app.runs.config import TrainingConfig
+from app.runs.tables import snapshot, to_bytes
+
+
+class Agent:
+    """Takes the legal action that the network values most. It learns beforehand, not here."""
+
+    def __init__(self, problem):
+        self.shape = len(problem.pairs), len(problem.cells_m)
+        self.layers = []  # of each its weights and biases
+
+    def act(self, observation, legal):
+        signal = np.eye(self.shape[1])[list(observation)].ravel()  # the cell of each pair, one-hot
+        for number, (weights, biases) in enumerate(self.layers):
+            signal = weights @ (np.maximum(signal, 0) if number else signal) + biases
+        values = signal.reshape(self.shape)
+        return max(legal, key=lambda action: values[action.pair, action.cell])
+
+    def learn(self, transition):
+        pass
+
+    def state(self):
+        arrays = {}
+        for number, (weights, biases) in enumerate(self.layers):
+            arrays |= {f"weights{number}": weights.copy(), f"biases{number}": biases.copy()}
+        return arrays
+
+    def load(self, state):
+        numbers = range(len(state) // 2)
+        self.layers = [(state[f"weights{number}"], state[f"biases{number}"]) for number in numbers]
+
+
+def practise(walk, steps, seed):
+    """Train a network on `RacingHexapods/Walk-v0`; what `Agent.load` takes."""
+    import gymnasium
+    import torch
+    from stable_baselines3 import DQN
+
+    torch.set_num_threads(1)  # is quicker with a network so small
+    environment = gymnasium.make("app.environment:RacingHexapods/Walk-v0", **walk)
+    # In centimetres, because a network learns badly from rewards of a hundredth.
+    environment = gymnasium.wrappers.TransformReward(environment, lambda reward_m: 100 * reward_m)
+    dqn = DQN(
+        "MlpPolicy",
+        environment,
+        gamma=0.9,
+        learning_rate=0.001,
+        learning_starts=100,
+        target_update_interval=200,
+        exploration_fraction=0.5,
+        seed=seed,
+        device="cpu",
+    ).learn(steps)
+    layers = [layer for layer in dqn.q_net.q_net if isinstance(layer, torch.nn.Linear)]
+    arrays = {}
+    for number, layer in enumerate(layers):
+        arrays[f"weights{number}"] = layer.weight.detach().numpy().astype(float)
+        arrays[f"biases{number}"] = layer.bias.detach().numpy().astype(float)
+    return arrays
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--gait", default="left-right-origin")
+    parser.add_argument("--simulator", default="mujoco")
+    parser.add_argument("--steps", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", type=Path, default=Path("dqn.npz"))
+    options = parser.parse_args()
+
+    walk = {"gait": options.gait, "simulator": options.simulator}
+    config = TrainingConfig(
+        **walk, steps=options.steps, seed=options.seed, agent="dqn_agent:Agent", evaluate_every=0
+    )
+    learner = build_learner(config)
+    learner.walker.agent.load(practise(walk, options.steps, options.seed))
+    learner.step = options.steps
+    result = finish_training(learner, config)
+    options.out.write_bytes(to_bytes(snapshot(learner, config)))
+    print(
+        f"After {options.steps:,} steps it walks {result['distance_m']:.2f} m, "
+        f"greedy {result['greedy_distance_m']:.2f} m. The network is in {options.out}."
+    )
+
+
+if __name__ == "__main__":
+    main()
