@@ -5,10 +5,21 @@ import sys
 from collections.abc import Sequence
 
 from app import __version__
-from app.cli import bench, doctor, export, imports, race, runs, serve, train
+from app.cli import (
+    bench,
+    doctor,
+    experiment,
+    export,
+    imports,
+    race,
+    runs,
+    serve,
+    sweep,
+    train,
+)
 from app.domain.errors import HexapodError
 
-COMMANDS = (serve, train, race, runs, export, imports, doctor, bench)
+COMMANDS = (serve, train, race, experiment, sweep, runs, export, imports, doctor, bench)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

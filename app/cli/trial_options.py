@@ -1,0 +1,104 @@
+"""Options of what runs many trials: what is tried, on which machines, and where it is kept."""
+
+import argparse
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+from app.cli.options import read_gait, read_robot, whole
+from app.domain.gait import NAMED_GAITS, GaitSpec
+from app.domain.observation import OBSERVATIONS
+from app.domain.robot import PRESETS, Robot
+from app.experiments.cluster import Where
+from app.runs.config import SIMULATORS
+
+T = TypeVar("T")
+
+
+def add_trial_options(parser: argparse.ArgumentParser, observations: str, robots: str) -> None:
+    """What is tried, beside what a command has of its own.
+
+    Args:
+        parser: of the command.
+        observations: what is tried if none is named, in words.
+        robots: likewise.
+    """
+    parser.add_argument("--seeds", type=whole, help="of each learner (default 30)")
+    parser.add_argument("--seed", type=whole, help="of which all are spawned (default 0)")
+    parser.add_argument(
+        "--gait", action="append", help=f"all (default), or of {', '.join(NAMED_GAITS)}; or JSON"
+    )
+    parser.add_argument(
+        "--observation",
+        action="append",
+        help=f"both, or of {', '.join(OBSERVATIONS)} (default {observations})",
+    )
+    parser.add_argument(
+        "--robot",
+        action="append",
+        help=f"of {', '.join(PRESETS)}; a TOML file, or JSON (default {robots})",
+    )
+    parser.add_argument("--simulator", help=f"{' or '.join(SIMULATORS)} (default mujoco)")
+
+
+def add_machine_options(parser: argparse.ArgumentParser) -> None:
+    """On which machines, and where the results go."""
+    parser.add_argument("--workers", type=whole, help="processes here (default one a core)")
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS", help="of a Dask cluster, tcp://HOST:PORT or tls://…"
+    )
+    for name, what in (("ca", "the CA"), ("cert", "the certificate"), ("key", "its key")):
+        parser.add_argument(f"--tls-{name}", metavar="PEM", help=f"{what} for a tls:// scheduler")
+    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for results and report")
+    parser.add_argument(
+        "--retry", action="store_true", help="also what was set aside when it was run before"
+    )
+    parser.add_argument("--json", action="store_true", help="print the summary as JSON")
+
+
+def where_from(options: argparse.Namespace) -> Where:
+    """What `add_machine_options` read."""
+    names = ("workers", "scheduler", "tls_ca", "tls_cert", "tls_key")
+    return Where(**{name: getattr(options, name) for name in names})
+
+
+def tried_from(options: argparse.Namespace) -> dict[str, Any]:
+    """What `add_trial_options` read, as fields of an experiment; None where nothing was said."""
+    return {
+        "seeds": options.seeds,
+        "seed": options.seed,
+        "simulator": options.simulator,
+        "gaits": _several(options.gait, _gaits),
+        "observations": _several(options.observation, _observations),
+        "robots": _several(options.robot, _robots),
+    }
+
+
+def _several(
+    texts: Sequence[str] | None, read: Callable[[str], Sequence[T]]
+) -> tuple[T, ...] | None:
+    """What an option that may be there several times names in all."""
+    return None if texts is None else tuple(value for text in texts for value in read(text))
+
+
+def split(text: str) -> list[str]:
+    """What a list with commas names."""
+    return [part.strip() for part in text.split(",")]
+
+
+def _gaits(text: str) -> Sequence[str | GaitSpec]:
+    if text == "all":
+        return list(NAMED_GAITS)
+    return [read_gait(part) for part in _parts(text)]
+
+
+def _observations(text: str) -> Sequence[str]:
+    return list(OBSERVATIONS) if text in ("both", "all") else split(text)
+
+
+def _robots(text: str) -> Sequence[Robot]:
+    return [read_robot(part) for part in _parts(text)]
+
+
+def _parts(text: str) -> list[str]:
+    return [text] if text.lstrip().startswith("{") else split(text)

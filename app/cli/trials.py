@@ -1,0 +1,150 @@
+"""Runs an experiment's trials behind a progress bar, keeps them, and reports what they show."""
+
+import argparse
+import json
+import signal
+from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+from app.cli.terminal import progress, show_table
+from app.domain.errors import InvalidInput
+from app.experiments.cluster import Where, cores
+from app.experiments.config import ExperimentConfig
+from app.experiments.engine import run_trials
+from app.experiments.folder import ResultsFolder, open_results
+from app.experiments.plan import Plan, Trial
+
+_INTERRUPTED = 130
+_RATE_WINDOW_S = 300.0  # trials of one experiment take from a second to half a minute
+_HEAD = ("setting", "seeds", "total m", "95 %", "finished m", "of greedy")
+
+
+def run_experiment(config: ExperimentConfig, where: Where, options: argparse.Namespace) -> int:
+    """Run what is not done yet, and write the report.
+
+    Args:
+        config: the experiment.
+        where: its machines.
+        options: `out`, `retry` and `json` of the command line.
+
+    Raises:
+        HexapodError: if it cannot be run, or not to its end; what was done is kept.
+    """
+    plan = Plan(config)
+    path: Path = options.out or Path(f"{config.experiment}-results")
+    say = _nothing if options.json else print
+    with open_results(path, config) as folder:
+        undone = _undone(plan, folder, options.retry)
+        done = plan.total - len(undone)
+        before = f"; {done:,} are there already" if done else ""
+        say(f"{plan.total:,} trials {_on(where)}, kept in {path}{before}")
+        try:
+            with _ended_by_sigterm():
+                _run(undone, plan, where, folder)
+        except KeyboardInterrupt:
+            kept = len(folder.results) + len(folder.set_aside)
+            say(
+                f"\nInterrupted: {kept:,} of {plan.total:,} trials are kept in {path}; the same "
+                "command goes on from there."
+            )
+            return _INTERRUPTED
+        summary = _report(plan, where, folder)
+    if options.json:
+        print(json.dumps(summary))
+    else:
+        _tell(summary, path)
+    return 0
+
+
+def _undone(plan: Plan, folder: ResultsFolder, retry: bool) -> list[Trial]:
+    known = folder.results if retry else {**folder.results, **folder.set_aside}
+    return [trial for trial in plan.trials() if trial.key not in known]
+
+
+def _on(where: Where) -> str:
+    if where.scheduler is not None:
+        return f"on the cluster of {where.scheduler}"
+    workers = where.workers or cores()
+    return f"on {workers} worker{'s' if workers > 1 else ''}"
+
+
+def _run(undone: list[Trial], plan: Plan, where: Where, folder: ResultsFolder) -> None:
+    with progress("trials", _RATE_WINDOW_S) as bar, closing(run_trials(undone, where)) as outcomes:
+        task = bar.add_task("trials", total=plan.total, completed=plan.total - len(undone))
+        for outcome in outcomes:
+            folder.add(outcome)
+            aside = f", {len(folder.set_aside)} set aside" if folder.set_aside else ""
+            bar.update(task, advance=1, description=f"trials{aside}")
+
+
+def _report(plan: Plan, where: Where, folder: ResultsFolder) -> dict[str, Any]:
+    # SciPy and Matplotlib take a second to import, which other commands need not.
+    from app.experiments.report import write_report  # noqa: PLC0415
+    from app.experiments.summary import summarise  # noqa: PLC0415
+
+    keys = [trial.key for trial in plan.trials()]
+    results = {key: folder.results[key] for key in keys if key in folder.results}
+    aside = {key: folder.set_aside[key] for key in keys if key in folder.set_aside}
+    cost = {
+        "wall_s": folder.worked_s,
+        "compute_s": folder.compute_s,
+        "trials_per_s": len(folder.results) / folder.worked_s,
+        "workers": None if where.scheduler is not None else where.workers or cores(),
+    }
+    summary = summarise(plan.config, results, aside, cost)
+    try:
+        write_report(folder.path, summary, results)
+    except OSError as error:
+        raise InvalidInput(
+            f"cannot write the report to {folder.path} ({error.strerror}); all trials are kept "
+            "there, and the same command writes it once it can"
+        ) from error
+    return summary
+
+
+def _tell(summary: Mapping[str, Any], path: Path) -> None:
+    rows = [_row(setting) for setting in summary["settings"]]
+    show_table("Interquartile means over the seeds", _HEAD, rows, long_names=True)
+    trials, cost = summary["trials"], summary["cost"]
+    for one in trials["set_aside"]:
+        print(f"Set aside: {one['key']}: {one['reason']}")
+    for claim in summary["claims"]:
+        print(f"{claim['verdict']:>15}: {claim['claim']}")
+    print(
+        f"{trials['done']:,} trials in {cost['wall_s']:,.0f} s, {cost['trials_per_s']:.2f} a "
+        f"second. The report is {path / 'report.html'}."
+    )
+
+
+def _row(setting: Mapping[str, Any]) -> tuple[str, ...]:
+    total, finished, relative = (setting[name] for name in ("total", "finished", "relative"))
+    between = total is not None and total["low_m"] is not None
+    return (
+        setting["key"].replace("/", " "),
+        str(setting["n"]),
+        "" if total is None else f"{total['iqm_m']:.3f}",
+        f"{total['low_m']:.3f}–{total['high_m']:.3f}" if between else "",
+        "" if finished is None else f"{finished['iqm_m']:.3f}",
+        "" if relative is None else f"{100 * relative['iqm']:.0f} %",
+    )
+
+
+@contextmanager
+def _ended_by_sigterm() -> Iterator[None]:
+    """Who is told to end leaves as after Ctrl-C, and so takes the cluster down."""
+
+    def end(_number: int, _frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _nothing(_: str) -> None:
+    """For programs that read JSON."""
