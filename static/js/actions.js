@@ -14,13 +14,15 @@ export const problems = signal({});
 export const pending = signal({});
 /** Fields that the server refused. */
 export const refusedFields = computed(() => problems.value.start?.fields ?? []);
+/** Fields that the server refused at a place. */
+export const refusals = (place) => problems.value[place]?.fields ?? [];
 /** A passing remark: {text} or null. */
 export const remark = signal(null);
 
 const mark = (map, place, value) => (map.value = { ...map.value, [place]: value });
 
 /** Do something once at a time, and keep what goes wrong. */
-async function attempt(place, act) {
+export async function attempt(place, act) {
   if (pending.value[place]) return null;
   mark(pending, place, true);
   mark(problems, place, null);
@@ -80,6 +82,10 @@ const startRace = (how) =>
 
 const startTraining = () =>
   attempt("start", async () => take(await api.startTraining(trainingBody(form.value))));
+
+/** Practise on from a table that there is, at the rates that the form has now. */
+export const continueWith = (table) =>
+  attempt("start", async () => take(await api.startTraining(trainingBody(form.value, table.id))));
 
 // ---- what runs
 

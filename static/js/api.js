@@ -75,7 +75,10 @@ const newKey = () =>
 
 export const startTraining = (body) => start("trainings", body);
 export const startRace = (body) => start("races", body);
+export const startExperiment = (body) => start("experiments", body);
 export const tuneTraining = (id, changes) => call("PATCH", address({ kind: "training", id }), changes);
+
+export const whatIf = (body) => call("POST", "what-if", body);
 
 /** `verb` is stop, pause or resume. */
 export const tell = (run, verb) => call("POST", `${address(run)}/${verb}`);
@@ -85,11 +88,14 @@ export const getCurve = (id) => call("GET", `${address({ kind: "training", id })
 export const getTimeline = (id, clock) =>
   call("GET", `${address({ kind: "race", id })}/timeline?clock=${clock}`);
 
+export const getSummary = (id) => call("GET", `${address({ kind: "experiment", id })}/summary`);
+
 export const putStage = (changes) => call("PUT", "stage", changes);
 
 /** What of a run can be taken away: [label, address]. */
 export function downloads(run) {
   const at = (rest) => new URL(`${address(run)}/${rest}`, BASE).href;
+  if (run.kind === "experiment") return [["Every trial (CSV)", at("trials?format=csv")], ["Summary (JSON)", at("summary")]];
   if (run.kind === "race") return [["Recording", at("recording")]];
   return [
     ["Curve (CSV)", at("curve?format=csv")],
@@ -97,3 +103,8 @@ export function downloads(run) {
     ["Q-table (npz)", at("q-table?format=npz")],
   ];
 }
+
+/** The report that one can hand out, of an experiment that has ended. */
+export const reportAddress = (run) => new URL(`${address(run)}/report`, BASE).href;
+export const fileAddress = (run, name) =>
+  new URL(`${address(run)}/files/${name.split("/").map(encodeURIComponent).join("/")}`, BASE).href;

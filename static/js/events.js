@@ -2,6 +2,7 @@
 
 const NAMES = [
   "snapshot", "run", "run-deleted", "evaluation", "reference", "rates", "stage", "viewers", "scene",
+  "summary",
 ];
 const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 8000;

@@ -111,6 +111,16 @@ function practice(values, continueFrom) {
 export const trainingBody = (values, continueFrom = null) =>
   ({ ...walk(values), ...practice(values, continueFrom) });
 
+/** What ideal robots are to try: the practice, without what only this one run has. */
+export function whatIfBody(values) {
+  const { gait, robot, divisions, grid_side_m, steps, observation, alpha, gamma } = values;
+  const { epsilon_start, epsilon_end, steps_per_episode } = values;
+  return {
+    gait, robot, divisions, grid_side_m, steps, observation, alpha, gamma, epsilon_start, epsilon_end,
+    steps_per_episode,
+  };
+}
+
 /**
  * A race in which whoever learns practises first, goes on from `continueFrom`, or uses `table`.
  * @param learns tells whether an agent does

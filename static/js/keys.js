@@ -1,6 +1,6 @@
 // The keyboard, on the page and forwarded from the stage.
 import { doNext, pauseOrPlay } from "./actions.js";
-import { helpIsOpen, shortcuts, view } from "./page.js";
+import { helpIsOpen, place, shortcuts, view } from "./page.js";
 
 export const KEYS = [
   ["Space", "pause and go on"],
@@ -15,6 +15,8 @@ const PRESSED_BY_SPACE = "button:not([aria-disabled=true]), a, summary, input:no
 
 /** Do what a key says; true if it said something. */
 function act(key) {
+  // What one does not see is not started by a slip of the finger.
+  if (place.value === "experiments" && key !== "?") return false;
   if (key === " ") pauseOrPlay();
   else if (key === "r" || key === "R") doNext();
   else if (/^[1-8]$/.test(key)) view.value = key;

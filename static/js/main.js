@@ -5,6 +5,9 @@ import { getOptions } from "./api.js";
 import { App } from "./components/app.js";
 import { followCurves } from "./curves.js";
 import { openEvents } from "./events.js";
+import { followAddress } from "./experiments/address.js";
+import { followExperiments } from "./experiments/selection.js";
+import { followSummary } from "./experiments/summaries.js";
 import { readAddress, useDefaults, writeAddress } from "./form.js";
 import { html } from "./html.js";
 import { listenForKeys } from "./keys.js";
@@ -12,6 +15,7 @@ import { announceOutcomes } from "./outcome.js";
 import { applyEvent, connection, isLockedOut, options, version } from "./store.js";
 import { followTheme } from "./theme.js";
 import { followTimeline } from "./timeline.js";
+import { followWhatIf } from "./what-if.js";
 
 async function loadOptions(attempt = 0) {
   try {
@@ -25,6 +29,7 @@ async function loadOptions(attempt = 0) {
   useDefaults(options.value);
   readAddress();
   writeAddress();
+  followWhatIf();
 }
 
 /** A server of another version came back under this page, whose scripts may no longer fit. */
@@ -40,6 +45,9 @@ followTheme();
 reloadAfterUpgrade();
 followCurves();
 followTimeline();
+followAddress();
+followExperiments();
+followSummary();
 announceOutcomes();
 listenForKeys();
 openEvents(applyEvent, (state) => (connection.value = state));

@@ -24,9 +24,10 @@ function recall() {
   }
 }
 
-const viewOf = (hash) => (hash === "#runs" ? "runs" : "race");
+const VIEWS = ["experiments", "runs"];
+const viewOf = (hash) => VIEWS.find((name) => hash.slice(1).split("?")[0] === name) ?? "race";
 
-/** "race" or "runs", as the address has it. */
+/** "race", "experiments" or "runs", as the address has it. */
 export const place = signal(viewOf(location.hash));
 addEventListener("hashchange", () => (place.value = viewOf(location.hash)));
 

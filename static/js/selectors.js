@@ -11,9 +11,13 @@ export const hasTable = (run) => run?.kind === "training" && TABLE_STATES.has(ru
 
 export const isOperator = computed(() => role.value === "operator");
 
-export const newestFirst = computed(() =>
+/** Every run that there is. */
+export const everyRun = computed(() =>
   [...runs.value.values()].sort((a, b) => b.created_at.localeCompare(a.created_at)),
 );
+
+/** Trainings and races, which can be on stage; experiments cannot. */
+export const newestFirst = computed(() => everyRun.value.filter(({ kind }) => kind !== "experiment"));
 
 /** Runs that this tab started, newest first. */
 const mine = signal(recall());

@@ -23,6 +23,9 @@ export const references = signal({});
 /** Run id → the newest rates and pace that someone set while it ran. */
 export const rates = signal({});
 
+/** Run id → how many trials the newest summary of that experiment is of. */
+export const summarised = signal({});
+
 const put = (map, key, value) => (map.value = { ...map.value, [key]: value });
 
 const handlers = {
@@ -47,6 +50,7 @@ const handlers = {
   rates: ({ run_id, ...changed }) =>
     put(rates, run_id, { ...rates.value[run_id], ...changed }),
   stage: (data) => (stage.value = data),
+  summary: ({ run_id, done }) => put(summarised, run_id, done),
   viewers: ({ count }) => (viewers.value = count),
   scene: (data) => (scene.value = data),
 };

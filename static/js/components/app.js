@@ -1,8 +1,9 @@
-// The page: header, the two views, and what lies over them.
+// The page: header, the three views, and what lies over them.
 import { announcement } from "../outcome.js";
 import { html } from "../html.js";
 import { place } from "../page.js";
 import { isLockedOut } from "../store.js";
+import { Experiments } from "./experiments/experiments.js";
 import { Header } from "./header.js";
 import { HelpDialog } from "./help.js";
 import { RaceView } from "./race-view.js";
@@ -10,14 +11,14 @@ import { Runs } from "./runs.js";
 import { Toast } from "./toast.js";
 
 export function App() {
-  const inRuns = place.value === "runs";
   return html`
     <a class="skip" href="#main" onClick=${skip}>Skip to the page</a>
     <${Header} />
     <main id="main" tabindex="-1">
       ${isLockedOut.value ? html`<${LockedOut} />` : html`
-        <${RaceView} isHidden=${inRuns} />
-        ${inRuns && html`<${Runs} />`}
+        <${RaceView} isHidden=${place.value !== "race"} />
+        ${place.value === "experiments" && html`<${Experiments} />`}
+        ${place.value === "runs" && html`<${Runs} />`}
       `}
     </main>
     <${HelpDialog} />

@@ -12,6 +12,7 @@ import { agentOf, interruptedRun, isOperator, myWork, offStage, shownRun, work }
 import { options, scene } from "../store.js";
 import { Icon } from "./icon.js";
 import { Problem } from "./problem.js";
+import { ProgressBar } from "./progress-bar.js";
 import { Settings } from "./settings.js";
 
 export function Controls() {
@@ -96,13 +97,10 @@ function Running() {
 function Progress() {
   const shown = progress.value;
   if (!shown) return null;
-  const percent = Math.round(100 * shown.share);
   return html`
     <div class="progress">
       <p><span>${shown.label}</span><span class="dim">${shown.left}</span></p>
-      <div class="bar" role="progressbar" aria-label=${shown.label} aria-valuenow=${percent} aria-valuemin="0" aria-valuemax="100">
-        <i style=${{ width: `${100 * shown.share}%` }}></i>
-      </div>
+      <${ProgressBar} label=${shown.label} share=${shown.share} />
     </div>
   `;
 }

@@ -6,7 +6,7 @@ import { connection, viewers } from "../store.js";
 import { nextTheme, theme } from "../theme.js";
 import { Icon } from "./icon.js";
 
-const VIEWS = [["race", "Race", "#"], ["runs", "Runs", "#runs"]];
+const VIEWS = [["race", "Race", "#"], ["experiments", "Experiments", "#experiments"], ["runs", "Runs", "#runs"]];
 
 export const Header = () => html`
   <header class="header">

@@ -9,6 +9,7 @@ import { RaceChart } from "./race-chart.js";
 import { Scoreboard } from "./scoreboard.js";
 import { Stage } from "./stage.js";
 import { SharedChoices } from "./transport.js";
+import { WhatIf } from "./what-if.js";
 
 /** Hidden rather than gone while another view is open, so that the stage goes on. */
 export const RaceView = ({ isHidden }) => html`
@@ -17,6 +18,7 @@ export const RaceView = ({ isHidden }) => html`
     ${isNarrow.value && isOperator.value && html`<div class="shared-choices"><${SharedChoices} /></div>`}
     <div class="side">
       <${Controls} />
+      <${WhatIf} />
       <${Scoreboard} />
     </div>
     <div class="below">

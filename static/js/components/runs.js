@@ -2,17 +2,18 @@
 import { useState } from "preact/hooks";
 import { listRuns } from "../api.js";
 import { html } from "../html.js";
-import { newestFirst } from "../selectors.js";
+import { everyRun } from "../selectors.js";
 import { keepRun } from "../store.js";
+import { ExperimentRunRow } from "./experiments/experiment-run-row.js";
 import { RunRow } from "./run-row.js";
 
-const KINDS = [["all", "All"], ["training", "Trainings"], ["race", "Races"]];
+const KINDS = [["all", "All"], ["training", "Trainings"], ["race", "Races"], ["experiment", "Experiments"]];
 const STATES = ["any state", "running", "paused", "queued", "finished", "stopped", "failed", "interrupted"];
 
 export function Runs() {
   const [kind, setKind] = useState("all");
   const [state, setState] = useState("any state");
-  const all = newestFirst.value;
+  const all = everyRun.value;
   const shown = all.filter(
     (run) => (kind === "all" || run.kind === kind) && (state === "any state" || run.state === state),
   );
@@ -34,7 +35,7 @@ export function Runs() {
       </div>
       ${shown.length === 0
         ? html`<${NoRuns} isFiltered=${all.length > 0} />`
-        : html`<ul>${shown.map((run) => html`<${RunRow} key=${run.id} run=${run} />`)}</ul>`}
+        : html`<ul>${shown.map((run) => html`<${run.kind === "experiment" ? ExperimentRunRow : RunRow} key=${run.id} run=${run} />`)}</ul>`}
       <${Older} count=${all.length} />
     </section>
   `;
@@ -44,20 +45,20 @@ const NoRuns = ({ isFiltered }) => html`
   <div class="no-runs">
     ${isFiltered
       ? html`<p>No run is of this kind and state.</p>`
-      : html`<p><b>Nothing has run.</b></p><p>Every training and race is kept here, with its curve, its table and its recording. <a href="#">Start the first one</a>.</p>`}
+      : html`<p><b>Nothing has run.</b></p><p>Every training, race and experiment is kept here, with its curve, its table, its recording or its report. <a href="#">Start the first one</a>.</p>`}
   </div>
 `;
 
 /** The snapshot has the newest fifty; the rest comes when asked for. */
 function Older({ count }) {
-  const [cursors, setCursors] = useState({ training: "", race: "" });
+  const [cursors, setCursors] = useState({ training: "", race: "", experiment: "" });
   const [note, setNote] = useState("");
   if (count < 50 || Object.values(cursors).every((cursor) => cursor === null)) return null;
   const load = async () => {
     setNote("");
     try {
       const next = { ...cursors };
-      for (const kind of ["training", "race"].filter((one) => cursors[one] !== null)) {
+      for (const kind of Object.keys(cursors).filter((one) => cursors[one] !== null)) {
         const { items, next_cursor } = await listRuns(kind, cursors[kind]);
         items.forEach(keepRun);
         next[kind] = next_cursor ?? null;

@@ -26,6 +26,11 @@ const SENTENCES = {
   grid_side_m: "Side of that square, in metres.",
   race_steps: "How many steps each robot has in the race.",
   lanes: "Who races, one lane each.",
+  seeds: "How often each setting is tried, each time with other luck.",
+  gaits: "Which gaits are tried.",
+  robots: "Which robots are tried.",
+  observations: "Whether the robot feels where its feet are, or trusts where it sent them.",
+  agents: "Who learns, or looks ahead, and is compared with the others.",
   name: "What this run is called in the list of runs.",
 };
 

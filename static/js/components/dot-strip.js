@@ -1,0 +1,45 @@
+// Every seed as a dot on one axis, with what is typical of them and what they are held against.
+import { html } from "../html.js";
+import { percent, shareOf, swarm } from "../scale.js";
+
+const DOT_PX = 3;
+const APART_PX = 5;
+/** Below the dots, where what is typical of them hides none. */
+const LANE_PX = 12;
+
+/**
+ * @param label the same in words
+ * @param points one number a seed
+ * @param high where the axis ends; it begins at `low`
+ * @param typical {iqm, low, high}: the interquartile mean and, if known, its interval
+ * @param marks [{value, kind}]; kinds: "greedy" and "half" are lines, "published" a hollow diamond
+ */
+export function DotStrip({ label, points, low = 0, high, typical = null, marks = [], color, height = 36 }) {
+  const at = (value) => percent(shareOf(value, low, high));
+  const rows = swarm(points.map((value) => shareOf(value, low, high)));
+  const tallest = Math.max(1, ...rows.map(Math.abs));
+  const middle = (height - LANE_PX) / 2;
+  const apart = Math.min(APART_PX, (middle - DOT_PX) / tallest);
+  return html`
+    <svg class="dots" width="100%" height=${height} role="img" aria-label=${label} style=${color && { "--agent": color }}>
+      <line class="axis" x1="0" x2="100%" y1=${middle} y2=${middle} />
+      ${marks.filter(({ kind }) => kind !== "published").map(({ value, kind }) => html`
+        <line class=${`mark ${kind}`} x1=${at(value)} x2=${at(value)} y1="0" y2=${height} />
+      `)}
+      ${points.map((value, n) => html`
+        <circle class="dot-of-seed" cx=${at(value)} cy=${middle + rows[n] * apart} r=${DOT_PX} />
+      `)}
+      ${typical && html`<${Typical} typical=${typical} at=${at} y=${height - LANE_PX / 2} />`}
+      ${marks.filter(({ kind }) => kind === "published").map(({ value }) => html`
+        <svg x=${at(value)} y=${middle} overflow="visible"><path class="mark published" d="M0-7 6 0 0 7-6 0z" /></svg>
+      `)}
+    </svg>
+  `;
+}
+
+const Typical = ({ typical, at, y }) => html`
+  ${typical.low !== null && typical.low !== undefined && html`
+    <line class="interval" x1=${at(typical.low)} x2=${at(typical.high)} y1=${y} y2=${y} />
+  `}
+  <line class="typical" x1=${at(typical.iqm)} x2=${at(typical.iqm)} y1=${y - 5} y2=${y + 5} />
+`;

@@ -1,0 +1,70 @@
+// All gaits together: how near learners come to greedy, how many walk, how often they win.
+import { useMemo } from "preact/hooks";
+import { whole } from "../../format.js";
+import { html } from "../../html.js";
+import { agentOf } from "../../selectors.js";
+import { greedyTotals, placeOf } from "../../experiments/places.js";
+import { FIELD_TITLES, observationTitle, robotTitle, valueTitle } from "../../experiments/titles.js";
+import { GRID } from "../../experiments/catalogue.js";
+import { DotStrip } from "../dot-strip.js";
+
+const ALIKE = ["agent", ...GRID];
+const RATES = GRID.filter((field) => field !== "steps");
+
+export function AtAGlance({ known }) {
+  const pooled = (known.pooled ?? []).filter(({ relative }) => relative);
+  const points = useMemo(() => pooled.map((one) => pointsOf(known.settings, one)), [known]);
+  if (!pooled.length || (pooled.length === 1 && pooled[0].gaits.length === 1)) return null;
+  const high = 1.03 * Math.max(1, ...points.flat());
+  const isRaced = pooled.some(({ relative_finished }) => relative_finished);
+  return html`
+    <section class="panel glance" aria-labelledby="glance">
+      <h2 id="glance">All gaits together</h2>
+      <p class="dim">Total distance as a share of greedy’s in the same place; who gets half as far walks.</p>
+      <div class="scroller tall" tabindex="0" role="region" aria-label="All gaits together">
+        <table class="facts-table stacking" role="table">
+          <thead role="rowgroup"><tr role="row">
+            <th role="columnheader" scope="col">What</th><th role="columnheader" scope="col" class="wide-cell">Share of greedy’s distance</th><th role="columnheader" scope="col">Typical</th><th role="columnheader" scope="col">Walk</th>
+            <th role="columnheader" scope="col" title="Come at least 95 % as far">Reach greedy</th>${isRaced && html`<th role="columnheader" scope="col" title="At the finish, under the paper’s clock">Beat it at the finish</th>`}
+          </tr></thead>
+          <tbody role="rowgroup">${pooled.map((one, n) => html`<${Row} key=${n} one=${one} all=${pooled} points=${points[n]} high=${high} isRaced=${isRaced} />`)}</tbody>
+        </table>
+      </div>
+    </section>
+  `;
+}
+
+function Row({ one, all, points, high, isRaced }) {
+  const share = (value) => `${Math.round(100 * value)} %`;
+  const { iqm, low } = one.relative;
+  const label = `${points.length} seeds, typically ${share(iqm)} of greedy’s distance`;
+  return html`
+    <tr role="row">
+      <th role="rowheader" scope="row">${nameOf(one, all)}</th>
+      <td role="cell" class="wide-cell"><${DotStrip} label=${label} points=${points} high=${high} typical=${one.relative} marks=${[{ value: 1, kind: "greedy" }, { value: 0.5, kind: "half" }]} color=${agentOf(one.agent).color} height=${44} /></td>
+      <td role="cell" data-label="Typical" class="num"><b>${share(iqm)}</b>${low !== null && html`<br /><span class="dim">${Math.round(100 * low)} – ${share(one.relative.high)}</span>`}</td>
+      <td role="cell" data-label="Walk" class="num">${share(one.walkers.share)}</td>
+      <td role="cell" data-label="Reach greedy" class="num">${share(one.reaches_greedy.share)}</td>
+      ${isRaced && html`<td role="cell" data-label="Beat it at the finish" class="num">${one.beats_greedy ? html`${share(one.beats_greedy.share)}<br /><span class="dim">${WORDS[one.beats_greedy.verdict]}</span>` : "–"}</td>`}
+    </tr>
+  `;
+}
+
+const WORDS = { yes: "more often than not", no: "less often than not", "not established": "not established" };
+
+/** What tells it from the others. */
+function nameOf(one, all) {
+  const differs = (field) => new Set(all.map((other) => other[field])).size > 1;
+  const where = [observationTitle(one.observation), differs("robot") && robotTitle(one.robot).toLowerCase()];
+  const who = [differs("agent") && valueTitle("agent", one.agent), one.blocks === 1 && differs("steps") && `${whole(one.steps)} steps`];
+  const rates = RATES.filter(differs).map((field) => `${FIELD_TITLES[field]} ${one[field]}`);
+  return [...who, ...where, ...rates].filter(Boolean).join(", ");
+}
+
+/** Every seed of the gaits that were put together, in shares of greedy. */
+function pointsOf(settings, one) {
+  const greedy = greedyTotals(settings);
+  return settings
+    .filter((setting) => setting.role === "learner" && placeOf(setting) === placeOf(one) && ALIKE.every((field) => setting[field] === one[field]))
+    .flatMap((setting) => (greedy(setting) ? (setting.total?.points_m ?? []).map((metres) => metres / greedy(setting)) : []));
+}

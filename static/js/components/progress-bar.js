@@ -1,0 +1,8 @@
+// How far something is.
+import { html } from "../html.js";
+
+export const ProgressBar = ({ label, share }) => html`
+  <div class="bar" role="progressbar" aria-label=${label} aria-valuenow=${Math.round(100 * share)} aria-valuemin="0" aria-valuemax="100">
+    <i style=${{ width: `${100 * share}%` }}></i>
+  </div>
+`;
