@@ -9,10 +9,11 @@ from app.api.deps import Given, Start
 from app.api.experiment_body import ExperimentBody
 from app.api.formats import attachment, chosen
 from app.api.runs import RunPath, accepted, find, run_routes
-from app.services import trial_rows
+from app.experiments.config import ExperimentConfig
 from app.services.configs import config_as_json
 from app.services.errors import Conflict, NotFound
 from app.services.store import REPORT, SUMMARY, UNENDED, Run
+from app.services.stored_trials import trials_as_csv
 
 REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
@@ -75,22 +76,28 @@ def get_trials(
     format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
 ) -> Response:
     """By key: the setting and the number of the seed."""
-    find(services, "experiment", run_id)
+    config = _config(find(services, "experiment", run_id))
     rows = services.store.trials(run_id)
     if chosen(request, format, ("json", "csv")) == "csv":
-        name = f"trials-{run_id}.csv"
-        return attachment(trial_rows.as_csv(rows), "text/csv; charset=utf-8", name)
+        table = trials_as_csv(config, rows)
+        return attachment(table, "text/csv; charset=utf-8", f"trials-{run_id}.csv")
     return JSONResponse({"trials": list(rows)})
+
+
+def _config(run: Run) -> ExperimentConfig:
+    if not isinstance(run.config, ExperimentConfig):
+        raise NotFound(f"{run.id} is no experiment")
+    return run.config
 
 
 def _nothing_yet(run: Run) -> dict[str, Any]:
     """A summary of no trials, without what nobody has computed yet."""
     lists = ("settings", "pooled", "curves", "versus", "timed", "claims", "story")
-    config = config_as_json(run.config)
+    config = _config(run)
     return {
         "format": 1,
-        "experiment": config["experiment"],
-        "config": config,
+        "experiment": config.experiment,
+        "config": config_as_json(config),
         "versions": {},
         "machine": {},
         "trials": {"done": 0, "total": run.total, "failed": 0, "set_aside": []},

@@ -1,24 +1,29 @@
 """An experiment in its job's process: tries what was not tried yet, and tells what it shows."""
 
+import importlib
 import json
+import logging
 import os
 import queue
+import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
 
 from app.experiments.plan import Plan, Trial
 from app.experiments.trial import TrialResult
 from app.services.orders import Began, Ended, ExperimentOrder, Message, Reported, Tried, Word
 from app.services.store import SUMMARY
+from app.services.stored_trials import results_of
 
 if TYPE_CHECKING:
     from app.experiments.engine import Outcome
 
 BATCHES_PER_S = 5
 SUMMARY_EVERY_S = 2.0
-_SUMMARY_SHARE = 0.05
-"""Of the time, at most; trials wait meanwhile."""
+_SUMMARY_SHARE = 0.15
+"""Of the time, at most; it takes a core away from the trials."""
 
 
 def experiment(
@@ -87,13 +92,13 @@ class _Book:
     """What came of the trials, and what the server knows of it."""
 
     def __init__(self, order: ExperimentOrder, send: Callable[[Message], None]) -> None:
-        self._order, self._send = order, send
+        self._order, self._send_now = order, send
+        self._sending = threading.Lock()
+        self._summariser = ThreadPoolExecutor(1, "summary")
+        self._being_made: Future[None] | None = None
         self._plan = Plan(order.config)
-        self._results: dict[str, TrialResult] = {}
-        self._set_aside: dict[str, str] = {}
-        self._compute_s = 0.0
-        for row in order.rows:
-            self._note(row)
+        self._results, self._set_aside = results_of(order.rows)
+        self._compute_s = sum(row["compute_s"] for row in order.rows)
         self._wall_s = order.wall_s
         self._pending: list[dict[str, Any]] = []
         self._sent_s = self._due_s = time.monotonic()
@@ -112,6 +117,9 @@ class _Book:
         from app.experiments.cluster import Where  # noqa: PLC0415
         from app.experiments.engine import run_trials  # noqa: PLC0415
 
+        # It would tell of each start and end of a cluster.
+        importlib.import_module("distributed")
+        logging.getLogger("distributed").setLevel(logging.ERROR)
         began_s, before_s = time.monotonic(), self._wall_s
 
         def attentive() -> bool:
@@ -126,7 +134,10 @@ class _Book:
         """Take in what came of a trial."""
         result = None if outcome.result is None else outcome.result.as_json()
         row = {**outcome._asdict(), "result": result}
-        self._note(row)
+        results, set_aside = results_of([row])
+        self._results |= results
+        self._set_aside |= set_aside
+        self._compute_s += outcome.compute_s
         self._pending.append(row)
         self._is_stale = True
 
@@ -138,34 +149,49 @@ class _Book:
         self._sent_s = time.monotonic()
 
     def summarise(self) -> None:
-        """Send what the trials show so far, if that is another than before."""
+        """Send what the trials show so far, if that is another than before, and wait for it."""
+        self._wait_for_summary()
+        if self._is_stale:
+            self._begin_summary()
+            self._wait_for_summary()
+
+    def _begin_summary(self) -> None:
+        """Make it beside the trials, which it would keep waiting."""
+        self.flush()
+        self._is_stale = False
+        seen = dict(self._results), dict(self._set_aside), self._cost()
+        self._being_made = self._summariser.submit(self._make_summary, *seen)
+
+    def _wait_for_summary(self) -> None:
+        if self._being_made is not None:
+            self._being_made.result()
+            self._being_made = None
+
+    def _make_summary(
+        self, results: Mapping[str, TrialResult], set_aside: Mapping[str, str], cost: Any
+    ) -> None:
         from app.experiments.summary import summarise  # noqa: PLC0415 - it brings SciPy
 
-        if not self._is_stale:
-            return
-        self.flush()
         began_s = time.monotonic()
-        self._summary = summarise(self._order.config, self._results, self._set_aside, self._cost())
-        self._is_stale = False
+        self._summary = summarise(self._order.config, results, set_aside, cost)
         took_s = time.monotonic() - began_s
         self._due_s = began_s + max(SUMMARY_EVERY_S, took_s / _SUMMARY_SHARE)
         self._keep(SUMMARY, json.dumps(self._summary, allow_nan=False).encode())
 
     def report(self) -> None:
         """Send the files of the report."""
+        from app.experiments.report import report_files  # noqa: PLC0415 - it brings Matplotlib
+
         self.flush()
         self._is_stale = True
         self.summarise()
-        try:  # DEV
-            from app.experiments.report import report_files  # noqa: PLC0415 - it brings Matplotlib
-        except ModuleNotFoundError:
-            return
         for name, data in report_files(self._summary, self._results):
             self._keep(name, data)
 
     def result(self) -> dict[str, Any]:
         """The run's result, short enough for lists of runs."""
-        trials = {**self._summary["trials"], "set_aside": len(self._set_aside)}
+        trials = {name: self._summary["trials"][name] for name in ("done", "total", "failed")}
+        trials["set_aside"] = len(self._set_aside)
         claims = [{n: claim[n] for n in ("id", "verdict")} for claim in self._summary["claims"]]
         return {"trials": trials, "claims": claims, "files": self._files}
 
@@ -177,20 +203,19 @@ class _Book:
         now_s = time.monotonic()
         if self._pending and now_s - self._sent_s >= 1 / BATCHES_PER_S:
             self.flush()
-        if self._is_stale and now_s >= self._due_s:
-            self.summarise()
-
-    def _note(self, row: Any) -> None:
-        self._compute_s += row["compute_s"]
-        if row["result"] is not None:
-            self._results[row["key"]] = TrialResult.from_json(row["result"])
-        else:
-            self._set_aside[row["key"]] = row["set_aside"] or "it has no result"
+        if self._being_made is not None and self._being_made.done():
+            self._wait_for_summary()
+        if self._is_stale and now_s >= self._due_s and self._being_made is None:
+            self._begin_summary()
 
     def _keep(self, name: str, data: bytes) -> None:
         if name not in self._files:
             self._files.append(name)
         self._send(Reported(name, data))
+
+    def _send(self, message: Message) -> None:
+        with self._sending:
+            self._send_now(message)
 
     @property
     def _workers(self) -> int:
