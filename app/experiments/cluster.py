@@ -112,7 +112,8 @@ def _own(where: Where) -> "Iterator[Client]":
     with ExitStack() as stack:
         folder = tempfile.TemporaryDirectory(prefix="hexapods-", ignore_cleanup_errors=True)
         stack.enter_context(folder)
-        stack.enter_context(dask.config.set(_OWN_SETTINGS))
+        settings = {**_OWN_SETTINGS, "temporary-directory": folder.name}
+        stack.enter_context(dask.config.set(settings))
         with _deaf_to_ctrl_c():
             cluster = LocalCluster(
                 n_workers=where.workers or cores(),

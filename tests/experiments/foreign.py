@@ -1,0 +1,98 @@
+"""A Dask cluster that is there already: a scheduler and a worker, as people start them."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any
+
+import psutil
+from distributed.security import Security
+
+from app.experiments.cluster import Where
+
+_START_S = 30.0
+_OPTIONS = {"tls_ca": "--tls-ca-file", "tls_cert": "--tls-cert", "tls_key": "--tls-key"}
+
+
+class Foreign:
+    """A scheduler and its workers. Made by `scheduler`."""
+
+    def __init__(self, folder: Path, tls: bool, stack: ExitStack) -> None:
+        self._folder, self._stack = folder, stack
+        self._files = _certificates(folder) if tls else {}
+        file = folder / "scheduler.json"
+        self.process = self._start(
+            "scheduler",
+            *("--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file)),
+            *(("--protocol", "tls") if tls else ()),
+        )
+        deadline = time.monotonic() + _START_S
+        while not file.exists() or not file.read_text("utf-8").endswith("}"):
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        self.address: str = json.loads(file.read_text("utf-8"))["address"]
+
+    def worker(self, **variables: str) -> subprocess.Popen[bytes]:
+        """Start a worker, with further variables in its environment."""
+        return self._start("worker", self.address, "--nthreads", "1", **variables)
+
+    @property
+    def where(self) -> Where:
+        """To run trials on it, with the certificates that it has."""
+        return Where(scheduler=self.address, **self._files)
+
+    def _start(self, what: str, *arguments: str, **variables: str) -> subprocess.Popen[bytes]:
+        # As `dask scheduler` and `dask worker` do.
+        command = [sys.executable, "-m", f"distributed.cli.dask_{what}", *arguments]
+        files = [part for name, file in self._files.items() for part in (_OPTIONS[name], file)]
+        process = subprocess.Popen(
+            [*command, "--no-dashboard", *files],
+            cwd=self._folder,
+            env={**os.environ, "PYTHONPATH": str(Path.cwd()), **variables},
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        self._stack.callback(_end, process)
+        return process
+
+
+@contextmanager
+def scheduler(folder: Path, tls: bool = False) -> Iterator[Foreign]:
+    """A scheduler on loopback, without workers; all ends with the block.
+
+    Args:
+        folder: to work in.
+        tls: whether only who has a certificate may use it.
+    """
+    with ExitStack() as stack:
+        yield Foreign(folder, tls, stack)
+
+
+def _certificates(folder: Path) -> dict[str, Any]:
+    """PEM files that scheduler, workers and clients may all use, as fields of `Where`."""
+    made = Security.temporary()
+    files = {}
+    for name, text in (
+        ("tls_ca", made.tls_ca_file),
+        ("tls_cert", made.tls_client_cert),
+        ("tls_key", made.tls_client_key),
+    ):
+        (folder / f"{name}.pem").write_text(text, "utf-8")
+        files[name] = str(folder / f"{name}.pem")
+    return files
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    children = (
+        psutil.Process(process.pid).children(recursive=True) if process.poll() is None else []
+    )
+    process.kill()
+    process.wait()
+    _, left = psutil.wait_procs(children, timeout=10)
+    for child in left:
+        child.kill()

@@ -1,0 +1,150 @@
+"""The machines that trials run on: one's own, closed to others, and those of a Dask cluster."""
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+from distributed import Client
+
+from app.domain.errors import InvalidInput
+from app.experiments import cluster
+from app.experiments.cluster import ClusterLost, Where, connect, cores
+from app.experiments.engine import run_trials
+from tests.experiments.clusters import one_by_one, results, small, trials_of, workers_of
+from tests.experiments.foreign import Foreign, scheduler
+
+
+@pytest.fixture(scope="module")
+def foreign(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Foreign]:
+    """A scheduler with a worker."""
+    with scheduler(tmp_path_factory.mktemp("dask")) as started:
+        started.worker()
+        yield started
+
+
+@pytest.mark.parametrize(
+    ("given", "names"),
+    [
+        ({"workers": 0}, "workers must be from 1 to 512"),
+        ({"workers": 1.5}, "a whole number"),
+        ({"workers": 2, "scheduler": "tcp://10.0.0.7:8786"}, "either workers on this machine or"),
+        ({"scheduler": "10.0.0.7"}, "tcp://HOST:PORT or tls://HOST:PORT, not '10.0.0.7'"),
+        ({"scheduler": "http://10.0.0.7:8786"}, "tcp://HOST:PORT"),
+        ({"tls_ca": "ca.pem"}, "for a scheduler at tls://HOST:PORT"),
+        ({"scheduler": "tls://10.0.0.7:8786"}, "needs a CA, a certificate and its key"),
+        ({"scheduler": "tcp://10.0.0.7:8786", "tls_ca": "ca.pem"}, "one at tcp:// none"),
+        (
+            {"scheduler": "tls://h:1", "tls_ca": "a.pem", "tls_cert": "b.pem", "tls_key": "c.pem"},
+            "there is no file a.pem",
+        ),
+    ],
+)
+def test_machines_that_cannot_be_are_refused(given: dict[str, Any], names: str) -> None:
+    with pytest.raises(InvalidInput) as refused:
+        Where(**given)
+    assert names in str(refused.value)
+
+
+def test_ones_own_cluster_is_closed_to_others_and_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    me = psutil.Process()
+    before = {c.laddr for c in me.net_connections() if c.status == psutil.CONN_LISTEN}
+    with connect(Where()) as client:
+        assert len(client.nthreads()) == cores()
+        address = str(client.scheduler_info()["address"])
+        assert address.startswith("tls://127.0.0.1:")
+        for process in (me, *me.children(recursive=True)):
+            for port in process.net_connections():
+                if port.status == psutil.CONN_LISTEN and port.laddr not in before:
+                    assert port.laddr.ip == "127.0.0.1"
+        with pytest.raises((OSError, TypeError)):
+            Client(address.replace("tls", "tcp"), timeout=1, set_as_default=False)
+    assert not workers_of(me)
+    assert list(tmp_path.iterdir()) == []
+    after = {c.laddr for c in me.net_connections() if c.status == psutil.CONN_LISTEN}
+    assert after <= before
+
+
+def test_workers_end_with_whoever_started_them(tmp_path: Path) -> None:
+    script = tmp_path / "endless.py"
+    script.write_text(
+        "from app.experiments.cluster import Where\n"
+        "from app.experiments.engine import run_trials\n"
+        "from tests.experiments.clusters import small, trials_of\n"
+        "if __name__ == '__main__':\n"
+        "    trials = trials_of(small(seeds=1)) + trials_of(small(seeds=9, steps=9_000_000))\n"
+        "    for outcome in run_trials(trials, Where(workers=2)):\n"
+        "        print(outcome.key, flush=True)\n",
+        "utf-8",
+    )
+    process = subprocess.Popen(
+        [sys.executable, str(script)],
+        env={**os.environ, "PYTHONPATH": str(Path.cwd())},
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    assert "greedy" in process.stdout.readline()
+    children = psutil.Process(process.pid).children(recursive=True)
+    assert len(workers_of(psutil.Process(process.pid))) == 2
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    _, left = psutil.wait_procs(children, timeout=10)
+    assert not left
+
+
+def test_another_cluster_gives_the_same_results(foreign: Foreign) -> None:
+    trials = trials_of(small(seeds=10))
+    assert results(run_trials(trials, foreign.where)) == one_by_one(trials)
+    assert foreign.process.poll() is None, "it is others' too, and stays"
+
+
+def test_tls_is_passed_through(tmp_path: Path) -> None:
+    trials = trials_of(small(seeds=1))
+    with scheduler(tmp_path, tls=True) as closed:
+        closed.worker()
+        assert results(run_trials(trials, closed.where)) == one_by_one(trials)
+
+
+def test_a_worker_that_would_compute_something_else_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = tmp_path / "other" / "mujoco_core-3.3.7.dist-info"
+    other.mkdir(parents=True)
+    (other / "METADATA").write_text("Metadata-Version: 2.1\nName: mujoco-core\nVersion: 3.3.7\n")
+    with scheduler(tmp_path) as started:
+        monkeypatch.setattr(cluster, "ANSWER_S", 1.0)
+        with pytest.raises(InvalidInput, match=r"has no workers; start some with `dask worker tcp"):
+            list(run_trials(trials_of(small(seeds=1)), started.where))
+        monkeypatch.undo()
+        started.worker(PYTHONPATH=f"{other.parent}:{Path.cwd()}")
+        with pytest.raises(InvalidInput, match=r"it has mujoco 3\.3\.7 instead of 4\.0\.0"):
+            list(run_trials(trials_of(small(seeds=1)), started.where))
+
+
+def test_a_scheduler_that_goes_away_is_said(tmp_path: Path) -> None:
+    trials = trials_of(small(seeds=40))
+    with scheduler(tmp_path) as started:
+        started.worker()
+        running = run_trials(trials, started.where)
+        next(running)
+        started.process.kill()
+        with pytest.raises(ClusterLost, match="what was done is kept"):
+            list(running)
+
+
+def test_a_scheduler_that_is_not_there_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert cluster.ANSWER_S < 10
+    monkeypatch.setattr(cluster, "ANSWER_S", 1.0)
+    with pytest.raises(InvalidInput) as refused:
+        list(run_trials(trials_of(small(seeds=1)), Where(scheduler="tcp://127.0.0.1:9")))
+    for said in ("tcp://127.0.0.1:9", "dask scheduler", "leave --scheduler out"):
+        assert said in str(refused.value)
