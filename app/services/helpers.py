@@ -158,8 +158,8 @@ class Helpers:
 def _start() -> _Helper:
     context = multiprocessing.get_context("spawn")
     pipe, its_pipe = context.Pipe()
-    # Not a daemon: multiprocessing ends daemons from atexit, which a killed server never runs.
-    process = context.Process(target=main, args=(its_pipe,), name="helper", daemon=False)
+    # A daemon, so that who never closes this is not kept from ending.
+    process = context.Process(target=main, args=(its_pipe,), name="helper", daemon=True)
     process.start()
     its_pipe.close()
     return _Helper(process, pipe)
