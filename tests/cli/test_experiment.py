@@ -1,0 +1,182 @@
+"""`hexapods experiment` and `hexapods sweep`, as a user runs them."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.experiments.folder import TRIALS
+from tests.cli.running import EXAMPLES, ROOT, hexapods, output, refusal
+
+ONE_GAIT = ("--gait", "left-right-origin", "--simulator", "kinematic")
+SWEEP = ("sweep", *ONE_GAIT, "--alpha", "0.1,0.3", "--steps", "50")
+
+
+def kept(folder: Path) -> dict[str, Any]:
+    """Results by key in a folder; each is there once."""
+    _, *lines = (folder / TRIALS).read_text("utf-8").splitlines()
+    trials = [json.loads(line) for line in lines]
+    assert len({trial["key"] for trial in trials}) == len(trials)
+    return {trial["key"]: trial["result"] for trial in trials}
+
+
+def test_a_sweep_says_what_it_does_and_leaves_a_report(tmp_path: Path) -> None:
+    done = hexapods(*SWEEP, "--seeds", "4", "--workers", "1", folder=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("9 trials on 1 worker, kept in sweep-results\n")
+    assert "alpha=0.1" in done.stdout
+    assert done.stdout.rstrip().endswith("The report is sweep-results/report.html.")
+    folder = tmp_path / "sweep-results"
+    assert len(kept(folder)) == 9
+    assert {"report.html", "summary.json", "trials.csv"} <= {p.name for p in folder.iterdir()}
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["sweep-results"]
+
+
+def test_table_1_in_json_and_further_seeds_in_the_same_folder(tmp_path: Path) -> None:
+    table1 = ("experiment", "table1", *ONE_GAIT, "--robot", "stiff", "--out", "here")
+    first = output(*table1, "--seeds", "2", folder=tmp_path)
+    # 2 readings × (greedy, two-step, 2 practices over 2 seeds, 1 race by the wall)
+    assert first["trials"]["done"] == first["trials"]["total"] == 2 * (2 + 2 * 2 + 1)
+    before = kept(tmp_path / "here")
+    more = output(*table1, "--seeds", "3", "--workers", "1", folder=tmp_path)
+    assert more["trials"]["done"] == 2 * (2 + 2 * 3 + 1)
+    assert before.items() < kept(tmp_path / "here").items()
+    assert {lane["agent"] for timed in more["timed"] for lane in timed["lanes"]} == {
+        "q-learning",
+        "greedy",
+        "two-step",
+    }
+
+
+def test_agents_of_ones_own_against_ours(tmp_path: Path) -> None:
+    shutil.copy(EXAMPLES / "my_agent.py", tmp_path)
+    agents = ("--agent", "q-learning", "--agent", "my_agent:Agent")
+    figure4 = ("experiment", "figure4", *ONE_GAIT, "--observation", "measured", "--seeds", "3")
+    summary = output(*figure4, *agents, folder=tmp_path)
+    assert summary["trials"]["set_aside"] == []
+    (versus,) = summary["versus"]
+    assert {versus["a"], versus["b"]} == {"q-learning", "my_agent:Agent"}
+    assert len(summary["curves"]) == 2
+    assert len(summary["curves"][0]["steps"]) == 8
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_what_was_interrupted_goes_on_with_the_same_command(
+    how: signal.Signals, tmp_path: Path
+) -> None:
+    slow = ("sweep", *ONE_GAIT, "--steps", "500", "--seeds", "400", "--out", "kept")
+    process = subprocess.Popen(
+        [sys.executable, "-m", "app.cli", *slow],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    file = tmp_path / "kept" / TRIALS
+    while not file.exists() or len(file.read_bytes().splitlines()) < 20:
+        assert process.poll() is None
+        time.sleep(0.05)
+    # As a terminal does: to every process.
+    os.killpg(process.pid, how) if how == signal.SIGINT else process.send_signal(how)
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (130, "")
+    before = kept(tmp_path / "kept")
+    assert f"Interrupted: {len(before)} of 401 trials are kept in kept" in out
+    assert "the same command goes on from there" in out
+    if how == signal.SIGINT:
+        some_more = tuple(word if word != "400" else str(len(before) + 20) for word in slow)
+        done = hexapods(*some_more, folder=tmp_path)
+        assert done.returncode == 0, done.stderr
+        assert before.items() < kept(tmp_path / "kept").items()
+
+
+def test_a_full_disk_ends_it_and_nothing_is_lost(tmp_path: Path) -> None:
+    done = subprocess.run(
+        ["sh", "-c", 'ulimit -f 8; exec "$0" "$@"', sys.executable, "-m", "app.cli", *SWEEP],
+        cwd=tmp_path,
+        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin"},
+        capture_output=True,
+        text=True,
+        timeout=100,
+        check=False,
+    )
+    assert done.returncode == 2, (done.stdout, done.stderr)
+    assert "the disk is full; what was done is kept" in done.stderr
+    assert "Traceback" not in done.stderr
+    before = kept(tmp_path / "sweep-results")
+    assert before
+    again = hexapods(*SWEEP, folder=tmp_path)
+    assert again.returncode == 0, again.stderr
+    assert f"{len(before)} are there already" in again.stdout
+    assert before.items() <= kept(tmp_path / "sweep-results").items()
+
+
+def test_what_was_set_aside_is_tried_again_if_asked(tmp_path: Path) -> None:
+    agent = tmp_path / "mine.py"
+    shutil.copy(EXAMPLES / "my_agent.py", agent)
+    sweep = (*SWEEP, "--seeds", "1", "--agent", "mine:Agent")
+    text = agent.read_text("utf-8")
+    assert "def act(" in text
+    broken = text.replace(
+        "def act(", "def act(self, *_: object) -> None:\n        1 / 0\n\n    def xt("
+    )
+    agent.write_text(broken, "utf-8")
+    done = hexapods(*sweep, folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("Set aside: ") == 2
+    assert "division by zero" in done.stdout
+    agent.write_text(text, "utf-8")
+    assert output(*sweep, "--retry", folder=tmp_path)["trials"]["set_aside"] == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "names"),
+    [
+        (("experiment", "table2"), "table1"),
+        (("experiment",), "experiment"),
+        (("experiment", "table1", "--seeds", "0"), "seeds must be from 1 to 10,000"),
+        (("experiment", "table1", "--seeds", "many"), "a whole number"),
+        (("experiment", "table1", "--seed", "-1"), "at least 0"),
+        (("experiment", "table1", "--gait", "moonwalk"), "left-right-origin"),
+        (("experiment", "table1", "--gait", "all,all"), "gaits names something twice"),
+        (("experiment", "table1", "--observation", "guessed"), "measured, commanded"),
+        (("experiment", "table1", "--robot", "stiff,sloth"), "stiff, compliant, slippery"),
+        (("experiment", "table1", "--robot", "stiff,stiff"), "robots names something twice"),
+        (("experiment", "table1", "--simulator", "matrix"), "mujoco, kinematic"),
+        (("experiment", "table1", "--agent", "greedy"), "--agent is for figure4 and sweep"),
+        (("experiment", "figure4", "--agent", "skynet"), "q-learning, greedy, two-step"),
+        (("experiment", "table1", "--workers", "0"), "workers must be from 1 to 512"),
+        (
+            ("experiment", "table1", "--workers", "2", "--scheduler", "tcp://127.0.0.1:9"),
+            "either workers on this machine or a scheduler",
+        ),
+        (("experiment", "table1", "--scheduler", "127.0.0.1"), "tcp://HOST:PORT"),
+        (("experiment", "table1", "--scheduler", "tls://h:1"), "a CA, a certificate and its key"),
+        (("experiment", "table1", "--out", "/proc/nowhere"), "cannot keep results in"),
+        (("sweep", "--gait", "all", "--alpha", "0.1,2"), "over 0 and at most 1"),
+        (("sweep", "--alpha", "0.1,"), "must be a number"),
+        (("sweep", "--divisions", "2.5"), "a whole number"),
+        (("sweep", "--grid-side-m", "0.2"), "cannot reach"),
+    ],
+)
+def test_bad_input_is_one_sentence(arguments: tuple[str, ...], names: str, tmp_path: Path) -> None:
+    assert names in refusal(*arguments, folder=tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_of_something_else_is_left_as_it_is(tmp_path: Path) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "thesis.txt").touch()
+    sentence = refusal(*SWEEP, "--out", "mine", folder=tmp_path)
+    assert "mine is not empty, and has no results in it" in sentence
+    (tmp_path / "mine" / TRIALS).write_text('{"format": 9, "versions": {}, "config": {}}\n')
+    assert "results in format 9" in refusal(*SWEEP, "--out", "mine", folder=tmp_path)

@@ -1,0 +1,69 @@
+"""Promise 23: a poisonous trial is set aside.
+
+A trial that ends its worker's process with SIGKILL, each time, is tried three times and then set
+aside: it is named in the summary and in the report, and all others complete, with the results that
+they have without it. In full: on MuJoCo, with five poisonous trials among a hundred.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from app.experiments.cluster import Where
+from app.experiments.config import ExperimentConfig, experiment_config
+from app.experiments.engine import run_trials
+from app.experiments.folder import ResultsFolder, open_results
+from app.experiments.plan import Plan
+from app.experiments.report import write_report
+from app.experiments.summary import summarise
+from tests.experiments.clusters import POISONOUS, one_by_one
+from tests.experiments.poison import FOLDER, poison, tries
+from tests.promises.length import at_length
+
+CONFIG: ExperimentConfig = experiment_config(
+    "sweep",
+    {
+        "seeds": at_length(10, 25),
+        "simulator": at_length("kinematic", "mujoco"),
+        "agents": (POISONOUS, "tests.own_agents:Restless"),
+        "gaits": ("left-right-origin", "front-back-origin"),
+        "steps": (20,),
+    },
+)
+
+
+def completed(folder: ResultsFolder) -> None:
+    """Run what is not done, as the command does."""
+    known = {**folder.results, **folder.set_aside}
+    undone = [trial for trial in Plan(CONFIG).trials() if trial.key not in known]
+    for outcome in run_trials(undone, Where(workers=2)):
+        folder.add(outcome)
+
+
+@pytest.mark.timeout(at_length(120, 1200))
+def test_who_kills_its_worker_three_times_is_set_aside_and_the_rest_completes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(FOLDER, str(tmp_path))
+    trials = list(Plan(CONFIG).trials())
+    poisonous = [t for t in trials if t.config.training.agent == POISONOUS][3::9]
+    poisonous = poisonous[: at_length(2, 5)]
+    poison(tmp_path, [(trial.config.training.seed, "kill") for trial in poisonous])
+
+    with open_results(tmp_path / "results", CONFIG) as folder:
+        completed(folder)
+        assert tries(tmp_path) == ["kill"] * 3 * len(poisonous)
+        completed(folder)
+        assert len(tries(tmp_path)) == 3 * len(poisonous), "who was set aside is left in peace"
+        summary = summarise(CONFIG, folder.results, folder.set_aside)
+        page = write_report(folder.path, summary, folder.results).read_text("utf-8")
+        results = dict(folder.results)
+
+    keys = {trial.key for trial in poisonous}
+    named = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
+    assert named == dict.fromkeys(keys, "it ended its worker's process 3 times")
+    assert summary["trials"]["done"] == len(trials) - len(poisonous)
+    for key in keys:
+        assert key in page
+    poison(tmp_path, [])
+    assert results == one_by_one(trial for trial in trials if trial.key not in keys)
