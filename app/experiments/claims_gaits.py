@@ -9,7 +9,7 @@ from app.experiments.claims import Claim, Finding
 from app.experiments.corners import Corner
 from app.experiments.published import GAITS
 from app.experiments.statistics import Interval, Points, decided, interval, iqm, iqm_of_all
-from app.experiments.words import metres, percent, shares
+from app.experiments.words import metres, percent, shares, span
 
 ODD = "left-right-vertical"
 OTHERS = tuple(gait for gait in GAITS if gait != ODD)
@@ -80,7 +80,7 @@ def _alike(corner: Corner, steps: int) -> Finding | None:
     middles = [float(iqm(np.asarray(points))) for points in others]
     return Finding.of(
         decided(found, ALIKE, min(map(len, others))),
-        f"The other three cover {metres(min(middles))} to {metres(max(middles))} after "
+        f"The other three cover {span(middles)} after "
         f"{steps:,} steps; the worst {shares(found)} of the best.",
     )
 

@@ -117,8 +117,9 @@ def _two_step(corner: Corner) -> Finding | None:
     seconds = median(decided_s for _, decided_s in thinks)
     return Finding.of(
         found,
-        f"On this machine two-step thought {seconds:.2g} s in 50 steps, at most "
-        f"{percent(slowest)} of the time that it walked; {counted(len(thinks), 'race')} timed."
+        f"On this machine two-step thought {seconds:.2g} s in 50 steps, between "
+        f"{percent(fastest)} and {percent(slowest)} of the time that it walked, in "
+        f"{counted(len(thinks), 'timed race')}."
         f"{_by_the_paper(corner)}",
     )
 

@@ -76,7 +76,11 @@ def corners(summary: Mapping[str, Any]) -> list[Corner]:
 def label(observation: str, robot: str | None) -> str:
     """`feet read back (stiff robot)`."""
     reading = READINGS.get(observation, observation)
-    return reading if robot is None else f"{reading} ({robot} robot)"
+    return (
+        reading
+        if robot is None
+        else f"{reading} ({robot.replace(' (modified)', ', modified')} robot)"
+    )
 
 
 def _first(entries: Sequence[Mapping[str, Any]], **wanted: Any) -> Mapping[str, Any] | None:

@@ -13,7 +13,7 @@ from app.experiments.drawing import INK, MUTED, Picture, colours, figure, quiet
 from app.experiments.words import agent_name, gait_name, metres
 
 Curve = Mapping[str, Any]
-PANEL_IN = (3.2, 2.7)
+PANEL_IN = (3.0, 2.7)
 
 
 def panels(corner: Corner, highest_m: float, name: str) -> list[Picture]:
@@ -23,7 +23,7 @@ def panels(corner: Corner, highest_m: float, name: str) -> list[Picture]:
         one = figure(*PANEL_IN)
         ax = one.subplots()
         draw(ax, corner, gait, highest_m)
-        ax.set_title(gait_name(gait))
+        ax.set_title(gait_name(gait), pad=12)
         made.append(Picture(f"{name}-{number + 1}", gait_name(gait), _alt(corner, gait), one))
     return made
 
@@ -42,7 +42,7 @@ def sheet(places: Sequence[Corner]) -> Picture:
         axes = row.subplots(1, columns, squeeze=False, sharey=True).ravel()
         for ax, gait in zip(axes, _gaits(corner), strict=False):
             draw(ax, corner, gait, limit)
-            ax.set_title(gait_name(gait), size=10, weight="normal")
+            ax.set_title(gait_name(gait), size=10, weight="normal", pad=12)
             if ax is not axes[0]:
                 ax.set_ylabel("")
     _key(one, places)
@@ -85,8 +85,9 @@ def draw(ax: Axes, corner: Corner, gait: str, highest_m: float) -> None:
 def _curve(ax: Axes, one: Curve, colour: str, alone: bool) -> None:
     if not one["steps"]:
         return
+    faint = min(0.7, (9 if alone else 4) / len(one["points_m"][0]))
     for seed in zip(*one["points_m"], strict=True):
-        ax.plot(one["steps"], seed, color=colour, lw=0.7, alpha=0.3 if alone else 0.12)
+        ax.plot(one["steps"], seed, color=colour, lw=0.7, alpha=faint)
     if one["low_m"][0] is not None:
         ax.fill_between(one["steps"], one["low_m"], one["high_m"], color=colour, alpha=0.4, lw=0)
     ax.plot(one["steps"], one["iqm_m"], color=INK if alone else colour, lw=2, marker="o", ms=3.5)

@@ -50,7 +50,7 @@ def _draw(ax: Axes, rows: Sequence[Mapping[str, Any]], corner: Corner) -> None:
     lowest = min((one["relative"]["low"] or one["relative"]["iqm"] for one in rows), default=0)
     ax.set_xlim(min(0, lowest) - 0.02, 1.05)
     ax.xaxis.set_major_formatter(lambda value, _: percent(value))
-    ax.set_xlabel("of greedy's distance, all gaits, middle and 95 % interval")
+    ax.set_xlabel("share of greedy's distance")
     quiet(ax, "x")
 
 

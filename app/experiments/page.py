@@ -14,9 +14,9 @@ from markupsafe import Markup
 from app.experiments import tables
 from app.experiments.config import GRID, as_json, experiment_config
 from app.experiments.corners import Corner, corners
-from app.experiments.drawing import Picture, inlined
+from app.experiments.drawing import Picture, colours, inlined
 from app.experiments.figures import panels
-from app.experiments.words import counted, gait_name, listed
+from app.experiments.words import agent_name, counted, gait_name, listed
 
 TITLES: Mapping[str, str] = {
     "table1": "Table 1, many times over",
@@ -45,6 +45,7 @@ def page(summary: Mapping[str, Any]) -> str:
         "in_short": _in_short(summary["claims"]),
         "figures": [(heading, _inlined(group)) for heading, group in panels(summary)],
         "corners": places,
+        "agents": _agents(places),
         "units": tables.UNITS,
         "table1": _of("table1", tables.table1, summary, places),
         "plain_tables": _of("figure4", tables.curves, summary, places)
@@ -104,30 +105,36 @@ def _lead(summary: Mapping[str, Any]) -> str:
 
 def _in_short(claims: Sequence[Mapping[str, Any]]) -> str:
     """How the claims came out, counted."""
-    if not claims:
+    if len(claims) < 2:
         return ""
     count = Counter(
         claim["verdict"] if len({one["verdict"] for one in claim["where"]}) == 1 else "depends"
         for claim in claims
     )
+    several = max(len(claim["where"]) for claim in claims) > 1
     words = {
-        "holds": "{} in every case that was tried",
-        "does not hold": "{} in none",
-        "depends": "{} depending on how the state is read, or on the robot",
-        "not established": "for {} these seeds do not settle it",
+        "holds": "{} in every case that was tried" if several else "{} here",
+        "does not hold": "{} in none" if several else "{} not",
+        "depends": "{} on the reading or on the robot",
+        "not established": "{} open",
     }
-    said = {
-        "holds": _verb(count["holds"], "holds", "hold"),
-        "does not hold": _verb(count["does not hold"], "holds", "hold"),
-        "depends": _verb(count["depends"], "holds", "hold"),
-        "not established": counted(count["not established"], "claim"),
+    verbs = {
+        "holds": "holds" if count["holds"] == 1 else "hold",
+        "does not hold": "holds" if count["does not hold"] == 1 else "hold",
+        "depends": "depends" if count["depends"] == 1 else "depend",
+        "not established": "stays" if count["not established"] == 1 else "stay",
     }
-    parts = [words[one].format(said[one]) for one in words if count[one]]
+    if not several:
+        verbs["does not hold"] = "does" if count["does not hold"] == 1 else "do"
+    parts = [words[one].format(f"{count[one]} {verbs[one]}") for one in words if count[one]]
     return f"Of {counted(len(claims), 'claim')} of the paper, {listed(parts)}."
 
 
-def _verb(count: int, one: str, many: str) -> str:
-    return f"{count} {one if count == 1 else many}"
+def _agents(places: Sequence[Corner]) -> list[tuple[str, str]]:
+    """Who learns, and in which colour."""
+    agents = dict.fromkeys(one["agent"] for corner in places for one in corner.curves)
+    shade = colours(list(agents))
+    return [(agent_name(agent), shade[agent]) for agent in agents]
 
 
 def _inlined(group: Sequence[Picture]) -> list[dict[str, Any]]:

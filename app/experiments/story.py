@@ -32,9 +32,13 @@ def _caution(summary: Mapping[str, Any]) -> str:
     said = [
         "A number in brackets after a value is its 95 % interval: from other seeds, the value "
         "would mostly fall in there. Where such an interval leaves a question open, this report "
-        "says “not established” and not what looks likely. The intervals know of our seeds only. "
-        "A printed value is one run, and nobody knows which robot, servos and reading made it."
+        "says “not established” and not what looks likely."
     ]
+    if summary["experiment"] == "table1":
+        said.append(
+            "The intervals know of our seeds only. A printed value is one run, and nobody knows "
+            "which robot, servos and reading made it."
+        )
     if config["seeds"] < FEW:
         said.append(
             f"{counted(config['seeds'], 'seed')} a setting is few: the intervals are rough, and "

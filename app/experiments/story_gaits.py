@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from app.experiments.claims_gaits import ODD, OTHERS, SLOW, odd_against_others
 from app.experiments.corners import PAPERS_AGENT, Corner
 from app.experiments.published import published
-from app.experiments.words import listed, metres, shares
+from app.experiments.words import listed, metres, shares, span
 
 AFTER = 500
 
@@ -30,7 +30,7 @@ def _told(corner: Corner) -> str | None:
         return None
     return (
         f"With {corner.label}, greedy covers {metres(greedy['total']['iqm_m'])} in this gait and "
-        f"{metres(min(rest))} to {metres(max(rest))} in the other three; Q-learning after {AFTER} "
+        f"{span(rest)} in the other three; Q-learning after {AFTER} "
         f"steps covers {shares(ratio)} of what it does in the other three."
     )
 

@@ -10,7 +10,7 @@ from app.experiments.words import agent_name, counted, metres, percent, shares
 
 def extremes(places: Sequence[Corner]) -> str | None:
     """The best and the worst of the grid, and that the best was picked."""
-    pools = [(corner, one) for corner in places for one in corner.pooled if one["relative"]]
+    pools = [(corner, one) for corner in places for one in corner.pooled if one["walkers"]]
     if len(pools) < 2:
         return None
     ordered = sorted(pools, key=lambda found: float(found[1]["relative"]["iqm"]))
@@ -29,8 +29,8 @@ def extremes(places: Sequence[Corner]) -> str | None:
 
 def named(one: Mapping[str, Any], among: Sequence[Mapping[str, Any]]) -> str:
     """What tells a combination from the others; its agent where nothing else does."""
-    varied = [n for n in GRID if len({other[n] for other in among}) > 1]
-    said = [f"{name} = {one[name]:g}" for name in varied]
+    varied = [n for n in GRID if len({other[n] for other in among if other["walkers"]}) > 1]
+    said = [f"{name} = {one[name]:g}" for name in varied if one[name] is not None]
     if len({other["agent"] for other in among}) > 1 or not said:
         said.insert(0, agent_name(one["agent"]))
     return ", ".join(said)

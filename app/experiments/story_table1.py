@@ -174,8 +174,8 @@ def clocks(places: Sequence[Corner]) -> str | None:
         f"{median(times['two-step']):.0f} s. On this machine, timed alone, greedy thought "
         f"{thought['greedy']:.2g} s and two-step {thought['two-step']:.2g} s. By that wall clock "
         f"Q-learning was ahead at the finish in {first} of {counted(len(timed), 'timed race')} "
-        "after 500 steps of practice. Who wins by finished distance is therefore as much a "
-        "statement about a computer as about a way to learn; total distance does not depend on it."
+        "after 500 steps of practice. Finished distance depends on who computes how fast; total "
+        "distance does not."
     )
 
 

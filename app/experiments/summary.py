@@ -6,58 +6,20 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from importlib.metadata import version
 from itertools import combinations
-from typing import Any, NamedTuple
+from typing import Any
 
 from app.experiments.claims import judge
 from app.experiments.claims_of import CLAIMS_OF
-from app.experiments.config import GRID, ExperimentConfig, as_json
-from app.experiments.measures import Stratum, Yardstick, beside, curve, distances, measures
-from app.experiments.plan import Plan, Setting
+from app.experiments.config import ExperimentConfig, as_json
+from app.experiments.measures import Yardstick, beside, curve, distances, measures
+from app.experiments.plan import Plan
 from app.experiments.published import published
-from app.experiments.statistics import Points, decided, improvement
+from app.experiments.seen import Seen, named, sorted_out, stratum, yardsticks_of
+from app.experiments.statistics import decided, improvement
 from app.experiments.story import tell
 from app.experiments.trial import TrialResult
 
 FORMAT = 1
-_LEAST_WALK = 0.5
-"""Of half a grid side: a greedy agent that does not come so far in 50 steps is no yardstick."""
-
-
-class _Seen(NamedTuple):
-    """A setting and the results that there are, by seed number."""
-
-    setting: Setting
-    results: Mapping[int, TrialResult]
-
-    @property
-    def good(self) -> list[TrialResult]:
-        return [self.results[n] for n in sorted(self.results) if not self.results[n].failure]
-
-    @property
-    def place(self) -> tuple[Any, ...]:
-        """Where it is compared with others: (gait, observation, robot, divisions, side)."""
-        at = self.setting.training
-        return (
-            self.setting.gait,
-            at.observation,
-            self.setting.robot,
-            at.divisions,
-            at.grid_side_m,
-        )
-
-    @property
-    def rates(self) -> tuple[Any, ...]:
-        """All of the practice but agent and place."""
-        return (self.setting.trial.blocks, *(getattr(self.setting.training, n) for n in GRID))
-
-    @property
-    def total_m(self) -> Points:
-        return tuple(one.distances_m[-1] for one in self.good if one.distances_m)
-
-    @property
-    def finished_m(self) -> Points:
-        found = (one.finished_distance_m for one in self.good)
-        return tuple(metres for metres in found if metres is not None)
 
 
 def summarise(
@@ -81,8 +43,8 @@ def summarise(
         What cannot be said yet is None, or an empty list.
     """
     plan = _plan(config)
-    seen = _sorted_out(plan, results)
-    yardsticks = {one.place: _yardstick(one) for one in seen if _is_greedy(one)}
+    seen = sorted_out(plan, results)
+    yardsticks = yardsticks_of(seen)
     walked = [one for one in seen if one.setting.role != "timed"]
     shown: dict[str, Any] = {
         "format": FORMAT,
@@ -93,7 +55,7 @@ def summarise(
         "trials": _count(plan, results, set_aside or {}),
         "cost": None if cost is None else dict(cost),
         "settings": [_setting(one, yardsticks, config) for one in walked],
-        "pooled": _pooled(walked, yardsticks, config.seed),
+        "pooled": _pooled(walked, yardsticks, config),
         "curves": [
             _curve(one, yardsticks, config.seed) for one in walked if one.setting.trial.blocks > 1
         ],
@@ -111,116 +73,86 @@ def _plan(config: ExperimentConfig) -> Plan:
     return Plan(config)
 
 
-def _sorted_out(plan: Plan, results: Mapping[str, TrialResult]) -> list[_Seen]:
-    found: dict[str, dict[int, TrialResult]] = {setting.key: {} for setting in plan.settings}
-    for key, result in results.items():
-        setting, _, number = key.rpartition("#")
-        if setting in found and int(number) < plan.config.seeds:
-            found[setting][int(number)] = result
-    return [_Seen(setting, found[setting.key]) for setting in plan.settings]
-
-
-def _is_greedy(one: _Seen) -> bool:
-    return one.setting.role == "reference" and one.setting.training.agent == "greedy"
-
-
-def _yardstick(greedy: _Seen) -> Yardstick:
-    least_m = _LEAST_WALK * greedy.setting.training.grid_side_m / 2
-    total = next((metres for metres in greedy.total_m if metres > least_m), None)
-    finished = next((metres for metres in greedy.finished_m if metres > least_m), None)
-    return Yardstick(total, finished)
-
-
 def _setting(
-    one: _Seen, yardsticks: Mapping[Any, Yardstick], config: ExperimentConfig
+    one: Seen, yardsticks: Mapping[Any, Yardstick], config: ExperimentConfig
 ) -> dict[str, Any]:
-    stratum = Stratum(one.total_m, one.finished_m, yardsticks.get(one.place, Yardstick()))
+    seeds = stratum(one, yardsticks)
     practised = one.setting.training.steps if one.setting.role == "learner" else 0
     cell = published(one.setting.gait, one.setting.training.agent, practised)
-    printed = beside(cell, stratum.total_m, stratum.finished_m)
+    printed = beside(cell, seeds.total_m, seeds.finished_m)
     elapsed = [result.elapsed_s for result in one.good if result.elapsed_s is not None]
     return {
         "key": one.setting.key,
         "role": one.setting.role,
-        **_named(one),
-        "n": len(stratum.total_m),
+        **named(one),
+        "n": len(seeds.total_m),
         "failed": len(one.results) - len(one.good),
-        "total": distances(stratum.total_m, config.seed),
-        "finished": distances(stratum.finished_m, config.seed),
-        **measures([stratum], config.seed),
+        "total": distances(seeds.total_m, config.seed),
+        "finished": distances(seeds.finished_m, config.seed),
+        **measures([seeds], config.seed),
         "elapsed_s": elapsed[0] if elapsed and one.setting.role == "reference" else None,
         "published": printed if config.experiment == "table1" else None,
     }
 
 
-def _named(one: _Seen) -> dict[str, Any]:
-    """What tells a setting from the others; an agent that looks ahead has no rates."""
-    at = one.setting.training
-    practises = one.setting.role == "learner"
-    rates = {name: getattr(at, name) if practises else None for name in GRID}
-    return {
-        "gait": one.setting.gait,
-        "observation": at.observation,
-        "robot": one.setting.robot,
-        "agent": at.agent,
-        **rates,
-        "steps": at.steps if practises else 0,
-        "blocks": one.setting.trial.blocks,
-        "divisions": at.divisions,
-        "grid_side_m": at.grid_side_m,
-        "half_side_m": at.grid_side_m / 2,
-    }
-
-
 def _pooled(
-    seen: Sequence[_Seen], yardsticks: Mapping[Any, Yardstick], seed: int
+    seen: Sequence[Seen], yardsticks: Mapping[Any, Yardstick], config: ExperimentConfig
 ) -> list[dict[str, Any]]:
-    """Learners over their gaits, which are the strata of the bootstrap."""
+    """Learners over their gaits, which are the strata of the bootstrap.
+
+    Outside Table 1 also who looks ahead, unless it is greedy: without an interval or shares,
+    because a gait is not a seed.
+    """
     found = []
-    for together in _grouped(one for one in seen if one.setting.role == "learner"):
-        strata = [
-            Stratum(one.total_m, one.finished_m, yardsticks.get(one.place, Yardstick()))
-            for one in together
-        ]
-        named = {k: v for k, v in _named(together[0]).items() if k != "gait"}
+    for together in _grouped(one for one in seen if _is_compared(one, config)):
+        strata = [stratum(one, yardsticks) for one in together]
+        shown = {k: v for k, v in named(together[0]).items() if k != "gait"}
         gaits = [one.setting.gait for one in together]
         n = sum(len(one.total_m) for one in strata)
-        found.append({**named, "gaits": gaits, "n": n, **measures(strata, seed)})
+        measured = measures(strata, config.seed)
+        if together[0].setting.role == "reference":
+            measured = {k: v if k.startswith("relative") else None for k, v in measured.items()}
+        found.append({**shown, "gaits": gaits, "n": n, **measured})
     return found
 
 
-def _grouped(seen: Iterable[_Seen]) -> list[list[_Seen]]:
+def _is_compared(one: Seen, config: ExperimentConfig) -> bool:
+    agent = one.setting.training.agent
+    return one.setting.role == "learner" or (config.experiment != "table1" and agent != "greedy")
+
+
+def _grouped(seen: Iterable[Seen]) -> list[list[Seen]]:
     """Settings that are alike in all but the gait."""
-    groups: dict[Any, list[_Seen]] = {}
+    groups: dict[Any, list[Seen]] = {}
     for one in seen:
         alike = (one.place[1:], one.setting.training.agent, one.rates)
         groups.setdefault(alike, []).append(one)
     return list(groups.values())
 
 
-def _curve(one: _Seen, yardsticks: Mapping[Any, Yardstick], seed: int) -> dict[str, Any]:
+def _curve(one: Seen, yardsticks: Mapping[Any, Yardstick], seed: int) -> dict[str, Any]:
     greedy = yardsticks.get(one.place, Yardstick())
     blocks = list(zip(*(result.distances_m for result in one.good), strict=True))
     block = one.setting.training.steps
     shown = curve(blocks, block, greedy, seed)
-    return {"key": one.setting.key, **_named(one), **shown, "greedy_m": greedy.total_m}
+    return {"key": one.setting.key, **named(one), **shown, "greedy_m": greedy.total_m}
 
 
-def _versus(seen: Sequence[_Seen], seed: int) -> list[dict[str, Any]]:
+def _versus(seen: Sequence[Seen], seed: int) -> list[dict[str, Any]]:
     """Every two agents that learn, after the same practice in the same place."""
-    groups: dict[Any, list[_Seen]] = {}
+    groups: dict[Any, list[Seen]] = {}
     for one in seen:
         if one.setting.role == "learner" and one.total_m:
             groups.setdefault((one.place, one.rates), []).append(one)
     found = []
     for a, b in (pair for group in groups.values() for pair in combinations(group, 2)):
         chance = improvement((a.total_m,), (b.total_m,), seed)
-        named = {k: v for k, v in _named(a).items() if k != "agent"}
+        shared = {k: v for k, v in named(a).items() if k != "agent"}
         agents = {"a": a.setting.training.agent, "b": b.setting.training.agent}
         fewest = min(len(a.total_m), len(b.total_m))
         found.append(
             {
-                **named,
+                **shared,
                 **agents,
                 "probability": chance.value,
                 "low": chance.low,
@@ -231,10 +163,10 @@ def _versus(seen: Sequence[_Seen], seed: int) -> list[dict[str, Any]]:
     return found
 
 
-def _timed(one: _Seen) -> dict[str, Any]:
+def _timed(one: Seen) -> dict[str, Any]:
     lanes = [dict(lane) for lane in one.good[0].wall or ()]
-    named = _named(one)
-    return {**{k: named[k] for k in ("gait", "observation", "robot")}, "lanes": lanes}
+    shown = named(one)
+    return {**{k: shown[k] for k in ("gait", "observation", "robot")}, "lanes": lanes}
 
 
 def _count(

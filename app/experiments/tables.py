@@ -7,7 +7,7 @@ from app.experiments.corners import Corner
 from app.experiments.published import COLUMNS, DISTANCES, published
 from app.experiments.statistics import CONFIDENCE
 from app.experiments.story_sweep import named
-from app.experiments.words import agent_name, gait_name, metres, percent, shares
+from app.experiments.words import agent_name, gait_name, number, percent, shares
 
 UNITS: Mapping[str, str] = {
     "m": "metres",
@@ -91,14 +91,19 @@ def _in(unit: str, found: Mapping[str, Any] | None, by: float | None) -> tuple[s
     value = _shown(unit, found["iqm_m"] / by)
     if found["low_m"] is None:
         return value, ""
-    low, high = (_shown(unit, found[end] / by).removesuffix(" %") for end in ("low_m", "high_m"))
-    return value, f"{low} to {high}"
+    return value, _between(*(_shown(unit, found[end] / by) for end in ("low_m", "high_m")))
+
+
+def _between(low: str, high: str) -> str:
+    """A dash would hide in front of a minus."""
+    low = low.removesuffix("\u00a0%")
+    return f"{low} to {high}" if "−" in low else f"{low}–{high}"
 
 
 def _shown(unit: str, value: float) -> str:
     if unit == "r":
         return percent(value)
-    return metres(value).removesuffix(" m") if unit == "m" else f"{round(value, 1) + 0.0:.1f}"
+    return number(value, 2 if unit == "m" else 1)
 
 
 def _printed(unit: str, papers: float | None, by: float | None, gait: str) -> str:
@@ -134,7 +139,7 @@ def curves(corner: Corner) -> dict[str, Any]:
                 "cells": [_at(one, steps.index(at)) for at in chosen]
                 + [
                     (_NONE if one["walkers"][-1] is None else percent(one["walkers"][-1]), ""),
-                    (_NONE if one["greedy_m"] is None else metres(one["greedy_m"])[:-2], ""),
+                    (_NONE if one["greedy_m"] is None else number(one["greedy_m"]), ""),
                 ],
             }
             for one in shown
@@ -144,11 +149,8 @@ def curves(corner: Corner) -> dict[str, Any]:
 
 
 def _at(curve: Mapping[str, Any], block: int) -> tuple[str, str]:
-    value, low, high = (
-        metres(curve[k][block])[:-2] if curve[k][block] is not None else None
-        for k in ("iqm_m", "low_m", "high_m")
-    )
-    return value or _NONE, f"{low} to {high}" if low and high else ""
+    value, low, high = curve["iqm_m"][block], curve["low_m"][block], curve["high_m"][block]
+    return number(value), "" if low is None else _between(number(low), number(high))
 
 
 def sweep(corner: Corner) -> dict[str, Any]:
@@ -163,7 +165,7 @@ def sweep(corner: Corner) -> dict[str, Any]:
                 "name": named(one, corner.pooled),
                 "cells": [
                     (shares(one["relative"]), ""),
-                    (shares(one["walkers"]), ""),
+                    (shares(one["walkers"]) if one["walkers"] else _NONE, ""),
                     (shares(one["beats_greedy"]) if one["beats_greedy"] else _NONE, ""),
                     (f"{one['n']:,}", ""),
                 ],

@@ -11,6 +11,7 @@ AGENTS: Mapping[str, str] = {
     "greedy": "Greedy",
     "two-step": "Two-step",
 }
+_UNBROKEN = "\u00a0"
 READINGS: Mapping[str, str] = {"measured": "feet read back", "commanded": "commands remembered"}
 """What an observation is, in words."""
 
@@ -26,13 +27,25 @@ def agent_name(agent: str) -> str:
 
 
 def percent(value: float) -> str:
-    """A share: `74 %`."""
-    return f"{100 * value:.0f} %"
+    """A share: `74 %`, which no line breaks apart."""
+    return f"{100 * value:.0f}{_UNBROKEN}%"
 
 
 def metres(value: float) -> str:
     """A distance to the centimetre; never `-0.00 m`."""
-    return f"{round(value, 2) + 0.0:.2f} m"
+    return f"{number(value)}{_UNBROKEN}m"
+
+
+def number(value: float, digits: int = 2) -> str:
+    """Without a unit; never `-0.00`, and with a minus that is one."""
+    return f"{round(value, digits) + 0.0:.{digits}f}".replace("-", "−")
+
+
+def span(values: Iterable[float]) -> str:
+    """From the smallest to the largest distance: `0.45 m to 0.47 m`, or `0.51 m`."""
+    ordered = sorted(values)
+    ends = dict.fromkeys(metres(value) for value in (ordered[0], ordered[-1]))
+    return " to ".join(ends)
 
 
 def shares(found: Interval | Mapping[str, Any]) -> str:
@@ -48,7 +61,7 @@ def distance(found: Interval | Mapping[str, Any]) -> str:
     value, low, high = _three(found)
     if low is None or high is None:
         return metres(value)
-    return f"{metres(value)} ({metres(low)[:-2]} to {metres(high)[:-2]})"
+    return f"{metres(value)} ({number(low)} to {number(high)})"
 
 
 def listed(items: Iterable[str], last: str = "and") -> str:
