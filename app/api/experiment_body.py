@@ -1,7 +1,7 @@
 """What a request for an experiment may say."""
 
 from collections.abc import Collection
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from pydantic import BeforeValidator, Field
 
@@ -28,8 +28,12 @@ def _as_list(value: Any) -> Any:
     return value if isinstance(value, list) or value is None else [value]
 
 
-# One value stands for a list of it.
-_SOME = (BeforeValidator(_as_list), Field(min_length=1, max_length=MAX_VALUES))
+T = TypeVar("T")
+Some = Annotated[
+    Annotated[list[T], Field(min_length=1, max_length=MAX_VALUES)] | None,
+    BeforeValidator(_as_list),
+]
+"""One value stands for a list of it."""
 Divisions = Annotated[int, Field(strict=True, ge=MIN_DIVISIONS, le=MAX_DIVISIONS)]
 Side = Annotated[float, number(ge=MIN_SIDE_M)]
 
@@ -46,19 +50,19 @@ class ExperimentBody(Body):
         ExperimentConfig.seeds
     )
     seed: Seed = ExperimentConfig.seed
-    gaits: Annotated[list[Gait] | None, *_SOME] = None
-    observations: Annotated[list[Observation] | None, *_SOME] = None
-    robots: Annotated[list[str | dict[str, Any]] | None, *_SOME] = None
+    gaits: Some[Gait] = None
+    observations: Some[Observation] = None
+    robots: Some[str | dict[str, Any]] = None
     simulator: SimulatorName = ExperimentConfig.simulator
-    agents: Annotated[list[str] | None, *_SOME] = None
-    steps: Annotated[list[Steps] | None, *_SOME] = None
-    alpha: Annotated[list[Alpha] | None, *_SOME] = None
-    gamma: Annotated[list[Gamma] | None, *_SOME] = None
-    epsilon_start: Annotated[list[Epsilon] | None, *_SOME] = None
-    epsilon_end: Annotated[list[Epsilon] | None, *_SOME] = None
-    steps_per_episode: Annotated[list[Steps] | None, *_SOME] = None
-    divisions: Annotated[list[Divisions] | None, *_SOME] = None
-    grid_side_m: Annotated[list[Side] | None, *_SOME] = None
+    agents: Some[str] = None
+    steps: Some[Steps] = None
+    alpha: Some[Alpha] = None
+    gamma: Some[Gamma] = None
+    epsilon_start: Some[Epsilon] = None
+    epsilon_end: Some[Epsilon] = None
+    steps_per_episode: Some[Steps] = None
+    divisions: Some[Divisions] = None
+    grid_side_m: Some[Side] = None
     workers: Annotated[
         int | None, Field(strict=True, ge=1, le=MAX_WORKERS, description=VALID["workers"])
     ] = None

@@ -44,6 +44,8 @@ ODD_BODIES = [
     b'{"gait":"left-right-origin","gait":{}}',
     b'{"\\ud800":1}',
     b'{"gait":{"right_leg":1,"left_leg":2,"pairs":' + b"[" * 500 + b"]" * 500 + b"}}",
+    b'{"experiment":"sweep","alpha":' + b"[" * DEEP + b"]" * DEEP + b"}",
+    b'{"experiment":"sweep","robots":[{"\\ud800":1}]}',
 ]
 ODD_QUERIES = ["limit=NaN", "cursor=%00", "state=%ff", "limit=" + "9" * 5000, "format=%F0%9F%A4%96"]
 ODD_HEADERS = [
@@ -142,16 +144,38 @@ def odd_requests(api: Api) -> Iterator[tuple[str, str, dict[str, Any]]]:
         if method in ("POST", "PUT", "PATCH"):
             for body in ODD_BODIES:
                 yield method, path, {"content": body, "headers": as_json}
+    for path, said in odd_values():
+        method = "PUT" if path.endswith("stage") else "POST"
+        yield method, path, {"content": said, "headers": as_json}
+
+
+def odd_values() -> Iterator[tuple[str, str]]:
+    """Every odd number in the fields that take one."""
     for field in ("steps", "seed", "alpha", "grid_side_m", "pace", "divisions", "name", "robot"):
         for number in NUMBERS:
-            whole = json.dumps(WALK)[:-1] + f', "{field}": {number}}}'
-            yield "POST", "/api/v1/trainings", {"content": whole, "headers": as_json}
+            yield "/api/v1/trainings", json.dumps(WALK)[:-1] + f', "{field}": {number}}}'
             leg = f'{{"gait": "left-right-origin", "robot": {{"{field}": {number}}}}}'
-            yield "POST", "/api/v1/trainings", {"content": leg, "headers": as_json}
-    for number in NUMBERS:
-        for field in ("time_s", "speed", "playing"):
-            said = f'{{"{field}": {number}}}'
-            yield "PUT", "/api/v1/stage", {"content": said, "headers": as_json}
+            yield "/api/v1/trainings", leg
+    for field in (
+        "seeds",
+        "seed",
+        "steps",
+        "alpha",
+        "divisions",
+        "grid_side_m",
+        "workers",
+        "robots",
+    ):
+        for number in NUMBERS:
+            for value in (number, f"[{number}]"):
+                sweep = f'"experiment": "sweep", "gaits": ["hop"], "{field}": {value}'
+                yield "/api/v1/experiments", f"{{{sweep}}}"
+    for field in ("steps", "alpha", "divisions", "grid_side_m"):
+        for number in NUMBERS:
+            yield "/api/v1/what-if", f'{{"gait": "left-right-origin", "{field}": {number}}}'
+    for field in ("time_s", "speed", "playing"):
+        for number in NUMBERS:
+            yield "/api/v1/stage", f'{{"{field}": {number}}}'
 
 
 def test_of_what_nobody_would_describe(calm: Api) -> None:

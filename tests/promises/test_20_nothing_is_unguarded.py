@@ -29,6 +29,8 @@ OPERATOR = f"Authorization: Bearer {TOKEN}"
 VALID_BODIES: dict[str, Any] = {
     "/api/v1/trainings": {"gait": "left-right-origin", "simulator": "kinematic", "steps": 5},
     "/api/v1/races": {"gait": "left-right-origin", "lanes": [{"agent": "greedy"}]},
+    "/api/v1/experiments": {"experiment": "sweep", "simulator": "kinematic", "seeds": 1},
+    "/api/v1/what-if": {"gait": "left-right-origin", "steps": 5},
     "/api/v1/stage": {"playing": False, "speed": 4, "clock": "free"},
     "/api/v1/trainings/{run_id}": {"pace": 1},
 }
@@ -58,13 +60,13 @@ def ask(server: Serving, route: Route, run_id: str, *headers: str) -> int:
 
 def state_of(server: Serving) -> Any:
     """All that someone could have changed."""
-    paths = ("/api/v1/trainings", "/api/v1/races", "/api/v1/stage")
+    paths = ("/api/v1/trainings", "/api/v1/races", "/api/v1/experiments", "/api/v1/stage")
     lines = [f"Host: 127.0.0.1:{server.port}", OPERATOR]
     answers = [send(server.port, f"GET {path} HTTP/1.1", *lines) for path in paths]
     state = [json.loads(answer.partition(b"\r\n\r\n")[2]) for answer in answers]
     # It goes by itself.
     for name in ("time_s", "ended", "live"):
-        state[2].pop(name)
+        state[-1].pop(name)
     return state
 
 
