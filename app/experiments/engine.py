@@ -73,7 +73,14 @@ def run_trials(
     if first is None or not go_on():
         return
     with connect(where) as client:
-        yield from _Engine(client, go_on).run(chain([first], waiting))
+        yield from run_on(client, chain([first], waiting), go_on)
+
+
+def run_on(
+    client: "Client", trials: Iterable[Trial], go_on: Callable[[], bool] = lambda: True
+) -> Iterator[Outcome]:
+    """As `run_trials`, on a cluster that is there."""
+    return _Engine(client, go_on).run(trials)
 
 
 def work(configs: Sequence[TrialConfig], expected: Mapping[str, str]) -> list[Done]:
