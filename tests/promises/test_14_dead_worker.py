@@ -1,16 +1,20 @@
 """Promise 14: a dead worker is noticed, and a dead server's runs can be resumed.
 
 kill -9 of a job's process: `failed` with the signal named within 5 s. kill -9 of the server: its
-runs are `interrupted` at the next start, whatever they were at. In full, once each.
+runs are `interrupted` at the next start, whatever they were at. An experiment repeats nothing that
+was kept, and neither death leaves a process of its cluster. In full, once each.
 """
 
+import json
 import signal
 import time
 from collections.abc import Callable
 
 import psutil
+import pytest
 
 from tests.served import BODY, ENDLESS, Served
+from tests.services.experiments import sweep, tried
 
 
 def test_a_killed_job_is_failed_within_five_seconds(launch: Callable[..., Served]) -> None:
@@ -56,3 +60,32 @@ def test_a_dead_servers_runs_are_interrupted_and_go_on(launch: Callable[..., Ser
     assert raced["result"]["lanes"][0]["training_id"] == practice
     stopped = server.tell(queued[0], "stop")
     assert stopped.status_code == 409
+
+
+@pytest.mark.timeout(300)
+def test_a_dead_servers_experiment_goes_on_and_leaves_no_process(
+    launch: Callable[..., Served],
+) -> None:
+    server = launch()
+    body = {"experiment": "sweep", "simulator": "kinematic", "gaits": "left-right-origin"}
+    run = server.start({**body, "seeds": 40, "steps": 1000, "workers": 1}, "/experiments")
+    server.after_step(run, 1)
+    below = psutil.Process(server.process.pid).children(recursive=True)
+    assert len(below) > 2, "its job, and a cluster below that"
+    server.end(signal.SIGKILL)
+    _, left = psutil.wait_procs(below, timeout=10)
+    assert not left
+
+    server = launch()
+    assert server.look(run)["state"] == "interrupted"
+    path = f"/api/v1/experiments/{run['id']}"
+    kept = server.client.get(f"{path}/trials").json()["trials"]
+    assert kept
+    assert server.client.get(f"{path}/summary").json()["trials"]["total"] == 41
+    assert server.tell(run, "resume").status_code == 202
+    ended = server.in_state(run, "finished", "failed", "stopped")
+    assert ended["state"] == "finished", ended
+    rows = server.client.get(f"{path}/trials").json()["trials"]
+    assert all(row in rows for row in kept), "some were repeated"
+    plain = json.loads(json.dumps(tried(sweep(seeds=40, steps=(1000,)))))
+    assert {row["key"]: row["result"] for row in rows} == plain
