@@ -91,9 +91,11 @@ def _list(options: argparse.Namespace) -> int:
 
 
 def _row(run: Run) -> tuple[str, ...]:
-    steps = f"{run.total:,}" if run.done == run.total else f"{run.done:,} of {run.total:,}"
+    done = f"{run.total:,}" if run.done == run.total else f"{run.done:,} of {run.total:,}"
+    if run.kind == "experiment":
+        done += " trials"
     began = (run.started_at or run.created_at).astimezone().strftime("%Y-%m-%d %H:%M")
-    return (run.id, run.kind, run.state, steps, _outcome(run), began, run.name)
+    return (run.id, run.kind, run.state, done, _outcome(run), began, run.name)
 
 
 def _outcome(run: Run) -> str:
@@ -103,6 +105,9 @@ def _outcome(run: Run) -> str:
     if run.kind == "training":
         distance = run.result["distance_m"]
         return "" if distance is None else f"{distance:.2f} m"
+    if run.kind == "experiment":
+        verdicts = [claim["verdict"] for claim in run.result["claims"]]
+        return f"{verdicts.count('holds')} of {len(verdicts)} claims hold" if verdicts else ""
     lanes = run.result["lanes"]
     first = [str(lane["agent"]) for lane in lanes if lane["clocks"]["paper"]["rank"] == 1]
     return ", ".join(first)
@@ -117,7 +122,8 @@ def _show(options: argparse.Namespace) -> int:
         print(json.dumps({**shown, "curve": list(curve)}))
         return 0
     progress, result = shown.pop("progress"), shown.pop("result")
-    shown["steps"] = f"{progress['done']:,} of {progress['total']:,}"
+    counted = "trials" if run.kind == "experiment" else "steps"
+    shown[counted] = f"{progress['done']:,} of {progress['total']:,}"
     shown["evaluations"] = len(curve)
     for name, value in shown.items():
         if value:
