@@ -4,6 +4,19 @@
     hexapods race --gait left-right-origin --lane dqn_agent:Agent=dqn.npz --lane greedy
 
 Only the first line needs `racing-hexapods[dqn]`; in the race the network is three matrices.
+
+Measured on MuJoCo with `--seed 0` to `--seed 19`: its distance after 1,000 steps of practice, as a
+share of greedy's.
+
+    gait                   median  worst  best
+    left-right-origin       1.00   0.99  1.00
+    left-right-vertical     1.03   0.93  1.05
+    front-back-origin       1.00   1.00  1.00
+    front-back-vertical     1.00   0.99  1.00
+
+Q-learning with a table comes to about 0.83 after as many steps. The network sees no more of the
+robot, but learns from each step about seven times, and can carry what a move of one pair earns over
+to states that it never saw.
 """
 
 import argparse
