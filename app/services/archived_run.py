@@ -152,7 +152,7 @@ def read_run_json(
                 f"({__version__}) reads {FORMAT}"
             )
         file = msgspec.json.decode(data, type=_File)
-        run = _run(file.run)
+        run = _run(file.run, agents)
         curve: list[dict[str, Any]] = msgspec.to_builtins(file.curve)
         _check(run, curve)
     except DamagedFile:
@@ -161,7 +161,6 @@ def read_run_json(
         raise InvalidInput(f"{said} cannot be taken in: {error}") from error
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
         raise DamagedFile(f"{said} does not hold a run as it should: {error}") from error
-    _check_agents(run, agents)
     return run, curve
 
 
@@ -177,10 +176,12 @@ _CONFIGS: Mapping[Kind, type[Config]] = {
 }
 
 
-def _run(shape: _Shape) -> Run:
+def _run(shape: _Shape, agents: Collection[str]) -> Run:
     config = config_of(shape.kind, _part(shape.config, dict[str, Any]))
     if not isinstance(config, _CONFIGS[shape.kind]) or shape.done > shape.total:
         raise ValueError("its kind, its config and its progress do not fit together")
+    # First of all: laying out an experiment imports its agents.
+    _check_agents(config, agents)
     if isinstance(config, ExperimentConfig):
         if plan_of(config).total != shape.total:
             raise ValueError("its total is not that of its trials")
@@ -223,9 +224,8 @@ def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
         raise ValueError("its result is of other lanes")
 
 
-def _check_agents(run: Run, agents: Collection[str]) -> None:
+def _check_agents(config: Config, agents: Collection[str]) -> None:
     """An agent named by module would be imported, and so run, when someone goes on with it."""
-    config = run.config
     if isinstance(config, RaceConfig):
         used: Collection[str] = [lane.agent for lane in config.lanes]
     else:

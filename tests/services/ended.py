@@ -1,10 +1,14 @@
 """Runs that have ended, made by the real loops, with all that a server keeps of them."""
 
+import json
 import time
 
 import numpy as np
 
 from app.assembly import build_learner, build_walkers, finish_training
+from app.experiments.plan import Plan
+from app.experiments.summary import summarise
+from app.experiments.trial import run_trial
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
 from app.runs.racing import record_race
 from app.runs.records import Evaluated, StepTaken
@@ -12,7 +16,9 @@ from app.runs.results import race_result
 from app.runs.tables import from_bytes, snapshot, to_bytes
 from app.runs.training import train
 from app.services.recordings import Recordings
-from app.services.store import TABLE, Run, RunStore
+from app.services.store import SUMMARY, TABLE, Run, RunStore
+from app.services.stored_trials import trials_as_csv
+from tests.services.experiments import sweep
 from tests.services.stores import training
 
 GAIT = "left-right-origin"
@@ -62,3 +68,30 @@ def ended_race(store: RunStore, run_id: str, training_id: str) -> Run:
         lane |= {"training_id": known, "trained_robot": None}
     result["shared_machine"] = False
     return store.change(run_id, {"queued"}, "finished", done=16, result=result)
+
+
+def ended_experiment(store: RunStore, run_id: str) -> Run:
+    """A sweep with its trials and its summary, but without the figures."""
+    config = sweep(seeds=3, agents=("q-learning", "greedy"))
+    plan = Plan(config)
+    store.create(
+        Run(id=run_id, kind="experiment", name="It was tried", config=config, total=plan.total)
+    )
+    results = {trial.key: run_trial(trial.config) for trial in plan.trials()}
+    rows = [
+        {"key": key, "result": result.as_json(), "set_aside": None, "compute_s": 0.5}
+        for key, result in results.items()
+    ]
+    store.append_trials(run_id, rows)
+    summary = summarise(config, results)
+    store.put_artifact(run_id, SUMMARY, json.dumps(summary).encode())
+    store.put_artifact(run_id, "trials.csv", trials_as_csv(config, rows))
+    counted = {name: summary["trials"][name] for name in ("done", "total", "failed")}
+    claims = [{name: claim[name] for name in ("id", "verdict")} for claim in summary["claims"]]
+    result = {
+        "trials": {**counted, "set_aside": 0},
+        "claims": claims,
+        "files": [SUMMARY, "trials.csv"],
+        "shared_machine": False,
+    }
+    return store.change(run_id, {"queued"}, "finished", done=plan.total, result=result)

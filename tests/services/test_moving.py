@@ -137,7 +137,7 @@ def test_odd_configs_move_and_foreign_agents_do_not() -> None:
     assert "q-learning, greedy, two-step" in refusal(export_run(store, "b"))
 
 
-def _set(name: str, value: Any, *path: str) -> Change:
+def _set(name: str, value: Any, *path: str | int) -> Change:
     def change(shown: Any) -> None:
         for part in path:
             shown = shown[part]
