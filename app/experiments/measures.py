@@ -1,12 +1,13 @@
 """What the trials of a setting, or of a few together, measured; in plain types."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean, median
 from typing import Any
 
 from app.experiments.published import Published
 from app.experiments.statistics import (
+    MIN_SEEDS,
     Interval,
     Points,
     ahead,
@@ -55,15 +56,13 @@ def measures(strata: Sequence[Stratum], seed: int) -> dict[str, Any]:
     raced = [one for one in strata if one.finished_m and one.greedy.finished_m is not None]
     total = [_as_share(one.total_m, one.greedy.total_m) for one in walked]
     finished = [_as_share(one.finished_m, one.greedy.finished_m) for one in raced]
-    level = tuple(point for points in total for point in points)
-    against = tuple(point for points in finished for point in points)
     return {
         "relative": _relative(total, seed),
         "relative_finished": _relative(finished, seed),
-        "walkers": as_shown(at_least(level, WALKS)) if level else None,
-        "beats_greedy": _beats(against) if against else None,
-        "beats_greedy_total": _beats(level) if level else None,
-        "reaches_greedy": as_shown(at_least(level, REACHES)) if level else None,
+        "walkers": _share(total, lambda points: at_least(points, WALKS)),
+        "beats_greedy": _beats(finished),
+        "beats_greedy_total": _beats(total),
+        "reaches_greedy": _share(total, lambda points: at_least(points, REACHES)),
     }
 
 
@@ -92,11 +91,6 @@ def beside(cell: Published | None, total_m: Points, finished_m: Points) -> dict[
         "total_quantile": _quantile(cell.total_m, total_m),
         "finished_quantile": _quantile(cell.finished_m, finished_m),
     }
-
-
-def as_shown(found: Interval) -> dict[str, Any]:
-    """A share with its interval."""
-    return {"share": found.value, "low": found.low, "high": found.high}
 
 
 def curve(
@@ -134,10 +128,23 @@ def _relative(strata: list[Points], seed: int) -> dict[str, Any] | None:
     return {"iqm": middle.value, "low": middle.low, "high": middle.high}
 
 
-def _beats(shares: Points) -> dict[str, Any]:
+def _share(strata: list[Points], count: Callable[[Points], Interval]) -> dict[str, Any] | None:
+    """A share of all seeds; with its interval if each stratum has seeds enough for one."""
+    if not strata:
+        return None
+    found = count(tuple(point for points in strata for point in points))
+    if min(map(len, strata)) < MIN_SEEDS:
+        found = Interval(found.value)
+    return {"share": found.value, "low": found.low, "high": found.high}
+
+
+def _beats(strata: list[Points]) -> dict[str, Any] | None:
     """Against greedy, which is 1 in shares of greedy."""
-    found = ahead(shares, 1.0)
-    return {**as_shown(found), "verdict": found.against(0.5)}
+    shown = _share(strata, lambda points: ahead(points, 1.0))
+    if shown is None:
+        return None
+    found = Interval(shown["share"], shown["low"], shown["high"])
+    return {**shown, "verdict": found.against(0.5)}
 
 
 def _quantile(value: float | None, points: Points) -> float | None:

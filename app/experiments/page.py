@@ -67,15 +67,23 @@ def command(config: Mapping[str, Any]) -> str:
     said = ["hexapods", *(["sweep"] if name == "sweep" else ["experiment", name])]
     for field, option in _OPTIONS.items():
         if field in ("seeds", "seed") or config[field] != usual[field]:
-            said += [f"--{option}", _as_option(config[field])]
+            said += [part for text in _texts(config[field]) for part in (f"--{option}", text)]
     return shlex.join(said)
 
 
-def _as_option(value: Any) -> str:
-    if isinstance(value, list):
-        return ",".join(_as_option(one) for one in value)
+def _texts(value: Any) -> list[str]:
+    """What follows an option: values with commas between; one that is JSON stands alone."""
+    values = value if isinstance(value, list) else [value]
+    plain = [_plain(one) for one in values]
+    if None not in plain:
+        return [",".join(map(str, plain))]
+    return [one or json.dumps(value) for one, value in zip(plain, values, strict=True)]
+
+
+def _plain(value: Any) -> str | None:
+    """A value as it is typed; None if it has to be JSON."""
     if isinstance(value, Mapping):
-        return str(value["preset"]) if set(value) == {"preset"} else json.dumps(value)
+        return str(value["preset"]) if set(value) == {"preset"} else None
     return str(value)
 
 

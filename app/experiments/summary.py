@@ -52,7 +52,7 @@ def summarise(
         "config": as_json(config),
         "versions": _versions(),
         "machine": {"platform": platform.platform(), "cores": os.cpu_count()},
-        "trials": _count(plan, results, set_aside or {}),
+        "trials": _count(plan, seen, set_aside or {}),
         "cost": None if cost is None else dict(cost),
         "settings": [_setting(one, yardsticks, config) for one in walked],
         "pooled": _pooled(walked, yardsticks, config),
@@ -169,15 +169,18 @@ def _timed(one: Seen) -> dict[str, Any]:
     return {**{k: shown[k] for k in ("gait", "observation", "robot")}, "lanes": lanes}
 
 
-def _count(
-    plan: Plan, results: Mapping[str, TrialResult], set_aside: Mapping[str, str]
-) -> dict[str, Any]:
-    broken = [{"key": k, "reason": r.failure} for k, r in results.items() if r.failure]
+def _count(plan: Plan, seen: Sequence[Seen], set_aside: Mapping[str, str]) -> dict[str, Any]:
+    broken = [
+        {"key": f"{one.setting.key}#{number}", "reason": result.failure}
+        for one in seen
+        for number, result in sorted(one.results.items())
+        if result.failure
+    ]
     return {
-        "done": len(results),
+        "done": sum(len(one.results) for one in seen),
         "total": plan.total,
         "failed": len(broken),
-        "failures": sorted(broken, key=lambda one: str(one["key"])),
+        "failures": broken,
         "set_aside": [{"key": key, "reason": why} for key, why in sorted(set_aside.items())],
     }
 

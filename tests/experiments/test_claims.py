@@ -1,0 +1,161 @@
+"""Claims: each verdict follows from the interval, in each corner and over all of them."""
+
+from collections.abc import Callable
+
+import pytest
+
+from app.experiments.plan import Setting
+from app.experiments.summary import summarise
+from tests.experiments.made import ROBOTS, around, claim, config, made_up, summary_of
+
+ODD = "left-right-vertical"
+Far = Callable[[Setting], Callable[[int], float]]
+
+
+def table1(far: Far, seeds: int = 12, name: str = "", **given: object) -> dict[str, object]:
+    only = {"observations": ("measured",), "robots": ROBOTS[:1], **given}
+    return claim(summary_of("table1", far, seeds=seeds, **only), name)
+
+
+def figure4(far: Far, name: str) -> dict[str, object]:
+    summary = summary_of("figure4", far, seeds=12, observations=("measured",))
+    return claim(summary, name)
+
+
+def everywhere(middle_m: float, spread_m: float = 0.02) -> Far:
+    return lambda _: around(middle_m, spread_m)
+
+
+@pytest.mark.parametrize(
+    ("far", "verdict"),
+    [
+        (everywhere(0.4), "holds"),
+        (everywhere(0.6), "does not hold"),
+        (everywhere(0.5), "not established"),
+        # One gait in which greedy loses is enough against "dominates".
+        (lambda one: around(0.6 if one.gait == ODD else 0.4), "does not hold"),
+    ],
+)
+def test_greedy_dominates_in_total_distance(far: Far, verdict: str) -> None:
+    assert table1(far, name="greedy-dominates")["verdict"] == verdict
+
+
+@pytest.mark.parametrize(
+    ("middle_m", "verdict"),  # greedy is at 0.36 m when the first has ended
+    [(0.40, "holds"), (0.355, "holds"), (0.30, "does not hold"), (0.337, "not established")],
+)
+def test_walking_as_fast_is_within_a_twentieth(middle_m: float, verdict: str) -> None:
+    found = table1(everywhere(middle_m), name="real-time-500")
+    assert found["verdict"] == verdict
+
+
+def test_the_papers_text_and_table_are_judged_apart() -> None:
+    """The table's gait wins, the text's does not."""
+
+    def far(one: Setting) -> Callable[[int], float]:
+        return around(0.42 if one.gait == "front-back-origin" else 0.3)
+
+    assert table1(far, name="table-beats-greedy")["verdict"] == "holds"
+    found = table1(far, name="text-beats-greedy")
+    assert found["verdict"] == "does not hold"
+    assert "0.325 against 0.375" in str(found["evidence"])
+
+
+@pytest.mark.parametrize(("middle_m", "verdict"), [(0.49, "holds"), (0.4, "does not hold")])
+def test_on_par_in_500_steps_means_to_reach_greedy(middle_m: float, verdict: str) -> None:
+    assert table1(everywhere(middle_m, 0.01), name="on-par-500")["verdict"] == verdict
+
+
+def test_two_step_is_slow_if_it_thinks_longer_than_it_walks() -> None:
+    found = table1(everywhere(0.3), name="two-step-slow")
+    assert found["verdict"] == "does not hold"
+    assert "8 s in 50 steps, between 50\xa0% and 50\xa0%" in str(found["evidence"])
+
+
+@pytest.mark.parametrize(
+    ("odd_m", "verdict"),
+    [(0.2, "holds"), (0.4, "does not hold"), (0.36, "not established")],
+)
+def test_the_odd_gait_is_slow_if_it_stays_behind_the_others(odd_m: float, verdict: str) -> None:
+    found = table1(lambda one: around(odd_m if one.gait == ODD else 0.4), name="odd-gait-slow")
+    assert found["verdict"] == verdict
+
+
+def test_the_other_gaits_are_alike_unless_one_is_far_behind() -> None:
+    def uneven(one: Setting) -> Callable[[int], float]:
+        return around({ODD: 0.1, "front-back-origin": 0.2}.get(one.gait, 0.4))
+
+    assert (
+        table1(lambda one: around(0.1 if one.gait == ODD else 0.4), name="gaits-alike")["verdict"]
+        == "holds"
+    )
+    assert table1(uneven, name="gaits-alike")["verdict"] == "does not hold"
+
+
+def test_without_all_four_gaits_nothing_is_said_of_the_odd_one() -> None:
+    summary = summary_of("table1", everywhere(0.3), seeds=6, gaits=("left-right-origin", ODD))
+    assert "odd-gait-slow" not in [one["id"] for one in summary["claims"]]
+
+
+@pytest.mark.parametrize("seeds", [1, 2])
+def test_few_seeds_establish_nothing_of_a_learner(seeds: int) -> None:
+    summary = summary_of("table1", everywhere(0.4), seeds=seeds)
+    learners = [one for one in summary["claims"] if one["id"] != "two-step-slow"]
+    assert {one["verdict"] for one in learners} == {"not established"}
+
+
+def test_where_the_corners_disagree_it_depends_and_says_on_what() -> None:
+    summary = summary_of(
+        "table1",
+        lambda one: around(0.42 if one.training.observation == "measured" else 0.1),
+        seeds=12,
+        robots=ROBOTS[:1],
+    )
+    found = claim(summary, "real-time-1000")
+    assert found["verdict"] == "not established"
+    assert found["evidence"] == (
+        "It depends: it holds with feet read back; it does not hold with commands remembered."
+    )
+    assert [(one["observation"], one["verdict"]) for one in found["where"]] == [
+        ("measured", "holds"),
+        ("commanded", "does not hold"),
+    ]
+
+
+def test_the_curve_that_halves_its_distance_to_the_end_flattens_and_still_inclines() -> None:
+    """The made-up curve is at 50, 94 and 100 % of its end after 250, 1,000 and 2,000 steps."""
+    for name in ("improves", "flattens", "inclines", "approaches", "odd-gait-satisfies"):
+        assert figure4(everywhere(0.45), name)["verdict"] == "holds", name
+    assert "6\xa0% to what" in str(figure4(everywhere(0.45), "flattens")["evidence"])
+
+
+def test_a_curve_that_ends_above_greedy_does_not_approach_it() -> None:
+    assert figure4(everywhere(0.6), "approaches")["verdict"] == "does not hold"
+
+
+def test_a_curve_of_shufflers_neither_improves_nor_satisfies() -> None:
+    assert figure4(everywhere(0.06), "improves")["verdict"] == "does not hold"
+    assert figure4(everywhere(0.06), "odd-gait-satisfies")["verdict"] == "does not hold"
+
+
+def test_tuning_helps_if_the_best_is_established_to_come_further() -> None:
+    def far(one: Setting) -> Callable[[int], float]:
+        return around({0.1: 0.3, 0.3: 0.35, 0.6: 0.45}[one.training.alpha])
+
+    found = claim(summary_of("sweep", far, seeds=8, alpha=(0.1, 0.3, 0.6)), "tuning")
+    assert found["verdict"] == "holds"
+    assert "alpha = 0.6" in found["evidence"]
+    same = claim(summary_of("sweep", everywhere(0.3), seeds=8, alpha=(0.3, 0.6)), "tuning")
+    assert same["verdict"] == "not established"
+
+
+def test_a_sweep_without_the_papers_values_says_nothing_of_tuning() -> None:
+    assert summary_of("sweep", everywhere(0.3), seeds=8, alpha=(0.1, 0.6))["claims"] == []
+
+
+def test_claims_fill_in_as_trials_end() -> None:
+    tried = config("table1", seeds=6)
+    results = made_up(tried, everywhere(0.4))
+    assert summarise(tried, {})["claims"] == []
+    some = summarise(tried, dict(list(results.items())[:60]))
+    assert 0 < len(some["claims"]) < len(summarise(tried, results)["claims"])

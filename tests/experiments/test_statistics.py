@@ -1,0 +1,145 @@
+"""Middles, intervals, shares and probabilities, against numbers worked out otherwise."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from app.domain.types import FloatArray
+from app.experiments.statistics import (
+    Interval,
+    ahead,
+    at_least,
+    decided,
+    improvement,
+    iqm,
+    iqm_interval,
+    paired_interval,
+    quantile_of,
+    share,
+)
+
+
+def test_the_interquartile_mean_drops_a_quarter_at_each_end() -> None:
+    assert iqm(np.array([100.0, 1, 2, 3, 4, 5, 6, -100])) == pytest.approx(3.5)
+
+
+def test_of_three_numbers_it_drops_none() -> None:
+    assert iqm(np.array([0.0, 0.0, 3.0])) == pytest.approx(1)
+
+
+def test_an_interval_holds_the_truth_about_as_often_as_it_says() -> None:
+    rng = np.random.default_rng(1)
+    held = 0
+    for _ in range(200):
+        found = iqm_interval((tuple(rng.normal(5, 1, 30).tolist()),), 0)
+        assert found.low is not None
+        assert found.high is not None
+        held += found.low < 5 < found.high
+    assert 0.88 <= held / 200 <= 0.98
+
+
+def test_an_interval_is_the_same_each_time() -> None:
+    points = tuple(np.random.default_rng(2).normal(size=30).tolist())
+    first = iqm_interval((points,), 7)
+    iqm_interval.cache_clear()
+    assert iqm_interval((points,), 7) == first
+    assert iqm_interval((points,), 8) != first
+
+
+def test_strata_are_resampled_each_on_its_own() -> None:
+    """What lies between two gaits that never vary is no uncertainty."""
+    found = iqm_interval(((0.0,) * 10, (1.0,) * 10), 0)
+    assert found == Interval(0.5, 0.5, 0.5)
+    mixed = iqm_interval(((0.0,) * 10 + (1.0,) * 10,), 0)
+    assert mixed.low is not None
+    assert mixed.low < 0.4
+
+
+@pytest.mark.parametrize("points", [(0.2,), (0.2, 0.3)])
+def test_fewer_than_three_seeds_have_no_interval_and_establish_nothing(
+    points: tuple[float, ...],
+) -> None:
+    found = iqm_interval((points,), 0)
+    assert found == Interval(sum(points) / len(points), None, None)
+    assert found.against(0.0) == "not established"
+    assert ahead(points, 0.0).low is None
+
+
+def test_a_bootstrap_of_a_few_seeds_decides_nothing() -> None:
+    found = iqm_interval(((0.4, 0.41, 0.42),), 0)
+    assert found.against(0.1) == "yes"
+    assert decided(found, 0.1, fewest=3) == "not established"
+    assert decided(found, 0.1, fewest=5) == "yes"
+
+
+def test_shares_have_wilson_intervals() -> None:
+    found = share(8, 10)
+    assert found.value == 0.8
+    assert (found.low, found.high) == pytest.approx((0.490, 0.943), abs=0.001)
+
+
+def test_a_tie_counts_half_and_widens_the_interval_both_ways() -> None:
+    found = ahead([1.0, 2.0, 3.0, 4.0], 2.0)
+    assert found.value == 0.625
+    assert found.low == pytest.approx(share(2, 4).low)
+    assert found.high == pytest.approx(share(3, 4).high)
+
+
+def test_who_comes_exactly_as_far_has_come_as_far() -> None:
+    assert at_least([0.25, 0.5, 0.1, 0.3], 0.25).value == 0.75
+
+
+@pytest.mark.parametrize(
+    ("found", "verdict"),
+    [
+        (Interval(0.7, 0.6, 0.8), "yes"),
+        (Interval(0.3, 0.2, 0.4), "no"),
+        (Interval(0.6, 0.4, 0.8), "not established"),
+        (Interval(0.7, 0.5, 0.8), "not established"),
+    ],
+)
+def test_a_verdict_follows_from_the_interval(found: Interval, verdict: str) -> None:
+    assert found.against(0.5) == verdict
+
+
+def test_a_negative_number_has_its_interval_the_other_way_round() -> None:
+    assert -Interval(0.3, 0.2, 0.6) == Interval(-0.3, -0.6, -0.2)
+
+
+def test_the_probability_of_improvement_is_over_all_pairs_of_seeds() -> None:
+    rng = np.random.default_rng(3)
+    a, b = (tuple(rng.integers(0, 9, n).astype(float).tolist()) for n in (12, 15))
+    pairs = [(x > y) + 0.5 * (x == y) for x, y in product(a, b)]
+    found = improvement((a,), (b,), 0)
+    assert found.value == pytest.approx(np.mean(pairs))
+    assert found.value == pytest.approx(stats.mannwhitneyu(a, b).statistic / (12 * 15))
+    assert found.low is not None
+    assert found.high is not None
+    assert found.low < found.value < found.high
+
+
+def test_the_probability_of_improvement_is_averaged_over_strata() -> None:
+    low, high = (0.0, 1.0, 2.0), (5.0, 6.0, 7.0)
+    assert improvement((high, low), (low, high), 0).value == 0.5
+    assert improvement((high, high), (low, low), 0) == Interval(1, 1, 1)
+
+
+def test_seeds_that_move_together_are_resampled_together() -> None:
+    """Each seed gains the same, so that the gain is sure although the seeds are far apart."""
+    start = np.linspace(0, 1, 20)
+    both = np.stack([start, start + 0.01])
+
+    def gain(middles: FloatArray) -> FloatArray:
+        return np.asarray(middles[1] - middles[0])
+
+    found = paired_interval([both], gain, 0)
+    assert found == pytest.approx((0.01, 0.01, 0.01))
+
+
+def test_the_quantile_of_a_published_value() -> None:
+    points = [0.1, 0.2, 0.2, 0.4]
+    assert quantile_of(0.0, points) == 0
+    assert quantile_of(0.2, points) == 0.5
+    assert quantile_of(0.5, points) == 1

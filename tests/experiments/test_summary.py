@@ -1,0 +1,208 @@
+"""The summary: right in its numbers, whole in its shape, at every stage of an experiment."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.experiments.plan import Plan
+from app.experiments.published import published
+from app.experiments.summary import summarise
+from app.experiments.trial import TrialResult
+from tests.experiments.made import ROBOTS, around, config, made_up, setting, summary_of, walked
+from tests.figures import GREEDY_H, H_M
+
+LRO = "left-right-origin"
+Q500 = f"{LRO}/measured/stiff/q-learning/500"
+
+
+def test_the_kinematic_table_agrees_with_the_specification() -> None:
+    """IQM as a share of greedy after 500 and 1,000 steps: 74 and 83 %; 92 % walk after 500."""
+    only = {"gaits": (LRO,), "observations": ("measured",), "robots": ROBOTS[:1]}
+    summary = summarise(*walked("table1", 30, **only))
+    greedy = setting(summary, f"{LRO}/measured/stiff/greedy")
+    assert greedy["total"]["iqm_m"] / greedy["half_side_m"] == pytest.approx(GREEDY_H, abs=0.001)
+    assert greedy["half_side_m"] == H_M
+    two_step = setting(summary, f"{LRO}/measured/stiff/two-step")
+    assert two_step["total"]["iqm_m"] == pytest.approx(greedy["total"]["iqm_m"])
+    assert (greedy["elapsed_s"], two_step["elapsed_s"]) == pytest.approx((21.76, 90.88), abs=0.01)
+    for steps, level in ((500, 0.74), (1000, 0.83)):
+        found = setting(summary, f"{LRO}/measured/stiff/q-learning/{steps}")
+        assert found["n"] == 30
+        assert found["relative"]["low"] < level < found["relative"]["high"]
+    assert setting(summary, Q500)["walkers"]["share"] >= 0.8
+    assert summary["trials"]["done"] == summary["trials"]["total"]
+
+
+def test_figure4_is_a_curve_over_its_blocks() -> None:
+    tried, results = walked("figure4", 5, gaits=(LRO,))
+    summary = summarise(tried, results)
+    curve = summary["curves"][0]
+    assert curve["steps"] == [250, 500, 750, 1000, 1250, 1500, 1750, 2000]
+    assert curve["greedy_m"] == pytest.approx(GREEDY_H * H_M, abs=1e-4)
+    key = f"{LRO}/measured/stiff/q-learning/8x250"
+    for seed in range(5):
+        of_seed = [block[seed] for block in curve["points_m"]]
+        assert of_seed == list(results[f"{key}#{seed}"].distances_m)
+    found = setting(summary, key)
+    assert found["total"]["points_m"] == curve["points_m"][-1]
+    assert found["finished"] is None
+    assert found["beats_greedy"] is None
+
+
+def test_the_middle_and_every_seed_are_there() -> None:
+    tried = config("table1", seeds=8, gaits=(LRO,))
+    results = made_up(tried, lambda _: lambda number: 0.1 * number)
+    found = setting(summarise(tried, results), Q500)
+    assert found["total"]["points_m"] == pytest.approx([0.1 * n for n in range(8)])
+    assert found["total"]["iqm_m"] == pytest.approx(0.35)
+    assert found["total"]["median_m"] == pytest.approx(0.35)
+    assert found["relative"]["iqm"] == pytest.approx(0.7)
+    assert found["walkers"]["share"] == 5 / 8  # from 0.3 m; greedy has 0.5 m
+    assert found["reaches_greedy"]["share"] == 3 / 8  # from 0.475 m
+    assert found["beats_greedy"]["share"] == 4 / 8  # before greedy's 0.36 m at the finish
+    assert found["beats_greedy"]["verdict"] == "not established"
+
+
+def test_a_published_value_falls_into_a_quantile_of_our_seeds() -> None:
+    tried = config("table1", seeds=8, gaits=(LRO,))
+    results = made_up(tried, lambda _: lambda number: 0.1 * number)
+    found = setting(summarise(tried, results), Q500)["published"]
+    assert found["total_m"] == found["finished_m"] == 0.25
+    assert found["total_quantile"] == 3 / 8
+    two_step = setting(summarise(tried, results), f"{LRO}/measured/stiff/two-step")["published"]
+    assert (two_step["total_m"], two_step["finished_m"]) == (None, 0.04)
+    assert two_step["finished_quantile"] is None  # one walk is no distribution
+
+
+def test_the_published_table_is_the_papers() -> None:
+    both = [published("front-back-origin", "q-learning", steps) for steps in (500, 1000)]
+    assert [one.total_m for one in both if one] == [0.075, 0.375]
+    greedy = published("left-right-vertical", "greedy", 0)
+    assert greedy is not None
+    assert (greedy.finished_m, greedy.total_m) == (0.425, 0.525)
+    assert published(LRO, "q-learning", 250) is None
+    assert published("my gait", "greedy", 0) is None
+
+
+def test_gaits_are_the_strata_of_what_is_pooled() -> None:
+    far = {"left-right-vertical": 0.1}
+    summary = summary_of(
+        "table1", lambda one: around(far.get(one.gait, 0.4), 0.001), seeds=6, robots=None
+    )
+    pool = summary["pooled"][0]
+    assert pool["n"] == 24
+    assert pool["gaits"][1] == "left-right-vertical"
+    assert pool["walkers"]["share"] == 0.75
+    # The gaits differ much, but seeds hardly: that is no uncertainty.
+    assert pool["relative"]["high"] - pool["relative"]["low"] < 0.01
+
+
+@pytest.mark.parametrize(("seeds", "known"), [(2, False), (3, True)])
+def test_several_gaits_do_not_make_up_for_too_few_seeds(seeds: int, known: bool) -> None:
+    pool = summary_of("table1", lambda _: around(0.3), seeds=seeds)["pooled"][0]
+    assert pool["n"] == 4 * seeds
+    for measure in ("relative", "walkers", "beats_greedy", "reaches_greedy"):
+        assert (pool[measure]["low"] is not None) == known
+
+
+@pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep"])
+@pytest.mark.parametrize("done", [0, 3, 11, 40])
+def test_a_partly_filled_experiment_has_the_same_shape(experiment: str, done: int) -> None:
+    tried = config(experiment, seeds=4)
+    whole = made_up(tried, lambda _: around(0.3))
+    part = dict(list(whole.items())[:done])
+    summary = summarise(tried, part)
+    assert summary.keys() == summarise(tried, whole).keys()
+    assert [one["key"] for one in summary["settings"]] == [
+        one.key for one in Plan(tried).settings if one.role != "timed"
+    ]
+    assert summary["trials"]["done"] == min(done, len(whole))
+    for one in summary["settings"]:
+        assert one["n"] == sum(key.startswith(one["key"] + "#") for key in part)
+        assert (one["total"] is None) == (one["n"] == 0)
+    json.dumps(summary, allow_nan=False)
+
+
+def test_the_order_in_which_results_came_does_not_matter() -> None:
+    tried = config("table1", seeds=4, gaits=(LRO,))
+    results = made_up(tried, lambda _: around(0.3))
+    backwards = dict(reversed(results.items()))
+    assert json.dumps(summarise(tried, results)) == json.dumps(summarise(tried, backwards))
+
+
+def test_a_failed_trial_is_in_no_number_and_is_named() -> None:
+    tried = config("table1", seeds=4, gaits=(LRO,))
+    results = made_up(tried, lambda _: around(0.3))
+    results[f"{Q500}#2"] = TrialResult(failure="the physics diverged")
+    summary = summarise(tried, results, {f"{Q500}#3": "it killed its worker three times"})
+    found = setting(summary, Q500)
+    assert (found["n"], found["failed"]) == (3, 1)
+    assert summary["trials"]["failed"] == 1
+    assert summary["trials"]["failures"] == [{"key": f"{Q500}#2", "reason": "the physics diverged"}]
+    assert summary["trials"]["set_aside"][0]["key"] == f"{Q500}#3"
+
+
+def test_without_greedy_nothing_is_compared_with_it() -> None:
+    tried = config("table1", seeds=4, gaits=(LRO,))
+    results = made_up(tried, lambda _: around(0.3))
+    del results[f"{LRO}/measured/stiff/greedy#0"]
+    found = setting(summarise(tried, results), Q500)
+    assert found["n"] == 4
+    for measure in ("relative", "walkers", "beats_greedy", "reaches_greedy"):
+        assert found[measure] is None
+
+
+def test_a_greedy_agent_that_stays_where_it_is_is_no_yardstick() -> None:
+    tried = config("table1", seeds=4, gaits=(LRO,))
+    results = made_up(tried, lambda _: around(0.3))
+    key = f"{LRO}/measured/stiff/greedy#0"
+    results[key] = replace(results[key], distances_m=(-0.002,), finished_distance_m=0.0)
+    assert setting(summarise(tried, results), Q500)["relative"] is None
+
+
+def test_agents_that_learn_are_set_against_each_other() -> None:
+    restless = "tests.own_agents:Restless"
+    far = {"q-learning": 0.4, restless: 0.1}
+    summary = summary_of(
+        "sweep", lambda one: around(far[one.training.agent]), seeds=6, agents=tuple(far)
+    )
+    assert len(summary["versus"]) == 4
+    found = summary["versus"][0]
+    assert (found["a"], found["b"]) == ("q-learning", restless)
+    assert (found["probability"], found["verdict"]) == (1, "yes")
+
+
+def test_an_agent_that_looks_ahead_is_pooled_without_an_interval() -> None:
+    three = "tests.own_agents:ThreeStep"
+    summary = summary_of("sweep", lambda _: around(0.3), seeds=4, agents=("q-learning", three))
+    found = next(one for one in summary["pooled"] if one["agent"] == three)
+    assert found["relative"] == {"iqm": 1.0, "low": None, "high": None}
+    assert found["walkers"] is None
+
+
+def test_the_wall_clock_stands_beside() -> None:
+    summary = summary_of("table1", lambda _: around(0.3), seeds=1, gaits=(LRO,))
+    assert [one["gait"] for one in summary["timed"]] == [LRO] * 4
+    lanes = summary["timed"][0]["lanes"]
+    assert [lane["agent"] for lane in lanes] == ["q-learning", "greedy", "two-step"]
+
+
+def test_what_was_run_and_with_what_is_told() -> None:
+    cost = {"wall_s": 60.0, "compute_s": 100.0, "trials_per_s": 1.5, "workers": 2}
+    tried = config("figure4", seeds=2, seed=9)
+    summary = summarise(tried, {}, cost=cost)
+    assert summary["config"]["seed"] == 9
+    assert summary["cost"] == cost
+    assert {"racing-hexapods", "python", "numpy", "scipy", "mujoco"} <= summary["versions"].keys()
+    assert summary["machine"].keys() == {"platform", "cores"}
+
+
+def test_seeds_of_another_plan_are_left_out() -> None:
+    tried = config("table1", seeds=4, gaits=(LRO,))
+    results = made_up(tried, lambda _: around(0.3))
+    fewer = summarise(replace(tried, seeds=3), results)
+    assert setting(fewer, Q500)["n"] == 3
+    assert fewer["trials"]["done"] == fewer["trials"]["total"]
+    assert np.isfinite(setting(fewer, Q500)["total"]["low_m"])
