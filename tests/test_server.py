@@ -3,6 +3,7 @@
 import signal
 import socket
 import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -46,6 +47,18 @@ def test_a_stream_begins_with_a_snapshot_and_goes_on_with_what_happens(
     assert seen["reference"][0]["greedy_distance_m"] > 0.4
     assert seen["run"][0]["id"] == run["id"]
     assert seen["stage"][-1]["run_id"] == run["id"]
+
+
+def test_what_only_experiments_need_is_not_in_the_server() -> None:
+    """A part of SciPy is there in any case: viser's meshes want it."""
+    look = (
+        "import sys, app.server, app.services.worker\n"
+        "print([m for m in ('distributed', 'matplotlib', 'scipy.stats') if m in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", look], capture_output=True, text=True, check=True, timeout=LONG_S
+    )
+    assert done.stdout.strip() == "[]"
 
 
 def test_who_comes_back_misses_no_point_of_a_curve(serve: Callable[..., Served]) -> None:

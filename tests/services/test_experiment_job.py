@@ -4,7 +4,7 @@ import json
 import os
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -15,7 +15,7 @@ from app.domain.errors import InvalidInput, Unreachable
 from app.experiments.config import ExperimentConfig, experiment_config
 from app.experiments.plan import Plan
 from app.services.bus import EventBus
-from app.services.errors import Conflict
+from app.services.errors import Conflict, StorageFull
 from app.services.experiment_entry import ExperimentStart
 from app.services.jobs import Jobs
 from app.services.memory_store import MemoryStore
@@ -133,6 +133,35 @@ def check_summary(store: MemoryStore, run: Run, config: ExperimentConfig) -> Non
         sum(row["compute_s"] for row in store.trials(run.id)), rel=0.01
     )
     assert (store.artifact(run.id, REPORT) or b"").startswith(b"<!doctype html>")
+
+
+class SmallStore(MemoryStore):
+    """A store that is full for a while."""
+
+    room = 0
+
+    def append_trials(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
+        if self.room == 0:
+            raise StorageFull("the disk of the data folder is full; delete runs")
+        self.room -= 1
+        super().append_trials(run_id, rows)
+
+
+def test_a_full_disk_fails_it_in_a_sentence_and_once_there_is_room_it_goes_on() -> None:
+    store = SmallStore()
+    jobs = Jobs(store, Recordings(), EventBus(), cores=1)
+    jobs.open()
+    try:
+        run = jobs.experiment(ExperimentStart(sweep(), workers=1))
+        failed = ended(store, run)
+        assert failed.state == "failed"
+        assert "the disk of the data folder is full" in (failed.error or "")
+        store.room = 1_000
+        jobs.resume(run.id)
+        assert ended(store, run).state == "finished"
+        assert stored(store, run.id) == tried(sweep())
+    finally:
+        jobs.close()
 
 
 def test_a_trial_that_cannot_be_is_set_aside_and_the_others_are_kept(
