@@ -3,7 +3,8 @@
 import argparse
 import json
 import signal
-from collections.abc import Iterator, Mapping
+import threading
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from pathlib import Path
 from types import FrameType
@@ -41,10 +42,9 @@ def run_experiment(config: ExperimentConfig, where: Where, options: argparse.Nam
         done = plan.total - len(undone)
         before = f"; {done:,} are there already" if done else ""
         say(f"{plan.total:,} trials {_on(where)}, kept in {path}{before}")
-        try:
-            with _ended_by_sigterm():
-                _run(undone, plan, where, folder)
-        except KeyboardInterrupt:
+        with _interruption() as interrupted:
+            _run(undone, plan, where, folder, lambda: not interrupted.is_set())
+        if interrupted.is_set():
             kept = len(folder.results) + len(folder.set_aside)
             say(
                 f"\nInterrupted: {kept:,} of {plan.total:,} trials are kept in {path}; the same "
@@ -71,8 +71,15 @@ def _on(where: Where) -> str:
     return f"on {workers} worker{'s' if workers > 1 else ''}"
 
 
-def _run(undone: list[Trial], plan: Plan, where: Where, folder: ResultsFolder) -> None:
-    with progress("trials", _RATE_WINDOW_S) as bar, closing(run_trials(undone, where)) as outcomes:
+def _run(
+    undone: list[Trial],
+    plan: Plan,
+    where: Where,
+    folder: ResultsFolder,
+    go_on: Callable[[], bool],
+) -> None:
+    running = closing(run_trials(undone, where, go_on))
+    with progress("trials", _RATE_WINDOW_S) as bar, running as outcomes:
         task = bar.add_task("trials", total=plan.total, completed=plan.total - len(undone))
         for outcome in outcomes:
             folder.add(outcome)
@@ -133,17 +140,24 @@ def _row(setting: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 @contextmanager
-def _ended_by_sigterm() -> Iterator[None]:
-    """Who is told to end leaves as after Ctrl-C, and so takes the cluster down."""
+def _interruption() -> Iterator[threading.Event]:
+    """Set by Ctrl-C, or by who tells the process to end.
 
-    def end(_number: int, _frame: FrameType | None) -> None:
-        raise KeyboardInterrupt
+    Both wait for a moment in which the cluster can be taken down; whoever cannot wait asks twice.
+    """
+    asked = threading.Event()
 
-    before = signal.signal(signal.SIGTERM, end)
+    def ask(_number: int, _frame: FrameType | None) -> None:
+        if asked.is_set():
+            raise KeyboardInterrupt
+        asked.set()
+
+    before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
-        yield
+        yield asked
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _nothing(_: str) -> None:

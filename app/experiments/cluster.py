@@ -123,6 +123,8 @@ def _own(where: Where) -> "Iterator[Client]":
                 security=True,
                 dashboard_address=None,
                 local_directory=folder.name,
+                # What a trial has there goes with the folder, when its worker is ended in it.
+                env={"TMPDIR": folder.name},
                 silence_logs=logging.CRITICAL,
                 scheduler_kwargs={
                     # Each death comes to the engine, which says what follows from it.

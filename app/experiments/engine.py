@@ -3,15 +3,15 @@
 import queue
 import time
 import uuid
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from itertools import chain, islice
 from typing import TYPE_CHECKING, NamedTuple
 
-from app.domain.errors import HexapodError
 from app.experiments.cluster import ClusterLost, Where, connect
 from app.experiments.plan import Trial
-from app.experiments.trial import TrialConfig, TrialResult, run_trial
-from app.experiments.versions import difference, versions
+from app.experiments.trial import TrialResult
+from app.experiments.versions import versions
+from app.experiments.work import Done, OtherResults, work
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -38,14 +38,6 @@ class Outcome(NamedTuple):
     """Why there is no result, in a sentence."""
     compute_s: float
     """How long a worker computed."""
-
-
-class Done(NamedTuple):
-    """What a worker answers about a trial: a result, or why there is none."""
-
-    result: TrialResult | None
-    reason: str | None
-    compute_s: float
 
 
 def run_trials(
@@ -81,31 +73,6 @@ def run_on(
 ) -> Iterator[Outcome]:
     """As `run_trials`, on a cluster that is there."""
     return _Engine(client, go_on).run(trials)
-
-
-def work(configs: Sequence[TrialConfig], expected: Mapping[str, str]) -> list[Done]:
-    """Run a batch of trials; this is what a worker does.
-
-    Raises:
-        ClusterLost: if this worker would compute other results than were expected.
-    """
-    differs = difference(expected, versions())
-    if differs is not None:
-        raise ClusterLost(f"a worker that joined would compute other results: it has {differs}")
-    return [_timed(config) for config in configs]
-
-
-def _timed(config: TrialConfig) -> Done:
-    began_s = time.perf_counter()
-    result, reason = None, None
-    try:
-        result = run_trial(config)
-    except HexapodError as error:
-        reason = str(error)
-    # An agent is anyone's code, and may do anything.
-    except (Exception, SystemExit) as error:
-        reason = f"something in it broke ({type(error).__name__}: {error})"
-    return Done(result, reason, time.perf_counter() - began_s)
 
 
 class _Batches:
@@ -208,7 +175,7 @@ class _Engine:
             raise _Died(error.allowed_failures + 1) from error
         except CancelledError as error:
             raise ClusterLost(_LOST) from error
-        except ClusterLost:
+        except OtherResults:
             raise
         except Exception as error:
             # What the worker could not even begin, such as an agent that is not there.

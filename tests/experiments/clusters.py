@@ -1,7 +1,6 @@
 """Small experiments on a cluster, and the processes that it is made of."""
 
 from collections.abc import Iterable
-from pathlib import Path
 
 import psutil
 
@@ -54,8 +53,3 @@ def workers_of(process: psutil.Process) -> list[psutil.Process]:
         except psutil.NoSuchProcess:
             continue
     return found
-
-
-def leftovers(folder: Path) -> list[str]:
-    """What is left in a folder for temporary files."""
-    return sorted(path.name for path in folder.iterdir())

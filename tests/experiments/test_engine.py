@@ -1,6 +1,5 @@
 """The engine on real worker processes: the same results however many there are and die."""
 
-import os
 import time
 from collections.abc import Iterator
 from dataclasses import replace
@@ -119,10 +118,24 @@ def test_nothing_to_do_starts_nothing() -> None:
     assert list(run_trials([], Where(scheduler="tcp://127.0.0.1:1"))) == []
 
 
-def test_a_consumer_that_leaves_takes_the_workers_with_it(trials: list[Trial]) -> None:
+def test_a_consumer_that_leaves_takes_the_workers_with_it_and_their_files(
+    trials: list[Trial], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     running = run_trials(trials, TWO)
     next(running)
     assert len(workers_of(psutil.Process())) == 2
+    assert list(tmp_path.iterdir())
     running.close()
     assert not workers_of(psutil.Process())
-    assert os.environ.get("DASK_SCHEDULER_ADDRESS") is None
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_pause_loses_nothing(trials: list[Trial], expected: dict[str, TrialResult]) -> None:
+    pauses = iter([0.0, 0.0, 1.0])
+
+    def go_on() -> bool:
+        time.sleep(next(pauses, 0.0))
+        return True
+
+    assert results(run_trials(trials, ONE, go_on)) == expected
