@@ -6,6 +6,7 @@ from typing import Any
 from app.experiments.claims import Claim, Finding
 from app.experiments.corners import PAPERS_AGENT, Corner
 from app.experiments.statistics import CONFIDENCE, Points, decided, improvement
+from app.experiments.words import RATES as WORDS
 from app.experiments.words import percent, shares
 from app.runs.config import TrainingConfig
 
@@ -24,7 +25,7 @@ def _tuning(corner: Corner) -> Finding | None:
     own = next(one for one in papers if _comparable(best, one))
     a, b = _seeds(corner, best), _seeds(corner, own)
     chance = improvement(a, b, corner.seed, 1 - (1 - CONFIDENCE) / len(rivals))
-    told = ", ".join(f"{name} = {best[name]:g}" for name in RATES if best[name] != own[name])
+    told = ", ".join(WORDS[name].format(best[name]) for name in RATES if best[name] != own[name])
     return Finding.of(
         decided(chance, 0.5, min(len(points) for points in (*a, *b))),
         f"The best of {len(rivals)} others ({told}) covers {shares(best['relative'])} of greedy, "

@@ -18,7 +18,7 @@ _ROW_IN = 0.27
 def panel(corner: Corner, name: str) -> Picture:
     """One row a combination, in the order of the grid."""
     rows, left_out = chosen(corner)
-    one = figure(6.2, 1.0 + _ROW_IN * max(1, len(rows)))
+    one = figure(4.8, 1.0 + _ROW_IN * max(1, len(rows)))
     ax = one.subplots()
     _draw(ax, rows, corner)
     title = corner.label

@@ -5,7 +5,7 @@ from typing import Any
 
 from app.experiments.config import GRID
 from app.experiments.corners import Corner
-from app.experiments.words import agent_name, counted, metres, percent, shares
+from app.experiments.words import RATES, agent_name, counted, metres, percent, shares
 
 
 def extremes(places: Sequence[Corner]) -> str | None:
@@ -30,7 +30,7 @@ def extremes(places: Sequence[Corner]) -> str | None:
 def named(one: Mapping[str, Any], among: Sequence[Mapping[str, Any]]) -> str:
     """What tells a combination from the others; its agent where nothing else does."""
     varied = [n for n in GRID if len({other[n] for other in among if other["walkers"]}) > 1]
-    said = [f"{name} = {one[name]:g}" for name in varied if one[name] is not None]
+    said = [RATES[name].format(one[name]) for name in varied if one[name] is not None]
     if len({other["agent"] for other in among}) > 1 or not said:
         said.insert(0, agent_name(one["agent"]))
     return ", ".join(said)

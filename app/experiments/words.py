@@ -15,6 +15,18 @@ _UNBROKEN = "\u00a0"
 READINGS: Mapping[str, str] = {"measured": "feet read back", "commanded": "commands remembered"}
 """What an observation is, in words."""
 
+RATES: Mapping[str, str] = {
+    "steps": "{:,} steps",
+    "alpha": "α {:g}",
+    "gamma": "γ {:g}",
+    "epsilon_start": "ε from {:g}",
+    "epsilon_end": "ε to {:g}",
+    "steps_per_episode": "{:,} an episode",
+    "divisions": "{} divisions",
+    "grid_side_m": "grid {:g} m",
+}
+"""What a sweep varies, with its value."""
+
 
 def gait_name(gait: str) -> str:
     """As the paper writes it; one's own as it is."""

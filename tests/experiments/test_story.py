@@ -91,8 +91,8 @@ def test_a_sweep_names_its_best_and_worst() -> None:
         alpha=(0.1, 0.3, 0.6),
     )
     text = told(summary, "Best and worst")
-    assert "The best is alpha = 0.6 with feet read back: 80 % (80 to 80)" in text
-    assert "The worst is alpha = 0.1" in text
+    assert "The best is α 0.6 with feet read back: 80 % (80 to 80)" in text
+    assert "The worst is α 0.1" in text
 
 
 @pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep"])

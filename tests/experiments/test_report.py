@@ -1,0 +1,250 @@
+"""The report: one page that needs nothing else, and files that anyone can read."""
+
+import argparse
+import csv
+import io
+import json
+import shlex
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page
+
+from app.cli import experiment as experiment_command
+from app.cli import sweep as sweep_command
+from app.cli.trial_options import tried_from
+from app.domain.gait import GaitSpec
+from app.domain.robot import robot
+from app.experiments.config import GRID, ExperimentConfig, as_json, experiment_config, from_json
+from app.experiments.page import POLICY, command, page
+from app.experiments.report import report_files, write_report
+from app.experiments.summary import summarise
+from app.experiments.trial import TrialResult
+from app.experiments.trials_csv import trials_csv
+from tests.experiments.made import ROBOTS, Results, around, config, made_up, summary_of, walked
+
+MOST_BYTES = 1_400_000
+NASTY = '<img src=x onerror="alert(1)"><script>alert(2)</script>'
+LRO = "left-right-origin"
+
+
+def small(experiment: str = "table1", **given: Any) -> tuple[Any, Results]:
+    """One gait in one corner, three seeds."""
+    only = {"gaits": (LRO,), "observations": ("measured",), "robots": ROBOTS[:1], **given}
+    tried = config(experiment, seeds=3, **only)
+    results = made_up(tried, lambda _: around(0.3))
+    return summarise(tried, results), results
+
+
+@pytest.mark.parametrize("experiment", ["table1", "figure4"])
+def test_a_whole_report_of_thirty_seeds_is_small_enough_to_commit(experiment: str) -> None:
+    tried = config(experiment, seeds=30)
+    results = made_up(tried, lambda _: around(0.3, 0.2))
+    files = dict(report_files(summarise(tried, results), results))
+    name = experiment
+    figures = [f"figures/{name}.{kind}" for kind in ("png", "svg", "pdf")]
+    assert sorted(files) == sorted(["report.html", "summary.json", "trials.csv", *figures])
+    assert sum(map(len, files.values())) < MOST_BYTES
+
+
+def test_the_same_trials_give_the_same_report() -> None:
+    summary, results = small()
+    assert list(report_files(summary, results)) == list(report_files(summary, results))
+
+
+def test_it_is_written_over_an_older_one(tmp_path: Path) -> None:
+    summary, results = small()
+    (tmp_path / "report.html").write_text("older")
+    written = write_report(tmp_path, summary, results)
+    assert written == tmp_path / "report.html"
+    assert written.read_text() == page(summary)
+    files = {one.relative_to(tmp_path).as_posix() for one in tmp_path.rglob("*") if one.is_file()}
+    figures = {f"figures/table1.{kind}" for kind in ("png", "svg", "pdf")}
+    assert files == {"report.html", "summary.json", "trials.csv", *figures}
+
+
+def test_the_table_has_the_papers_shape_in_three_units() -> None:
+    text = page(small(robots=ROBOTS)[0])
+    for column in ("Q-500 trials", "Q-1000 trials", "Greedy Agent", "Two-Steps Agent"):
+        assert text.count(f'<th scope="col">{column}</th>') == 2  # one a robot
+    assert ">LeftRight-Origin</th>" in text
+    assert text.count('<span class="in m"><b>0.50</b>') == 4  # total of greedy and two-step
+    assert text.count('<span class="in h"><b>25.0</b>') == 4
+    assert text.count('<span class="in r"><b>100\xa0%</b>') >= 4
+    assert "</span> 0.25 <" in text  # the paper's after 500 steps
+    assert "unfinished" in text
+
+
+def test_every_trial_is_a_row() -> None:
+    tried, results = walked("figure4", 5, gaits=(LRO,))
+    summary = summarise(tried, results)
+    rows = _rows(_csv(summary, results))
+    learners = [row for row in rows if row["role"] == "learner"]
+    assert len(learners) == 2 * 5 * 8
+    first = [row for row in learners if row["trial"] == learners[0]["trial"]]
+    assert [int(row["practised_steps"]) for row in first] == list(range(250, 2001, 250))
+    assert [float(row["distance_m"]) for row in first] == list(
+        results[first[0]["trial"]].distances_m
+    )
+    assert {row["alpha"] for row in learners} == {"0.3"}
+
+
+def test_what_has_no_result_is_named_on_the_page_and_in_the_rows() -> None:
+    tried = config("table1", seeds=3, gaits=(LRO,))
+    results = made_up(tried, lambda _: around(0.3))
+    bad, worse = (f"{LRO}/measured/stiff/q-learning/500#{n}" for n in (1, 2))
+    results[bad] = TrialResult(failure="=the physics diverged")
+    del results[worse]
+    summary = summarise(tried, results, {worse: "it killed its worker three times"})
+    text = page(summary)
+    assert f"<code>{bad}</code> failed: =the physics diverged" in text
+    assert f"<code>{worse}</code> was set aside: it killed its worker three times" in text
+    rows = {row["trial"]: row for row in _rows(_csv(summary, results))}
+    assert rows[bad]["failure"] == "'=the physics diverged"  # no formula for a spreadsheet
+    assert rows[bad]["distance_m"] == ""
+    assert rows[worse]["failure"] == "set aside: it killed its worker three times"
+
+
+def test_the_summary_is_the_one_that_was_given() -> None:
+    summary, results = small("sweep", alpha=(0.1, 0.3))
+    name, content = next(report_files(summary, results))
+    assert name == "summary.json"
+    assert json.loads(content) == summary
+
+
+def test_a_claim_has_its_verdict_in_every_case_and_its_numbers() -> None:
+    summary = summary_of("table1", lambda _: around(0.3), seeds=6)
+    text = page(summary)
+    assert text.count('class="claims"') == 1
+    for one in summary["claims"]:
+        assert f'id="claim-{one["id"]}"' in text
+    assert text.count('<span class="verdict ') == 2 * sum(
+        len(one["where"]) for one in summary["claims"]
+    )
+    for told in summary["story"]:
+        assert f"<h3>{told['heading'].replace(chr(39), '&#39;')}</h3>" in text
+
+
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [
+        ("table1", {}),
+        ("figure4", {"seeds": 7, "seed": 3, "observations": ("commanded",)}),
+        ("figure4", {"agents": ("q-learning", "tests.own_agents:Restless")}),
+        ("sweep", {"alpha": (0.1, 0.3), "steps": (100, 200), "robots": ROBOTS}),
+        ("sweep", {"robots": (robot("stiff"), robot({"friction": 0.3, "preset": "compliant"}))}),
+        ("sweep", {"gaits": (LRO, GaitSpec(1, 2, pairs=((1, 2), (3, 4), (5, 6))))}),
+    ],
+)
+def test_the_command_on_the_page_makes_the_same_experiment(
+    name: str, given: dict[str, Any]
+) -> None:
+    tried = experiment_config(name, given)
+    typed = shlex.split(command(as_json(tried)))
+    assert _understood(typed) == tried
+
+
+def _understood(typed: list[str]) -> ExperimentConfig:
+    """What the command line makes of it."""
+    parser = argparse.ArgumentParser()
+    commands = parser.add_subparsers(dest="command")
+    experiment_command.add_to(commands)
+    sweep_command.add_to(commands)
+    options = parser.parse_args(typed[1:])
+    grid = {n: getattr(options, n) for n in GRID} if options.command == "sweep" else {}
+    agents = experiment_command.agents_from(options.agent)
+    name = "sweep" if options.command == "sweep" else options.experiment
+    return experiment_config(name, {**tried_from(options), **grid, "agents": agents})
+
+
+@pytest.fixture
+def shown(page: Page) -> Page:
+    """A tab that fails its test if the report says anything, or asks for anything."""
+    page.on("console", lambda message: pytest.fail(message.text, pytrace=False))
+    page.on("pageerror", lambda error: pytest.fail(str(error), pytrace=False))
+    page.on("dialog", lambda dialog: pytest.fail(dialog.message, pytrace=False))
+    return page
+
+
+def _open(tab: Page, folder: Path, summary: Any) -> list[str]:
+    """Show a report's page; gives all that the browser asked for."""
+    asked: list[str] = []
+    tab.on("request", lambda request: asked.append(request.url))
+    written = folder / "report.html"
+    written.write_text(page(summary))
+    tab.goto(written.as_uri())
+    return asked
+
+
+def test_the_page_needs_nothing_but_itself(shown: Page, tmp_path: Path) -> None:
+    asked = _open(shown, tmp_path, small()[0])
+    assert asked == [(tmp_path / "report.html").as_uri()]
+    policy = shown.locator('meta[http-equiv="Content-Security-Policy"]')
+    assert policy.get_attribute("content") == POLICY
+    assert shown.locator("script").count() == 0
+    assert shown.locator("h1").inner_text() == "Table 1, many times over"
+
+
+@pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep"])
+@pytest.mark.parametrize("width", [390, 1200])
+def test_nothing_is_wider_than_the_screen(
+    shown: Page, tmp_path: Path, experiment: str, width: int
+) -> None:
+    shown.set_viewport_size({"width": width, "height": 800})
+    _open(shown, tmp_path, small(experiment)[0])
+    assert shown.evaluate("document.documentElement.scrollWidth") == width
+    for one in shown.locator(".panel svg").all():
+        box = one.bounding_box()
+        assert box is not None
+        assert box["height"] > 80
+        assert box["x"] + box["width"] <= width
+
+
+def test_units_change_without_a_script(shown: Page, tmp_path: Path) -> None:
+    _open(shown, tmp_path, small()[0])
+    cell = shown.locator("table.paper td").nth(6)  # greedy's total
+    assert cell.inner_text().startswith("0.50")
+    shown.get_by_label("half grid sides").check()
+    assert cell.inner_text().startswith("25.0")
+    shown.get_by_label("of greedy").check()
+    assert cell.inner_text().startswith("100\xa0%")
+
+
+def test_a_name_is_text_on_the_page(shown: Page, tmp_path: Path) -> None:
+    summary, _ = small("figure4")
+    for part in ("settings", "curves", "pooled"):
+        for one in summary[part]:
+            one["agent"] = one["agent"].replace("q-learning", NASTY)
+            one["gait"] = NASTY
+            one["robot"] = NASTY
+    summary["trials"]["set_aside"] = [{"key": NASTY, "reason": NASTY}]
+    summary["versions"][NASTY] = NASTY
+    _open(shown, tmp_path, summary)
+    assert shown.locator("img").count() == 0
+    assert shown.locator("script").count() == 0
+    assert NASTY in shown.locator(".broken").inner_text()
+
+
+def test_it_prints_light_even_in_the_dark(shown: Page, tmp_path: Path) -> None:
+    shown.emulate_media(color_scheme="dark")
+    _open(shown, tmp_path, small()[0])
+    background = "getComputedStyle(document.body).backgroundColor"
+    assert shown.evaluate(background) == "rgb(22, 25, 29)"
+    shown.emulate_media(media="print", color_scheme="dark")
+    assert shown.evaluate(background) == "rgb(255, 255, 255)"
+    assert shown.locator(".units").is_hidden()
+
+
+def test_an_experiment_without_trials_has_a_page(shown: Page, tmp_path: Path) -> None:
+    _open(shown, tmp_path, summarise(config("sweep", seeds=3), {}))
+    assert "0 of" in shown.locator(".lead").inner_text()
+
+
+def _csv(summary: Any, results: Results) -> bytes:
+    aside = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
+    return trials_csv(from_json(summary["config"]), results, aside)
+
+
+def _rows(content: bytes) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(content.decode(), newline="")))
