@@ -46,10 +46,11 @@ def experiment(
         for outcome in book.tried(listener.go_on):
             book.take(outcome)
         book.flush()
-        if not listener.paused:
+        if not listener.held:
             break
-        # Nothing runs while it waits: not even the cluster, which takes memory.
-        book.summarise()
+        if listener.paused:
+            # Nothing runs while it waits: not even the cluster, which takes memory.
+            book.summarise()
     if not listener.leaving:
         book.report()
         send(Ended("stopped" if listener.stopped else "finished", book.result()))
@@ -62,24 +63,29 @@ class _Listener:
         paused: whether it is to wait.
         stopped: whether it is to end with what there is.
         leaving: whether it is to end at once, to go on another time.
+        held: whether the trials were told not to go on; they are until somebody waits.
     """
 
     def __init__(self, words: "queue.SimpleQueue[Word]") -> None:
-        self.paused = self.stopped = self.leaving = False
+        self.paused = self.stopped = self.leaving = self.held = False
         self._words = words
 
     def go_on(self) -> bool:
-        """Obey what was said; False if nothing more is to be tried now."""
-        while not self._words.empty():
+        """Obey what was said; False if nothing more is to be tried before somebody waits."""
+        # Once is enough: who was told to end must not be told to go on while it does.
+        while not self.held and not self._words.empty():
             self._obey(self._words.get())
-        return not (self.paused or self.stopped or self.leaving)
+            self.held = self.paused or self.stopped or self.leaving
+        return not self.held
 
     def wait(self) -> bool:
         """Wait for as long as it is paused; False if it is to end."""
-        self.go_on()
-        while self.paused and not (self.stopped or self.leaving):
+        while not (self.stopped or self.leaving):
+            if not self.paused and self._words.empty():
+                self.held = False
+                return True
             self._obey(self._words.get())
-        return not (self.stopped or self.leaving)
+        return False
 
     def _obey(self, word: Word) -> None:
         if word.verb in ("pause", "resume"):
