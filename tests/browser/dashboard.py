@@ -3,6 +3,7 @@
 import hashlib
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from playwright.sync_api import ConsoleMessage, Locator, Page, Response, expect
@@ -12,6 +13,7 @@ PATIENCE_MS = 60_000
 
 expect.set_options(timeout=PATIENCE_MS)
 
+_AXE = Path(__file__).with_name("vendor") / "axe.min.js"
 _METRES = re.compile(r"−?\d+\.\d\d\sm")
 
 
@@ -77,6 +79,12 @@ class Dashboard:
         """How wide the page is, scrolled or not."""
         width: int = self.page.evaluate("document.documentElement.scrollWidth")
         return width
+
+    def violations(self) -> list[str]:
+        """What axe finds on the page, without viser's own page in the frame."""
+        self.page.evaluate(_AXE.read_text("utf-8"))
+        found = self.page.evaluate("axe.run(document, {iframes: false})")
+        return [f"{v['id']}: {n['html']}" for v in found["violations"] for n in v["nodes"]]
 
     def get(self, path: str) -> Any:
         """What the API answers to this page."""

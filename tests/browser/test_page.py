@@ -11,15 +11,7 @@ from tests.browser.serving import Serving, serving
 
 pytestmark = pytest.mark.timeout(300)
 
-AXE = Path(__file__).with_name("vendor") / "axe.min.js"
 PHONE = {"width": 390, "height": 844}
-
-
-def violations(dashboard: Dashboard) -> list[str]:
-    """What axe finds on the page, without viser's own page in the frame."""
-    dashboard.page.evaluate(AXE.read_text("utf-8"))
-    found = dashboard.page.evaluate("axe.run(document, {iframes: false})")
-    return [f"{v['id']}: {n['html']}" for v in found["violations"] for n in v["nodes"]]
 
 
 def test_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
@@ -111,7 +103,7 @@ def test_a_phone_needs_no_scrolling_sideways(
         page.locator("summary", has_text="Settings").first.click()
         page.get_by_text("More settings").click()
         assert dashboard.scroll_width() == PHONE["width"]
-        assert violations(dashboard) == []
+        assert dashboard.violations() == []
         page.mouse.wheel(0, 600)
         expect(stage).to_be_in_viewport(ratio=0.99)
 
@@ -125,10 +117,10 @@ def test_axe_finds_nothing(dashboard: Dashboard, shared_server: Serving, theme: 
     dashboard.page.emulate_media(color_scheme="light" if theme == "light" else "dark")
     dashboard.open(shared_server.address)
     dashboard.page.get_by_text("More settings").click()
-    assert violations(dashboard) == []
+    assert dashboard.violations() == []
     dashboard.page.get_by_role("link", name="Runs").click()
     expect(dashboard.page.get_by_role("heading", name="Runs")).to_be_visible()
-    assert violations(dashboard) == []
+    assert dashboard.violations() == []
 
 
 def test_the_theme_is_chosen_and_remembered(dashboard: Dashboard, shared_server: Serving) -> None:

@@ -36,11 +36,11 @@ const STATES = { connecting: "connecting", reconnecting: "reconnecting" };
 
 function Live() {
   const state = connection.value;
-  const watching = viewers.value ? ` · ${viewers.value} watching` : "";
+  const watching = viewers.value ? html` · ${viewers.value}<span class="roomy"> watching</span>` : "";
   return html`
     <p class=${`live ${state}`}>
       <span class="dot" aria-hidden="true"></span>
-      <span>${STATES[state] ?? `live${watching}`}</span>
+      <span>${STATES[state] ?? html`live${watching}`}</span>
     </p>
   `;
 }

@@ -21,7 +21,7 @@ export function AtAGlance({ known }) {
     <section class="panel glance" aria-labelledby="glance">
       <h2 id="glance">All gaits together</h2>
       <p class="dim">Total distance as a share of greedy’s in the same place; who gets half as far walks.</p>
-      <div class="scroller tall" tabindex="0" role="region" aria-label="All gaits together">
+      <div class="scroller tall" tabindex="0" role="region" aria-label="Table of all gaits together">
         <table class="facts-table stacking" role="table">
           <thead role="rowgroup"><tr role="row">
             <th role="columnheader" scope="col">What</th><th role="columnheader" scope="col" class="wide-cell">Share of greedy’s distance</th><th role="columnheader" scope="col">Typical</th><th role="columnheader" scope="col">Walk</th>

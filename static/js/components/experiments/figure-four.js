@@ -8,7 +8,7 @@ import { gaitTitle } from "../../experiments/titles.js";
 import { factorOf, inUnit, shown, unit, UNIT_NAMES } from "../../experiments/units.js";
 import { AsTable } from "../as-table.js";
 import { BandChart } from "./band-chart.js";
-import { PlaceSwitch } from "./place-switch.js";
+import { PlaceSwitch, PlaceWords } from "./place-switch.js";
 import { UnitSwitch } from "./unit-switch.js";
 
 export function FigureFour({ known }) {
@@ -28,6 +28,7 @@ export function FigureFour({ known }) {
         <${PlaceSwitch} places=${places} value=${place.key} onValue=${setWish} />
         <${UnitSwitch} />
       </div>
+      <${PlaceWords} place=${place} />
       <p class="dim">${sentence(UNIT_NAMES[unit.value])}, after so much practice. Line: interquartile mean; band: its 95 % interval; thin: each seed.</p>
       ${agents.length > 1 && html`<p class="strip-key">${agents.map((name) => html`<span style=${{ "--agent": agentOf(name).color }}><i class="swatch"></i>${agentOf(name).title}</span>`)}</p>`}
       <div class="gait-panels">

@@ -38,15 +38,15 @@ export function ReportHead({ run }) {
 
 const NOTES = {
   paused: "Paused. What is done is kept, and no core is kept busy.",
-  stopped: "Stopped. The report is of the trials that were done.",
+  stopped: "Stopped. What is shown is of the trials that were done. Resume, and only the rest is run.",
   interrupted: "The server ended before it did. What is done is kept; resume, and only the rest is run.",
 };
 
 function Note({ run }) {
   if (run.state === "failed") {
-    return html`<div class="notice bad"><p><b>The experiment failed.</b> ${run.error}</p><p>What was done before is kept below.</p></div>`;
+    return html`<div class="notice bad"><p><b>The experiment failed.</b> ${run.error}</p><p>What was done before is kept below; resume, and only the rest is run.</p></div>`;
   }
-  return NOTES[run.state] ? html`<p class="notice">${NOTES[run.state]}</p>` : null;
+  return NOTES[run.state] ? html`<p class="notice">${NOTES[run.state]} ${run.state === "stopped" && run.error}</p>` : null;
 }
 
 function Deeds({ run }) {
@@ -59,7 +59,7 @@ function Deeds({ run }) {
   return html`
     <div class="report-deeds">
       ${run.state === "running" && deed("pause", "pause", "Pause")}
-      ${["paused", "interrupted"].includes(run.state) && deed("resume", "play", "Resume")}
+      ${["paused", "interrupted", "stopped", "failed"].includes(run.state) && deed("resume", "play", "Resume")}
       ${isActive(run) && deed("stop", "stop", "Stop")}
       ${!isActive(run) && html`
         <button class="quiet compact" disabled=${isHeld} onBlur=${() => setSure(false)} onClick=${() => (isSure ? discard(run) : setSure(true))}>

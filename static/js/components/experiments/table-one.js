@@ -6,7 +6,7 @@ import { agentOf } from "../../selectors.js";
 import { gaitsOf, placesOf } from "../../experiments/places.js";
 import { gaitTitle } from "../../experiments/titles.js";
 import { factorOf, inUnit, unit } from "../../experiments/units.js";
-import { PlaceSwitch } from "./place-switch.js";
+import { PlaceSwitch, PlaceWords } from "./place-switch.js";
 import { StripKey } from "./strip-key.js";
 import { LearnerCell, ReferenceCell } from "./table-one-cells.js";
 import { UnitSwitch } from "./unit-switch.js";
@@ -27,6 +27,7 @@ export function TableOne({ known }) {
         <${PlaceSwitch} places=${places} value=${place.key} onValue=${setWish} />
         <${UnitSwitch} />
       </div>
+      <${PlaceWords} place=${place} />
       <${StripKey} color=${agentOf("q-learning").color} />
       <table role="table">
         <caption class="sr-only">Finished and total distance of each gait and agent, ours beside the published</caption>

@@ -8,7 +8,7 @@ export const Versus = ({ known }) => known.versus?.length > 0 && html`
   <section class="panel versus" aria-labelledby="versus">
     <h2 id="versus">One against another</h2>
     <p class="dim">The chance that a seed of the first comes further than a seed of the second; a half is a tie.</p>
-    <div class="scroller" tabindex="0" role="region" aria-label="One against another">
+    <div class="scroller" tabindex="0" role="region" aria-label="Table of chances">
       <table class="facts-table">
         <thead><tr><th scope="col">Place</th><th scope="col">First</th><th scope="col">Second</th><th scope="col">Chance</th><th scope="col">The first is</th></tr></thead>
         <tbody>

@@ -1,0 +1,17 @@
+// What becomes of the experiment in view, said aloud once.
+import { effect } from "@preact/signals";
+import { isActive } from "../selectors.js";
+import { announcement } from "../outcome.js";
+import { chosenRun } from "./selection.js";
+import { runTitle } from "./titles.js";
+
+export function announceExperiments() {
+  let before = null;
+  effect(() => {
+    const run = chosenRun.value;
+    if (run && before?.id === run.id && isActive(before) && !isActive(run)) {
+      announcement.value = `${runTitle(run)} is ${run.state}. ${run.error ?? ""}`;
+    }
+    before = run;
+  });
+}

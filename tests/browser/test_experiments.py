@@ -1,0 +1,190 @@
+"""Experiments on the page: ask for one, watch its report fill, leave it, and take it away."""
+
+import json
+import re
+import time
+from pathlib import Path
+from typing import Any, Literal
+from urllib.parse import urlencode
+from urllib.request import Request, urlopen
+
+import pytest
+from playwright.sync_api import Browser, Locator, ViewportSize, expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import Serving, serving
+
+pytestmark = pytest.mark.timeout(300)
+
+PHONE: ViewportSize = {"width": 390, "height": 844}
+CORNER = {
+    "simulator": "kinematic",
+    "gaits": "left-right-origin",
+    "observations": "measured",
+}
+SMALL = {**CORNER, "seeds": 3, "robots": "stiff"}
+ENDLESS = {**CORNER, "experiment": "sweep", "seeds": 5000, "steps": 2000}
+
+
+def visit(dashboard: Dashboard, server: Serving, **asked: object) -> None:
+    """The view of experiments, with this form; the 3D stage is not waited for."""
+    page = dashboard.page
+    page.goto(f"{server.address}#experiments?{urlencode(asked)}")
+    expect(page.locator(".live")).to_contain_text("live")
+    expect(page.get_by_role("heading", name="New experiment")).to_be_visible()
+
+
+def head(dashboard: Dashboard) -> Locator:
+    """Which experiment it is, how far, and what can be done with it."""
+    return dashboard.page.locator(".report-head")
+
+
+def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) -> None:
+    page = dashboard.page
+    visit(dashboard, server, **SMALL)
+    expect(page.get_by_role("heading", name="One seed misleads")).to_be_visible()
+    dashboard.button("Run Table 1: 9 trials").click()
+    expect(head(dashboard).locator(".state")).to_have_text("finished")
+
+    table = page.get_by_role("table", name="Finished and total distance")
+    strips = table.get_by_role("img", name=re.compile("^3 seeds from .*; the paper 0.25 m$"))
+    expect(strips).to_have_count(2)
+    expect(table).to_contain_text("paper: unfinished")
+    greedy = table.get_by_role("row", name=re.compile("^Total")).locator(".reference b").first
+    expect(greedy).to_have_text("0.50\u00a0m")
+    dashboard.button("half grid sides").click()
+    expect(greedy).to_have_text("24.8\u202fh")
+    dashboard.button("relative to greedy").click()
+    expect(greedy).to_have_text("100\u202f%")
+
+    expect(page.locator(".claim .verdict").first).to_have_text(
+        re.compile(r"Holds|Does not hold|Not established")
+    )
+    expect(page.get_by_role("heading", name="Under the wall clock")).to_be_visible()
+    assert dashboard.violations() == []
+    page.set_viewport_size(PHONE)
+    assert dashboard.scroll_width() == PHONE["width"]
+    assert dashboard.violations() == []
+
+    expect(page).to_have_url(re.compile("run="))
+    report = head(dashboard).get_by_role("link", name="Open the report").get_attribute("href")
+    assert report is not None
+    with urlopen(report) as answer:
+        assert answer.headers["Content-Security-Policy"].startswith("default-src 'none'")
+        assert "left-right-origin" in answer.read().decode().lower()
+    with page.expect_download() as download:
+        head(dashboard).get_by_role("link", name="Every trial (CSV)").click()
+    assert len(Path(download.value.path()).read_text("utf-8").splitlines()) >= 9
+
+    page.get_by_role("link", name="Runs").click()
+    expect(page.locator(".run")).to_contain_text("finished")
+    page.get_by_role("link", name="Report").click()
+    dashboard.button("Delete").click()
+    dashboard.button("Delete for good?").click()
+    expect(page.get_by_role("heading", name="One seed misleads")).to_be_visible()
+
+
+def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
+    dashboard: Dashboard, tmp_path: Path
+) -> None:
+    page = dashboard.page
+    with serving(tmp_path) as server:
+        visit(dashboard, server, **ENDLESS)
+        dashboard.button("Run Sweep: 5\u202f001 trials").click()
+        expect(head(dashboard)).to_contain_text("a second")
+        expect(page.get_by_role("img", name=re.compile(r"^\d+ seeds, typically"))).to_be_visible()
+        page.goto("about:blank")
+        server.kill()
+    with serving(tmp_path) as server:
+        visit(dashboard, server)
+        expect(head(dashboard).locator(".state")).to_have_text("interrupted")
+        done = trials_done(dashboard)
+        assert done > 0
+        dashboard.button("Resume").click()
+        dashboard.eventually(lambda: trials_done(dashboard) > done, "another trial")
+        # A rate is there once its process has tried something itself.
+        expect(head(dashboard)).to_contain_text("a second")
+        dashboard.button("Pause").click()
+        expect(head(dashboard).locator(".state")).to_have_text("paused")
+        dashboard.button("Resume").click()
+        expect(head(dashboard).locator(".state")).to_have_text("running")
+        dashboard.button("Stop").click()
+        expect(head(dashboard)).to_contain_text("What is shown is of the trials that were done.")
+        expect(head(dashboard).get_by_role("link", name="Open the report")).to_be_visible()
+
+
+def trials_done(dashboard: Dashboard) -> int:
+    (found,) = dashboard.get("api/v1/experiments")["items"]
+    done: int = found["progress"]["done"]
+    return done
+
+
+def test_links_carry_the_form_and_mistakes_hold_it_back(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    page = dashboard.page
+    visit(dashboard, shared_server)
+    page.get_by_role("radio", name="Sweep").check(force=True)
+    alpha = page.get_by_label("α", exact=True)
+    alpha.fill("0.1, 0.3, oops")
+    expect(page.get_by_role("alert").filter(has_text="with commas")).to_be_visible()
+    button = page.get_by_role("button", name=re.compile("^Run Sweep"))
+    expect(button).to_have_attribute("aria-disabled", "true")
+    alpha.fill("0.1, 0.3, 0.6")
+    page.get_by_text("Where and how").click()
+    page.get_by_role("checkbox", name="Left-right, mirrored").uncheck()
+    expect(button).to_have_text(f"Run Sweep: {3 * (1 + 3 * 30)} trials")
+    link = page.url
+    page.goto("about:blank")
+
+    page.goto(link)
+    expect(button).to_have_text("Run Sweep: 273 trials")
+    expect(alpha).to_have_value("0.1, 0.3, 0.6")
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_reports_fit_a_phone(browser: Browser, small_runs: list[str], theme: str) -> None:
+    scheme: Literal["light", "dark"] = "light" if theme == "light" else "dark"
+    with browser.new_context(viewport=PHONE, color_scheme=scheme) as context:
+        dashboard = Dashboard(context.new_page())
+        page = dashboard.page
+        for address in small_runs:
+            page.goto(address)
+            expect(page.get_by_role("heading", name="How it was made")).to_be_visible()
+            assert dashboard.scroll_width() == PHONE["width"]
+            assert dashboard.violations() == []
+            page.goto("about:blank")
+        assert dashboard.complaints == []
+
+
+@pytest.fixture(scope="module")
+def small_runs(shared_server: Serving) -> list[str]:
+    """The views of a finished Figure 4 and a finished sweep."""
+    corner = {**CORNER, "robots": "stiff", "seeds": 3}
+    asked = [
+        {"experiment": "figure4", **corner},
+        {"experiment": "sweep", **corner, "alpha": [0.1, 0.3], "steps": 100},
+    ]
+    ids = [call(shared_server, body)["id"] for body in asked]
+    deadline = time.monotonic() + 100
+    while any(call(shared_server, path=f"/{one}")["state"] != "finished" for one in ids):
+        assert time.monotonic() < deadline
+        time.sleep(0.25)
+    return [f"{shared_server.address}#experiments?run={one}" for one in ids]
+
+
+def call(server: Serving, body: object = None, path: str = "") -> dict[str, Any]:
+    data = None if body is None else json.dumps(body).encode()
+    headers = {"Content-Type": "application/json"}
+    asked = Request(f"{server.address}api/v1/experiments{path}", data, headers)
+    with urlopen(asked) as answer:
+        found: dict[str, Any] = json.loads(answer.read())
+    return found
+
+
+def test_spectators_see_the_report_without_controls(dashboard: Dashboard, tmp_path: Path) -> None:
+    page = dashboard.page
+    with serving(tmp_path, token="for-the-operator") as guarded:
+        page.goto(f"{guarded.address}#experiments")
+        expect(page.get_by_text("No experiment has been run here.")).to_be_visible()
+        expect(page.get_by_role("button", name=re.compile("^Run "))).to_have_count(0)

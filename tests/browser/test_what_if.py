@@ -1,0 +1,63 @@
+"""Beside the settings: what thirty robots make of them, and how one goes on from there."""
+
+import re
+from urllib.parse import urlencode
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import Serving
+
+pytestmark = pytest.mark.timeout(300)
+
+SHORT = urlencode({"steps": 60, "simulator": "kinematic", "evaluate_every": 0})
+
+
+def test_a_slider_is_tried_out_and_gone_on_with(dashboard: Dashboard, server: Serving) -> None:
+    page = dashboard.page
+    dashboard.open(f"{server.address}?{SHORT}")
+    panel = page.get_by_role("region", name="What if?")
+    expect(panel).to_contain_text("Move a slider")
+    before = dashboard.primary.bounding_box()
+
+    page.get_by_role("slider", name="Learning rate α").fill("0.8")
+    chosen = panel.get_by_role("img", name=re.compile(r"^These settings: \d+ of 30 walk\."))
+    default = panel.get_by_role("img", name=re.compile(r"^The defaults: \d+ of 30 walk\."))
+    expect(chosen).to_be_visible()
+    expect(default).to_be_visible()
+    expect(chosen.locator("circle")).to_have_count(30)
+    assert dashboard.primary.bounding_box() == before
+    assert dashboard.violations() == []
+
+    practice = page.get_by_role("spinbutton", name="Practice, as a number")
+    practice.fill("5000")
+    expect(panel).to_contain_text("2\u202f000 steps at most")
+    practice.fill("60")
+    expect(panel).not_to_contain_text("at most")
+
+    expect(dashboard.button("Continue with these settings")).to_have_count(0)
+    dashboard.button("Train only").click()
+    dashboard.button("Continue with these settings").click()
+    dashboard.eventually(lambda: len(trainings(dashboard)) == 2, "the training that goes on")
+    second, first = trainings(dashboard)
+    assert second["config"]["continue_from"] == first["id"]
+    assert second["config"]["alpha"] == 0.8
+
+
+def trainings(dashboard: Dashboard) -> list[dict[str, dict[str, object]]]:
+    found: list[dict[str, dict[str, object]]] = dashboard.get("api/v1/trainings")["items"]
+    return found
+
+
+def test_a_server_that_is_away_is_told_and_asked_again(
+    dashboard: Dashboard, server: Serving
+) -> None:
+    page = dashboard.page
+    dashboard.open(server.address)
+    panel = page.get_by_role("region", name="What if?")
+    server.kill()
+    panel.get_by_role("button", name="Try the settings as they are").click()
+    expect(panel.get_by_role("alert")).to_contain_text("does not answer")
+    expect(panel.get_by_role("button", name="Try again")).to_be_visible()
+    dashboard.complaints.clear()
