@@ -19,6 +19,8 @@ from app.services.modest import be_modest
 
 IDLE_S = 60.0
 PATIENCE_S = 60.0
+NICENESS = 10
+"""Someone waits for the answer, so that it goes before jobs."""
 _CHUNK = 3
 _CLOSE_S = 3.0
 
@@ -182,7 +184,7 @@ def _received(pipe: Connection) -> _Answer:
 
 def main(pipe: Connection) -> None:
     """Answer questions until nobody asks any more; this is a helper's process."""
-    be_modest()
+    be_modest(NICENESS)
     with suppress(EOFError, OSError):
         while True:
             pipe.send(_answer(pipe.recv()))

@@ -10,10 +10,10 @@ NICENESS = 15
 _PR_SET_PDEATHSIG = 1
 
 
-def be_modest() -> None:
+def be_modest(niceness: int = NICENESS) -> None:
     """Let the server go first, and end with it: with the thread that started this process."""
     with suppress(OSError):
-        os.nice(NICENESS)
+        os.nice(niceness)
     # Ctrl-C reaches every process of a terminal; the server says what becomes of its own.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if sys.platform == "linux":

@@ -73,7 +73,7 @@ def test_what_is_known_is_not_tried_again(what_if: WhatIf, helpers: Helpers) -> 
     for name in ("greedy_m", "chosen", "default"):
         assert again[name] == first[name]
     assert helpers.pids == pids
-    assert all(psutil.Process(pid).nice() == 15 for pid in pids)
+    assert all(psutil.Process(pid).nice() == 10 for pid in pids)
 
 
 def test_the_middle_half_is_scipys() -> None:
