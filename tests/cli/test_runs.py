@@ -13,7 +13,7 @@ import pytest
 from app.services.database.store import SqlStore
 from app.services.store import TABLE
 from tests.cli.running import ROOT, hexapods, output, refusal
-from tests.services.ended import ended_race, ended_training
+from tests.services.ended import ended_experiment, ended_race, ended_training
 from tests.services.stores import opened, training
 
 TRAINING, RACED = "00000000000t1", "00000000000r1"
@@ -146,3 +146,21 @@ def test_nothing_is_changed_behind_a_server(kept: SqlStore, data: Path, tmp_path
     sentence = refusal("runs", "delete", RACED, *here, folder=tmp_path)
     assert "does not answer at http://127.0.0.1:1/" in sentence
     assert [run.id for run in kept.list().items] == [TRAINING, RACED]
+
+
+def test_experiments_are_runs_as_well(tmp_path: Path) -> None:
+    data, other = tmp_path / "data", tmp_path / "other"
+    with opened(data, None) as store:
+        ended_experiment(store, "00000000000e1")
+    here = ("--data", str(data))
+    listed = hexapods("runs", "list", "--kind", "experiment", *here, folder=tmp_path).stdout
+    assert listed.split("\t")[:4] == ["00000000000e1", "experiment", "finished", "4 trials"]
+    shown = hexapods("runs", "show", "00000000000e1", *here, folder=tmp_path).stdout
+    assert "4 of 4" in shown
+    archive = str(tmp_path / "run.zip")
+    hexapods("export", "00000000000e1", "--out", archive, *here, folder=tmp_path)
+    hexapods("import", archive, "--data", str(other), folder=tmp_path)
+    moved = output("runs", "show", "00000000000e1", "--data", str(other), folder=tmp_path)
+    assert moved["result"]["trials"]["done"] == 4
+    hexapods("runs", "delete", "00000000000e1", *here, folder=tmp_path)
+    assert output("runs", "list", *here, folder=tmp_path)["items"] == []

@@ -45,3 +45,25 @@ def test_a_signal_drains_the_server(by: int, launch: Callable[..., Served], tmp_
         )
         assert server.tell(run, "resume").json()["state"] != "interrupted"
         server.tell(run, "stop")
+
+
+def test_an_experiment_and_its_cluster_end_as_well(launch: Callable[..., Served]) -> None:
+    """And the processes behind a what-if."""
+    server = launch()
+    body = {"experiment": "sweep", "simulator": "kinematic", "steps": 1000, "workers": 1}
+    run = server.start(body, "/experiments")
+    question = {"gait": "left-right-origin", "steps": 5}
+    assert server.client.post("/api/v1/what-if", json=question).status_code == 200
+    server.after_step(run, 1)
+    children = psutil.Process(server.process.pid).children(recursive=True)
+    began = time.monotonic()
+    assert server.end() == 0
+    assert time.monotonic() - began < 10
+    _, left = psutil.wait_procs(children, timeout=5)
+    assert not left
+
+    server = launch()
+    now = server.look(run)
+    assert (now["state"], now["error"]) == ("interrupted", "The server was stopped while it ran.")
+    trials = server.client.get(f"/api/v1/experiments/{run['id']}/trials").json()["trials"]
+    assert len(trials) >= now["progress"]["done"] > 0
