@@ -47,9 +47,8 @@ def one_seed(places: Sequence[Corner]) -> str | None:
             f"In {len(shares_)} of {len(settled)} settings the seeds together settle who is "
             "ahead when the race ends, Q-learning or greedy; one seed alone would name the wrong "
             f"one in {percent(wrong)} of cases, and in {percent(worst)} in the worst of these "
-            f"settings. In the other {len(settled) - len(shares_)} one seed would name a winner "
-            "where there is "
-            "none to name."
+            f"settings. In the other {len(settled) - len(shares_)} the seeds do not settle it, "
+            "and yet one seed would name a winner."
         )
     return "\n".join([*said, *_backwards(places)])
 

@@ -164,9 +164,9 @@ def sweep(corner: Corner) -> dict[str, Any]:
             {
                 "name": named(one, corner.pooled),
                 "cells": [
-                    (shares(one["relative"]), ""),
-                    (shares(one["walkers"]) if one["walkers"] else _NONE, ""),
-                    (shares(one["beats_greedy"]) if one["beats_greedy"] else _NONE, ""),
+                    _share(one["relative"], "iqm"),
+                    _share(one["walkers"]),
+                    _share(one["beats_greedy"]),
                     (f"{one['n']:,}", ""),
                 ],
             }
@@ -174,6 +174,14 @@ def sweep(corner: Corner) -> dict[str, Any]:
         ],
         "left_out": max(0, len(best) - MOST_ROWS),
     }
+
+
+def _share(found: Mapping[str, Any] | None, middle: str = "share") -> tuple[str, str]:
+    if found is None:
+        return _NONE, ""
+    low, high = found["low"], found["high"]
+    value = percent(found[middle])
+    return value, "" if low is None else _between(*(number(100 * end, 0) for end in (low, high)))
 
 
 def versus(summary: Mapping[str, Any]) -> dict[str, Any]:

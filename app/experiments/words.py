@@ -16,14 +16,14 @@ READINGS: Mapping[str, str] = {"measured": "feet read back", "commanded": "comma
 """What an observation is, in words."""
 
 RATES: Mapping[str, str] = {
-    "steps": "{:,} steps",
-    "alpha": "α {:g}",
-    "gamma": "γ {:g}",
-    "epsilon_start": "ε from {:g}",
-    "epsilon_end": "ε to {:g}",
-    "steps_per_episode": "{:,} an episode",
-    "divisions": "{} divisions",
-    "grid_side_m": "grid {:g} m",
+    "steps": "{:,}\u00a0steps",
+    "alpha": "α\u00a0{:g}",
+    "gamma": "γ\u00a0{:g}",
+    "epsilon_start": "ε\u00a0from\u00a0{:g}",
+    "epsilon_end": "ε\u00a0to\u00a0{:g}",
+    "steps_per_episode": "{:,}\u00a0an\u00a0episode",
+    "divisions": "{}\u00a0divisions",
+    "grid_side_m": "grid\u00a0{:g}\u00a0m",
 }
 """What a sweep varies, with its value."""
 

@@ -144,7 +144,7 @@ def test_tuning_helps_if_the_best_is_established_to_come_further() -> None:
 
     found = claim(summary_of("sweep", far, seeds=8, alpha=(0.1, 0.3, 0.6)), "tuning")
     assert found["verdict"] == "holds"
-    assert "α 0.6" in found["evidence"]
+    assert "α\xa00.6" in found["evidence"]
     same = claim(summary_of("sweep", everywhere(0.3), seeds=8, alpha=(0.3, 0.6)), "tuning")
     assert same["verdict"] == "not established"
 
