@@ -33,6 +33,8 @@ HELP = {
     "robots": "Which robots are tried.",
     "observations": "Which readings of the state are tried.",
     "agents": "Who learns, or looks ahead, and is compared with the others.",
+    "settings": "Combinations of values; each is tried over all seeds.",
+    "trials": "Settings times seeds; agents that look ahead are tried once.",
     "workers": "How many trials are computed at once; one for each core if nothing is said.",
 }
 

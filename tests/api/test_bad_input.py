@@ -142,7 +142,7 @@ def test_a_table_for_another_gait(api: Api, trained: dict[str, Any]) -> None:
 
 
 def test_unknown_paths_and_methods(api: Api) -> None:
-    refused(api.call("GET", "/experiments"), 404, "/docs")
+    refused(api.call("GET", "/contests"), 404, "/docs")
     refused(api.call("GET", "/trainings/none"), 404, "none", "/api/v1/trainings")
     refused(api.call("PUT", "/trainings"), 405, "POST")
     refused(api.client.get("/nothing"), 404)
