@@ -12,10 +12,11 @@ from typing import Any
 
 from app.cli.terminal import progress, show_table
 from app.domain.errors import InvalidInput
-from app.experiments.cluster import Where, cores
+from app.experiments.cluster import Where
 from app.experiments.config import ExperimentConfig
 from app.experiments.engine import run_trials
 from app.experiments.folder import ResultsFolder, open_results
+from app.experiments.own_cluster import cores
 from app.experiments.plan import Plan, Trial
 
 _INTERRUPTED = 130
@@ -89,7 +90,7 @@ def _run(
 
 def _report(plan: Plan, where: Where, folder: ResultsFolder) -> dict[str, Any]:
     # SciPy and Matplotlib take a second to import, which other commands need not.
-    from app.experiments.report import write_report  # noqa: PLC0415
+    from app.experiments.report.files import write_report  # noqa: PLC0415
     from app.experiments.summary import summarise  # noqa: PLC0415
 
     keys = [trial.key for trial in plan.trials()]

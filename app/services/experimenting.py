@@ -186,7 +186,7 @@ class _Book:
 
     def report(self) -> None:
         """Send the files of the report."""
-        from app.experiments.report import report_files  # noqa: PLC0415 - it brings Matplotlib
+        from app.experiments.report.files import report_files  # noqa: PLC0415 - it brings Matplotlib
 
         self.flush()
         self._is_stale = True

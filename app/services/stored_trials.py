@@ -4,8 +4,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from app.experiments.config import ExperimentConfig
+from app.experiments.report.trials_csv import trials_csv
 from app.experiments.trial import TrialResult
-from app.experiments.trials_csv import trials_csv
 
 
 def results_of(

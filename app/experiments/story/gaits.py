@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from app.experiments.claims_gaits import ODD, OTHERS, SLOW, odd_against_others
-from app.experiments.corners import PAPERS_AGENT, Corner
+from app.experiments.claims.corners import PAPERS_AGENT, Corner
+from app.experiments.claims.gaits import ODD, OTHERS, SLOW, odd_against_others
 from app.experiments.published import published
 from app.experiments.words import listed, metres, shares, span
 

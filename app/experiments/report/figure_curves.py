@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from app.experiments.corners import Corner
-from app.experiments.drawing import INK, MUTED, Picture, colours, figure, quiet
+from app.experiments.claims.corners import Corner
+from app.experiments.report.drawing import INK, MUTED, Picture, colours, figure, quiet
 from app.experiments.words import agent_name, gait_name, metres
 
 Curve = Mapping[str, Any]

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
-from app.experiments.corners import Corner, corners
+from app.experiments.claims.corners import Corner, corners
 from app.experiments.statistics import Verdict
 from app.experiments.words import listed
 

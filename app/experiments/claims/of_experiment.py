@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 
-from app.experiments.claims import Claim
-from app.experiments.claims_figure4 import FIGURE4_CLAIMS
-from app.experiments.claims_sweep import SWEEP_CLAIMS
-from app.experiments.claims_table1 import TABLE1_CLAIMS
+from app.experiments.claims.figure4 import FIGURE4_CLAIMS
+from app.experiments.claims.judging import Claim
+from app.experiments.claims.sweep import SWEEP_CLAIMS
+from app.experiments.claims.table1 import TABLE1_CLAIMS
 
 CLAIMS_OF: Mapping[str, Sequence[Claim]] = {
     "table1": TABLE1_CLAIMS,

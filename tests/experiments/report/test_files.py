@@ -17,11 +17,11 @@ from app.cli.trial_options import tried_from
 from app.domain.gait import GaitSpec
 from app.domain.robot import robot
 from app.experiments.config import GRID, ExperimentConfig, as_json, experiment_config, from_json
-from app.experiments.page import POLICY, command, page
-from app.experiments.report import report_files, write_report
+from app.experiments.report.files import report_files, write_report
+from app.experiments.report.page import POLICY, command, page
+from app.experiments.report.trials_csv import trials_csv
 from app.experiments.summary import summarise
 from app.experiments.trial import TrialResult
-from app.experiments.trials_csv import trials_csv
 from tests.experiments.made import ROBOTS, Results, around, config, made_up, summary_of, walked
 
 MOST_BYTES = 1_400_000

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from app.experiments.corners import PAPERS_AGENT, Corner
-from app.experiments.story_gaits import odd_gait
+from app.experiments.claims.corners import PAPERS_AGENT, Corner
+from app.experiments.story.gaits import odd_gait
 from app.experiments.words import agent_name, counted, gait_name, listed, metres, percent
 
 Curve = Mapping[str, Any]

@@ -4,10 +4,10 @@ from collections.abc import Callable, Mapping, Sequence
 from statistics import fmean, median
 from typing import Any
 
-from app.experiments.corners import PAPERS_AGENT, Corner
-from app.experiments.nearness import near, nearer
+from app.experiments.claims.corners import PAPERS_AGENT, Corner
+from app.experiments.claims.nearness import near, nearer
 from app.experiments.statistics import Points, improvement
-from app.experiments.story_gaits import odd_gait
+from app.experiments.story.gaits import odd_gait
 from app.experiments.words import (
     counted,
     distance,

@@ -5,8 +5,8 @@ from functools import partial
 import numpy as np
 
 from app.domain.types import FloatArray
-from app.experiments.claims import Claim, Finding
-from app.experiments.corners import Corner
+from app.experiments.claims.corners import Corner
+from app.experiments.claims.judging import Claim, Finding
 from app.experiments.published import GAITS
 from app.experiments.statistics import Interval, Points, decided, interval, iqm, iqm_of_all
 from app.experiments.words import metres, percent, shares, span

@@ -7,8 +7,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from app.experiments.corners import Corner
-from app.experiments.drawing import INK, MUTED, PAPER, Picture, colours, figure, quiet, spread
+from app.experiments.claims.corners import Corner
+from app.experiments.report.drawing import (
+    INK,
+    MUTED,
+    PAPER,
+    Picture,
+    colours,
+    figure,
+    quiet,
+    spread,
+)
 from app.experiments.words import agent_name, gait_name, metres
 
 Setting = Mapping[str, Any]

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from app.experiments.config import from_json
-from app.experiments.drawing import FORMATS, rendered
-from app.experiments.figures import sheets
-from app.experiments.page import page
+from app.experiments.report.drawing import FORMATS, rendered
+from app.experiments.report.figures import sheets
+from app.experiments.report.page import page
+from app.experiments.report.trials_csv import trials_csv
 from app.experiments.trial import TrialResult
-from app.experiments.trials_csv import trials_csv
 
 PAGE = "report.html"
 

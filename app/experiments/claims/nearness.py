@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.domain.types import FloatArray
-from app.experiments.corners import PAPERS_AGENT, Corner
+from app.experiments.claims.corners import PAPERS_AGENT, Corner
 from app.experiments.statistics import (
     CONFIDENCE,
     Interval,

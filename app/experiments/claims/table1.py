@@ -5,9 +5,9 @@ from functools import partial
 from statistics import fmean, median
 from typing import Any
 
-from app.experiments.claims import Claim, Finding
-from app.experiments.claims_gaits import gaits
-from app.experiments.corners import PAPERS_AGENT, Corner
+from app.experiments.claims.corners import PAPERS_AGENT, Corner
+from app.experiments.claims.gaits import gaits
+from app.experiments.claims.judging import Claim, Finding
 from app.experiments.measures import REACHES
 from app.experiments.published import GAITS, published
 from app.experiments.statistics import Interval, Verdict, decided

@@ -3,10 +3,10 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from app.experiments.corners import Corner, corners
-from app.experiments.story_figure4 import FIGURE4_STORY
-from app.experiments.story_sweep import SWEEP_STORY
-from app.experiments.story_table1 import TABLE1_STORY
+from app.experiments.claims.corners import Corner, corners
+from app.experiments.story.figure4 import FIGURE4_STORY
+from app.experiments.story.sweep import SWEEP_STORY
+from app.experiments.story.table1 import TABLE1_STORY
 from app.experiments.words import counted, listed
 
 Telling = Callable[[Sequence[Corner]], str | None]

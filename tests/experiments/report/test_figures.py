@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from app.experiments.drawing import (
+from app.experiments.report.drawing import (
     AGENT_COLOURS,
     CSS_NAMES,
     FORMATS,
@@ -18,7 +18,7 @@ from app.experiments.drawing import (
     rendered,
     spread,
 )
-from app.experiments.figures import panels, sheets
+from app.experiments.report.figures import panels, sheets
 from app.experiments.summary import summarise
 from tests.experiments.made import ROBOTS, around, config, made_up, summary_of
 

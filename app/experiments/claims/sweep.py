@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from app.experiments.claims import Claim, Finding
-from app.experiments.corners import PAPERS_AGENT, Corner
+from app.experiments.claims.corners import PAPERS_AGENT, Corner
+from app.experiments.claims.judging import Claim, Finding
 from app.experiments.statistics import CONFIDENCE, Points, decided, improvement
 from app.experiments.words import RATES as WORDS
 from app.experiments.words import percent, shares

@@ -5,9 +5,9 @@ from typing import Any
 
 from matplotlib.axes import Axes
 
-from app.experiments.corners import Corner
-from app.experiments.drawing import INK, MUTED, Picture, colours, figure, quiet
-from app.experiments.story_sweep import named
+from app.experiments.claims.corners import Corner
+from app.experiments.report.drawing import INK, MUTED, Picture, colours, figure, quiet
+from app.experiments.story.sweep import named
 from app.experiments.words import agent_name, percent
 
 MOST = 40

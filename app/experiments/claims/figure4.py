@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from app.domain.types import FloatArray
-from app.experiments.claims import Claim, Finding
-from app.experiments.claims_gaits import ODD, gaits
-from app.experiments.corners import PAPERS_AGENT, Corner
+from app.experiments.claims.corners import PAPERS_AGENT, Corner
+from app.experiments.claims.gaits import ODD, gaits
+from app.experiments.claims.judging import Claim, Finding
 from app.experiments.measures import WALKS
 from app.experiments.statistics import Interval, Verdict, at_least, decided, paired_interval
 from app.experiments.words import gait_name, metres, percent, shares

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from app.experiments import figure_curves, figure_sweep, figure_table1
-from app.experiments.corners import corners
-from app.experiments.drawing import Picture, look
+from app.experiments.claims.corners import corners
+from app.experiments.report import figure_curves, figure_sweep, figure_table1
+from app.experiments.report.drawing import Picture, look
 
 
 def panels(summary: Mapping[str, Any]) -> list[tuple[str, list[Picture]]]:

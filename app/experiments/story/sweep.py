@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from app.experiments.claims.corners import Corner
 from app.experiments.config import GRID
-from app.experiments.corners import Corner
 from app.experiments.words import RATES, agent_name, counted, metres, percent, shares
 
 

@@ -1,0 +1,1 @@
+"""The report as files: a page, figures, every trial."""

@@ -1,0 +1,1 @@
+"""What a reader sees, in sentences whose numbers come from the run."""
