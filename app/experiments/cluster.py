@@ -1,22 +1,23 @@
 """The machines that trials run on: this one's cores, or a Dask cluster that is there already."""
 
+import asyncio
 import logging
-import multiprocessing.resource_tracker
 import re
-import signal
-import tempfile
+import socket
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from app.domain.errors import HexapodError, InvalidInput
+from app.experiments.own_cluster import cores, own_cluster
 from app.experiments.versions import difference, versions
 from app.runs.config import check_whole
 
 if TYPE_CHECKING:
-    from distributed import Client, LocalCluster
+    from distributed import Client
     from distributed.security import Security
 
 MAX_WORKERS = 512
@@ -78,13 +79,6 @@ class Where:
                 raise InvalidInput(f"there is no file {file}")
 
 
-def cores() -> int:
-    """How many workers this machine has room for, within the limits of a container."""
-    from dask.system import CPU_COUNT  # noqa: PLC0415 - half a second that others need not
-
-    return int(CPU_COUNT)
-
-
 @contextmanager
 def connect(where: Where) -> "Iterator[Client]":
     """A client of the cluster, which is started first where it is this machine's own.
@@ -100,87 +94,10 @@ def connect(where: Where) -> "Iterator[Client]":
     with ExitStack() as stack:
         # It would tell of every worker that dies, which the engine reports in its own words.
         stack.enter_context(silence_logging_cmgr(logging.CRITICAL))
-        connected = _foreign if where.scheduler is not None else _own
-        yield stack.enter_context(connected(where))
-
-
-@contextmanager
-def _own(where: Where) -> "Iterator[Client]":
-    import dask  # noqa: PLC0415
-    from distributed import Client, LocalCluster  # noqa: PLC0415
-
-    with ExitStack() as stack:
-        folder = tempfile.TemporaryDirectory(prefix="hexapods-", ignore_cleanup_errors=True)
-        stack.enter_context(folder)
-        settings = {**_OWN_SETTINGS, "temporary-directory": folder.name}
-        stack.enter_context(dask.config.set(settings))
-        with _deaf_to_ctrl_c():
-            cluster = LocalCluster(
-                n_workers=where.workers or cores(),
-                threads_per_worker=1,
-                host="127.0.0.1",
-                # Anyone on the machine could otherwise send code to the port.
-                security=True,
-                dashboard_address=None,
-                local_directory=folder.name,
-                # What a trial has there goes with the folder, when its worker is ended in it.
-                env={"TMPDIR": folder.name},
-                silence_logs=logging.CRITICAL,
-                scheduler_kwargs={
-                    # Each death comes to the engine, which says what follows from it.
-                    "allowed_failures": 0,
-                    # No page, and not on the port that others expect it on.
-                    "dashboard": False,
-                    "dashboard_address": "127.0.0.1:0",
-                },
-            )
-        stack.enter_context(cluster)
-        client = stack.enter_context(Client(cluster, set_as_default=False))
-        stack.callback(_drop_work, cluster)
-        yield client
-
-
-_OWN_SETTINGS = {
-    "distributed.scheduler.http.routes": [],
-    "distributed.worker.http.routes": [],
-    "distributed.worker.profile.enabled": False,
-    # Little is ever kept in memory. A trial that takes all there is ends its worker, no other's.
-    "distributed.worker.memory.target": False,
-    "distributed.worker.memory.spill": False,
-    "distributed.worker.memory.pause": False,
-}
-
-
-@contextmanager
-def _deaf_to_ctrl_c() -> Iterator[None]:
-    """Ctrl-C reaches every process of a terminal; workers shall leave it to this one.
-
-    Processes inherit what is blocked from the thread that starts them, also those started later
-    in place of dead ones.
-    """
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    # Whoever starts this helper of `multiprocessing` would unblock it again.
-    multiprocessing.resource_tracker.ensure_running()
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _drop_work(cluster: "LocalCluster") -> None:
-    """End the workers at once; asked politely, each would finish its trial first."""
-
-    async def drop() -> None:
-        for nanny in cluster.workers.values():
-            nanny.close_gracefully()  # so that it starts no other
-            process = nanny.process and nanny.process.process
-            if process is not None and process.is_alive():
-                await process.kill()
-
-    cluster.sync(drop)
+        if where.scheduler is None:
+            yield stack.enter_context(own_cluster(where.workers or cores()))
+        else:
+            yield stack.enter_context(_foreign(where))
 
 
 @contextmanager
@@ -188,9 +105,11 @@ def _foreign(where: Where) -> "Iterator[Client]":
     from distributed import Client  # noqa: PLC0415
 
     address = str(where.scheduler)
+    security = _security(where)
     try:
-        client = Client(address, security=_security(where), timeout=ANSWER_S, set_as_default=False)
-    except (OSError, ValueError, TypeError) as error:
+        _knock(address, security)
+        client = Client(address, security=security, timeout=ANSWER_S, set_as_default=False)
+    except (OSError, OverflowError, ValueError, TypeError) as error:
         raise InvalidInput(
             f"no scheduler answers at {address} ({_reason(error)}); {_HOW_TO_START}"
         ) from error
@@ -199,11 +118,32 @@ def _foreign(where: Where) -> "Iterator[Client]":
         yield client
 
 
-def _security(where: Where) -> "Security | None":
+def _knock(address: str, security: "Security") -> None:
+    """Find out at once that nobody is there, and in time that it is no scheduler.
+
+    Dask goes on trying where nobody listens, and waits forever for who does not answer.
+    """
+    from distributed.comm.core import connect as shake_hands  # noqa: PLC0415
+
+    host, _, port = address.partition("://")[2].rpartition(":")
+    with socket.create_connection((host.strip("[]"), int(port)), ANSWER_S):
+        pass
+
+    async def knock() -> None:
+        arguments = security.get_connection_args("client")
+        comm = await asyncio.wait_for(shake_hands(address, ANSWER_S, **arguments), ANSWER_S)
+        await comm.close()
+
+    # In a thread, since a notebook has a loop in its own.
+    with ThreadPoolExecutor(1) as thread:
+        thread.submit(lambda: asyncio.run(knock())).result()
+
+
+def _security(where: Where) -> "Security":
     from distributed.security import Security  # noqa: PLC0415
 
     if where.tls_ca is None:
-        return None
+        return Security()
     return Security(
         require_encryption=True,
         tls_ca_file=where.tls_ca,

@@ -12,11 +12,25 @@ from typing import Any
 
 import pytest
 
+from app.cli import main
 from app.experiments.folder import TRIALS
 from tests.cli.running import EXAMPLES, ROOT, hexapods, output, refusal
 
 ONE_GAIT = ("--gait", "left-right-origin", "--simulator", "kinematic")
 SWEEP = ("sweep", *ONE_GAIT, "--alpha", "0.1,0.3", "--steps", "50")
+
+
+def start(*arguments: str, folder: Path) -> "subprocess.Popen[str]":
+    """A command that is at work, as in a terminal of its own."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "app.cli", *arguments],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
 
 
 def kept(folder: Path) -> dict[str, Any]:
@@ -55,48 +69,44 @@ def test_table_1_in_json_and_further_seeds_in_the_same_folder(tmp_path: Path) ->
     }
 
 
-def test_agents_of_ones_own_against_ours(tmp_path: Path) -> None:
-    shutil.copy(EXAMPLES / "my_agent.py", tmp_path)
-    agents = ("--agent", "q-learning", "--agent", "my_agent:Agent")
+def test_agents_of_ones_own_against_ours_and_a_second_chance(tmp_path: Path) -> None:
+    agent = tmp_path / "mine.py"
+    shutil.copy(EXAMPLES / "my_agent.py", agent)
+    text = agent.read_text("utf-8")
+    assert "def act(" in text
+    agent.write_text(text.replace("def act(", "def act(self, *_):\n        1 / 0\n\n    def _act("))
+    agents = ("--agent", "q-learning", "--agent", "mine:Agent")
     figure4 = ("experiment", "figure4", *ONE_GAIT, "--observation", "measured", "--seeds", "3")
-    summary = output(*figure4, *agents, folder=tmp_path)
+    done = hexapods(*figure4, *agents, folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("Set aside: ") == 3
+    assert "division by zero" in done.stdout
+
+    agent.write_text(text, "utf-8")
+    summary = output(*figure4, *agents, "--retry", folder=tmp_path)
     assert summary["trials"]["set_aside"] == []
     (versus,) = summary["versus"]
-    assert {versus["a"], versus["b"]} == {"q-learning", "my_agent:Agent"}
-    assert len(summary["curves"]) == 2
-    assert len(summary["curves"][0]["steps"]) == 8
+    assert {versus["a"], versus["b"]} == {"q-learning", "mine:Agent"}
+    assert [len(curve["steps"]) for curve in summary["curves"]] == [8, 8]
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_what_was_interrupted_goes_on_with_the_same_command(
-    how: signal.Signals, tmp_path: Path
-) -> None:
-    slow = ("sweep", *ONE_GAIT, "--steps", "500", "--seeds", "400", "--out", "kept")
-    process = subprocess.Popen(
-        [sys.executable, "-m", "app.cli", *slow],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
+def test_what_was_interrupted_goes_on_with_the_same_command(tmp_path: Path) -> None:
     file = tmp_path / "kept" / TRIALS
-    while not file.exists() or len(file.read_bytes().splitlines()) < 20:
-        assert process.poll() is None
-        time.sleep(0.05)
-    # As a terminal does: to every process.
-    os.killpg(process.pid, how) if how == signal.SIGINT else process.send_signal(how)
-    out, err = process.communicate(timeout=60)
-    assert (process.returncode, err) == (130, "")
-    before = kept(tmp_path / "kept")
-    assert f"Interrupted: {len(before)} of 401 trials are kept in kept" in out
-    assert "the same command goes on from there" in out
-    if how == signal.SIGINT:
-        some_more = tuple(word if word != "400" else str(len(before) + 20) for word in slow)
-        done = hexapods(*some_more, folder=tmp_path)
-        assert done.returncode == 0, done.stderr
-        assert before.items() < kept(tmp_path / "kept").items()
+    before: dict[str, Any] = {}
+    # As a terminal does, to every process; and as whoever ends one.
+    for end in (lambda one: os.killpg(one.pid, signal.SIGINT), subprocess.Popen.terminate):
+        process = start("sweep", *ONE_GAIT, "--seeds", "400", "--out", "kept", folder=tmp_path)
+        while not file.exists() or len(file.read_bytes().splitlines()) < len(before) + 20:
+            assert process.poll() is None
+            time.sleep(0.05)
+        end(process)
+        out, err = process.communicate(timeout=60)
+        assert (process.returncode, err) == (130, "")
+        now = kept(tmp_path / "kept")
+        assert before.items() < now.items()
+        assert f"Interrupted: {len(now)} of 401 trials are kept in kept" in out
+        assert "the same command goes on from there" in out
+        before = now
 
 
 def test_a_full_disk_ends_it_and_nothing_is_lost(tmp_path: Path) -> None:
@@ -112,30 +122,7 @@ def test_a_full_disk_ends_it_and_nothing_is_lost(tmp_path: Path) -> None:
     assert done.returncode == 2, (done.stdout, done.stderr)
     assert "the disk is full; what was done is kept" in done.stderr
     assert "Traceback" not in done.stderr
-    before = kept(tmp_path / "sweep-results")
-    assert before
-    again = hexapods(*SWEEP, folder=tmp_path)
-    assert again.returncode == 0, again.stderr
-    assert f"{len(before)} are there already" in again.stdout
-    assert before.items() <= kept(tmp_path / "sweep-results").items()
-
-
-def test_what_was_set_aside_is_tried_again_if_asked(tmp_path: Path) -> None:
-    agent = tmp_path / "mine.py"
-    shutil.copy(EXAMPLES / "my_agent.py", agent)
-    sweep = (*SWEEP, "--seeds", "1", "--agent", "mine:Agent")
-    text = agent.read_text("utf-8")
-    assert "def act(" in text
-    broken = text.replace(
-        "def act(", "def act(self, *_: object) -> None:\n        1 / 0\n\n    def xt("
-    )
-    agent.write_text(broken, "utf-8")
-    done = hexapods(*sweep, folder=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.count("Set aside: ") == 2
-    assert "division by zero" in done.stdout
-    agent.write_text(text, "utf-8")
-    assert output(*sweep, "--retry", folder=tmp_path)["trials"]["set_aside"] == []
+    assert kept(tmp_path / "sweep-results")
 
 
 @pytest.mark.parametrize(
@@ -168,9 +155,28 @@ def test_what_was_set_aside_is_tried_again_if_asked(tmp_path: Path) -> None:
         (("sweep", "--grid-side-m", "0.2"), "cannot reach"),
     ],
 )
-def test_bad_input_is_one_sentence(arguments: tuple[str, ...], names: str, tmp_path: Path) -> None:
-    assert names in refusal(*arguments, folder=tmp_path)
+def test_bad_input_is_one_sentence(
+    arguments: tuple[str, ...],
+    names: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    try:
+        code: object = main(arguments)
+    except SystemExit as refused:
+        code = refused.code
+    assert code == 2
+    assert names in capsys.readouterr().err.strip().splitlines()[-1]
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_scheduler_that_is_not_there_is_one_sentence(tmp_path: Path) -> None:
+    sentence = refusal(*SWEEP, "--scheduler", "tcp://127.0.0.1:9", folder=tmp_path)
+    assert "no scheduler answers at tcp://127.0.0.1:9" in sentence
+    assert "`dask scheduler`" in sentence
 
 
 def test_a_folder_of_something_else_is_left_as_it_is(tmp_path: Path) -> None:

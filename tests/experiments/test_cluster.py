@@ -2,9 +2,9 @@
 
 import os
 import signal
+import socket
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,18 +14,11 @@ from distributed import Client
 
 from app.domain.errors import InvalidInput
 from app.experiments import cluster
-from app.experiments.cluster import ClusterLost, Where, connect, cores
+from app.experiments.cluster import ClusterLost, Where, connect
 from app.experiments.engine import run_trials
+from app.experiments.own_cluster import cores
 from tests.experiments.clusters import one_by_one, results, small, trials_of, workers_of
-from tests.experiments.foreign import Foreign, scheduler
-
-
-@pytest.fixture(scope="module")
-def foreign(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Foreign]:
-    """A scheduler with a worker."""
-    with scheduler(tmp_path_factory.mktemp("dask")) as started:
-        started.worker()
-        yield started
+from tests.experiments.foreign import scheduler
 
 
 @pytest.mark.parametrize(
@@ -101,17 +94,17 @@ def test_workers_end_with_whoever_started_them(tmp_path: Path) -> None:
     assert not left
 
 
-def test_another_cluster_gives_the_same_results(foreign: Foreign) -> None:
-    trials = trials_of(small(seeds=10))
-    assert results(run_trials(trials, foreign.where)) == one_by_one(trials)
-    assert foreign.process.poll() is None, "it is others' too, and stays"
-
-
-def test_tls_is_passed_through(tmp_path: Path) -> None:
-    trials = trials_of(small(seeds=1))
-    with scheduler(tmp_path, tls=True) as closed:
-        closed.worker()
-        assert results(run_trials(trials, closed.where)) == one_by_one(trials)
+def test_another_cluster_gives_the_same_results_until_it_goes_away(tmp_path: Path) -> None:
+    trials = trials_of(small(seeds=20))
+    with scheduler(tmp_path, tls=True) as foreign:
+        foreign.worker()
+        assert results(run_trials(trials, foreign.where)) == one_by_one(trials)
+        running = run_trials(trials, foreign.where)
+        next(running)
+        assert foreign.process.poll() is None, "it is others' too, and stayed"
+        foreign.process.kill()
+        with pytest.raises(ClusterLost, match="what was done is kept"):
+            list(running)
 
 
 def test_a_worker_that_would_compute_something_else_is_named(
@@ -130,21 +123,20 @@ def test_a_worker_that_would_compute_something_else_is_named(
             list(run_trials(trials_of(small(seeds=1)), started.where))
 
 
-def test_a_scheduler_that_goes_away_is_said(tmp_path: Path) -> None:
-    trials = trials_of(small(seeds=40))
-    with scheduler(tmp_path) as started:
-        started.worker()
-        running = run_trials(trials, started.where)
-        next(running)
-        started.process.kill()
-        with pytest.raises(ClusterLost, match="what was done is kept"):
-            list(running)
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "tcp://127.0.0.1:99999", "tcp://[::1:9"])
+def test_a_scheduler_that_is_not_there_is_refused_by_name(address: str) -> None:
+    with pytest.raises(InvalidInput) as refused:
+        list(run_trials(trials_of(small(seeds=1)), Where(scheduler=address)))
+    for said in (address, "dask scheduler", "leave --scheduler out"):
+        assert said in str(refused.value)
 
 
-def test_a_scheduler_that_is_not_there_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_who_listens_but_is_no_scheduler_is_refused_in_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     assert cluster.ANSWER_S < 10
     monkeypatch.setattr(cluster, "ANSWER_S", 1.0)
-    with pytest.raises(InvalidInput) as refused:
-        list(run_trials(trials_of(small(seeds=1)), Where(scheduler="tcp://127.0.0.1:9")))
-    for said in ("tcp://127.0.0.1:9", "dask scheduler", "leave --scheduler out"):
-        assert said in str(refused.value)
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        address = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
+        with pytest.raises(InvalidInput, match=f"no scheduler answers at {address}"):
+            list(run_trials(trials_of(small(seeds=1)), Where(scheduler=address)))

@@ -28,7 +28,7 @@ ONE, TWO = Where(workers=1), Where(workers=2)
 
 @pytest.fixture(scope="module")
 def trials() -> list[Trial]:
-    return trials_of(small(seeds=60))
+    return trials_of(small(seeds=40))
 
 
 @pytest.fixture(scope="module")
@@ -43,12 +43,23 @@ def poisoned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("where", [ONE, TWO], ids=["one worker", "two workers"])
-def test_as_many_workers_as_you_like_give_the_results_of_none(
-    where: Where, trials: list[Trial], expected: dict[str, TrialResult]
+def test_two_workers_give_the_results_of_none(
+    trials: list[Trial], expected: dict[str, TrialResult]
 ) -> None:
-    assert results(run_trials(trials, where)) == expected
+    assert results(run_trials(trials, TWO)) == expected
     assert not workers_of(psutil.Process())
+
+
+def test_so_does_one_that_is_paused_meanwhile(
+    trials: list[Trial], expected: dict[str, TrialResult]
+) -> None:
+    pauses = iter([0.0, 0.0, 1.0])
+
+    def go_on() -> bool:
+        time.sleep(next(pauses, 0.0))
+        return True
+
+    assert results(run_trials(trials, ONE, go_on)) == expected
 
 
 def test_a_worker_killed_midway_changes_no_result(
@@ -56,7 +67,7 @@ def test_a_worker_killed_midway_changes_no_result(
 ) -> None:
     def with_a_murder() -> Iterator[Outcome]:
         for number, outcome in enumerate(run_trials(trials, TWO)):
-            if number in (5, 60):
+            if number in (5, 40):
                 workers_of(psutil.Process())[0].kill()
             yield outcome
 
@@ -129,13 +140,3 @@ def test_a_consumer_that_leaves_takes_the_workers_with_it_and_their_files(
     running.close()
     assert not workers_of(psutil.Process())
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_pause_loses_nothing(trials: list[Trial], expected: dict[str, TrialResult]) -> None:
-    pauses = iter([0.0, 0.0, 1.0])
-
-    def go_on() -> bool:
-        time.sleep(next(pauses, 0.0))
-        return True
-
-    assert results(run_trials(trials, ONE, go_on)) == expected
