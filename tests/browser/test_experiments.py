@@ -182,9 +182,24 @@ def call(server: Serving, body: object = None, path: str = "") -> dict[str, Any]
     return found
 
 
-def test_spectators_see_the_report_without_controls(dashboard: Dashboard, tmp_path: Path) -> None:
+def test_spectators_see_the_report_without_controls(
+    dashboard: Dashboard, browser: Browser, tmp_path: Path
+) -> None:
     page = dashboard.page
     with serving(tmp_path, token="for-the-operator") as guarded:
         page.goto(f"{guarded.address}#experiments")
         expect(page.get_by_text("No experiment has been run here.")).to_be_visible()
-        expect(page.get_by_role("button", name=re.compile("^Run "))).to_have_count(0)
+
+        with browser.new_context() as context:
+            operator = Dashboard(context.new_page())
+            operator.page.goto(f"{guarded.address}?token=for-the-operator")
+            expect(operator.primary).to_be_visible()
+            visit(operator, guarded, **SMALL)
+            operator.button("Run Table 1: 9 trials").click()
+            expect(head(operator)).to_be_visible()
+            assert operator.complaints == []
+
+        expect(head(dashboard).get_by_role("link", name="Open the report")).to_be_visible()
+        expect(page.get_by_role("heading", name="How it was made")).to_be_visible()
+        for deed in ("Run", "Pause", "Resume", "Stop", "Delete"):
+            expect(page.get_by_role("button", name=re.compile(f"^{deed}"))).to_have_count(0)

@@ -1,9 +1,11 @@
 // Every seed as a dot on one axis, with what is typical of them and what they are held against.
 import { html } from "../html.js";
-import { percent, shareOf, swarm } from "../scale.js";
+import { largest, percent, shareOf, swarm, thinned } from "../scale.js";
 
 const DOT_PX = 3;
 const APART_PX = 5;
+/** More are no more to be told apart: then they stand for all, evenly from the least to the most. */
+const MOST_DOTS = 600;
 /** Below the dots, where what is typical of them hides none. */
 const LANE_PX = 12;
 
@@ -16,8 +18,9 @@ const LANE_PX = 12;
  */
 export function DotStrip({ label, points, low = 0, high, typical = null, marks = [], color, height = 36 }) {
   const at = (value) => percent(shareOf(value, low, high));
-  const rows = swarm(points.map((value) => shareOf(value, low, high)));
-  const tallest = Math.max(1, ...rows.map(Math.abs));
+  const drawn = points.length > MOST_DOTS ? thinned([...points].sort((a, b) => a - b), MOST_DOTS) : points;
+  const rows = swarm(drawn.map((value) => shareOf(value, low, high)));
+  const tallest = largest(rows.map(Math.abs), 1);
   const middle = (height - LANE_PX) / 2;
   const apart = Math.min(APART_PX, (middle - DOT_PX) / tallest);
   return html`
@@ -26,7 +29,7 @@ export function DotStrip({ label, points, low = 0, high, typical = null, marks =
       ${marks.filter(({ kind }) => kind !== "published").map(({ value, kind }) => html`
         <line class=${`mark ${kind}`} x1=${at(value)} x2=${at(value)} y1="0" y2=${height} />
       `)}
-      ${points.map((value, n) => html`
+      ${drawn.map((value, n) => html`
         <circle class="dot-of-seed" cx=${at(value)} cy=${middle + rows[n] * apart} r=${DOT_PX} />
       `)}
       ${typical && html`<${Typical} typical=${typical} at=${at} y=${height - LANE_PX / 2} />`}

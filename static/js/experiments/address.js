@@ -1,7 +1,7 @@
 // The experiments' part of the address: `#experiments?experiment=sweep&alpha=0.1,0.3&run=…`.
 import { effect, signal } from "@preact/signals";
 import { place } from "../page.js";
-import { given, read, written } from "./form.js";
+import { read, written } from "./form.js";
 
 /** The experiment that was asked for by its id; null: the newest. */
 export const wantedRun = signal(null);
@@ -14,9 +14,14 @@ const query = () => {
 /** The hash that leads back here. */
 export const experimentsHash = () => (query() ? `#experiments?${query()}` : "#experiments");
 
+/** The hash as it was last written or read here. */
+let known = "";
+
 function readHash() {
-  if (!location.hash.startsWith("#experiments")) return;
-  const search = new URLSearchParams(location.hash.split("?")[1] ?? "");
+  const { hash } = location;
+  if (hash === known || !hash.startsWith("#experiments")) return;
+  known = hash;
+  const search = new URLSearchParams(hash.split("?")[1] ?? "");
   // The bare link of the navigation leaves the form as it was.
   if (search.size === 0) return;
   read(search);
@@ -28,8 +33,11 @@ export function followAddress() {
   readHash();
   addEventListener("hashchange", readHash);
   effect(() => {
-    const hash = experimentsHash();
-    if (place.value !== "experiments" || !given.value || location.hash === hash) return;
-    history.replaceState(history.state, "", `${location.pathname}${location.search}${hash}`);
+    if (place.value !== "experiments") return;
+    // A link that was followed is read before the form is written over it.
+    readHash();
+    known = experimentsHash();
+    if (location.hash === known) return;
+    history.replaceState(history.state, "", `${location.pathname}${location.search}${known}`);
   });
 }

@@ -22,6 +22,7 @@ export const FIELD_TITLES = {
 
 /** A value of a setting's field, in words. */
 export function valueTitle(field, value) {
+  if (value === null || value === undefined) return "–";
   if (field === "gait") return gaitTitle(value);
   if (field === "agent") return agentTitle(value);
   if (field === "observation") return observationTitle(value);

@@ -6,6 +6,7 @@ import { agentOf } from "../../selectors.js";
 import { greedyTotals, placeOf } from "../../experiments/places.js";
 import { FIELD_TITLES, observationTitle, robotTitle, valueTitle } from "../../experiments/titles.js";
 import { GRID } from "../../experiments/catalogue.js";
+import { largest } from "../../scale.js";
 import { DotStrip } from "../dot-strip.js";
 
 const ALIKE = ["agent", ...GRID];
@@ -15,7 +16,7 @@ export function AtAGlance({ known }) {
   const pooled = (known.pooled ?? []).filter(({ relative }) => relative);
   const points = useMemo(() => pooled.map((one) => pointsOf(known.settings, one)), [known]);
   if (!pooled.length || (pooled.length === 1 && pooled[0].gaits.length === 1)) return null;
-  const high = 1.03 * Math.max(1, ...points.flat());
+  const high = 1.03 * largest(points.flat(), 1);
   const isRaced = pooled.some(({ relative_finished }) => relative_finished);
   return html`
     <section class="panel glance" aria-labelledby="glance">

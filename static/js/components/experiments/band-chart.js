@@ -1,12 +1,14 @@
 // Curves with their bands, every seed behind them, and greedy's line to reach.
 import { whole } from "../../format.js";
 import { html } from "../../html.js";
-import { ticks } from "../../scale.js";
+import { thinned, ticks } from "../../scale.js";
 import { agentOf } from "../../selectors.js";
 import { shown } from "../../experiments/units.js";
 import { useWidth } from "../use-width.js";
 
 const HEIGHT = 208;
+/** Behind the band; more would only be a smear. */
+const MOST_SEEDS = 200;
 const ROOM = { left: 52, right: 10, top: 20, bottom: 34 };
 
 /** `curves`: [{agent, steps, iqm, low, high, points}], numbers in the unit that is shown. */
@@ -48,7 +50,7 @@ function Curve({ one: { agent, steps, iqm, low, high, points }, x, y }) {
   const back = [...high].map((value, n) => [x(steps[n]), y(value)]).reverse();
   return html`
     <g style=${{ "--agent": agentOf(agent).color }}>
-      ${seeds.map((values) => html`<path class="seed-line" d=${path(values)} />`)}
+      ${thinned(seeds, MOST_SEEDS).map((values) => html`<path class="seed-line" d=${path(values)} />`)}
       ${hasBand && html`<path class="band" d=${`${path(low)}L${back.map((point) => point.map((c) => c.toFixed(1)).join(" ")).join("L")}Z`} />`}
       <path class="typical-line" d=${path(iqm)} />
       ${iqm.map((value, n) => html`<circle class="typical-dot" cx=${x(steps[n])} cy=${y(value)} r="3" />`)}

@@ -6,6 +6,7 @@ import { agentOf } from "../../selectors.js";
 import { placeOf, placesOf } from "../../experiments/places.js";
 import { gaitTitle } from "../../experiments/titles.js";
 import { factorOf, inUnit, shown, unit, UNIT_NAMES } from "../../experiments/units.js";
+import { largest } from "../../scale.js";
 import { AsTable } from "../as-table.js";
 import { BandChart } from "./band-chart.js";
 import { PlaceSwitch, PlaceWords } from "./place-switch.js";
@@ -18,7 +19,7 @@ export function FigureFour({ known }) {
   if (!places.length) return null;
   const place = places.find(({ key }) => key === wish) ?? places[0];
   const here = curves.filter((one) => placeOf(one) === place.key).map(inTheUnit);
-  const high = 1.06 * Math.max(1e-9, ...here.flatMap(({ greedy, points }) => [greedy ?? 0, ...points.flat()]));
+  const high = 1.06 * largest(here.flatMap(({ greedy, points }) => [greedy ?? 0, ...points.flat()]), 1e-9);
   const gaits = [...new Set(here.map(({ gait }) => gait))];
   const agents = [...new Set(here.map(({ agent }) => agent))];
   return html`

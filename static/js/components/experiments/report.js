@@ -1,4 +1,5 @@
 // One experiment: what is known of it already, filling while its trials end.
+import { useMemo } from "preact/hooks";
 import { html } from "../../html.js";
 import { summary, summaryError } from "../../experiments/summaries.js";
 import { AtAGlance } from "./at-a-glance.js";
@@ -17,21 +18,27 @@ const PICTURES = { table1: TableOne, figure4: FigureFour, sweep: SweepTable };
 
 export function Report({ run }) {
   const known = summary.value;
+  // A run changes several times a second, what its trials show does not.
+  const findings = useMemo(() => html`<${Findings} known=${known} />`, [known]);
   const hasSeeds = known?.settings?.some(({ n }) => n > 0);
-  const Picture = PICTURES[run.config.experiment];
   return html`
     <${ReportHead} run=${run} known=${known} />
     ${summaryError.value && html`<p class="problem" role="alert">${summaryError.value.message}</p>`}
-    ${hasSeeds ? html`
-      <${LeftOut} trials=${known.trials} />
-      ${Picture && html`<${Picture} known=${known} />`}
-      <${AtAGlance} known=${known} />
-      <${Versus} known=${known} />
-      <${Claims} claims=${known.claims ?? []} isComplete=${known.trials.done >= known.trials.total} />
-      <${Story} parts=${known.story ?? []} />
-      <${FairClocks} timed=${known.timed ?? []} />
-      <${Making} known=${known} />
-    ` : html`<${Waiting} run=${run} />`}
+    ${hasSeeds ? findings : html`<${Waiting} run=${run} />`}
+  `;
+}
+
+function Findings({ known }) {
+  const Picture = PICTURES[known.experiment];
+  return html`
+    <${LeftOut} trials=${known.trials} />
+    ${Picture && html`<${Picture} known=${known} />`}
+    <${AtAGlance} known=${known} />
+    <${Versus} known=${known} />
+    <${Claims} claims=${known.claims ?? []} isComplete=${known.trials.done >= known.trials.total} />
+    <${Story} parts=${known.story ?? []} />
+    <${FairClocks} timed=${known.timed ?? []} />
+    <${Making} known=${known} />
   `;
 }
 

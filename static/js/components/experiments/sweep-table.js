@@ -6,6 +6,7 @@ import { greedyTotals } from "../../experiments/places.js";
 import { GRID } from "../../experiments/catalogue.js";
 import { FIELD_TITLES, valueTitle } from "../../experiments/titles.js";
 import { bare, factorOf, inUnit, shown } from "../../experiments/units.js";
+import { largest } from "../../scale.js";
 import { DotStrip } from "../dot-strip.js";
 import { Segments } from "../segments.js";
 import { StripKey } from "./strip-key.js";
@@ -19,10 +20,10 @@ export function SweepTable({ known }) {
   const [order, setOrder] = useState("grid");
   const [isWhole, setWhole] = useState(false);
   const greedy = greedyTotals(known.settings);
-  const rows = known.settings.filter(({ role }) => role === "learner").map((setting) => measured(setting, greedy(setting)));
-  const varied = FIELDS.filter((field) => new Set(rows.map(({ setting }) => setting[field])).size > 1);
+  const rows = shownOf(known.settings).map((setting) => measured(setting, greedy(setting)));
+  const varied = FIELDS.filter((field) => new Set(rows.map(({ setting }) => setting[field]).filter((one) => one !== null)).size > 1);
   const sorted = order === "best" ? [...rows].sort((a, b) => (b.typical?.iqm ?? -1) - (a.typical?.iqm ?? -1)) : rows;
-  const high = 1.03 * Math.max(1e-9, ...rows.flatMap(({ points, line }) => [line ?? 0, ...points]));
+  const high = 1.03 * largest(rows.flatMap(({ points, line }) => [line ?? 0, ...points]), 1e-9);
   const color = rows[0] && agentOf(rows[0].setting.agent).color;
   return html`
     <section class="panel sweep-table" aria-labelledby="sweep-table">
@@ -42,6 +43,12 @@ export function SweepTable({ known }) {
       ${!isWhole && sorted.length > MOST_ROWS && html`<div class="older"><button class="secondary" onClick=${() => setWhole(true)}>Show all ${sorted.length} settings</button></div>`}
     </section>
   `;
+}
+
+/** Who learns, and who looks ahead; greedy is the line that all have, unless there is nobody else. */
+function shownOf(settings) {
+  const shown = settings.filter(({ role, agent }) => role === "learner" || agent !== "greedy");
+  return shown.length ? shown : settings;
 }
 
 /** A setting with its distances in the chosen unit. */

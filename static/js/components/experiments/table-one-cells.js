@@ -3,6 +3,7 @@ import { count } from "../../format.js";
 import { html } from "../../html.js";
 import { agentOf } from "../../selectors.js";
 import { bare, inUnit, shown } from "../../experiments/units.js";
+import { largest } from "../../scale.js";
 import { DotStrip } from "../dot-strip.js";
 
 /** `measure`: {ours, paper, high}: the factors of the unit, and where the axis ends. */
@@ -21,7 +22,7 @@ export function LearnerCell({ setting, distance, greedy, measure }) {
   ].filter(Boolean);
   const interval = typical.low === null ? "" : `${bare(typical.low)} – ${bare(typical.high)}`;
   const words = [
-    `${count(points.length, "seed")} from ${shown(Math.min(...points))} to ${shown(Math.max(...points))}`,
+    `${count(points.length, "seed")} from ${shown(-largest(points.map((one) => -one), -Infinity))} to ${shown(largest(points, -Infinity))}`,
     `typically ${shown(typical.iqm)}${interval && `, 95 % interval ${interval}`}`,
     line !== null && `greedy ${shown(line)}`, printed !== null && `the paper ${shown(printed)}`,
   ].filter(Boolean).join("; ");

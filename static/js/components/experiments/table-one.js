@@ -6,6 +6,7 @@ import { agentOf } from "../../selectors.js";
 import { gaitsOf, placesOf } from "../../experiments/places.js";
 import { gaitTitle } from "../../experiments/titles.js";
 import { factorOf, inUnit, unit } from "../../experiments/units.js";
+import { largest } from "../../scale.js";
 import { PlaceSwitch, PlaceWords } from "./place-switch.js";
 import { StripKey } from "./strip-key.js";
 import { LearnerCell, ReferenceCell } from "./table-one-cells.js";
@@ -76,7 +77,7 @@ function highest(gaits, place) {
     const printed = [references.greedy, ...learners].map((one) => one?.published?.total_m);
     return [...ours.map((one) => inUnit(one, factor)), ...printed.map((one) => inUnit(one, paper))];
   });
-  return 1.03 * Math.max(1e-9, ...ends.filter((one) => one !== null));
+  return 1.03 * largest(ends.filter((one) => one !== null), 1e-9);
 }
 
 const NOTES = {
