@@ -7,7 +7,8 @@ from app.experiments.claims.corners import Corner, corners
 from app.experiments.statistics import Verdict
 from app.experiments.words import listed
 
-Judgement = Literal["holds", "does not hold", "not established"]
+Judgement = Literal["holds", "does not hold", "not established", "depends"]
+"""`depends`: one thing in one corner, another in another."""
 _AS_JUDGEMENT: Mapping[Verdict, Judgement] = {
     "yes": "holds",
     "no": "does not hold",
@@ -18,6 +19,7 @@ _SAID: Mapping[Judgement, str] = {
     "holds": "holds",
     "does not hold": "does not hold",
     "not established": "is not established",
+    "depends": "depends",
 }
 
 
@@ -52,8 +54,8 @@ class Claim(NamedTuple):
 def judge(summary: Mapping[str, Any], claims: Sequence[Claim]) -> list[dict[str, Any]]:
     """Every claim that these trials can answer, over all corners and in each.
 
-    Where the corners disagree nothing is established, because the paper does not say which of
-    them is its own; the evidence then says where what holds.
+    Where the corners disagree it depends, since the paper does not say which of them is its own;
+    the evidence then says where what holds.
     """
     places = corners(summary)
     judged = []
@@ -67,7 +69,7 @@ def judge(summary: Mapping[str, Any], claims: Sequence[Claim]) -> list[dict[str,
 
 def _judged(claim: Claim, where: Sequence[tuple[Corner, Finding]]) -> dict[str, Any]:
     verdicts = {finding.verdict for _, finding in where}
-    overall = verdicts.pop() if len(verdicts) == 1 else "not established"
+    overall = verdicts.pop() if len(verdicts) == 1 else "depends"
     return {
         "id": claim.id,
         "claim": claim.claim,

@@ -115,10 +115,7 @@ def _in_short(claims: Sequence[Mapping[str, Any]]) -> str:
     """How the claims came out, counted."""
     if len(claims) < 2:
         return ""
-    count = Counter(
-        claim["verdict"] if len({one["verdict"] for one in claim["where"]}) == 1 else "depends"
-        for claim in claims
-    )
+    count = Counter(claim["verdict"] for claim in claims)
     several = max(len(claim["where"]) for claim in claims) > 1
     words = {
         "holds": "{} in every case that was tried" if several else "{} here",

@@ -112,7 +112,7 @@ def test_where_the_corners_disagree_it_depends_and_says_on_what() -> None:
         robots=ROBOTS[:1],
     )
     found = claim(summary, "real-time-1000")
-    assert found["verdict"] == "not established"
+    assert found["verdict"] == "depends"
     assert found["evidence"] == (
         "It depends: it holds with feet read back; it does not hold with commands remembered."
     )
