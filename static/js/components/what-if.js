@@ -29,7 +29,7 @@ export function WhatIf() {
     <section class="panel what-if" aria-labelledby="what-if-title">
       <details open=${isOpen}>
         <summary onClick=${onClick}><h2 id="what-if-title">What if?</h2><span class="dim">${teaser()}</span></summary>
-        ${isOpen && html`<${Trial} />`}
+        ${isOpen && html`<${Trial} onGoOn=${() => setWish(true)} />`}
       </details>
     </section>
   `;
@@ -37,7 +37,7 @@ export function WhatIf() {
 
 const teaser = () => `${SEEDS} ideal robots practise ${count(form.value.steps, "step")}`;
 
-function Trial() {
+function Trial({ onGoOn }) {
   const known = answer.value;
   const isOld = isTrying.value || isTooLong.value || (known && !isCurrent.value);
   const far = known && 1.06 * Math.max(known.greedy_m, ...known.chosen.distances_m, ...known.default.distances_m);
@@ -48,7 +48,7 @@ function Trial() {
       ${known && html`<${Axis} known=${known} far=${far} />`}
     </div>
     <${Words} known=${known} />
-    <${Continue} />
+    <${Continue} onGoOn=${onGoOn} />
   `;
 }
 
@@ -98,13 +98,18 @@ function Words({ known }) {
   return html`<p class="what-if-words dim" role="status">Without slip. One walks if it gets at least half as far as greedy.</p>`;
 }
 
-/** Go on with what has been learned, at the rates that were found here. */
-function Continue() {
+/** Go on with what has been learned, at the rates that were found here; the panel stays, and the focus. */
+function Continue({ onGoOn }) {
   const table = tableInHand.value;
   if (!table) return null;
+  const goOn = () => {
+    if (!canStart.value) return;
+    onGoOn();
+    continueWith(table);
+  };
   return html`
     <div class="row">
-      <button class="secondary" aria-disabled=${canStart.value ? undefined : "true"} onClick=${() => canStart.value && continueWith(table)}
+      <button class="secondary" aria-disabled=${canStart.value ? undefined : "true"} onClick=${goOn}
         title=${`Practises ${count(form.value.steps, "step")} more from the table in hand`}>
         Continue with these settings
       </button>
