@@ -9,6 +9,16 @@ import { GRID } from "../../experiments/catalogue.js";
 import { largest } from "../../scale.js";
 import { DotStrip } from "../dot-strip.js";
 
+const RACED = "Beat it at the finish";
+const COLUMNS = [
+  { title: "What" },
+  { title: "Share of greedy’s distance", kind: "wide-cell" },
+  { title: "Typical", words: "Interquartile mean, with its 95 % interval" },
+  { title: "Walk", words: "Come at least half as far as greedy" },
+  { title: "Reach greedy", words: "Come at least 95 % as far" },
+  { title: RACED, words: "Under the paper’s clock" },
+];
+const MARKS = [{ value: 1, kind: "greedy" }, { value: 0.5, kind: "half" }];
 const ALIKE = ["agent", ...GRID];
 const RATES = GRID.filter((field) => field !== "steps");
 
@@ -25,8 +35,9 @@ export function AtAGlance({ known }) {
       <div class="scroller tall" tabindex="0" role="region" aria-label="Table of all gaits together">
         <table class="facts-table stacking" role="table">
           <thead role="rowgroup"><tr role="row">
-            <th role="columnheader" scope="col">What</th><th role="columnheader" scope="col" class="wide-cell">Share of greedy’s distance</th><th role="columnheader" scope="col">Typical</th><th role="columnheader" scope="col">Walk</th>
-            <th role="columnheader" scope="col" title="Come at least 95 % as far">Reach greedy</th>${isRaced && html`<th role="columnheader" scope="col" title="At the finish, under the paper’s clock">Beat it at the finish</th>`}
+            ${COLUMNS.filter(({ title }) => isRaced || title !== RACED).map(({ title, words, kind }) => html`
+              <th role="columnheader" scope="col" class=${kind} title=${words}>${title}</th>
+            `)}
           </tr></thead>
           <tbody role="rowgroup">${pooled.map((one, n) => html`<${Row} key=${n} one=${one} all=${pooled} points=${points[n]} high=${high} isRaced=${isRaced} />`)}</tbody>
         </table>
@@ -42,11 +53,16 @@ function Row({ one, all, points, high, isRaced }) {
   return html`
     <tr role="row">
       <th role="rowheader" scope="row">${nameOf(one, all)}</th>
-      <td role="cell" class="wide-cell"><${DotStrip} label=${label} points=${points} high=${high} typical=${one.relative} marks=${[{ value: 1, kind: "greedy" }, { value: 0.5, kind: "half" }]} color=${agentOf(one.agent).color} height=${44} /></td>
-      <td role="cell" data-label="Typical" class="num"><b>${share(iqm)}</b>${low !== null && html`<br /><span class="dim">${Math.round(100 * low)} – ${share(one.relative.high)}</span>`}</td>
+      <td role="cell" class="wide-cell">
+        <${DotStrip} label=${label} points=${points} high=${high} typical=${one.relative} marks=${MARKS}
+          color=${agentOf(one.agent).color} height=${44} />
+      </td>
+      <td role="cell" data-label="Typical" class="num">
+        <b>${share(iqm)}</b>${low !== null && html`<br /><span class="dim">${Math.round(100 * low)} – ${share(one.relative.high)}</span>`}
+      </td>
       <td role="cell" data-label="Walk" class="num">${share(one.walkers.share)}</td>
       <td role="cell" data-label="Reach greedy" class="num">${share(one.reaches_greedy.share)}</td>
-      ${isRaced && html`<td role="cell" data-label="Beat it at the finish" class="num">${one.beats_greedy ? html`${share(one.beats_greedy.share)}<br /><span class="dim">${WORDS[one.beats_greedy.verdict]}</span>` : "–"}</td>`}
+      ${isRaced && html`<td role="cell" data-label=${RACED} class="num">${one.beats_greedy ? html`${share(one.beats_greedy.share)}<br /><span class="dim">${WORDS[one.beats_greedy.verdict]}</span>` : "–"}</td>`}
     </tr>
   `;
 }
@@ -58,7 +74,8 @@ function nameOf(one, all) {
   const differs = (field) => new Set(all.map((other) => other[field])).size > 1;
   const where = [observationTitle(one.observation), differs("robot") && robotTitle(one.robot).toLowerCase()];
   const who = [differs("agent") && valueTitle("agent", one.agent), one.blocks === 1 && differs("steps") && `${whole(one.steps)} steps`];
-  const rates = RATES.filter(differs).map((field) => `${FIELD_TITLES[field]} ${one[field]}`);
+  const rates = RATES.filter(differs).map((field) => `${FIELD_TITLES[field]}\u00a0${one[field]}`);
+  if (rates.length && !differs("observation")) where.shift();
   return [...who, ...where, ...rates].filter(Boolean).join(", ");
 }
 

@@ -22,6 +22,7 @@ export function SweepTable({ known }) {
   const greedy = greedyTotals(known.settings);
   const rows = shownOf(known.settings).map((setting) => measured(setting, greedy(setting)));
   const varied = FIELDS.filter((field) => new Set(rows.map(({ setting }) => setting[field]).filter((one) => one !== null)).size > 1);
+  const columns = varied.length ? varied : ["gait"];
   const sorted = order === "best" ? [...rows].sort((a, b) => (b.typical?.iqm ?? -1) - (a.typical?.iqm ?? -1)) : rows;
   const high = 1.03 * largest(rows.flatMap(({ points, line }) => [line ?? 0, ...points]), 1e-9);
   const color = rows[0] && agentOf(rows[0].setting.agent).color;
@@ -35,9 +36,16 @@ export function SweepTable({ known }) {
       <${StripKey} signs=${["seed", "typical", "greedy"]} color=${color} />
       <div class="scroller tall" tabindex="0" role="region" aria-label="Every setting">
         <table class="facts-table stacking" role="table">
-          <thead role="rowgroup"><tr role="row">${(varied.length ? varied : ["gait"]).map((field) => html`<th role="columnheader" scope="col">${FIELD_TITLES[field]}</th>`)}
-            <th role="columnheader" scope="col" class="wide-cell">Total distance, 50 steps</th><th role="columnheader" scope="col">Typical</th><th role="columnheader" scope="col">Walk</th></tr></thead>
-          <tbody role="rowgroup">${(isWhole ? sorted : sorted.slice(0, MOST_ROWS)).map((row) => html`<${Row} key=${row.setting.key} row=${row} varied=${varied.length ? varied : ["gait"]} high=${high} />`)}</tbody>
+          <thead role="rowgroup"><tr role="row">${columns.map((field) => html`<th role="columnheader" scope="col">${FIELD_TITLES[field]}</th>`)}
+            <th role="columnheader" scope="col" class="wide-cell">Total distance, 50 steps</th>
+            <th role="columnheader" scope="col" title="Interquartile mean, with its 95 % interval">Typical</th>
+            <th role="columnheader" scope="col" title="Come at least half as far as greedy">Walk</th>
+          </tr></thead>
+          <tbody role="rowgroup">
+            ${(isWhole ? sorted : sorted.slice(0, MOST_ROWS)).map((row) => html`
+              <${Row} key=${row.setting.key} row=${row} varied=${columns} high=${high} />
+            `)}
+          </tbody>
         </table>
       </div>
       ${!isWhole && sorted.length > MOST_ROWS && html`<div class="older"><button class="secondary" onClick=${() => setWhole(true)}>Show all ${sorted.length} settings</button></div>`}
