@@ -113,8 +113,9 @@ def _practise(config: TrialConfig) -> tuple[Checkpoint | None, tuple[float, ...]
         learner = build_learner(config.training, table)
         for _ in train(learner, config.training):
             pass
-        table = _through_a_file(snapshot(learner, config.training))
+        table = snapshot(learner, config.training)
         if config.blocks > 1:
+            table = _through_a_file(table)
             distances.append(evaluate(learner, config.training, learner.epsilon).distance_m)
     return table, tuple(distances)
 

@@ -134,6 +134,8 @@ class Job:
             self.end("failed", f"The job ended before it was done: {how}.")
         elif self._has_begun:
             self.end("stopped", f"It did not answer when it was to stop, so {how}.")
+        elif self._run.done:
+            self.end("stopped", "It was stopped before it went on; what was done is kept.")
         else:
             self.end("stopped", "It was stopped before it began.")
 
