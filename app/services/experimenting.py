@@ -123,9 +123,10 @@ class _Book:
         from app.experiments.cluster import Where  # noqa: PLC0415
         from app.experiments.engine import run_trials  # noqa: PLC0415
 
-        # It would tell of each start and end of a cluster.
+        # It would tell of each start and end of a cluster, and of tasks that a pause drops.
         importlib.import_module("distributed")
-        logging.getLogger("distributed").setLevel(logging.ERROR)
+        for name in ("distributed", "distributed.scheduler"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         began_s, before_s = time.monotonic(), self._wall_s
 
         def attentive() -> bool:

@@ -56,6 +56,15 @@ def after(store: MemoryStore, run: Run, done: int) -> None:
     assert store.get(run.id).state == "running"
 
 
+def settled(store: MemoryStore, run: Run) -> Sequence[Mapping[str, Any]]:
+    """Its trials, once those that had come in are with the server."""
+    rows: Sequence[Mapping[str, Any]] | None = None
+    while rows != store.trials(run.id):
+        rows = store.trials(run.id)
+        time.sleep(1.0)
+    return rows
+
+
 def family() -> set[int]:
     """Every process below this one but the server's own helper of `multiprocessing`."""
     found = set()
@@ -80,7 +89,7 @@ def test_whatever_ends_it_nothing_is_repeated_and_nothing_else_comes_out(
     jobs.pause(run.id)
     # Not even its cluster stays.
     until(lambda: len(family() - before) == 1)
-    paused = store.trials(run.id)
+    paused = settled(store, run)
     time.sleep(0.3)
     assert store.trials(run.id) == paused
     jobs.resume(run.id)
