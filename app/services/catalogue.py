@@ -37,7 +37,7 @@ _GAITS = {
     ),
 }
 _ROBOTS = {
-    "stiff": "Strong servos on a floor with grip: the paper's robot.",
+    "stiff": "Strong servos on a floor with grip: they hold the body level.",
     "compliant": "Weak servos: the body sags and pitches under its own weight.",
     "slippery": "Feet that slide on the floor.",
 }
