@@ -12,7 +12,8 @@ DEV_STAMP := $(VENV)/.installed-dev
 DQN_STAMP := $(VENV)/.installed-dqn
 TORCH := torch==2.13.0
 
-INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+# Python compiles what it imports by itself; most of what is installed is never imported.
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 # One version of each package for every platform and Python, with the hashes of all its files,
 # and not a word on where they came from.
 COMPILE := $(BIN)/uv pip compile --quiet --universal --fork-strategy fewest --python-version 3.11 \
