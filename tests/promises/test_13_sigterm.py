@@ -1,7 +1,7 @@
 """Promise 13: SIGTERM drains: a checkpoint is written, exit 0 within 10 s, no child left.
 
-So does SIGINT. In full: the promise has no numbers of its own to shorten. The end of an experiment's
-cluster is left to the soak: promise 14 ends one by SIGKILL, which is harder.
+So does SIGINT. In full: the promise has no numbers of its own to shorten. The end of a cluster is
+left to the soak: promise 14 ends one by SIGKILL, which is harder.
 """
 
 import signal
