@@ -3,13 +3,7 @@
 import os
 from typing import TypeVar
 
-import pytest
-
 T = TypeVar("T")
-
-only_in_the_soak = pytest.mark.skipif(
-    not os.environ.get("HEXAPODS_SOAK"), reason="the gate shows it in a shorter way"
-)
 
 
 def at_length(short: T, whole: T) -> T:

@@ -1,7 +1,6 @@
 """Promise 13: SIGTERM drains: a checkpoint is written, exit 0 within 10 s, no child left.
 
-So does SIGINT. In full: the promise has no numbers of its own to shorten. The end of a cluster is
-left to the soak: promise 14 ends one by SIGKILL, which is harder.
+So does SIGINT. In full: the promise has no numbers of its own to shorten.
 """
 
 import signal
@@ -12,7 +11,6 @@ from pathlib import Path
 import psutil
 import pytest
 
-from tests.promises.length import only_in_the_soak
 from tests.promises.trainings import checkpoint_step
 from tests.served import ENDLESS, Served
 
@@ -49,7 +47,6 @@ def test_a_signal_drains_the_server(by: int, launch: Callable[..., Served], tmp_
         server.tell(run, "stop")
 
 
-@only_in_the_soak
 def test_an_experiment_and_its_cluster_end_as_well(launch: Callable[..., Served]) -> None:
     """And the processes behind a what-if."""
     server = launch()
