@@ -36,13 +36,13 @@ from app.api.rates import RateLimit
 from app.domain.errors import HexapodError, InvalidInput
 from app.services import logs
 from app.services.database.opening import open_store
-from app.services.helpers import Helpers
 from app.services.jobs import Jobs
 from app.services.memory_store import MemoryStore
 from app.services.once import Once
 from app.services.recordings import Recordings
 from app.services.stage import Stage
 from app.services.store import RunStore
+from app.services.trial_pool import TrialPool
 from app.services.what_if import WhatIf
 from app.services.whereabouts import note_address
 from app.services.witness import Witness
@@ -90,7 +90,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
         audience=lambda: theatre.hub.counters,
         ready=lambda: _trouble(jobs, store),
         film=theatre.film,
-        what_if=WhatIf(Helpers()),
+        what_if=WhatIf(TrialPool()),
     )
     app.state.metrics = metrics.registry_of(app.state.services)
     _add_routes(app, theatre)

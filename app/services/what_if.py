@@ -16,7 +16,7 @@ from app.experiments.trial import TrialConfig, TrialResult
 from app.runs.config import TrainingConfig
 from app.services.entries import check_walk
 from app.services.errors import Busy
-from app.services.helpers import Helpers
+from app.services.trial_pool import TrialPool
 
 SEEDS = 30
 MAX_STEPS = 2_000
@@ -31,13 +31,13 @@ RATES = ("alpha", "gamma", "epsilon_start", "epsilon_end", "steps_per_episode")
 class WhatIf:
     """Answers by kinematic trials, one question at a time. Safe to use from any thread."""
 
-    def __init__(self, helpers: Helpers) -> None:
+    def __init__(self, pool: TrialPool) -> None:
         """Ask nobody yet.
 
         Args:
-            helpers: run the trials.
+            pool: runs the trials.
         """
-        self._helpers = helpers
+        self._pool = pool
         self._known: OrderedDict[TrialConfig, tuple[float, ...]] = OrderedDict()
         """By what is tried, with seed 0: how far each seed came [m]."""
         self._turn = threading.Lock()
@@ -76,8 +76,8 @@ class WhatIf:
         }
 
     def close(self) -> None:
-        """Let the helpers go."""
-        self._helpers.close()
+        """Let its processes go."""
+        self._pool.close()
 
     def _distances(self, wanted: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
         found = self._cached(wanted)
@@ -100,7 +100,7 @@ class WhatIf:
 
     def _tried(self, missing: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
         trials = [(one, seeded) for one in missing for seeded in _seeded(one)]
-        results = self._helpers.run([seeded for _, seeded in trials])
+        results = self._pool.run([seeded for _, seeded in trials])
         found: dict[TrialConfig, tuple[float, ...]] = dict.fromkeys(missing, ())
         for (one, _), result in zip(trials, results, strict=True):
             found[one] += (_distance_m(result),)

@@ -18,7 +18,7 @@ from app.experiments.plan import trial_seed
 from app.experiments.trial import TrialConfig, run_trial
 from app.runs.config import TrainingConfig
 from app.services.errors import Busy
-from app.services.helpers import Helpers
+from app.services.trial_pool import TrialPool
 from app.services.what_if import MAX_WAITING, SEEDS, WhatIf, _interquartile_mean
 
 SHORT = TrainingConfig(gait="left-right-origin", steps=40)
@@ -26,15 +26,15 @@ LONG_S = 60.0
 
 
 @pytest.fixture(scope="module")
-def helpers() -> Iterator[Helpers]:
-    made = Helpers(count=2)
+def pool() -> Iterator[TrialPool]:
+    made = TrialPool(count=2)
     yield made
     made.close()
 
 
 @pytest.fixture(scope="module")
-def what_if(helpers: Helpers) -> WhatIf:
-    return WhatIf(helpers)
+def what_if(pool: TrialPool) -> WhatIf:
+    return WhatIf(pool)
 
 
 def distances(training: TrainingConfig) -> list[float]:
@@ -65,14 +65,14 @@ def test_the_rest_of_the_training_is_the_same_in_both(what_if: WhatIf) -> None:
     assert answer["chosen"] == answer["default"]
 
 
-def test_what_is_known_is_not_tried_again(what_if: WhatIf, helpers: Helpers) -> None:
+def test_what_is_known_is_not_tried_again(what_if: WhatIf, pool: TrialPool) -> None:
     first = what_if.ask(SHORT)
-    pids = helpers.pids
+    pids = pool.pids
     # Neither seed, pace nor simulator counts.
     again = what_if.ask(replace(SHORT, seed=7, pace=3.0, evaluate_every=0, simulator="kinematic"))
     for name in ("greedy_m", "chosen", "default"):
         assert again[name] == first[name]
-    assert helpers.pids == pids
+    assert pool.pids == pids
     assert all(psutil.Process(pid).nice() == 10 for pid in pids)
 
 
@@ -100,9 +100,9 @@ def test_what_cannot_be_tried_is_said(what_if: WhatIf, more: dict[str, Any], wor
     assert what_if.ask(SHORT)["seeds"] == 30
 
 
-def test_a_helper_that_dies_costs_one_question(what_if: WhatIf, helpers: Helpers) -> None:
+def test_a_process_that_dies_costs_one_question(what_if: WhatIf, pool: TrialPool) -> None:
     what_if.ask(replace(SHORT, alpha=0.31))
-    for pid in helpers.pids:
+    for pid in pool.pids:
         os.kill(pid, signal.SIGKILL)
     with pytest.raises(Busy, match="try again"):
         what_if.ask(replace(SHORT, alpha=0.32))
@@ -129,19 +129,19 @@ def test_few_wait_and_the_others_are_told(what_if: WhatIf) -> None:
     assert all(busy.retry_after_s > 0 for busy in told)
 
 
-def test_helpers_end_when_nobody_asks_and_when_they_are_let_go() -> None:
-    helpers = Helpers(count=1, idle_s=0.3)
+def test_processes_end_when_nobody_asks_and_when_they_are_let_go() -> None:
+    pool = TrialPool(count=1, idle_s=0.3)
     trial = TrialConfig(training=replace(SHORT, simulator="kinematic", evaluate_every=0))
-    assert helpers.pids == [], "nobody has asked"
-    helpers.run([trial])
-    (first,) = helpers.pids
+    assert pool.pids == [], "nobody has asked"
+    pool.run([trial])
+    (first,) = pool.pids
     deadline = time.monotonic() + LONG_S
     while psutil.pid_exists(first):
         assert time.monotonic() < deadline
         time.sleep(0.02)
-    helpers.run([trial])
-    (second,) = helpers.pids
-    helpers.close()
+    pool.run([trial])
+    (second,) = pool.pids
+    pool.close()
     assert not psutil.pid_exists(second)
     with pytest.raises(Busy, match="stopping"):
-        helpers.run([trial])
+        pool.run([trial])

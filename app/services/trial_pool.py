@@ -32,16 +32,16 @@ class _Question(NamedTuple):
     answer: "Future[list[TrialResult]]"
 
 
-class _Helper(NamedTuple):
+class _Process(NamedTuple):
     process: SpawnProcess
     pipe: Connection
 
 
 class _Gone(Exception):
-    """A helper ended, or takes too long."""
+    """A process ended, or takes too long."""
 
 
-class Helpers:
+class TrialPool:
     """Some processes, started for the first question and ended when there was none for a while.
 
     They end with the server, however that ends.
@@ -56,7 +56,7 @@ class Helpers:
         """
         self._count, self._idle_s = count or os.cpu_count() or 1, idle_s
         self._questions: queue.SimpleQueue[_Question | None] = queue.SimpleQueue()
-        self._helpers: list[_Helper] = []
+        self._processes: list[_Process] = []
         # The kernel ends a process with the thread that started it, so that one thread starts all.
         self._keeper: threading.Thread | None = None
         self._lock = threading.Lock()
@@ -65,7 +65,7 @@ class Helpers:
     @property
     def pids(self) -> list[int]:
         """Of the processes that there are now."""
-        return [one.process.pid for one in list(self._helpers) if one.process.pid is not None]
+        return [one.process.pid for one in list(self._processes) if one.process.pid is not None]
 
     def run(self, configs: Sequence[TrialConfig]) -> list[TrialResult]:
         """Run trials, and wait for them; one question after another, from any thread.
@@ -82,7 +82,7 @@ class Helpers:
             if self._closed:
                 raise Busy("the server is stopping; try again later", 1)
             if self._keeper is None:
-                self._keeper = threading.Thread(target=self._keep, name="helpers", daemon=True)
+                self._keeper = threading.Thread(target=self._keep, name="trial pool", daemon=True)
                 self._keeper.start()
             self._questions.put(question)
         return question.answer.result()
@@ -93,7 +93,7 @@ class Helpers:
             self._closed = True
             self._questions.put(None)
             keeper = self._keeper
-        for one in list(self._helpers):
+        for one in list(self._processes):
             with suppress(ValueError):  # it is gone already
                 one.process.kill()
         if keeper is not None:
@@ -119,11 +119,11 @@ class Helpers:
                 question.answer.set_exception(Busy(said, 1))
 
     def _ask(self, configs: Sequence[TrialConfig]) -> list[TrialResult]:
-        while len(self._helpers) < self._count:
-            self._helpers.append(_start())
+        while len(self._processes) < self._count:
+            self._processes.append(_start())
         chunks = [configs[i : i + _CHUNK] for i in range(0, len(configs), _CHUNK)]
         answers: dict[int, list[TrialResult]] = {}
-        idle = [helper.pipe for helper in self._helpers]
+        idle = [one.pipe for one in self._processes]
         asked: dict[Connection, int] = {}
         wrong: str | None = None
         deadline = time.monotonic() + PATIENCE_S
@@ -149,22 +149,22 @@ class Helpers:
         return [result for place in sorted(answers) for result in answers[place]]
 
     def _end(self) -> None:
-        for helper in self._helpers:
-            helper.process.kill()
-            helper.process.join()
-            helper.process.close()
-            helper.pipe.close()
-        self._helpers.clear()
+        for one in self._processes:
+            one.process.kill()
+            one.process.join()
+            one.process.close()
+            one.pipe.close()
+        self._processes.clear()
 
 
-def _start() -> _Helper:
+def _start() -> _Process:
     context = multiprocessing.get_context("spawn")
     pipe, its_pipe = context.Pipe()
     # A daemon, so that who never closes this is not kept from ending.
-    process = context.Process(target=main, args=(its_pipe,), name="helper", daemon=True)
+    process = context.Process(target=main, args=(its_pipe,), name="trials", daemon=True)
     process.start()
     its_pipe.close()
-    return _Helper(process, pipe)
+    return _Process(process, pipe)
 
 
 def _ready(asked: dict[Connection, int], deadline: float) -> list[Connection]:
@@ -183,7 +183,7 @@ def _received(pipe: Connection) -> _Answer:
 
 
 def main(pipe: Connection) -> None:
-    """Answer questions until nobody asks any more; this is a helper's process."""
+    """Answer questions until nobody asks any more; this is one of the processes."""
     be_modest(NICENESS)
     with suppress(EOFError, OSError):
         while True:
