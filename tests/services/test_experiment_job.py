@@ -4,7 +4,7 @@ import json
 import os
 import signal
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -22,33 +22,7 @@ from app.services.memory_store import MemoryStore
 from app.services.recordings import Recordings
 from app.services.store import REPORT, SUMMARY, UNENDED, Run
 from tests.services.experiments import stored, sweep, tried
-
-LONG_S = 100.0
-
-
-@pytest.fixture
-def store() -> MemoryStore:
-    return MemoryStore()
-
-
-@pytest.fixture
-def jobs(store: MemoryStore) -> Iterator[Jobs]:
-    made = Jobs(store, Recordings(), EventBus(), cores=1)
-    made.open()
-    yield made
-    made.close()
-
-
-def until(is_so: Callable[[], Any]) -> None:
-    deadline = time.monotonic() + LONG_S
-    while not is_so():
-        assert time.monotonic() < deadline
-        time.sleep(0.005)
-
-
-def ended(store: MemoryStore, run: Run) -> Run:
-    until(lambda: store.get(run.id).state not in UNENDED)
-    return store.get(run.id)
+from tests.services.waiting import ended, until
 
 
 def after(store: MemoryStore, run: Run, done: int) -> None:

@@ -4,7 +4,6 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
 from typing import Any
 
 import psutil
@@ -18,24 +17,11 @@ from app.services.errors import Busy, Conflict, StorageFailed
 from app.services.jobs import Jobs
 from app.services.memory_store import MemoryStore
 from app.services.recordings import Recordings
-from app.services.store import UNENDED, Run
+from app.services.store import Run
 from app.services.waiting import MAX_QUEUED
+from tests.services.waiting import ended, moving, until
 
 WALK = Walk(gait="left-right-origin", simulator="kinematic")
-LONG_S = 60.0
-
-
-@pytest.fixture
-def store() -> MemoryStore:
-    return MemoryStore()
-
-
-@pytest.fixture
-def jobs(store: MemoryStore) -> Iterator[Jobs]:
-    made = Jobs(store, Recordings(), EventBus(), cores=1)
-    made.open()
-    yield made
-    made.close()
 
 
 def training(**fields: Any) -> TrainingStart:
@@ -44,22 +30,6 @@ def training(**fields: Any) -> TrainingStart:
 
 def endless() -> TrainingStart:
     return training(steps=10_000_000, pace=20, evaluate_every=0)
-
-
-def until(is_so: Callable[[], Any]) -> None:
-    deadline = time.monotonic() + LONG_S
-    while not is_so():
-        assert time.monotonic() < deadline
-        time.sleep(0.005)
-
-
-def ended(store: MemoryStore, run: Run) -> Run:
-    until(lambda: store.get(run.id).state not in UNENDED)
-    return store.get(run.id)
-
-
-def moving(store: MemoryStore, run: Run) -> None:
-    until(lambda: store.get(run.id).done > 0)
 
 
 def pid_of(jobs: Jobs, run: Run) -> int:

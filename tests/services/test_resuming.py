@@ -18,15 +18,11 @@ from app.services.memory_store import MemoryStore
 from app.services.recordings import Recordings
 from app.services.store import CHECKPOINT, TABLE, Run, RunStore
 from tests.services.stores import training
-from tests.services.test_jobs import WALK, ended, moving, until
+from tests.services.test_jobs import WALK
+from tests.services.waiting import ended, moving, until
 
 SLOW = TrainingConfig(**vars(WALK), steps=100_000, pace=30, evaluate_every=20)
 SHORT = TrainingConfig(**vars(WALK), steps=60, evaluate_every=20)
-
-
-@pytest.fixture
-def store() -> MemoryStore:
-    return MemoryStore()
 
 
 @pytest.fixture

@@ -1,0 +1,28 @@
+"""Waits for what jobs do in processes of their own."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from app.services.store import UNENDED, Run, RunStore
+
+LONG_S = 60.0
+
+
+def until(is_so: Callable[[], Any]) -> None:
+    """Wait for something."""
+    deadline = time.monotonic() + LONG_S
+    while not is_so():
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+
+
+def ended(store: RunStore, run: Run) -> Run:
+    """The run once it has ended."""
+    until(lambda: store.get(run.id).state not in UNENDED)
+    return store.get(run.id)
+
+
+def moving(store: RunStore, run: Run) -> None:
+    """Wait until it has done something."""
+    until(lambda: store.get(run.id).done > 0)
