@@ -12,6 +12,8 @@ ABOUT = Table(
     # The one row names the folder of this database's files, so that no other database's server
     # takes them for nobody's.
     Column("id", Words, primary_key=True),
+    # Fencing token: rises with every server that opens the database, and every write checks it.
+    Column("owner", BigInteger, nullable=False, server_default="0"),
 )
 
 RUNS = Table(
@@ -70,4 +72,28 @@ ARTIFACTS = Table(
     Column("size", BigInteger, nullable=False),
     Column("sha256", Words, nullable=False),
     Column("written_at", UtcTime, nullable=False),
+)
+
+IDEMPOTENCY_KEYS = Table(
+    "idempotency_keys",
+    METADATA,
+    Column("key", Words, primary_key=True),
+    # SHA-256 of the request, so that a key is not taken for another one.
+    Column("digest", Words, nullable=False),
+    # No foreign key: a run that was deleted was started all the same.
+    Column("run_id", Words, nullable=False),
+    Column("created_at", UtcTime, nullable=False),
+    Index("ix_idempotency_keys_created_at", "created_at"),
+)
+
+SESSIONS = Table(
+    "sessions",
+    METADATA,
+    # Hashes only: whoever reads the database cannot become an operator by it.
+    Column("id_sha256", Words, primary_key=True),
+    # A server with another token knows none of the sessions of this one.
+    Column("token_sha256", Words, nullable=False),
+    Column("created_at", UtcTime, nullable=False),
+    Column("expires_at", UtcTime, nullable=False),
+    Index("ix_sessions_expires_at", "expires_at"),
 )
