@@ -5,10 +5,9 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import BeforeValidator, Field
 
-from app.api.fields import Alpha, Body, Epsilon, Gamma, Name, Seed, Steps, number
+from app.api.fields import Alpha, Body, Divisions, Epsilon, Gamma, Name, Seed, Side, Steps
 from app.api.schemas import Gait, GaitBody, check_agent
 from app.api.sentences import VALID
-from app.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, MIN_SIDE_M
 from app.domain.observation import Observation
 from app.domain.robot import robot
 from app.experiments.config import (
@@ -34,8 +33,6 @@ Some = Annotated[
     BeforeValidator(_as_list),
 ]
 """One value stands for a list of it."""
-Divisions = Annotated[int, Field(strict=True, ge=MIN_DIVISIONS, le=MAX_DIVISIONS)]
-Side = Annotated[float, number(ge=MIN_SIDE_M)]
 
 
 class ExperimentBody(Body):

@@ -8,6 +8,7 @@ from pydantic_core import PydanticCustomError
 
 from app.api.sentences import MAX_NAME, VALID
 from app.domain.errors import UnknownName
+from app.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, MIN_SIDE_M
 from app.runs.config import MAX_STEPS
 
 
@@ -33,6 +34,8 @@ Seed = Annotated[int, Field(strict=True, ge=0, description=VALID["seed"])]
 Alpha = Annotated[float, number(gt=0, le=1, description=VALID["alpha"])]
 Gamma = Annotated[float, number(ge=0, lt=1, description=VALID["gamma"])]
 Epsilon = Annotated[float, number(ge=0, le=1, description=VALID["epsilon"])]
+Divisions = Annotated[int, Field(strict=True, ge=MIN_DIVISIONS, le=MAX_DIVISIONS)]
+Side = Annotated[float, number(ge=MIN_SIDE_M)]
 Pace = Literal["max"] | Annotated[float, number(ge=0.01, le=1000)]
 
 

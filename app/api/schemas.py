@@ -6,11 +6,23 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
-from app.api.fields import Alpha, Body, Epsilon, Gamma, Name, Pace, RunId, Seed, Steps, number
+from app.api.fields import (
+    Alpha,
+    Body,
+    Divisions,
+    Epsilon,
+    Gamma,
+    Name,
+    Pace,
+    RunId,
+    Seed,
+    Side,
+    Steps,
+    number,
+)
 from app.api.sentences import VALID
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import GaitSpec, Symmetry
-from app.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, MIN_SIDE_M
 from app.domain.observation import Observation
 from app.domain.robot import robot
 from app.runs.clocks import Clock
@@ -60,10 +72,8 @@ class WalkBody(Body):
         str | dict[str, Any], Field(description=VALID["robot"], examples=["stiff"])
     ] = "stiff"
     simulator: SimulatorName = Walk.simulator
-    divisions: Annotated[int, Field(strict=True, ge=MIN_DIVISIONS, le=MAX_DIVISIONS)] = (
-        Walk.divisions
-    )
-    grid_side_m: Annotated[float, number(ge=MIN_SIDE_M)] = Walk.grid_side_m
+    divisions: Divisions = Walk.divisions
+    grid_side_m: Side = Walk.grid_side_m
 
     def walk(self) -> Walk:
         """As the loops know it.

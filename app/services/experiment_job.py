@@ -3,32 +3,19 @@
 import time
 from typing import Any
 
-from app.services.bus import EventBus
 from app.services.job import Job
-from app.services.orders import Ended, ExperimentOrder, Message, Reported, Tried
-from app.services.recordings import Recordings
-from app.services.store import SUMMARY, Run, RunStore
+from app.services.orders import Ended, Message, Reported, Tried
+from app.services.store import SUMMARY
 
 EVENTS_PER_S = 4
-_STOP_GRACE_S = 90.0
-"""It ends with a report of what there is, whose figures take a while to draw."""
 
 
 class ExperimentJob(Job):
     """An experiment that a process works on."""
 
+    # It ends with a report of what there is, whose figures take a while to draw.
+    stop_grace_s = 90.0
     eta_window_s = 60.0
-
-    def __init__(
-        self,
-        run: Run,
-        order: ExperimentOrder,
-        store: RunStore,
-        recordings: Recordings,
-        bus: EventBus,
-    ) -> None:
-        super().__init__(run, order, store, recordings, bus)
-        self.stop_grace_s = _STOP_GRACE_S
 
     def _take(self, message: Message) -> None:
         if isinstance(message, Tried):

@@ -35,7 +35,6 @@ from app.services.store import CHECKPOINT, LIVE, TABLE, Run, RunStore, State
 from app.services.views import run_view
 
 EVENTS_PER_S = 10
-_STOP_GRACE_S = 20.0
 _logger = logging.getLogger(__name__)
 
 
@@ -54,13 +53,13 @@ class Job:
         gone: set when its process is no more, and all have been told.
     """
 
+    stop_grace_s = 20.0
     eta_window_s = 5.0
 
     def __init__(
         self, run: Run, order: Order, store: RunStore, recordings: Recordings, bus: EventBus
     ) -> None:
         self.run_id, self.is_race = run.id, run.kind == "race"
-        self.stop_grace_s = _STOP_GRACE_S
         self.paused = self.stopping = self.shared = False
         self.ended, self.gone = threading.Event(), threading.Event()
         self.child = Child(f"{run.kind} {run.id}", order, self._take)

@@ -18,7 +18,7 @@ export function ticks(high, count = 5) {
 /** The largest, and no less than `least`; lists may be longer than a call may have arguments. */
 export const largest = (values, least = 0) => values.reduce((top, value) => (value > top ? value : top), least);
 
-/** At most so many, evenly out of all in their order. */
+/** At most so many, evenly out of all in their order, and the first and the last. */
 export function thinned(list, most) {
   if (list.length <= most) return list;
   return Array.from({ length: most }, (_, n) => list[Math.round((n * (list.length - 1)) / (most - 1))]);

@@ -17,7 +17,7 @@ export const everyRun = computed(() =>
 );
 
 /** Trainings and races, which can be on stage; experiments cannot. */
-export const newestFirst = computed(() => everyRun.value.filter(({ kind }) => kind !== "experiment"));
+const newestFirst = computed(() => everyRun.value.filter(({ kind }) => kind !== "experiment"));
 
 /** Runs that this tab started, newest first. */
 const mine = signal(recall());

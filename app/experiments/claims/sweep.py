@@ -16,7 +16,13 @@ _REST = ("steps", "divisions", "grid_side_m", "blocks")
 
 def _tuning(corner: Corner) -> Finding | None:
     """The best of many is compared once, at a confidence that pays for having picked it."""
-    ours = [one for one in corner.pooled if one["agent"] == PAPERS_AGENT and one["relative"]]
+    ours = [
+        one
+        for one in corner.pooled
+        if one["agent"] == PAPERS_AGENT
+        and one["relative"]
+        and len(_seeds(corner, one)) == len(one["gaits"])
+    ]
     papers = [one for one in ours if _is_papers(one)]
     rivals = [one for one in ours if any(_comparable(one, own) for own in papers)]
     if not rivals:

@@ -1,14 +1,9 @@
 // The numbers behind a picture.
 import { useState } from "preact/hooks";
 import { html } from "../html.js";
+import { thinned } from "../scale.js";
 
 const MOST_ROWS = 100;
-
-/** At most a hundred rows, evenly out of all, and the last. */
-const thinned = (rows) => {
-  const every = Math.ceil(rows.length / MOST_ROWS);
-  return rows.filter((_, n) => n % every === 0 || n === rows.length - 1);
-};
 
 export function AsTable({ caption, columns, rows }) {
   const [isOpen, setOpen] = useState(false);
@@ -21,7 +16,7 @@ export function AsTable({ caption, columns, rows }) {
             <caption class="sr-only">${caption}</caption>
             <thead><tr>${columns.map((title) => html`<th scope="col">${title}</th>`)}</tr></thead>
             <tbody>
-              ${thinned(rows).map(([first, ...others]) => html`<tr><th scope="row">${first}</th>${others.map((one) => html`<td>${one}</td>`)}</tr>`)}
+              ${thinned(rows, MOST_ROWS).map(([first, ...others]) => html`<tr><th scope="row">${first}</th>${others.map((one) => html`<td>${one}</td>`)}</tr>`)}
             </tbody>
           </table>
         </div>

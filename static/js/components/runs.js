@@ -6,6 +6,7 @@ import { everyRun } from "../selectors.js";
 import { keepRun } from "../store.js";
 import { ExperimentRunRow } from "./experiments/experiment-run-row.js";
 import { RunRow } from "./run-row.js";
+import { Segments } from "./segments.js";
 
 const KINDS = [["all", "All"], ["training", "Trainings"], ["race", "Races"], ["experiment", "Experiments"]];
 const STATES = ["any state", "running", "paused", "queued", "finished", "stopped", "failed", "interrupted"];
@@ -21,11 +22,7 @@ export function Runs() {
     <section class="panel runs" aria-labelledby="runs-title">
       <div class="runs-head">
         <h2 id="runs-title">Runs</h2>
-        <div class="segments" role="group" aria-label="Kind">
-          ${KINDS.map(([name, title]) => html`
-            <button aria-pressed=${kind === name ? "true" : "false"} onClick=${() => setKind(name)}>${title}</button>
-          `)}
-        </div>
+        <${Segments} label="Kind" choices=${KINDS} value=${kind} onValue=${setKind} />
         <label class="choice">
           <span class="sr-only">State</span>
           <select onChange=${({ target }) => setState(target.value)}>

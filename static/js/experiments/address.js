@@ -12,7 +12,7 @@ const query = () => {
 };
 
 /** The hash that leads back here. */
-export const experimentsHash = () => (query() ? `#experiments?${query()}` : "#experiments");
+const experimentsHash = () => (query() ? `#experiments?${query()}` : "#experiments");
 
 /** The hash as it was last written or read here. */
 let known = "";

@@ -17,7 +17,7 @@ const READERS = {
   ...Object.fromEntries(GRID.map((field) => [field, list(numbers)])),
 };
 
-export const chosenName = signal("table1");
+const chosenName = signal("table1");
 /** Field → value, of those that differ from the experiment's own. */
 export const given = signal({});
 /** Field → what is wrong with it. */

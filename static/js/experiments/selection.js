@@ -2,14 +2,11 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getRun, listRuns } from "../api.js";
 import { place } from "../page.js";
-import { isActive } from "../selectors.js";
+import { everyRun, isActive } from "../selectors.js";
 import { connection, keepRun, runs } from "../store.js";
 import { wantedRun } from "./address.js";
 
-export const experimentRuns = computed(() =>
-  [...runs.value.values()].filter(({ kind }) => kind === "experiment")
-    .sort((a, b) => b.created_at.localeCompare(a.created_at)),
-);
+export const experimentRuns = computed(() => everyRun.value.filter(({ kind }) => kind === "experiment"));
 
 /** The one that was asked for, else what runs, else the newest. */
 export const chosenRun = computed(() => {

@@ -20,8 +20,7 @@ async function load(id) {
     fetched.value = { ...fetched.value, [id]: await getSummary(id) };
     refused.value = { ...refused.value, [id]: null };
   } catch (error) {
-    // None yet is no error: it comes with the first trials.
-    refused.value = { ...refused.value, [id]: error.status === 409 ? null : error };
+    refused.value = { ...refused.value, [id]: error };
   }
 }
 

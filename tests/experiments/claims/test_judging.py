@@ -149,6 +149,17 @@ def test_tuning_helps_if_the_best_is_established_to_come_further() -> None:
     assert same["verdict"] == "not established"
 
 
+def test_tuning_compares_the_same_gaits_while_trials_come_in() -> None:
+    tried = config("sweep", seeds=6, alpha=(0.1, 0.3, 0.6))
+    results = made_up(tried, everywhere(0.3))
+    parts = [dict(list(results.items())[:done]) for done in range(len(results) + 1)]
+    found = [[one["id"] for one in summarise(tried, part)["claims"]] for part in parts]
+    # 4 greedy, and of each of 3 rates the first seed in each of 4 gaits; the second rate is
+    # the paper's, and complete when there is one more
+    assert found.index(["tuning"]) == 4 + 3 * 3 + 2
+    assert found[-1] == ["tuning"]
+
+
 def test_a_sweep_without_the_papers_values_says_nothing_of_tuning() -> None:
     assert summary_of("sweep", everywhere(0.3), seeds=8, alpha=(0.1, 0.6))["claims"] == []
 

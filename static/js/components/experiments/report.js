@@ -22,7 +22,7 @@ export function Report({ run }) {
   const findings = useMemo(() => html`<${Findings} known=${known} />`, [known]);
   const hasSeeds = known?.settings?.some(({ n }) => n > 0);
   return html`
-    <${ReportHead} run=${run} known=${known} />
+    <${ReportHead} run=${run} />
     ${summaryError.value && html`<p class="problem" role="alert">${summaryError.value.message}</p>`}
     ${hasSeeds ? findings : html`<${Waiting} run=${run} />`}
   `;
