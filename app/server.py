@@ -5,6 +5,7 @@ import contextlib
 import errno
 import socket
 import sys
+import threading
 from collections.abc import AsyncIterator
 from types import FrameType
 
@@ -36,6 +37,7 @@ from app.api.rates import RateLimit
 from app.domain.errors import HexapodError, InvalidInput
 from app.services import logs
 from app.services.database.opening import open_store
+from app.services.errors import OwnershipLost
 from app.services.jobs import Jobs
 from app.services.memory_store import MemoryStore
 from app.services.once import Once
@@ -118,8 +120,8 @@ def _add_routes(app: FastAPI, theatre: Theatre) -> None:
 
 def _trouble(jobs: Jobs, store: RunStore) -> str | None:
     """What keeps runs from being started, in a sentence."""
-    if not jobs.is_open:
-        return "The server is starting, or stopping."
+    if (trouble := jobs.trouble()) is not None:
+        return trouble
     try:
         store.check_room()
         store.list(limit=1)
@@ -156,11 +158,13 @@ def serve(settings: Settings) -> None:
         InvalidInput: if the data folder cannot be written or another server has it, or the
             address cannot be bound.
         DamagedFile, StorageFailed: if the database cannot be used.
+        OwnershipLost: if another server took the database over while this one served.
     """
     settings.prepare_data()
     listener = _listen(settings)
     logs.install(settings.log_level)
-    with listener, open_store(settings) as store:
+    lost = threading.Event()
+    with listener, open_store(settings, on_lost=lost.set) as store:
         app = create_app(settings, store)
         config = uvicorn.Config(
             app,
@@ -172,17 +176,28 @@ def serve(settings: Settings) -> None:
             timeout_graceful_shutdown=GRACE_S,
             **websocket_options(),
         )
-        _Server(config, app, settings, listener).run(sockets=[listener])
+        _Server(config, app, settings, listener, lost).run(sockets=[listener])
+    if lost.is_set():
+        raise OwnershipLost("another server has taken the database over, so this one has ended")
 
 
 class _Server(uvicorn.Server):
     """Tells where it is, and lets go of those who listen before it waits for them."""
 
     def __init__(
-        self, config: uvicorn.Config, app: FastAPI, settings: Settings, listener: socket.socket
+        self,
+        config: uvicorn.Config,
+        app: FastAPI,
+        settings: Settings,
+        listener: socket.socket,
+        lost: threading.Event,
     ) -> None:
         super().__init__(config)
         self._app, self._settings, self._listener = app, settings, listener
+        self._lost = lost
+
+    async def on_tick(self, counter: int) -> bool:
+        return await super().on_tick(counter) or self._lost.is_set()
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)

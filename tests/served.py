@@ -79,7 +79,7 @@ class Served:
     def jobs(self) -> list[psutil.Process]:
         """The processes of its jobs."""
         family = psutil.Process(self.process.pid).children(recursive=True)
-        return [one for one in family if "spawn_main" in " ".join(one.cmdline())]
+        return [one for one in family if "spawn_main" in _command_line(one)]
 
     def events(self, query: str = "", last: str | None = None) -> Events:
         headers = {} if last is None else {"Last-Event-ID": last}
@@ -103,6 +103,14 @@ class Served:
         assert self.process.stdout is not None
         self.process.stdout.close()
         return code
+
+
+def _command_line(process: psutil.Process) -> str:
+    """Of a process; empty if it is gone, or about to be."""
+    try:
+        return " ".join(process.cmdline())
+    except psutil.NoSuchProcess:
+        return ""
 
 
 @contextmanager

@@ -16,7 +16,7 @@ from starlette.routing import compile_path
 
 from app.api.sentences import in_sentences
 from app.domain.errors import HexapodError, InvalidInput
-from app.services.errors import Busy, Conflict, NotFound, StorageFailed, StorageFull
+from app.services.errors import Busy, Conflict, NotAnswering, NotFound, StorageFailed, StorageFull
 
 MEDIA_TYPE = "application/problem+json"
 MAX_DETAIL = 1000
@@ -77,6 +77,8 @@ async def _hexapod_error(request: Request, error: Exception) -> Response:
             return problem(409, sentence, state=state)
         case Busy(retry_after_s=seconds):
             return problem(429, sentence, headers={"Retry-After": str(seconds)})
+        case NotAnswering(retry_after_s=seconds):
+            return problem(503, sentence, headers={"Retry-After": str(seconds)})
         case StorageFailed():
             return problem(503, sentence, headers={"Retry-After": str(_STORAGE_RETRY_S)})
     for kind, status in _STATUSES.items():

@@ -182,6 +182,8 @@ class Desk:
             self._due_s = time.monotonic()
 
     def _tune(self, word: Word, step: int, agent: object) -> None:
+        if time.monotonic() > word.expires_s:
+            return  # its sender was told that nothing was changed
         self._change(word.changes, step, agent)
         self.send(Changed(word.token, step, dict(word.changes)))
 

@@ -33,3 +33,15 @@ class StorageFull(HexapodError):
 
 class StorageFailed(HexapodError):
     """The store cannot be used at the moment; the message says why."""
+
+
+class OwnershipLost(StorageFailed):
+    """Another server has taken the database over; this one must write nothing more."""
+
+
+class NotAnswering(HexapodError):
+    """A job's process does not answer; nothing was changed."""
+
+    def __init__(self, message: str, retry_after_s: int) -> None:
+        super().__init__(message)
+        self.retry_after_s = retry_after_s

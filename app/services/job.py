@@ -1,5 +1,6 @@
 """A job while it runs: what its process says becomes the run's state, recording and events."""
 
+import itertools
 import logging
 import threading
 import time
@@ -16,6 +17,8 @@ from app.runs.recording import LaneRecording
 from app.runs.records import Evaluated, Reference
 from app.runs.results import race_result
 from app.services.bus import EventBus
+from app.services.database.engine import retry_during_outage
+from app.services.errors import OwnershipLost, StorageFailed
 from app.services.orders import (
     Batch,
     Began,
@@ -29,12 +32,18 @@ from app.services.orders import (
     Saved,
     Word,
 )
-from app.services.process import Child
+from app.services.process import Exit, WorkerProcess
 from app.services.recordings import Recordings
 from app.services.store import CHECKPOINT, LIVE, TABLE, Run, RunStore, State
 from app.services.views import run_view
 
 EVENTS_PER_S = 10
+MAX_OUTAGE_S = 600.0
+"""For so long a job waits for a database that cannot be used; then it is interrupted."""
+STALLED_S = 8.0
+"""A process that was stopped for so long is ended: a run that reads `running` must run."""
+SILENT_S = 60.0
+"""The same of one that says nothing, which on a busy machine may still be alive."""
 _logger = logging.getLogger(__name__)
 
 
@@ -49,25 +58,36 @@ class Job:
         stopping: whether it was told to stop.
         shared: whether another job ran at the same time.
         eta_window_s: from how much of the past it is told how long it will take.
+        process: works on it.
+        last: the run as this job wrote it last, its end included.
         ended: set when the run's last state is in the store.
-        gone: set when its process is no more, and all have been told.
+        gone: set when its process is no more, and everyone has been told.
     """
 
     stop_grace_s = 20.0
     eta_window_s = 5.0
 
     def __init__(
-        self, run: Run, order: Order, store: RunStore, recordings: Recordings, bus: EventBus
+        self,
+        run: Run,
+        order: Order,
+        store: RunStore,
+        recordings: Recordings,
+        bus: EventBus,
+        *,
+        shutdown: threading.Event,
     ) -> None:
         self.run_id, self.is_race = run.id, run.kind == "race"
         self.paused = self.stopping = self.shared = False
         self.ended, self.gone = threading.Event(), threading.Event()
-        self.child = Child(f"{run.kind} {run.id}", order, self._take)
-        self._run, self._order = run, order
+        self.process = WorkerProcess(f"{run.kind} {run.id}", order, self._take_patiently)
+        self.last = run
+        self._run, self._order, self._shutdown = run, order, shutdown
         self._began_s = time.monotonic()
         self._began_at = max(datetime.now(UTC), run.started_at or run.created_at)
         self._store, self._recordings, self._bus = store, recordings, bus
         self._answers: dict[int, threading.Event] = {}
+        self._tokens = itertools.count()
         self._has_begun = False
         self._published_s = 0.0
         self._progress: deque[tuple[float, int]] = deque()
@@ -75,35 +95,53 @@ class Job:
     def pause(self) -> None:
         """Wait after the present step."""
         self.paused = True
-        self.child.send(Word("pause"))
+        self.process.send(Word("pause"))
 
     def resume(self) -> None:
         """Go on."""
         self.paused = False
         self._progress.clear()
-        self.child.send(Word("resume"))
+        self.process.send(Word("resume"))
 
     def stop(self) -> None:
         """End after the present step, with what has come of it so far."""
         self.stopping = True
         if self._has_begun:
-            self.child.send(Word("stop"))
+            self.process.send(Word("stop"))
         else:
-            self.child.kill()
+            self.process.kill()
 
     def leave(self) -> None:
         """End after the present step with a checkpoint, if it is a training that has begun."""
         if self._has_begun and not self.is_race:
-            self.child.send(Word("leave"))
+            self.process.send(Word("leave"))
         else:
-            self.child.kill()
+            self.process.kill()
 
-    def tune(self, changes: Mapping[str, Any]) -> threading.Event:
-        """Change rates or pace after the present step; the event is set once that is done."""
-        token, answer = len(self._answers), threading.Event()
+    def tune(self, changes: Mapping[str, Any], within_s: float) -> threading.Event:
+        """Change rates or pace after the present step; the event is set once that is done.
+
+        Args:
+            changes: any of alpha, gamma, epsilon, pace.
+            within_s: after which it is not done any more.
+        """
+        token, answer = next(self._tokens), threading.Event()
         self._answers[token] = answer
-        self.child.send(Word("tune", token, changes))
+        self.process.send(Word("tune", token, changes, time.monotonic() + within_s))
         return answer
+
+    @property
+    def is_answering(self) -> bool:
+        """Whether its process has said something lately, and was not stopped by a signal."""
+        return self.process.stopped_s() == 0 and self.process.silent_s() < SILENT_S
+
+    def end_if_stalled(self) -> None:
+        """End the process if it answers no more; its run is then `failed`, and can be resumed."""
+        stopped_s, silent_s = self.process.stopped_s(), self.process.silent_s()
+        if stopped_s > STALLED_S:
+            self.process.kill(f"its process was stopped by a signal for {stopped_s:.0f} s")
+        elif silent_s > SILENT_S:
+            self.process.kill(f"its process said nothing for {silent_s:.0f} s")
 
     def end(self, state: State, error: str | None = None, result: Any = None) -> None:
         """Give the run its last state, if it has none yet."""
@@ -115,28 +153,50 @@ class Job:
         run = self._store.change(
             self.run_id, LIVE, state, error=error, result=result, ended_at=ended_at, eta_s=None
         )
+        self.last = run
         self.ended.set()
         self._publish(run)
 
     def _keep_recording(self, state: State) -> None:
         try:
             self._recordings.finish(self.run_id)
+        except OwnershipLost:
+            raise
         except HexapodError:
             if state in ("finished", "stopped"):
                 raise
             # It is lost, which is no reason to hide what was wrong in the first place.
             _logger.warning("no recording was kept", extra={"run_id": self.run_id}, exc_info=True)
 
-    def process_ended(self, how: str) -> None:
-        """Give the run its last state if its process died before it could say one."""
-        if not self.stopping:
-            self.end("failed", f"The job ended before it was done: {how}.")
-        elif self._has_begun:
-            self.end("stopped", f"It did not answer when it was to stop, so {how}.")
-        elif self._run.done:
-            self.end("stopped", "It was stopped before it went on; what was done is kept.")
+    def process_ended(self, end: Exit) -> None:
+        """Give the run its last state if its process died before it could say one.
+
+        Raises:
+            StorageFailed: if the store cannot be used; worth another try.
+        """
+        if self.ended.is_set():
+            return
+        # Before anything is given up: during an outage nothing can be noted, nor kept.
+        self._store.get(self.run_id)
+        if self.stopping:
+            if self._has_begun:
+                self.end("stopped", f"It did not answer when it was to stop, so {end.how}.")
+            elif self._run.done:
+                self.end("stopped", "It was stopped before it went on; what was done is kept.")
+            else:
+                self.end("stopped", "It was stopped before it began.")
+        elif isinstance(end.error, StorageFailed):
+            self.end("interrupted", f"What came of it could not be kept: {end.error}.")
         else:
-            self.end("stopped", "It was stopped before it began.")
+            self.end("failed", f"The job ended before it was done: {end.how}.")
+
+    def _take_patiently(self, message: Message) -> None:
+        """Take in a message, for as long as it needs if the database is away.
+
+        Meanwhile the process fills its pipe and then waits, so that nothing is lost.
+        """
+        with retry_during_outage(MAX_OUTAGE_S, self._shutdown):
+            self._take(message)
 
     def _take(self, message: Message) -> None:
         """Take in a message of the process; called from its thread."""
@@ -195,7 +255,7 @@ class Job:
         self._progress.clear()
         self._tell("rates", **change)
         self._publish(run)
-        self._answers[changed.token].set()
+        self._answers.pop(changed.token).set()
 
     def _take_end(self, ended: Ended) -> None:
         lanes = self._recordings.race(self.run_id)

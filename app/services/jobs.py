@@ -1,26 +1,43 @@
 """Jobs: what is to run, what runs, and the words that change it."""
 
+import logging
+import threading
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from app.agents import registry
-from app.domain.errors import InvalidInput
+from app.domain.errors import HexapodError, InvalidInput
 from app.services.bus import EventBus
-from app.services.crew import Crew
 from app.services.entries import Entry, RaceStart, TrainingStart, race_entries, training_entry
-from app.services.errors import Conflict
+from app.services.errors import Busy, Conflict, NotAnswering, StorageFailed
 from app.services.experiment_entry import ExperimentStart, experiment_entry
 from app.services.ids import RunIds
 from app.services.job import Job
 from app.services.recordings import Recordings
 from app.services.resuming import resumed_entries
-from app.services.store import LIVE, PAUSED, RESUMABLE, RUNNING, TABLE, Run, RunStore, State
+from app.services.store import (
+    LIVE,
+    PAUSED,
+    RESUMABLE,
+    RUNNING,
+    TABLE,
+    UNENDED,
+    Run,
+    RunStore,
+    State,
+)
+from app.services.supervisor import STUCK_S, Supervisor
 from app.services.views import run_view
 from app.services.waiting import WaitingRuns
 
 MAX_PAUSED = 16
+MAX_CHANGING = 8
+"""So many changes at once may wait to be obeyed; each keeps a thread of the server."""
 _ANSWER_S = 5.0
 _DIE_S = 2.0
+_GONE_S = 10.0
+"""For a process to be gone once its run has ended."""
+_logger = logging.getLogger(__name__)
 
 
 class Jobs:
@@ -51,26 +68,38 @@ class Jobs:
         newest = store.list(limit=1).items
         self.new_id = RunIds(after=newest[0].id if newest else None)
         self._waiting = WaitingRuns(store, self._publish)
-        self._crew = Crew(store, recordings, bus, self._waiting, publish=self._publish, cores=cores)
-        self._changed = self._crew.changed
+        self._supervisor = Supervisor(
+            store, recordings, bus, self._waiting, publish=self._publish, cores=cores
+        )
+        self._changed = self._supervisor.changed
+        self._changing = threading.BoundedSemaphore(MAX_CHANGING)
 
     @property
     def cores(self) -> int:
         """How many jobs run at once."""
-        return self._crew.cores
+        return self._supervisor.cores
 
     @property
     def is_open(self) -> bool:
         """Whether what is queued will be started."""
-        return self._crew.is_open
+        return self._supervisor.is_open
+
+    def trouble(self) -> str | None:
+        """What keeps queued runs from being started, in a sentence; None if nothing does."""
+        if not self.is_open:
+            return "The server is starting, or stopping."
+        stuck_s = self._supervisor.stuck_s()
+        if stuck_s > STUCK_S:
+            return f"A run has waited beside a free core for {stuck_s:.0f} s; the log says why."
+        return None
 
     def open(self) -> None:
         """Begin to start what is queued."""
-        self._crew.open()
+        self._supervisor.open()
 
     def close(self) -> None:
         """Start no more, and end every process with a checkpoint: all is `interrupted` then."""
-        self._crew.close()
+        self._supervisor.close()
 
     def view(self, run: Run) -> dict[str, Any]:
         """The resource of a run, with its place in the queue."""
@@ -118,9 +147,9 @@ class Jobs:
         """
         with self._changed:
             job = self._live(run_id, RUNNING, "paused")
-            if self._crew.paused >= MAX_PAUSED:
+            if self._supervisor.paused >= MAX_PAUSED:
                 raise Conflict(f"{MAX_PAUSED} runs are paused; stop or resume one", "running")
-            run = self._store.change(run_id, RUNNING, "paused", eta_s=None)
+            run = self._change(run_id, RUNNING, "paused", eta_s=None)
             job.pause()
             self._changed.notify_all()
         self._publish(run)
@@ -134,16 +163,17 @@ class Jobs:
             Conflict, InvalidInput: if it is neither, or what it needs is gone.
             Busy: if too many runs are waiting.
         """
+        self._await_process(run_id)
         with self._changed:
             run = self._store.get(run_id)
             resumable = RESUMABLE[run.kind]
             if run.state in resumable:
                 return self._enqueue(resumed_entries(run, self._store))
-            choices = " or ".join(("paused", *sorted(resumable)))
+            choices = " or ".join(sorted((*PAUSED, *resumable)))
             job = self._live(run_id, PAUSED, "resumed", choices)
-            run = self._store.change(run_id, PAUSED, "running")
+            run = self._change(run_id, PAUSED, "running")
             job.resume()
-            self._crew.note_company()
+            self._supervisor.mark_shared()
         self._publish(run)
         return run
 
@@ -157,14 +187,14 @@ class Jobs:
         with self._changed:
             run = self._store.get(run_id)
             if run.state == "queued":
-                for job in (self._crew.find(training) for training in run.waiting_for):
+                for job in (self._supervisor.find(training) for training in run.waiting_for):
                     if job is not None and not job.stopping:
                         job.stop()
                 return self._waiting.stop(run)
             job = self._live(run_id, LIVE, "stopped")
             job.stop()
         if not job.ended.wait(job.stop_grace_s):
-            job.child.kill()
+            job.process.kill()
             job.ended.wait(_DIE_S)
         return self._store.get(run_id)
 
@@ -175,14 +205,28 @@ class Jobs:
             NotFound: if there is no such run.
             Conflict: if it neither runs nor is paused.
             InvalidInput: if its agent has no rates.
+            NotAnswering: if its process does not obey in time; nothing is changed then.
+            Busy: if too many changes wait to be obeyed.
         """
-        with self._changed:
-            job = self._live(run_id, LIVE, "changed")
-            agent = getattr(self._store.get(run_id).config, "agent", "")
-            if set(changes) - {"pace"} and not hasattr(registry.find(agent), "tune"):
-                raise InvalidInput(f"{agent} has no rates that could be changed; give pace only")
-            answer = job.tune(changes)
-        answer.wait(_ANSWER_S)
+        if not self._changing.acquire(blocking=False):
+            raise Busy(f"{MAX_CHANGING} changes wait to be obeyed, which is the most; try again", 1)
+        try:
+            with self._changed:
+                job = self._live(run_id, LIVE, "changed")
+                agent = getattr(self._store.get(run_id).config, "agent", "")
+                if set(changes) - {"pace"} and not hasattr(registry.find(agent), "tune"):
+                    raise InvalidInput(
+                        f"{agent} has no rates that could be changed; give pace only"
+                    )
+                answer = job.tune(changes, _ANSWER_S) if job.is_answering else None
+            if answer is None or not answer.wait(_ANSWER_S):
+                raise NotAnswering(
+                    f"the process of training {run_id} does not answer, so nothing was changed; "
+                    "if that lasts it is ended, and the training can be resumed",
+                    int(_ANSWER_S),
+                )
+        finally:
+            self._changing.release()
         return self._store.get(run_id)
 
     def delete(self, run_id: str) -> None:
@@ -192,6 +236,7 @@ class Jobs:
             NotFound: if there is no such run.
             Conflict: if it has not ended, or a race that waits needs it.
         """
+        self._await_process(run_id)
         with self._changed:
             race = self._waiting.needing(run_id)
             if race is not None:
@@ -203,19 +248,47 @@ class Jobs:
 
     def _enqueue(self, entries: list[Entry]) -> Run:
         with self._changed:
-            self._waiting.add(entries, max(0, self.cores - self._crew.running))
+            self._waiting.add(entries, max(0, self.cores - self._supervisor.running))
             self._changed.notify_all()
         run = entries[-1].run
         if self._on_queued is not None and run.kind != "experiment":
-            self._on_queued(run.id)
+            try:
+                self._on_queued(run.id)
+            except HexapodError:
+                # It is queued, whatever became of showing it.
+                _logger.warning("a run is not shown", extra={"run_id": run.id}, exc_info=True)
         return run
+
+    def _await_process(self, run_id: str) -> None:
+        """Wait until the process of a run that has ended is gone, and everyone has been told.
+
+        Otherwise the last words about a run would come after its deletion, or its next start.
+
+        Raises:
+            Conflict: if it takes too long.
+        """
+        job = self._supervisor.find(run_id)
+        if job is None or (run := self._store.get(run_id)).state in UNENDED:
+            return
+        if not job.gone.wait(_GONE_S):
+            raise Conflict(f"{run.kind} {run_id} is still ending; try again", run.state)
+
+    def _change(
+        self, run_id: str, from_states: frozenset[State], to_state: State, **fields: Any
+    ) -> Run:
+        """Change a job's state in the store; if that fails halfway it is set right later."""
+        try:
+            return self._store.change(run_id, from_states, to_state, **fields)
+        except StorageFailed:
+            self._supervisor.reconcile_later(run_id)
+            raise
 
     def _live(
         self, run_id: str, states: frozenset[State], what: str, choices: str | None = None
     ) -> Job:
         """The job of a run in one of these states, that nobody is stopping."""
         run = self._store.get(run_id)
-        job = self._crew.find(run_id)
+        job = self._supervisor.find(run_id)
         if run.state not in states or job is None:
             choices = choices or " or ".join(sorted(states))
             raise Conflict(

@@ -1,5 +1,6 @@
 """What goes through the pipe between the server and a job's process: all of it picklable."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
@@ -69,9 +70,15 @@ class Word(NamedTuple):
     """By which the answer to `tune` is known."""
     changes: Mapping[str, Any] = {}
     """For `tune`: any of alpha, gamma, epsilon, pace."""
+    expires_s: float = math.inf
+    """For `tune`: when it is too late, by the machine's monotonic clock."""
 
 
 # Up.
+
+
+class Heartbeat(NamedTuple):
+    """The process lives, whatever it is at."""
 
 
 class Began(NamedTuple):

@@ -1,21 +1,33 @@
-"""A job's process: started, spoken to, and its death noticed, from the server's side."""
+"""A job's process, from the server's side: started, sent commands, its stall or death noticed."""
 
 import logging
 import multiprocessing
+import os
 import queue
 import signal
 import threading
+import time
 from collections.abc import Callable
 from contextlib import suppress
+from typing import NamedTuple
 
 from app.services import worker
-from app.services.orders import Message, Order, Word
+from app.services.orders import Heartbeat, Message, Order, Word
 
 _EXIT_S = 5.0
 _logger = logging.getLogger(__name__)
 
 
-class Child:
+class Exit(NamedTuple):
+    """How a process ended."""
+
+    how: str
+    """In a few words, for a sentence."""
+    error: Exception | None = None
+    """Why the server ended it: what it said could not be taken in."""
+
+
+class WorkerProcess:
     """One process that works on one order.
 
     Start it from a thread that lives as long as the server: on Linux the kernel ends the process
@@ -41,17 +53,22 @@ class Child:
         )
         self._on_message = on_message
         self._error: Exception | None = None
+        self._killed_for: str | None = None
+        self._is_taking = False
+        self._heard_s = time.monotonic()
+        self._stopped_since_s: float | None = None
 
-    def start(self, on_end: Callable[[str], None]) -> None:
+    def start(self, on_end: Callable[[Exit], None]) -> None:
         """Start the process.
 
         Args:
-            on_end: called once, when the process is gone, with how it ended in a few words.
+            on_end: called once, when the process is gone, with how it ended.
 
         Raises:
             OSError: if the system has no room for one more process.
         """
         self._process.start()
+        self._heard_s = time.monotonic()
         # The only copy of its end is now its own, so that reading ends when it does.
         self._its_pipe.close()
         name = self._process.name
@@ -60,16 +77,45 @@ class Child:
 
     @property
     def pid(self) -> int | None:
-        """Of the process; None before it was started."""
-        return self._process.pid
+        """Of the process; None before it was started, and after its end."""
+        try:
+            return self._process.pid
+        except ValueError:
+            return None
 
     def send(self, word: Word) -> None:
         """Tell it something; nothing happens if it is gone."""
         self._to_send.put(word)
 
-    def kill(self) -> None:
-        """End the process at once."""
-        self._process.kill()
+    def kill(self, why: str | None = None) -> None:
+        """End the process at once, for a reason that its end is to name."""
+        self._killed_for = self._killed_for or why
+        with suppress(ValueError):  # it is gone, and its handle is closed
+            self._process.kill()
+
+    def silent_s(self) -> float:
+        """For how long it has said nothing, not even that it lives; 0 while it is listened to."""
+        return 0.0 if self._is_taking else time.monotonic() - self._heard_s
+
+    def stopped_s(self) -> float:
+        """For how long it was seen to be stopped by a signal, as SIGSTOP does; 0 if it is not."""
+        if not self._is_stopped():
+            self._stopped_since_s = None
+            return 0.0
+        now = time.monotonic()
+        if self._stopped_since_s is None:
+            self._stopped_since_s = now
+        return now - self._stopped_since_s
+
+    def _is_stopped(self) -> bool:
+        if not hasattr(os, "waitid") or self.pid is None:
+            return False
+        try:
+            # Looks, and leaves everything as it is for who waits for the end.
+            found = os.waitid(os.P_PID, self.pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT)
+        except OSError:
+            return False
+        return found is not None
 
     def _talk(self) -> None:
         while (said := self._to_send.get()) is not None:
@@ -77,15 +123,15 @@ class Child:
                 self._pipe.send(said)
         self._pipe.close()
 
-    def _listen(self, on_end: Callable[[str], None]) -> None:
+    def _listen(self, on_end: Callable[[Exit], None]) -> None:
         try:
             while True:
-                self._on_message(self._pipe.recv())
+                self._hear(self._pipe.recv())
         except (EOFError, ConnectionError):
             pass
         except Exception as error:
             # What it says cannot be taken in, so it must not go on.
-            _logger.exception("%s: a message could not be handled", self._process.name)
+            _logger.exception("%s: a message could not be taken in", self._process.name)
             self._error = error
             self._process.kill()
         self._process.join(_EXIT_S)
@@ -93,13 +139,24 @@ class Child:
             self._process.kill()
             self._process.join()
         self._to_send.put(None)
-        on_end(self._how_it_ended())
+        end = Exit(self._how_it_ended(), self._error)
         self._process.close()
+        on_end(end)
+
+    def _hear(self, message: Message | Heartbeat) -> None:
+        """Take in a message; what the server does meanwhile is no silence of the process."""
+        self._is_taking = True
+        try:
+            if not isinstance(message, Heartbeat):
+                self._on_message(message)
+        finally:
+            self._heard_s = time.monotonic()
+            self._is_taking = False
 
     def _how_it_ended(self) -> str:
         if self._error is not None:
             return f"the server could not take in its results ({self._error})"
-        return _in_words(self._process.exitcode)
+        return self._killed_for or _in_words(self._process.exitcode)
 
 
 def _in_words(exit_code: int | None) -> str:

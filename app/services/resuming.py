@@ -16,7 +16,7 @@ from app.services.entries import Entry, load_table
 from app.services.errors import Conflict, NotFound
 from app.services.experiment_entry import wall_s_of
 from app.services.orders import ExperimentOrder, RaceOrder, TrainingOrder
-from app.services.store import CHECKPOINT, INTERRUPTED, RESUMABLE, UNENDED, Run, RunStore
+from app.services.store import CHECKPOINT, RESUMABLE, UNENDED, Run, RunStore
 
 
 def resumed_entries(run: Run, store: RunStore) -> list[Entry]:
@@ -27,7 +27,11 @@ def resumed_entries(run: Run, store: RunStore) -> list[Entry]:
         InvalidInput: if what it needs is gone, or damaged.
     """
     if run.state not in RESUMABLE[run.kind]:
-        raise Conflict(f"{run.kind} {run.id} is {run.state}, not interrupted", run.state)
+        choices = " or ".join(sorted(RESUMABLE[run.kind]))
+        raise Conflict(
+            f"{run.kind} {run.id} is {run.state}; it can be resumed while it is {choices}",
+            run.state,
+        )
     if isinstance(run.config, ExperimentConfig):
         return [_experiment(run, run.config, store)]
     if isinstance(run.config, RaceConfig):
@@ -76,7 +80,7 @@ def _race(run: Run, config: RaceConfig, store: RunStore) -> list[Entry]:
         except NotFound as error:
             why = f"training {training_id}, whose table it needs, was deleted"
             raise Conflict(f"race {run.id} cannot go on: {why}", run.state) from error
-        if training.state in INTERRUPTED:
+        if training.state in RESUMABLE[training.kind]:
             before += resumed_entries(training, store)
         elif training.state not in UNENDED:
             load_table(store, training_id)

@@ -23,8 +23,9 @@ LIVE = RUNNING | PAUSED
 UNENDED = QUEUED | LIVE
 INTERRUPTED: frozenset[State] = frozenset({"interrupted"})
 RESUMABLE: Mapping[Kind, frozenset[State]] = {
-    "training": INTERRUPTED,
-    "race": INTERRUPTED,
+    # From its newest checkpoint: most failures are of the machine, not of the run.
+    "training": INTERRUPTED | {"failed"},
+    "race": INTERRUPTED | {"failed"},
     # Its trials are kept one by one, so that none is repeated however it ended.
     "experiment": INTERRUPTED | {"stopped", "failed"},
 }

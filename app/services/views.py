@@ -5,7 +5,7 @@ from typing import Any
 
 from app.runs.config import RaceConfig, TrainingConfig
 from app.services.configs import config_as_json
-from app.services.store import Run
+from app.services.store import PAUSED, RESUMABLE, Run
 
 
 def run_view(run: Run, queue_position: int | None = None) -> dict[str, Any]:
@@ -26,6 +26,7 @@ def run_view(run: Run, queue_position: int | None = None) -> dict[str, Any]:
         "eta_s": run.eta_s,
         "result": run.result,
         "error": run.error,
+        "can_resume": run.state in RESUMABLE[run.kind] | PAUSED,
         "created_at": _time(run.created_at),
         "started_at": _time(run.started_at),
         "ended_at": _time(run.ended_at),

@@ -3,9 +3,10 @@
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 
+from app.domain.errors import HexapodError
 from app.services.entries import Entry
-from app.services.errors import Busy
-from app.services.store import QUEUED, RESUMABLE, Run, RunStore, State
+from app.services.errors import Busy, StorageFailed, StorageFull
+from app.services.store import QUEUED, RESUMABLE, RUNNING, Run, RunStore, State
 
 MAX_QUEUED = 32
 RETRY_AFTER_S = 10
@@ -22,6 +23,8 @@ class WaitingRuns:
     def __init__(self, store: RunStore, tell: Callable[[Run], None]) -> None:
         self._store, self._tell = store, tell
         self._entries: list[Entry] = []
+        self._unsure: set[str] = set()
+        """Runs that may be in the store although it failed to say so."""
 
     def add(self, entries: Sequence[Entry], free: int) -> None:
         """Store runs and let them wait, all or none.
@@ -41,7 +44,11 @@ class WaitingRuns:
                 RETRY_AFTER_S,
             )
         self._store.check_room()
-        self._store.create(*(entry.run for entry in entries if not entry.goes_on))
+        try:
+            self._store.create(*(entry.run for entry in entries if not entry.goes_on))
+        except StorageFailed:
+            self._unsure |= {entry.run.id for entry in entries}
+            raise
         for entry in (entry for entry in entries if entry.goes_on):
             entry.run = self._queue_again(entry.run)
         self._entries += entries
@@ -55,6 +62,26 @@ class WaitingRuns:
         queued = self._store.change(run.id, RESUMABLE[run.kind], "queued", **changed)
         self._store.forget_evaluations(run.id, after_step=run.done)
         return queued
+
+    def reconcile(self) -> None:
+        """End runs that were stored although their start was answered with an error."""
+        for run_id in list(self._unsure):
+            try:
+                now = datetime.now(UTC)
+                why = "The database failed when it was started."
+                self._tell(
+                    self._store.change(run_id, QUEUED, "interrupted", error=why, ended_at=now)
+                )
+            except (StorageFailed, StorageFull):
+                return
+            except HexapodError:
+                pass  # it was never stored
+            self._unsure.discard(run_id)
+
+    @property
+    def has_ready(self) -> bool:
+        """Whether a run waits for nothing but a core; from any thread."""
+        return any(not entry.waits_for for entry in list(self._entries))
 
     def take(self) -> Entry | None:
         """The first that waits for nothing but a core; it does not wait any more."""
@@ -83,7 +110,9 @@ class WaitingRuns:
         for entry in self._entries:
             now = max(datetime.now(UTC), entry.run.created_at)
             changed = {"error": why, "ended_at": now, "waiting_for": ()}
-            self._tell(self._store.change(entry.run.id, QUEUED, "interrupted", **changed))
+            # It reads `running` if its start failed halfway.
+            states = QUEUED | RUNNING
+            self._tell(self._store.change(entry.run.id, states, "interrupted", **changed))
         self._entries = []
 
     def needing(self, training_id: str) -> Run | None:
@@ -102,9 +131,11 @@ class WaitingRuns:
         """Tell those that wait for a run how it ended: go on, or end as it did."""
         for entry in [entry for entry in self._entries if run.id in entry.waits_for]:
             if run.state == "finished":
+                left = [i for i in entry.run.waiting_for if i in entry.waits_for - {run.id}]
+                updated = self._store.update(entry.run.id, waiting_for=tuple(left))
+                # After it was written, so that it is tried again if that fails.
                 entry.waits_for.discard(run.id)
-                left = tuple(i for i in entry.run.waiting_for if i in entry.waits_for)
-                self._tell(self._store.update(entry.run.id, waiting_for=left))
+                self._tell(updated)
             elif run.state == "failed":
                 self._drop(entry.run, "failed", f"Its training {run.id} failed: {run.error}")
             else:
@@ -112,8 +143,9 @@ class WaitingRuns:
 
     def _drop(self, run: Run, state: State, error: str | None) -> Run:
         now = datetime.now(UTC)
-        self._entries = [entry for entry in self._entries if entry.run.id != run.id]
         run = self._store.change(run.id, QUEUED, state, error=error, ended_at=now)
+        # After it was written, so that it still waits if that fails.
+        self._entries = [entry for entry in self._entries if entry.run.id != run.id]
         self._tell(run)
         self.tell_all()
         self.settle(run)

@@ -9,6 +9,7 @@ import queue
 import sys
 import threading
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection
 
@@ -33,6 +34,8 @@ from app.services.orders import (
     Ended,
     ExperimentOrder,
     Failed,
+    Heartbeat,
+    Message,
     Order,
     RaceOrder,
     Saved,
@@ -40,6 +43,7 @@ from app.services.orders import (
     Word,
 )
 
+HEARTBEAT_EVERY_S = 1.0
 _logger = logging.getLogger(__name__)
 
 
@@ -50,7 +54,9 @@ def main(pipe: Connection) -> None:
     order: Order = pipe.recv()
     words: queue.SimpleQueue[Word] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(pipe, words), daemon=True).start()
-    desk = Desk(pipe.send, words)
+    send = _one_at_a_time(pipe)
+    threading.Thread(target=_send_heartbeats, args=(send,), daemon=True).start()
+    desk = Desk(send, words)
     try:
         if isinstance(order, TrainingOrder):
             _train(order, desk)
@@ -137,6 +143,24 @@ def _race(order: RaceOrder, desk: Desk) -> None:
 
 def _pose(walker: Walker) -> NDArray[np.float32]:
     return walker.simulator.pose(walker.state).astype(np.float32)
+
+
+def _one_at_a_time(pipe: Connection) -> Callable[[Message | Heartbeat], None]:
+    """Send from several threads; a pipe by itself would mix what they send."""
+    lock = threading.Lock()
+
+    def send(message: Message | Heartbeat) -> None:
+        with lock:
+            pipe.send(message)
+
+    return send
+
+
+def _send_heartbeats(send: Callable[[Message | Heartbeat], None]) -> None:
+    with suppress(OSError):  # the pipe is closed, so the process is about to end
+        while True:
+            send(Heartbeat())
+            time.sleep(HEARTBEAT_EVERY_S)
 
 
 def _listen(pipe: Connection, words: "queue.SimpleQueue[Word]") -> None:

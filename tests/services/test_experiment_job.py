@@ -83,9 +83,9 @@ def test_whatever_ends_it_nothing_is_repeated_and_nothing_else_comes_out(
     again = jobs.resume(run.id)
     assert (again.state, again.done, again.result) == ("queued", len(kept), None)
     after(store, run, len(kept))
-    job = jobs._crew.find(run.id)
+    job = jobs._supervisor.find(run.id)
     assert job is not None
-    os.kill(job.child.pid or 0, signal.SIGKILL)
+    os.kill(job.process.pid or 0, signal.SIGKILL)
     died = ended(store, run)
     assert died.state == "failed"
     assert "SIGKILL" in (died.error or "")

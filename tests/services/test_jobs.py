@@ -33,10 +33,10 @@ def endless() -> TrainingStart:
 
 
 def pid_of(jobs: Jobs, run: Run) -> int:
-    job = jobs._crew.find(run.id)
+    job = jobs._supervisor.find(run.id)
     assert job is not None
-    assert job.child.pid is not None
-    return job.child.pid
+    assert job.process.pid is not None
+    return job.process.pid
 
 
 def test_they_start_in_the_order_in_which_they_were_asked_for(

@@ -74,7 +74,7 @@ def test_a_training_goes_on_from_its_checkpoint(
     assert steps == sorted(set(steps)), "no step twice"
     stopped = second.stop(run.id)
     assert stopped.state == "stopped"
-    with pytest.raises(Conflict, match="paused or interrupted"):
+    with pytest.raises(Conflict, match="failed or interrupted or paused"):
         second.resume(run.id)
 
 

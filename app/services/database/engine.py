@@ -2,23 +2,56 @@
 
 import sqlite3
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
-from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
+from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url, select
 from sqlalchemy.exc import DBAPIError, IntegrityError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 
 from app.domain.errors import DamagedFile, HexapodError
-from app.services.errors import StorageFailed, StorageFull
+from app.services.database.schema import ABOUT
+from app.services.errors import OwnershipLost, StorageFailed, StorageFull
 
 BUSY_S = 10.0
 """How long to wait for another process that holds the database."""
+POOL_WAIT_S = 5.0
+"""How long to wait for a connection while others have them all."""
+_FIRST_RETRY_S, _LAST_RETRY_S = 0.1, 1.0
 T = TypeVar("T")
 _ONLY_READS = "hexapods_only_reads"
 _SECONDARY = 0xFF  # an error code of SQLite's, without what it says beyond its kind
+
+
+class _Patience(NamedTuple):
+    at_most_s: float
+    cancelled: threading.Event
+
+
+_patience: ContextVar[_Patience | None] = ContextVar("patience", default=None)
+
+
+@contextmanager
+def retry_during_outage(at_most_s: float, cancelled: threading.Event) -> Iterator[None]:
+    """Let every database call in this context be retried while the database cannot be used.
+
+    For threads that nobody waits for, such as those that take in a job's results. A call may
+    have been committed although its answer was lost, so whatever is called here must come to
+    the same when it is done twice.
+
+    Args:
+        at_most_s: how long each call is retried before it fails.
+        cancelled: ends the retries early.
+    """
+    token = _patience.set(_Patience(at_most_s, cancelled))
+    try:
+        yield
+    finally:
+        _patience.reset(token)
 
 
 class Database:
@@ -27,10 +60,15 @@ class Database:
     Attributes:
         engine: for who needs connections of their own.
         on_full: called when the disk is full; True if it made room, so that trying again helps.
+        owner: the fencing token of the server that writes; None checks none, before it has one.
+        is_answering: circuit breaker; while it says False every call fails at once, so that
+            threads do not pile up behind a database that hangs.
     """
 
     def __init__(self, engine: Engine, on_full: Callable[[], bool] = lambda: False) -> None:
         self.engine, self.on_full = engine, on_full
+        self.owner: int | None = None
+        self.is_answering: Callable[[], bool] = lambda: True
         # SQLite lets those who wait poll, and so starve; a lock is fair among our own threads.
         self._turn = threading.Lock() if engine.dialect.name == "sqlite" else None
 
@@ -40,8 +78,12 @@ class Database:
         Raises:
             StorageFailed: if the database cannot be used.
         """
-        with _in_plain_words(), self.engine.connect() as connection:
-            return work(connection.execution_options(**{_ONLY_READS: True}))
+
+        def attempt() -> T:
+            with in_plain_words(), self.engine.connect() as connection:
+                return work(connection.execution_options(**{_ONLY_READS: True}))
+
+        return self._retry(attempt)
 
     def write(self, work: Callable[[Connection], T]) -> T:
         """Do what writes; when this returns, it lasts. It may be tried twice.
@@ -49,33 +91,67 @@ class Database:
         Raises:
             StorageFull: if the disk is full.
             StorageFailed: if the database cannot be used, or is held for over 10 s.
+            OwnershipLost: if another server has taken the database over.
         """
-        try:
+
+        def attempt() -> T:
+            try:
+                return self._write(work)
+            except StorageFull:
+                if not self.on_full():
+                    raise
             return self._write(work)
-        except StorageFull:
-            if not self.on_full():
+
+        return self._retry(attempt)
+
+    def _retry(self, attempt: Callable[[], T]) -> T:
+        """Call until it succeeds, for as long as the context of `retry_during_outage` says."""
+        patience = _patience.get()
+        began_s, pause_s = time.monotonic(), _FIRST_RETRY_S
+        while True:
+            try:
+                if not self.is_answering():
+                    raise _unreachable()
+                return attempt()
+            except OwnershipLost:
                 raise
-        return self._write(work)
+            except StorageFailed:
+                if patience is None or time.monotonic() - began_s > patience.at_most_s:
+                    raise
+                if patience.cancelled.wait(pause_s):
+                    raise
+            pause_s = min(2 * pause_s, _LAST_RETRY_S)
 
     def _write(self, work: Callable[[Connection], T]) -> T:
         if self._turn is not None and not self._turn.acquire(timeout=BUSY_S):
             raise _held()
         try:
-            with _in_plain_words(), self.engine.begin() as connection:
+            with in_plain_words(), self.engine.begin() as connection:
+                self._check_owner(connection)
                 return work(connection)
         finally:
             if self._turn is not None:
                 self._turn.release()
 
-    @contextmanager
-    def connected(self) -> Iterator[Connection]:
-        """A connection of one's own, outside of any transaction.
+    def _check_owner(self, connection: Connection) -> None:
+        """Fence: refuse to write once another server has raised the owner's number."""
+        if self.owner is None:
+            return
+        # The share lock keeps the number as it is until this transaction has ended.
+        number = connection.execute(select(ABOUT.c.owner).with_for_update(read=True)).scalar()
+        if number != self.owner:
+            raise OwnershipLost(
+                "another server has taken this database over, so this one writes nothing more"
+            )
+
+    def connect(self) -> Connection:
+        """A connection of one's own, outside of any transaction; to be closed.
 
         Raises:
             StorageFailed: if the database cannot be reached.
         """
-        with _in_plain_words(), self.engine.connect() as connection:
-            yield connection.execution_options(isolation_level="AUTOCOMMIT")
+        with in_plain_words():
+            return self.engine.connect().execution_options(isolation_level="AUTOCOMMIT")
 
     def close(self) -> None:
         """Let go of all connections."""
@@ -100,6 +176,7 @@ def postgresql_engine(url: str) -> Engine:
     return create_engine(
         make_url(url).set(drivername="postgresql+psycopg"),
         pool_pre_ping=True,
+        pool_timeout=POOL_WAIT_S,
         connect_args={
             "connect_timeout": int(BUSY_S),
             "options": f"-c lock_timeout={wait_ms} -c timezone=UTC -c synchronous_commit=on",
@@ -120,7 +197,12 @@ def _begin_sqlite(connection: Connection) -> None:
 
 
 @contextmanager
-def _in_plain_words() -> Iterator[None]:
+def in_plain_words() -> Iterator[None]:
+    """Turn the driver's errors into those that a user can read.
+
+    Raises:
+        StorageFull, StorageFailed, DamagedFile: in place of the driver's errors.
+    """
     try:
         yield
     except IntegrityError:
@@ -140,7 +222,7 @@ def _translated(error: DBAPIError) -> HexapodError:
     if state == "55P03":
         return _held()
     if isinstance(error, OperationalError | InterfaceError):
-        return StorageFailed("the PostgreSQL server does not answer; see that it runs")
+        return _unreachable()
     return StorageFailed(f"the database refuses ({type(error.orig).__name__})")
 
 
@@ -156,6 +238,10 @@ def _sqlite_error(error: sqlite3.Error) -> HexapodError:
     # A limit on the size of files is met as an error of a write.
     found = _full if code == sqlite3.SQLITE_IOERR_WRITE else kinds.get(code & _SECONDARY)
     return found() if found else StorageFailed(f"the database cannot be used ({error})")
+
+
+def _unreachable() -> StorageFailed:
+    return StorageFailed("the PostgreSQL server does not answer; see that it runs")
 
 
 def _held() -> HexapodError:

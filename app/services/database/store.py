@@ -77,11 +77,17 @@ class SqlStore:
         columns = columns_of({**self._progress.of(run_id), "state": to_state, **fields})
 
         still = update(RUNS).where(RUNS.c.id == run_id, RUNS.c.state.in_(from_states))
+        attempts = 0
 
         def work(connection: Connection) -> Row:
+            nonlocal attempts
+            attempts += 1
             changed = found(connection, still.values(columns).returning(RUNS))
             if not changed:
                 run = row_of_run(connection, run_id)
+                if attempts > 1 and run["state"] == to_state:
+                    # The first attempt was committed, and its answer lost in an outage.
+                    return run
                 raise Conflict(f"{run['kind']} {run_id} is {run['state']}", run["state"])
             return changed[0]
 
@@ -162,7 +168,8 @@ class SqlStore:
             raise
         if columns:
             self._progress.take(run_id)
-        self._files.remove(*former)
+        # Itself is among them if the answer to a first attempt was lost.
+        self._files.remove(*(name for name in former if name != stored.file))
 
     def artifact(self, run_id: str, name: str) -> bytes | None:
         said = f"{name} of run {run_id}"

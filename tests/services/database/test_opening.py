@@ -109,7 +109,7 @@ def test_a_data_folder_has_one_server(tmp_path: Path) -> None:
 def test_a_postgresql_database_has_one_server(
     postgresql: PostgresServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.services.database.opening._LOCK_WAIT_S", 0.2)
+    monkeypatch.setattr("app.services.database.ownership._LOCK_WAIT_S", 0.2)
     with postgresql.database() as url:
         with opened(tmp_path / "one", url), pytest.raises(InvalidInput, match="another server"):
             open_store(Settings(data=tmp_path / "two", database_url=url)).__enter__()

@@ -1,0 +1,217 @@
+"""Promise 26: the queue never stops, whatever is asked in whatever order.
+
+Random verbs (start, pause, resume, stop, delete, PATCH, and kill -9 of a job's process) against a
+model of the states, while another client deletes further runs at every moment of their lives. Each
+answer must be one that the model allows; in the end nothing is left over, and the queue moves.
+
+Promised: 100,000 verbs. Here 2,000; in full by `make soak`. `/readyz` answers 503 while a queued
+run waits beside a free core for 5 s, which is shown below by a supervisor that cannot start it.
+"""
+
+import random
+import signal
+import sqlite3
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import httpx2
+import psutil
+import pytest
+
+from app.services.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
+from tests.promises.length import at_length
+from tests.served import BODY, ENDLESS, LONG_S, Served
+
+VERBS = at_length(2_000, 100_000)
+RUNS = 10
+SHORT = {**BODY, "steps": 30, "evaluate_every": 10}
+LIVE = {"running", "paused"}
+ENDED = {"finished", "stopped", "failed", "interrupted"}
+BY_ITSELF = {"queued": {"running"}, "running": {"finished"}, "paused": {"finished"}}
+"""State → where a run may have gone since without being told.
+
+Its last step may be done when it is paused, and the word of its end on the way.
+"""
+
+
+class Model:
+    """What may be true of one run: the states that it can be in."""
+
+    def __init__(self, shown: dict[str, Any]) -> None:
+        self.path = f"/api/v1/trainings/{shown['id']}"
+        self.is_short = shown["config"]["steps"] == SHORT["steps"]
+        self.states = {"queued"}
+        self.is_killed = False
+        """Whether its process was killed, perhaps, and it may fail as soon as that is noticed."""
+
+    def possible(self) -> set[str]:
+        found, left = set(), set(self.states)
+        while left:
+            state = left.pop()
+            found.add(state)
+            further = BY_ITSELF.get(state, set()) - found
+            left |= further if self.is_short else further - {"finished"}
+        if self.is_killed and found & LIVE:
+            found.add("failed")
+        return found
+
+    def expect(self, response: httpx2.Response, goes: dict[str, str], fits: set[str]) -> None:
+        """Hold an answer against the model.
+
+        Args:
+            response: to a verb.
+            goes: state before → state after, where the verb is possible.
+            fits: states in which it is refused.
+        """
+        before = self.possible()
+        if response.status_code < 300:
+            after = {goes[state] for state in before & goes.keys()}
+            shown = response.json()["state"] if response.content else "deleted"
+            # Meanwhile it may have gone on by itself, even to its end.
+            self.states = after
+            ended = {"finished", "failed"} & before
+            assert shown in self.possible() | after | ended, (before, response.text)
+            self.states = {shown}
+            self.is_killed &= shown in LIVE
+        elif response.status_code == 409:
+            self.states = before & fits
+            assert self.states, (before, response.text)
+        else:
+            assert response.status_code in (429, 503), response.text
+
+
+def start(client: httpx2.Client, chance: random.Random) -> Model | None:
+    body = SHORT if chance.random() < 0.5 else ENDLESS
+    response = client.post("/api/v1/trainings", json=body)
+    assert response.status_code in (202, 429), response.text
+    return Model(response.json()) if response.status_code == 202 else None
+
+
+def verb(client: httpx2.Client, run: Model, chance: random.Random) -> bool:
+    """Ask one thing of a run; False if it is gone."""
+    name = chance.choice(["look", "pause", "resume", "stop", "delete", "change"])
+    if name == "look":
+        shown = client.get(run.path).json()["state"]
+        assert shown in run.possible(), (run.states, shown)
+        run.states = {shown}
+    elif name == "pause":
+        run.expect(
+            client.post(f"{run.path}/pause"), {"running": "paused"}, ENDED | LIVE | {"queued"}
+        )
+    elif name == "resume":
+        goes = {"paused": "running", "failed": "queued", "interrupted": "queued"}
+        fits = {"queued", "running", "finished", "stopped"}
+        run.expect(client.post(f"{run.path}/resume"), goes, fits)
+    elif name == "stop":
+        goes = {"queued": "stopped", "running": "stopped", "paused": "stopped"}
+        run.expect(client.post(f"{run.path}/stop"), goes, ENDED)
+    elif name == "change":
+        goes = {state: state for state in LIVE}
+        run.expect(client.patch(run.path, json={"alpha": 0.5}), goes, ENDED | {"queued"})
+    else:
+        goes = dict.fromkeys(ENDED, "deleted")
+        run.expect(client.delete(run.path), goes, LIVE | {"queued"})
+    return run.states != {"deleted"}
+
+
+def kill_one(server: Served, runs: list[Model], chance: random.Random) -> None:
+    """End the process of some run, whichever that is: one of those that live may fail."""
+    jobs = server.jobs()
+    if not jobs:
+        return
+    with_process = [run for run in runs if run.possible() & LIVE]
+    try:
+        chance.choice(jobs).send_signal(signal.SIGKILL)
+    except psutil.NoSuchProcess:
+        return
+    for run in with_process:
+        run.is_killed = True
+
+
+def delete_at_every_moment(address: str, done: threading.Event) -> int:
+    """Start runs and ask for their deletion all their life long; how many there were."""
+    count = 0
+    with httpx2.Client(base_url=address, timeout=LONG_S, trust_env=False) as client:
+        while not done.is_set():
+            response = client.post("/api/v1/trainings", json=SHORT)
+            if response.status_code == 429:
+                time.sleep(0.1)
+                continue
+            path = f"/api/v1/trainings/{response.json()['id']}"
+            deadline = time.monotonic() + LONG_S
+            while (answer := client.delete(path)).status_code != 204:
+                assert answer.status_code == 409, answer.text
+                assert time.monotonic() < deadline, client.get(path).text
+                if done.is_set():
+                    client.post(f"{path}/stop")
+            assert client.get(path).status_code == 404
+            count += 1
+    return count
+
+
+def rows_and_files(data: Path) -> tuple[int, int]:
+    """What is left in the data folder."""
+    with closing(sqlite3.connect(data / DATABASE_FILE)) as database:
+        tables = ("runs", "artifacts", "evaluations", "trials")
+        rows = sum(database.execute(f"SELECT count(*) FROM {t}").fetchone()[0] for t in tables)
+    return rows, sum(path.is_file() for path in (data / ARTIFACTS_FOLDER).rglob("*"))
+
+
+@pytest.mark.timeout(at_length(300, 5 * 3600))
+def test_random_verbs_never_wedge_the_queue(launch: Callable[..., Served], tmp_path: Path) -> None:
+    chance = random.Random(26)
+    server = launch(HEXAPODS_STARTS_PER_MINUTE="1000000")
+    runs: list[Model] = []
+    done = threading.Event()
+    with ThreadPoolExecutor(1) as pool:
+        deleter = pool.submit(delete_at_every_moment, server.address, done)
+        try:
+            for number in range(VERBS):
+                if len(runs) < RUNS and chance.random() < 0.3:
+                    started = start(server.client, chance)
+                    runs += [started] if started else []
+                elif number % 50 == 49:
+                    kill_one(server, runs, chance)
+                elif runs:
+                    run = chance.choice(runs)
+                    if not verb(server.client, run, chance):
+                        runs.remove(run)
+                assert not deleter.done(), deleter.result()
+        finally:
+            done.set()
+        assert deleter.result(LONG_S) > 0
+    for run in runs:
+        if server.client.get(run.path).json()["state"] not in ENDED:
+            assert server.client.post(f"{run.path}/stop").status_code in (202, 409)
+        assert server.client.delete(run.path).status_code == 204
+    last = server.start(SHORT)
+    assert server.in_state(last, *ENDED)["state"] == "finished", "the queue moves"
+    assert server.client.delete(f"/api/v1/trainings/{last['id']}").status_code == 204
+    assert server.client.get("/readyz").status_code == 200
+    assert server.jobs() == []
+    assert rows_and_files(tmp_path) == (0, 0)
+    began = time.monotonic()
+    assert server.end(signal.SIGTERM) == 0
+    assert time.monotonic() - began < 10
+
+
+def test_delete_at_the_moment_of_the_end_wedges_nothing(launch: Callable[..., Served]) -> None:
+    """Stop it, and ask for its deletion until it is given; each round must give its core back."""
+    server = launch()
+    for _ in range(at_length(20, 200)):
+        run = server.start(ENDLESS)
+        server.in_state(run, "running")
+        path = f"/api/v1/trainings/{run['id']}"
+        with ThreadPoolExecutor(1) as pool:
+            stopping = pool.submit(httpx2.post, f"{server.address}{path}/stop", timeout=LONG_S)
+            while (answer := server.client.delete(path)).status_code != 204:
+                assert answer.status_code == 409, answer.text
+            # Its answer is the stopped run, or that there is none any more.
+            assert stopping.result(LONG_S).status_code in (202, 404)
+    last = server.start(SHORT)
+    assert server.in_state(last, *ENDED)["state"] == "finished"
