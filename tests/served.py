@@ -26,6 +26,10 @@ def environ(**variables: str) -> dict[str, str]:
     return {**kept, **variables}
 
 
+class NotStartedError(Exception):
+    """The server has ended instead of serving."""
+
+
 class Served:
     """`hexapods serve` on a port that the system chose."""
 
@@ -36,7 +40,9 @@ class Served:
         )
         assert self.process.stdout is not None
         line = self.process.stdout.readline()
-        assert "Racing Hexapods is at http://127.0.0.1:" in line
+        if "Racing Hexapods is at http://127.0.0.1:" not in line:
+            self.process.stdout.close()
+            raise NotStartedError(f"exit code {self.process.wait(LONG_S)}: {line}")
         self.address = line.split()[4].rstrip("/")
         self.client = httpx2.Client(base_url=self.address, timeout=LONG_S, trust_env=False)
 
@@ -122,6 +128,8 @@ def serving_from(data: Path) -> Iterator[Callable[..., Served]]:
         served.append(Served(data, **variables))
         return served[-1]
 
-    yield make
-    for one in served:
-        one.end(signal.SIGKILL)
+    try:
+        yield make
+    finally:
+        for one in served:
+            one.end(signal.SIGKILL)

@@ -1,0 +1,126 @@
+"""Promise 31: a database has exactly one owner.
+
+A second server on the same data folder or database is refused. If it gets in all the same, through
+a restart of PostgreSQL or a lock file that somebody removed, the first is fenced: it writes nothing
+more, ends its jobs and itself, and the runs go on with the second, bit by bit as they would have.
+"""
+
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
+
+import psutil
+import psycopg
+import pytest
+
+from app.domain.errors import InvalidInput
+from app.services.database.folder_lock import LOCK_FILE
+from app.services.database.opening import open_store
+from app.services.database.store import SqlStore
+from app.services.errors import OwnershipLost
+from app.settings import Settings
+from tests.postgresql import PostgresServer
+from tests.promises.length import at_length
+from tests.served import BODY, LONG_S, NotStartedError, serving_from
+from tests.services.stores import BACKENDS, database_url, training
+
+ROUNDS = at_length(1, 20)
+PACED = {**BODY, "steps": 600, "pace": 20, "evaluate_every": 100, "seed": 31}
+
+
+def take_the_lock_away(data: Path, url: str | None) -> None:
+    """Do what a restart of the database does, or a person who tidies the data folder up."""
+    (data / LOCK_FILE).unlink(missing_ok=True)
+    if url is not None:
+        with psycopg.connect(url, autocommit=True) as connection:
+            connection.execute(
+                "SELECT pg_terminate_backend(pid) FROM pg_locks WHERE locktype = 'advisory'"
+            )
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.timeout(at_length(180, 3600))
+def test_the_first_of_two_servers_is_fenced(
+    backend: str, postgresql: PostgresServer, tmp_path: Path
+) -> None:
+    for number in range(ROUNDS):
+        data = tmp_path / str(number)
+        with database_url(backend, postgresql) as url, serving_from(data) as launch:
+            variables = {} if url is None else {"HEXAPODS_DATABASE_URL": url}
+            first = launch(**variables)
+            alone = first.in_state(first.start({**PACED, "pace": "max"}), "finished")
+            run = first.start(PACED)
+            first.after_step(run, 50)
+            children = first.jobs()
+            # As a machine that is suspended, or a network that is cut: it cannot keep its lock.
+            first.process.send_signal(signal.SIGSTOP)
+            take_the_lock_away(data, url)
+            second = launch(**variables)
+            first.process.send_signal(signal.SIGCONT)
+            assert first.process.wait(LONG_S) == 2, "it ends, and says why"
+            _, left = psutil.wait_procs(children, timeout=10)
+            assert not left
+            assert second.look(run)["state"] == "interrupted"
+            assert second.tell(run, "resume").status_code == 202
+            ended = second.in_state(run, "finished", "failed")
+            assert ended["result"] == alone["result"]
+
+
+@contextmanager
+def second_store(data: Path, settings: Settings, url: str | None) -> Iterator[SqlStore]:
+    """A store opened beside another one, which may take its lock back more than once before."""
+    with ExitStack() as stack:
+        while True:
+            take_the_lock_away(data, url)
+            with suppress(InvalidInput):
+                yield stack.enter_context(open_store(settings))
+                return
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_fenced_server_writes_nothing(
+    backend: str, postgresql: PostgresServer, tmp_path: Path
+) -> None:
+    lost: list[int] = []
+    with database_url(backend, postgresql) as url:
+        settings = Settings(data=tmp_path, database_url=url)
+        with open_store(settings, on_lost=lambda: lost.append(1)) as first:
+            first.create(training("a"))
+            other = Settings(data=tmp_path / "other", database_url=url)
+            with second_store(tmp_path, other if url else settings, url) as second:
+                for write in (
+                    lambda: first.create(training("b")),
+                    lambda: first.update("a", name="c"),
+                    lambda: first.put_artifact("a", "q-table.npz", b"late"),
+                    lambda: first.delete("a"),
+                ):
+                    with pytest.raises(OwnershipLost):
+                        write()
+                assert [run.id for run in second.list().items] == ["a"]
+                deadline = time.monotonic() + LONG_S
+                while not lost:
+                    assert time.monotonic() < deadline
+                    time.sleep(0.05)
+                second.update("a", name="of the second")
+                assert first.get("a").name == "of the second", "reading goes on"
+
+
+def test_a_server_whose_database_was_restarted_keeps_it(
+    postgresql: PostgresServer, tmp_path: Path
+) -> None:
+    """It takes its lock again, so that a second one is refused as before."""
+    with postgresql.database() as url, serving_from(tmp_path / "one") as launch:
+        first = launch(HEXAPODS_DATABASE_URL=url)
+        take_the_lock_away(tmp_path / "one", url)
+        deadline = time.monotonic() + LONG_S
+        held = "SELECT count(*) FROM pg_locks WHERE locktype = 'advisory' AND granted"
+        with psycopg.connect(url, autocommit=True) as connection:
+            while connection.execute(held).fetchone() != (1,):
+                assert time.monotonic() < deadline
+                time.sleep(0.05)
+        with serving_from(tmp_path / "two") as launch_other, pytest.raises(NotStartedError):
+            launch_other(HEXAPODS_DATABASE_URL=url)
+        assert first.client.get("/readyz").status_code == 200
+        assert first.end(signal.SIGTERM) == 0

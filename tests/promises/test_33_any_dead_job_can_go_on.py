@@ -1,0 +1,81 @@
+"""Promise 33: any dead job can go on.
+
+SIGKILL (which is also what a system sends that is out of memory) and SIGSTOP at random moments are
+noticed within 10 s: the run is `failed`, and resumed from its newest checkpoint it comes to the
+table of an unbroken run, bit by bit. Here once each; by `make soak` 20 times.
+"""
+
+import random
+import signal
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import httpx2
+import pytest
+
+from tests.promises.length import at_length
+from tests.served import BODY, LONG_S, Served
+
+ROUNDS = at_length(1, 20)
+NOTICED_S = 10.0
+PACED = {**BODY, "steps": 400, "pace": 20, "evaluate_every": 100, "seed": 33}
+
+
+def table_of(server: Served, body: dict[str, Any]) -> str:
+    """The hash of what an unbroken run learns."""
+    run = server.in_state(server.start({**body, "pace": "max"}), "finished", "failed")
+    assert run["state"] == "finished", run
+    return str(run["result"]["q_table_sha256"])
+
+
+@pytest.mark.parametrize("fate", [signal.SIGKILL, signal.SIGSTOP])
+@pytest.mark.timeout(at_length(120, 3600))
+def test_a_dead_job_is_noticed_and_goes_on(
+    launch: Callable[..., Served], fate: signal.Signals
+) -> None:
+    chance = random.Random(33)
+    server = launch()
+    unbroken = table_of(server, PACED)
+    for _ in range(ROUNDS):
+        run = server.start(PACED)
+        server.after_step(run, chance.randrange(1, 200))
+        (job,) = server.jobs()
+        began = time.monotonic()
+        job.send_signal(fate)
+        dead = server.in_state(run, "failed", "finished")
+        assert dead["state"] == "failed"
+        assert time.monotonic() - began < NOTICED_S
+        assert dead["can_resume"]
+        assert server.tell(run, "resume").status_code == 202
+        ended = server.in_state(run, "failed", "finished")
+        assert ended["state"] == "finished", ended
+        assert ended["result"]["q_table_sha256"] == unbroken
+
+
+def test_changing_a_stopped_process_keeps_nobody_waiting(launch: Callable[..., Served]) -> None:
+    """An answer that nothing was changed, and other calls as quick as ever."""
+    server = launch()
+    run = server.start({**PACED, "steps": 100_000})
+    server.after_step(run, 5)
+    (job,) = server.jobs()
+    job.send_signal(signal.SIGSTOP)
+    path = f"{server.address}/api/v1/trainings/{run['id']}"
+
+    def change(_: int) -> int:
+        return httpx2.patch(path, json={"alpha": 0.9}, timeout=LONG_S).status_code
+
+    with ThreadPoolExecutor(30) as pool:
+        changing = [pool.submit(change, n) for n in range(30)]
+        slowest_s = 0.0
+        for _ in range(20):
+            began = time.monotonic()
+            assert server.client.get(f"/api/v1/trainings/{run['id']}").status_code == 200
+            slowest_s = max(slowest_s, time.monotonic() - began)
+            time.sleep(0.02)
+        assert {one.result(LONG_S) for one in changing} <= {503, 429}
+    assert slowest_s < 2
+    dead = server.in_state(run, "failed")
+    assert "stopped by a signal" in dead["error"]
+    assert dead["changes"] == []
