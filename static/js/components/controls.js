@@ -123,7 +123,11 @@ function Failure() {
   return html`
     <div class="notice bad">
       <p><b>The ${run.kind} failed.</b> ${run.error}</p>
-      <p>Change what it names, or start it again: everything else goes on.</p>
+      <p>Change what it names, or let it go on from what it has kept; everything else runs.</p>
+      ${run.can_resume && html`
+        <button class="secondary" disabled=${pending.value[run.id]} onClick=${() => goOn(run)}>Go on</button>
+        <${Problem} at=${run.id} />
+      `}
     </div>
   `;
 }

@@ -56,7 +56,7 @@ function Deeds({ run }) {
   const mayTake = run.kind === "race" ? run.state === "finished" : hasTable(run);
   return html`
     <div class="run-deeds">
-      ${isOperator.value && run.state === "interrupted" && html`
+      ${isOperator.value && run.can_resume && run.state !== "paused" && html`
         <button class="secondary compact" disabled=${pending.value[run.id]} onClick=${() => goOn(run)}>Go on</button>
       `}
       ${isOperator.value && html`

@@ -59,7 +59,7 @@ function Deeds({ run }) {
   return html`
     <div class="report-deeds">
       ${run.state === "running" && deed("pause", "pause", "Pause")}
-      ${["paused", "interrupted", "stopped", "failed"].includes(run.state) && deed("resume", "play", "Resume")}
+      ${run.can_resume && deed("resume", "play", "Resume")}
       ${isActive(run) && deed("stop", "stop", "Stop")}
       ${!isActive(run) && html`
         <button class="quiet compact" disabled=${isHeld} onBlur=${() => setSure(false)} onClick=${() => (isSure ? discard(run) : setSure(true))}>
