@@ -38,9 +38,9 @@ from app.domain.errors import HexapodError, InvalidInput
 from app.services import logs
 from app.services.database.opening import open_store
 from app.services.errors import OwnershipLost
+from app.services.idempotency import Idempotency
 from app.services.jobs import Jobs
 from app.services.memory_store import MemoryStore
-from app.services.once import Once
 from app.services.recordings import Recordings
 from app.services.stage import Stage
 from app.services.store import RunStore
@@ -87,7 +87,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
         bus=bus,
         jobs=jobs,
         stage=show,
-        once=Once(),
+        idempotency=Idempotency(store),
         agents=tuple(registered()),
         audience=lambda: theatre.hub.counters,
         ready=lambda: _trouble(jobs, store),

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Annotated, NamedTuple, Protocol, TypeVar
+from typing import Annotated, NamedTuple, Protocol
 
 from fastapi import Depends, Header, HTTPException, Request
 from starlette.requests import ClientDisconnect
@@ -12,15 +12,14 @@ from app.api.sentences import VALID
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
+from app.services.idempotency import Idempotency, Start
 from app.services.jobs import Jobs
-from app.services.once import Once
 from app.services.recordings import Recordings
 from app.services.stage import Stage
-from app.services.store import RunStore
+from app.services.store import Run, RunStore
 from app.services.what_if import WhatIf
 from app.services.witness import Witness
 
-T = TypeVar("T")
 Film = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock], bytes]
 """From a race, its name and a clock to a file that viser's client plays."""
 
@@ -38,7 +37,7 @@ class Services:
     """All that the API stands on.
 
     Attributes:
-        store, recordings, bus, jobs, stage, once: the services.
+        store, recordings, bus, jobs, stage, idempotency: the services.
         agents: the names that were registered when the server started.
         audience: counts who watches the stage, and what they were sent.
         ready: says what is not ready, or None.
@@ -51,7 +50,7 @@ class Services:
     bus: Witness
     jobs: Jobs
     stage: Stage
-    once: Once
+    idempotency: Idempotency
     agents: tuple[str, ...]
     audience: Callable[[], Audience]
     ready: Callable[[], str | None]
@@ -67,9 +66,9 @@ class Asked(NamedTuple):
     key: str | None
     """Chosen by the client, so that it can ask again without starting twice."""
 
-    def once(self, services: Services, start: Callable[[], T]) -> T:
-        """What `start` returns, or returned when this was asked for before."""
-        return services.once.run(self.key, self.address.encode() + b"\n" + self.body, start)
+    def start(self, services: Services, start: Start) -> Run:
+        """The run that `start` creates, or created when this was asked for before."""
+        return services.idempotency.run(self.key, self.address.encode() + b"\n" + self.body, start)
 
 
 def _services(request: Request) -> Services:
@@ -97,5 +96,5 @@ async def _asked(
 
 
 Given = Annotated[Services, Depends(_services)]
-Start = Annotated[Asked, Depends(_asked)]
+StartRequest = Annotated[Asked, Depends(_asked)]
 Who = Annotated[Role, Depends(_role)]

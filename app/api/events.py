@@ -1,6 +1,5 @@
 """Server-sent events: how everything is, and then what changes."""
 
-import json
 from collections.abc import AsyncIterator
 from typing import Annotated, Any
 
@@ -10,6 +9,7 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 from app import __version__
 from app.api.deps import Given, Services, Who
 from app.api.sentences import VALID
+from app.services.json_text import json_text
 
 NEWEST_RUNS = 50
 RETRY_MS = 1000
@@ -22,7 +22,7 @@ def _known_run(
     run_id: Annotated[str | None, Query(max_length=64, description=VALID["run_id"])] = None,
 ) -> str | None:
     """The run to listen to, checked while the answer may still be 404."""
-    return None if run_id is None else services.store.get(run_id).id
+    return None if run_id is None else services.store.find(run_id).id
 
 
 @router.get("", summary="What happens, as it happens", response_class=EventSourceResponse)
@@ -36,7 +36,7 @@ async def get_events(
     # Listening before looking: what happens in between comes twice rather than never.
     subscription = services.bus.subscribe(run_id, _event_id(last_event_id))
     snapshot_id = str(services.bus.last_id)
-    data = json.dumps(_snapshot(services, role, run_id), allow_nan=False)
+    data = json_text(_snapshot(services, role, run_id))
     yield ServerSentEvent(event="snapshot", id=snapshot_id, raw_data=data, retry=RETRY_MS)
     async for event in subscription:
         yield ServerSentEvent(event=event.event, id=str(event.id), raw_data=event.data)
@@ -44,7 +44,7 @@ async def get_events(
 
 def _snapshot(services: Services, role: str, run_id: str | None) -> dict[str, Any]:
     store = services.store
-    runs = store.list(limit=NEWEST_RUNS).items if run_id is None else [store.get(run_id)]
+    runs = store.list(limit=NEWEST_RUNS).items if run_id is None else [store.find(run_id)]
     shown: dict[str, Any] = {
         "version": __version__,
         "role": role,

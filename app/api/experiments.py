@@ -5,13 +5,14 @@ from typing import Annotated, Any, Literal
 from fastapi import Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
-from app.api.deps import Given, Start
+from app.api.deps import Given, StartRequest
 from app.api.experiment_body import ExperimentBody
 from app.api.formats import attachment, chosen
 from app.api.runs import RunPath, accepted, find, run_routes
 from app.experiments.config import ExperimentConfig
 from app.services.configs import config_as_json
 from app.services.errors import Conflict, NotFound
+from app.services.json_text import finite
 from app.services.store import REPORT, SUMMARY, UNENDED, Run
 from app.services.stored_trials import trials_as_csv
 
@@ -34,12 +35,12 @@ router = run_routes("experiment")
 
 @router.post("", status_code=202, summary="Start an experiment over many seeds")
 def start_experiment(
-    services: Given, request: Request, asked: Start, body: ExperimentBody
+    services: Given, request: Request, asked: StartRequest, body: ExperimentBody
 ) -> Response:
     """Queue it, and answer with its run."""
-    jobs = services.jobs
-    shown = asked.once(services, lambda: jobs.view(jobs.experiment(body.start(services.agents))))
-    return accepted(request, shown)
+    jobs, agents = services.jobs, services.agents
+    run = asked.start(services, lambda key: jobs.experiment(body.start(agents), key))
+    return accepted(request, jobs.view(run))
 
 
 @router.get("/{run_id}/summary", summary="What its trials show so far")
@@ -81,7 +82,7 @@ def get_trials(
     if chosen(request, format, ("json", "csv")) == "csv":
         table = trials_as_csv(config, rows)
         return attachment(table, "text/csv; charset=utf-8", f"trials-{run_id}.csv")
-    return JSONResponse({"trials": list(rows)})
+    return JSONResponse(finite({"trials": list(rows)}))
 
 
 def _config(run: Run) -> ExperimentConfig:

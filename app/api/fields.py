@@ -1,21 +1,22 @@
 """Fields that requests have in common, and what every request's object is."""
 
-import unicodedata
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from app.api.sentences import MAX_NAME, VALID
-from app.domain.errors import UnknownName
+from app.api.sentences import VALID
+from app.domain.errors import InvalidInput, UnknownName
 from app.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, MIN_SIDE_M
 from app.runs.config import MAX_STEPS
+from app.services.text import MAX_NAME, check_name
 
 
-def _printable(text: str) -> str:
-    if any(unicodedata.category(character) in ("Cc", "Cs") for character in text):
-        raise ValueError("control character")
-    return text.strip()
+def _name(text: str) -> str:
+    try:
+        return check_name(text)
+    except InvalidInput as error:
+        raise ValueError(str(error)) from error
 
 
 def number(**limits: Any) -> Any:
@@ -26,7 +27,7 @@ def number(**limits: Any) -> Any:
 Name = Annotated[
     str,
     Field(max_length=MAX_NAME, description=VALID["name"]),
-    AfterValidator(_printable),
+    AfterValidator(_name),
 ]
 RunId = Annotated[str, Field(min_length=1, max_length=64)]
 Steps = Annotated[int, Field(strict=True, ge=1, le=MAX_STEPS, description=VALID["steps"])]

@@ -21,6 +21,7 @@ from starlette.responses import Response
 
 from app import __version__
 from app.api.deps import Services
+from app.services.damage import DamageCount
 from app.services.store import STATES
 
 router = APIRouter(tags=["health"])
@@ -46,6 +47,7 @@ def registry_of(services: Services) -> CollectorRegistry:
 class _OfServices(Collector):
     def __init__(self, services: Services) -> None:
         self._services = services
+        self._damaged = DamageCount(services.store)
 
     def collect(self) -> Iterable[Metric]:
         services, counters = self._services, self._services.audience()
@@ -54,6 +56,11 @@ class _OfServices(Collector):
         for state in STATES:
             runs.add_metric([state], counts.get(state, 0))
         yield runs
+        yield GaugeMetricFamily(
+            "hexapods_runs_damaged",
+            "Runs that are kept and cannot be shown; hexapods doctor names them.",
+            self._damaged(),
+        )
         yield GaugeMetricFamily(
             "hexapods_queue_depth", "Runs that wait for their turn.", counts.get("queued", 0)
         )

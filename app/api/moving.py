@@ -3,7 +3,7 @@
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
-from app.api.deps import Given, Start
+from app.api.deps import Given, StartRequest
 from app.api.formats import attachment
 from app.api.runs import RunPath, find
 from app.domain.errors import InvalidInput
@@ -52,15 +52,18 @@ def export_experiment(services: Given, run_id: RunPath) -> Response:
         }
     },
 )
-def import_archive(services: Given, request: Request, asked: Start) -> Response:
+def import_archive(services: Given, request: Request, asked: StartRequest) -> Response:
     """The archive is the body. A run that is here already is not replaced: it comes twice.
 
-    Unless it is the same request again, with the same `Idempotency-Key`.
+    Unless it is the same request again, with the same `Idempotency-Key`. It keeps its id if that
+    is free here, and could have been made by now; the answer has the id that it got.
     """
     if not asked.body:
         raise InvalidInput("send the .zip file of an exported run as the request's body")
-    store, agents, new_id = services.store, services.agents, services.jobs.new_id
-    run = asked.once(services, lambda: import_run(store, asked.body, new_id, agents, "the archive"))
+    store, agents, ids = services.store, services.agents, services.jobs.new_id
+    run = asked.start(
+        services, lambda key: import_run(store, asked.body, ids, agents, "the archive", key=key)
+    )
     services.bus.publish("run", run_view(run), run.id)
     location = request.url_for(f"get_{run.kind}", run_id=run.id).path
     return JSONResponse(run_view(run), 201, {"Location": location})

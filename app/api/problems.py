@@ -16,12 +16,25 @@ from starlette.routing import compile_path
 
 from app.api.sentences import in_sentences
 from app.domain.errors import HexapodError, InvalidInput
-from app.services.errors import Busy, Conflict, NotAnswering, NotFound, StorageFailed, StorageFull
+from app.services.errors import (
+    Busy,
+    Conflict,
+    Gone,
+    NotAnswering,
+    NotFound,
+    StorageFailed,
+    StorageFull,
+)
 
 MEDIA_TYPE = "application/problem+json"
 MAX_DETAIL = 1000
 _STORAGE_RETRY_S = 10
-_STATUSES: dict[type[HexapodError], int] = {InvalidInput: 422, NotFound: 404, StorageFull: 507}
+_STATUSES: dict[type[HexapodError], int] = {
+    InvalidInput: 422,
+    NotFound: 404,
+    Gone: 410,
+    StorageFull: 507,
+}
 _logger = logging.getLogger(__name__)
 
 _DETAILS = {

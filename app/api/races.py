@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from fastapi import Query, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
-from app.api.deps import Given, Services, Start
+from app.api.deps import Given, Services, StartRequest
 from app.api.formats import attachment, chosen
 from app.api.runs import RunPath, accepted, find, run_routes
 from app.api.schemas import RaceBody
@@ -21,11 +21,11 @@ router = run_routes("race")
 
 
 @router.post("", status_code=202, summary="Start a race, and the practice that it needs")
-def start_race(services: Given, request: Request, asked: Start, body: RaceBody) -> Response:
+def start_race(services: Given, request: Request, asked: StartRequest, body: RaceBody) -> Response:
     """Queue the trainings of its lanes and then the race, and answer with the race's run."""
-    jobs = services.jobs
-    shown = asked.once(services, lambda: jobs.view(jobs.race(body.start(services.agents))))
-    return accepted(request, shown)
+    jobs, agents = services.jobs, services.agents
+    run = asked.start(services, lambda key: jobs.race(body.start(agents), key))
+    return accepted(request, jobs.view(run))
 
 
 @router.get("/{run_id}/recording", summary="What a replay needs; also as .npz and for viser")

@@ -8,9 +8,9 @@ from starlette.responses import JSONResponse, Response
 
 from app.api.deps import Given, Services
 from app.api.sentences import MAX_PAGE, VALID
-from app.services.errors import NotFound
+from app.services.errors import Damaged, NotFound
 from app.services.jobs import Jobs
-from app.services.store import Kind, Run, State
+from app.services.store import AnyRun, DamagedRun, Kind, Run, State
 
 RunPath = Annotated[str, Path(description="of the run")]
 
@@ -20,12 +20,25 @@ def find(services: Services, kind: Kind, run_id: str) -> Run:
 
     Raises:
         NotFound: if there is none.
+        Damaged: if it cannot be read.
+    """
+    run = find_any(services, kind, run_id)
+    if isinstance(run, DamagedRun):
+        raise Damaged(run.id, run.damaged)
+    return run
+
+
+def find_any(services: Services, kind: Kind, run_id: str) -> AnyRun:
+    """A run of this kind, or one that may be, of which not even that can be read.
+
+    Raises:
+        NotFound: if there is none.
     """
     try:
-        run = services.store.get(run_id)
+        run = services.store.find(run_id)
     except NotFound:
         run = None
-    if run is None or run.kind != kind:
+    if run is None or run.kind not in (kind, None):
         raise NotFound(f"there is no {kind} {run_id!r}; GET /api/v1/{kind}s lists all")
     return run
 
@@ -53,13 +66,13 @@ def run_routes(kind: Kind) -> APIRouter:
 
     @router.get("/{run_id}", summary=f"A {kind}", name=f"get_{kind}")
     def get_run(services: Given, run_id: RunPath) -> Response:
-        return JSONResponse(services.jobs.view(find(services, kind, run_id)))
+        return JSONResponse(services.jobs.view(find_any(services, kind, run_id)))
 
     @router.delete(
         "/{run_id}", status_code=204, summary=f"Delete a {kind} that has ended", name=f"del_{kind}"
     )
     def delete_run(services: Given, run_id: RunPath) -> None:
-        find(services, kind, run_id)
+        find_any(services, kind, run_id)
         services.jobs.delete(run_id)
 
     for verb, summary in _VERBS.items():

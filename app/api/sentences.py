@@ -11,8 +11,9 @@ from app.experiments.config import EXPERIMENTS, MAX_SEEDS
 from app.runs.clocks import CLOCKS
 from app.runs.config import MAX_LANES, MAX_STEPS, SIMULATORS
 from app.services.store import STATES
+from app.services.text import NAMES
 
-MAX_NAME, MAX_PAGE = 100, 100
+MAX_PAGE = 100
 
 
 def _one_of(names: Iterable[str]) -> str:
@@ -22,7 +23,7 @@ def _one_of(names: Iterable[str]) -> str:
 _STEPS = f"a whole number from 1 to {MAX_STEPS:,}"
 
 VALID: Mapping[str, str] = {
-    "name": f"text of at most {MAX_NAME} characters, without control characters",
+    "name": NAMES,
     "gait": f"{_one_of(NAMED_GAITS)}, or {{right_leg, left_leg, and symmetry or pairs}}",
     "right_leg": "a leg's number, from 1 on",
     "left_leg": "a leg's number, from 1 on",

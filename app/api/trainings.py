@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from fastapi import Query, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
-from app.api.deps import Given, Start
+from app.api.deps import Given, StartRequest
 from app.api.fields import Name
 from app.api.formats import attachment, chosen
 from app.api.runs import RunPath, accepted, find, run_routes
@@ -15,6 +15,7 @@ from app.runs import tables
 from app.services import curves, imports
 from app.services.entries import load_table
 from app.services.errors import Conflict
+from app.services.json_text import finite
 from app.services.store import TABLE
 
 # Before the routes that all runs have: `import` is no run's id.
@@ -22,11 +23,13 @@ router = run_routes("training")
 
 
 @router.post("", status_code=202, summary="Start a training")
-def start_training(services: Given, request: Request, asked: Start, body: TrainingBody) -> Response:
+def start_training(
+    services: Given, request: Request, asked: StartRequest, body: TrainingBody
+) -> Response:
     """Queue a training, and answer with its run."""
-    jobs = services.jobs
-    shown = asked.once(services, lambda: jobs.view(jobs.train(body.start(services.agents))))
-    return accepted(request, shown)
+    jobs, agents = services.jobs, services.agents
+    run = asked.start(services, lambda key: jobs.train(body.start(agents), key))
+    return accepted(request, jobs.view(run))
 
 
 @router.post(
@@ -41,16 +44,18 @@ def start_training(services: Given, request: Request, asked: Start, body: Traini
     },
 )
 def import_training(
-    services: Given, request: Request, asked: Start, name: Annotated[Name | None, Query()] = None
+    services: Given,
+    request: Request,
+    asked: StartRequest,
+    name: Annotated[Name | None, Query()] = None,
 ) -> Response:
     """Take the `.npz` that a training's q-table gives, or `hexapods train` wrote, as the body."""
     if not asked.body:
         raise InvalidInput("send the .npz file of a Q-table as the request's body")
-    run = asked.once(
-        services, lambda: imports.adopt(services.jobs, asked.body, services.agents, name)
-    )
+    jobs, agents = services.jobs, services.agents
+    run = asked.start(services, lambda key: imports.adopt(jobs, asked.body, agents, name, key))
     location = request.url_for("get_training", run_id=run.id).path
-    return JSONResponse(services.jobs.view(run), 201, {"Location": location})
+    return JSONResponse(jobs.view(run), 201, {"Location": location})
 
 
 @router.patch("/{run_id}", summary="Change pace or rates while it runs")
@@ -72,7 +77,8 @@ def get_curve(
     rows = services.store.evaluations(run_id)
     if chosen(request, format, ("json", "csv")) == "csv":
         return attachment(curves.as_csv(rows), "text/csv; charset=utf-8", f"curve-{run_id}.csv")
-    return JSONResponse({"evaluations": rows, "greedy_distance_m": run.greedy_distance_m})
+    shown = {"evaluations": rows, "greedy_distance_m": run.greedy_distance_m}
+    return JSONResponse(finite(shown))
 
 
 @router.get("/{run_id}/q-table", summary="What was learned; also as .npz and CSV")

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from app.cli.checkup import Trouble, can_listen
+from app.services.damage import damaged_runs
 from app.services.database.folder_lock import LOCK_FILE, FolderInUse, lock_folder
 from app.services.database.reading import look_into_store
 from app.services.room import MB, Room
@@ -15,6 +16,7 @@ from app.settings import PREFIX, Settings
 
 WANTED_FREE_MB = 200
 _NEARLY_FULL = 0.9
+_NAMED = 10
 
 
 def _folder(settings: Settings) -> str:
@@ -62,8 +64,17 @@ def _database(settings: Settings) -> str:
     # What the URL says stays out of it, because it may hold a password.
     kind = "SQLite in the data folder" if settings.database_url is None else "PostgreSQL"
     with look_into_store(settings) as store:
-        newest = store.list(limit=1).items
-    return f"{kind} can be read, " + ("and has runs" if newest else "and is empty or to be made")
+        has_runs = bool(store.list(limit=1).items)
+        damaged = damaged_runs(store)
+    if damaged:
+        named = "; ".join(
+            f"{run.kind or 'run'} {run.id}: {run.damaged}" for run in damaged[:_NAMED]
+        )
+        raise Trouble(
+            f"{len(damaged):,} of the runs cannot be shown, {named}; remove them with `hexapods "
+            "runs delete`, or put a backup back"
+        )
+    return f"{kind} can be read, " + ("and has runs" if has_runs else "and is empty or to be made")
 
 
 def _port(settings: Settings) -> str:

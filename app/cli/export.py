@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
     """
     check_writable(options.out)
     with looking(read_settings(data=options.data)) as store:
-        exported = found(store, options.run_id)
+        exported = store.get(found(store, options.run_id).id)
         data = export_run(store, exported.id)
     write_whole(options.out, data)
     if options.json:

@@ -58,7 +58,7 @@ def _import(settings: Settings, data: bytes, said: str) -> dict[str, Any]:
 
     try:
         with open_store(settings) as store:
-            return run_view(import_run(store, data, RunIds(), registered(), said))
+            return run_view(import_run(store, data, RunIds.of(store), registered(), said))
     except FolderInUse:
         answer: dict[str, Any] = ask_server(settings, "POST", "api/v1/import", data)
         return answer

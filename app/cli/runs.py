@@ -8,6 +8,7 @@ import argparse
 import json
 import sys
 from contextlib import AbstractContextManager
+from datetime import datetime
 from urllib.parse import quote
 
 from app.cli.asking import ask_server
@@ -16,8 +17,9 @@ from app.cli.race import show_lanes
 from app.cli.terminal import show_table
 from app.domain.errors import InvalidInput
 from app.services.errors import NotFound
-from app.services.store import KINDS, STATES, Run, RunStore
-from app.services.views import run_view
+from app.services.json_text import json_text
+from app.services.store import KINDS, STATES, AnyRun, DamagedRun, Run, RunStore
+from app.services.views import as_shown, run_view
 from app.settings import Settings, read_settings
 
 _LIMIT = 50
@@ -47,14 +49,14 @@ def add_data(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", help="data folder (default: the user's, or HEXAPODS_DATA)")
 
 
-def found(store: RunStore, run_id: str) -> Run:
-    """A run.
+def found(store: RunStore, run_id: str) -> AnyRun:
+    """A run, or what can be read of it.
 
     Raises:
         InvalidInput: if there is none.
     """
     try:
-        return store.get(run_id)
+        return store.find(run_id)
     except NotFound as error:
         raise InvalidInput(f"{error}; `hexapods runs list` shows what there is") from error
 
@@ -75,7 +77,7 @@ def _list(options: argparse.Namespace) -> int:
         page = store.list(options.kind, options.state, options.limit)
     if options.json:
         items = [run_view(run) for run in page.items]
-        print(json.dumps({"items": items, "next_cursor": page.next_cursor}))
+        print(json_text({"items": items, "next_cursor": page.next_cursor}))
         return 0
     if not page.items:
         print("There are no such runs.")
@@ -90,12 +92,20 @@ def _list(options: argparse.Namespace) -> int:
     return 0
 
 
-def _row(run: Run) -> tuple[str, ...]:
+def _row(stored: AnyRun) -> tuple[str, ...]:
+    run = as_shown(stored)
+    if isinstance(run, DamagedRun):
+        began = "" if run.created_at is None else _local(run.created_at)
+        return (run.id, run.kind or "", "damaged", "", "", began, run.damaged)
     done = f"{run.total:,}" if run.done == run.total else f"{run.done:,} of {run.total:,}"
     if run.kind == "experiment":
         done += " trials"
-    began = (run.started_at or run.created_at).astimezone().strftime("%Y-%m-%d %H:%M")
+    began = _local(run.started_at or run.created_at)
     return (run.id, run.kind, run.state, done, _outcome(run), began, run.name)
+
+
+def _local(moment: datetime) -> str:
+    return moment.astimezone().strftime("%Y-%m-%d %H:%M")
 
 
 def _outcome(run: Run) -> str:
@@ -119,7 +129,11 @@ def _show(options: argparse.Namespace) -> int:
         curve = store.evaluations(run.id)
     shown = run_view(run)
     if options.json:
-        print(json.dumps({**shown, "curve": list(curve)}))
+        print(json_text({**shown, "curve": list(curve)}))
+        return 0
+    if "damaged" in shown:
+        for name, value in shown.items():
+            print(f"{name:>18}  {value or ''}")
         return 0
     progress, result = shown.pop("progress"), shown.pop("result")
     counted = "trials" if run.kind == "experiment" else "steps"
@@ -147,6 +161,8 @@ def _delete(options: argparse.Namespace) -> int:
         with open_store(settings) as store:
             store.delete(run.id)
     except FolderInUse:
-        ask_server(settings, "DELETE", f"api/v1/{run.kind}s/{quote(run.id, safe='')}")
-    print(json.dumps({"deleted": run.id}) if options.json else f"Deleted {run.kind} {run.id}.")
+        kind = run.kind or KINDS[0]
+        ask_server(settings, "DELETE", f"api/v1/{kind}s/{quote(run.id, safe='')}")
+    said = f"Deleted {run.kind or 'run'} {run.id}."
+    print(json.dumps({"deleted": run.id}) if options.json else said)
     return 0

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Mapping
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,8 +17,10 @@ from app.runs.recording import race_recording
 from app.runs.records import Knowledge
 from app.runs.stored_practice import practice_recording
 from app.services.archived_trials import check_reported, is_reported, reported_files
+from app.services.imported_tables import checked_table
 from app.services.store import CHECKPOINT, TABLE, Run, RunStore
 from app.services.stored_recordings import PRACTICE, RACE, evaluations_file
+from app.services.strict import Large, Metres, Seconds, Share, Step, Words
 
 MAX_EVALUATION_FILES = 100
 _EVALUATIONS = re.compile(r"evaluations-\d{4}\.npz", re.ASCII)
@@ -74,14 +77,15 @@ def check_files(run: Run, files: Mapping[str, bytes], said: str) -> None:
 
 
 def _check_table(run: Run, name: str, data: bytes, said: str) -> None:
-    checkpoint, config = tables.from_bytes(data, said), run.config
+    config = run.config
     if not isinstance(config, TrainingConfig):
         return
+    checkpoint, meta, _ = checked_table(data, said)
     try:
         tables.check_fits(checkpoint, config, config.observation)
-        if checkpoint.meta["agent"] != config.agent:
+        if meta.agent != config.agent:
             raise ValueError("another agent learned it")
-        if not 0 <= checkpoint.meta["step"] <= run.total:
+        if meta.step > run.total:
             raise ValueError("it is of another step")
         if "where" in tables.agent_state(checkpoint):
             digest = tables.table_of(checkpoint).sha256()
@@ -97,6 +101,7 @@ def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
     if RACE not in files:
         return
     lanes = race_recording(tables.read_arrays(files[RACE]))
+    msgspec.convert([lane.failure for lane in lanes], list[Words | None])
     if [lane.agent for lane in lanes] != [lane.agent for lane in config.lanes]:
         raise ValueError("it has other lanes")
     for lane in lanes:
@@ -104,7 +109,8 @@ def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
             raise ValueError("it has more steps than the race")
         _check_poses(lane.rest_qpos[None], config)
         for step in lane.steps:
-            _check_finite(step.reward_m, step.distance_m, step.decision_s)
+            msgspec.convert((step.reward_m, step.distance_m), tuple[Metres, Metres])
+            msgspec.convert((step.decision_s, step.transitions), tuple[Seconds, Large])
             _check_motion(step.motion, config)
             _check_choice(step.observation, step.action, step.knowledge, config)
 
@@ -119,17 +125,15 @@ def _check_practice(config: Walk, files: Mapping[str, bytes]) -> None:
     recording = practice_recording(tables.read_arrays(files[PRACTICE]), evaluations)
     _check_poses(recording.rest_qpos[None], config)
     for step in recording.steps:
-        _check_finite(step.reward_m, step.distance_m, step.epsilon)
+        msgspec.convert((step.step, step.episode), tuple[Step, Step])
+        msgspec.convert((step.reward_m, step.distance_m), tuple[Metres, Metres])
+        msgspec.convert(step.epsilon, Share)
         _check_motion(step.motion, config)
         _check_choice(step.observation, step.action, step.knowledge, config)
     for evaluation in recording.evaluations:
+        msgspec.convert((evaluation.step, evaluation.epsilon), tuple[Step, Share])
+        msgspec.convert(evaluation.distance_m, Metres)
         _check_motion(evaluation.motion, config)
-
-
-def _check_finite(*numbers: float) -> None:
-    """What goes into JSON has to be a number there."""
-    if not np.isfinite(numbers).all():
-        raise ValueError("it measured what is no number")
 
 
 def _check_motion(motion: Motion | None, walk: Walk) -> None:
@@ -163,6 +167,9 @@ def _check_choice(
         shapes = {np.shape(knowledge.values), np.shape(knowledge.visits)}
         if shapes != {(pairs, cells)}:
             raise ValueError("what it knew is of another problem")
+        # NaN stands where an action is not possible.
+        if np.isinf(knowledge.values).any() or np.isinf(knowledge.visits).any():
+            raise ValueError("what it knew is no number")
 
 
 def _are_below(numbers: Iterable[object], limit: int) -> bool:

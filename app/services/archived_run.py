@@ -1,8 +1,6 @@
 """A run as the `run.json` of its archive: one strict shape, so that nothing else gets in."""
 
-import unicodedata
 from collections.abc import Collection, Mapping, Sequence
-from datetime import datetime
 from typing import Annotated, Any, Literal
 
 import msgspec
@@ -10,30 +8,42 @@ from msgspec import UNSET, Meta, Raw, UnsetType
 
 from app import __version__
 from app.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownName
+from app.domain.robot import robot
 from app.experiments.config import ExperimentConfig
 from app.runs.clocks import CLOCKS
-from app.runs.config import MAX_LANES, MAX_STEPS, RaceConfig, TrainingConfig
+from app.runs.config import MAX_LANES, RaceConfig
 from app.services.archived_trials import ExperimentResult
-from app.services.configs import config_as_json, config_of
+from app.services.configs import CONFIGS, config_as_json, config_of
 from app.services.entries import check_walk
 from app.services.errors import Conflict
 from app.services.experiment_entry import MAX_WORKERS, plan_of
+from app.services.imported_tables import check_change
 from app.services.store import UNENDED, Config, Kind, Run
-from app.services.strict import Strict
+from app.services.strict import (
+    Count,
+    Large,
+    Metres,
+    Moment,
+    Name,
+    Seconds,
+    Share,
+    Step,
+    Strict,
+    Words,
+    check_moment,
+)
+from app.services.text import check_name
 
 FORMAT = 1
 MAX_JSON_BYTES = 64_000_000
 _MAX_PART_BYTES = 256_000  # of what is not a curve
 
-_Count = Annotated[int, Meta(ge=0, le=MAX_STEPS * MAX_LANES)]
-_Step = Annotated[int, Meta(ge=0, le=MAX_STEPS)]
 _Id = Annotated[str, Meta(pattern="^[0-9a-z]{1,32}$")]
-_Moment = Annotated[datetime, Meta(tz=True)]
-_Known = float | None  # null if it never came about; JSON has no NaN
+_Known = Metres | None  # null if it never came about; JSON has no NaN
 
 
 class _Change(Strict, frozen=True):
-    step: _Count
+    step: Count
     pace: float | Literal["max"] | UnsetType = UNSET
     alpha: float | UnsetType = UNSET
     gamma: float | UnsetType = UNSET
@@ -41,9 +51,9 @@ class _Change(Strict, frozen=True):
 
 
 class _Evaluation(Strict, frozen=True):
-    step: _Step
-    distance_m: float
-    epsilon: float
+    step: Step
+    distance_m: Metres
+    epsilon: Share
 
 
 class _TrainingResult(Strict, frozen=True):
@@ -53,21 +63,21 @@ class _TrainingResult(Strict, frozen=True):
 
 
 class _Figures(Strict, frozen=True):
-    finished_distance_m: float
-    elapsed_s: float
-    crossed_s: _Known
+    finished_distance_m: Metres
+    elapsed_s: Seconds
+    crossed_s: Seconds | None
     rank: Annotated[int, Meta(ge=1, le=MAX_LANES)]
 
 
 class _LaneResult(Strict, frozen=True):
-    agent: str
+    agent: Name
     training_id: _Id | None
     trained_robot: dict[str, Any] | None
-    steps: _Step
+    steps: Step
     total_distance_m: _Known
-    failure: str | None
-    decision_s: float
-    simulated_transitions: Annotated[int, Meta(ge=0)]
+    failure: Words | None
+    decision_s: Seconds
+    simulated_transitions: Large
     clocks: dict[str, _Figures]
 
 
@@ -81,26 +91,26 @@ class _Shape(Strict, frozen=True):
 
     id: _Id
     kind: Kind
-    name: Annotated[str, Meta(max_length=100)]
+    name: Name
     state: Literal["finished", "stopped", "failed", "interrupted"]
     config: Raw
     lane_training_ids: Annotated[list[_Id | None], Meta(max_length=MAX_LANES)]
     continued_from: _Id | None
-    done: _Count
-    total: _Count
+    done: Count
+    total: Count
     changes: Annotated[list[_Change], Meta(max_length=10_000)]
     greedy_distance_m: _Known
     result: Raw
-    error: Annotated[str, Meta(max_length=10_000)] | None
-    created_at: _Moment
-    started_at: _Moment | None
-    ended_at: _Moment | None
+    error: Words | None
+    created_at: Moment
+    started_at: Moment | None
+    ended_at: Moment | None
     workers: Annotated[int, Meta(ge=1, le=MAX_WORKERS)] | None = None
 
 
 class _File(Strict, frozen=True):
     format: int
-    version: Annotated[str, Meta(max_length=100)]
+    version: Name
     run: _Shape
     curve: list[_Evaluation]
 
@@ -169,16 +179,11 @@ _RESULTS: Mapping[Kind, Any] = {
     "race": _RaceResult,
     "experiment": ExperimentResult,
 }
-_CONFIGS: Mapping[Kind, type[Config]] = {
-    "training": TrainingConfig,
-    "race": RaceConfig,
-    "experiment": ExperimentConfig,
-}
 
 
 def _run(shape: _Shape, agents: Collection[str]) -> Run:
     config = config_of(shape.kind, _part(shape.config, dict[str, Any]))
-    if not isinstance(config, _CONFIGS[shape.kind]) or shape.done > shape.total:
+    if not isinstance(config, CONFIGS[shape.kind]) or shape.done > shape.total:
         raise ValueError("its kind, its config and its progress do not fit together")
     # First of all: laying out an experiment imports its agents.
     _check_agents(config, agents)
@@ -205,11 +210,22 @@ def _part(raw: Raw, kind: Any) -> Any:
 
 def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
     """What holds for every run, beyond the shape of each field."""
-    if any(unicodedata.category(c) in ("Cc", "Cs") for c in run.name):
-        raise ValueError("its name has control characters")
+    check_name(run.name)
+    for name in ("created_at", "started_at", "ended_at"):
+        check_moment(name, getattr(run, name))
+    for change in run.changes:
+        check_change(change)
+    _check_curve(run, curve)
+    _check_lanes(run)
+
+
+def _check_curve(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
     steps = [row["step"] for row in curve]
     if steps != sorted(set(steps)) or (steps and run.kind != "training"):
         raise ValueError("its curve is none")
+
+
+def _check_lanes(run: Run) -> None:
     if not isinstance(run.config, RaceConfig):
         if run.lane_training_ids:
             raise ValueError(f"it is no race but a {run.kind}, and has lanes")
@@ -220,6 +236,8 @@ def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
     for lane, agent in zip((run.result or {"lanes": ()})["lanes"], agents, strict=False):
         if lane["agent"] != agent or lane["clocks"].keys() != set(CLOCKS):
             raise ValueError("its result is of other lanes")
+        if lane["trained_robot"] is not None:
+            robot(lane["trained_robot"])
     if run.result is not None and len(run.result["lanes"]) != len(agents):
         raise ValueError("its result is of other lanes")
 

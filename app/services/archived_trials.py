@@ -1,5 +1,7 @@
 """The trials of an experiment as the `trials.json` of its archive, and its files beside that."""
 
+import csv
+import io
 import json
 import re
 from collections.abc import Mapping, Sequence
@@ -10,9 +12,10 @@ from msgspec import Meta
 
 from app.domain.errors import DamagedFile
 from app.experiments.config import ExperimentConfig
+from app.experiments.report.csv_cells import is_formula
 from app.services.experiment_entry import plan_of
 from app.services.store import SUMMARY, Run
-from app.services.strict import Strict
+from app.services.strict import Large, Metres, Name, Seconds, Strict, Words
 
 TRIALS = "trials.json"
 _REPORTED = re.compile(
@@ -20,21 +23,17 @@ _REPORTED = re.compile(
 )
 _BEGINS = {"png": b"\x89PNG\r\n\x1a\n", "pdf": b"%PDF-"}
 
-_Count = Annotated[int, Meta(ge=0)]
-_Words = Annotated[str, Meta(max_length=10_000)]
-_Metres = float | None
-
 
 class _Counts(Strict, frozen=True):
-    done: _Count
-    total: _Count
-    failed: _Count
-    set_aside: _Count
+    done: Large
+    total: Large
+    failed: Large
+    set_aside: Large
 
 
 class _Claim(Strict, frozen=True):
-    id: Annotated[str, Meta(max_length=100)]
-    verdict: Annotated[str, Meta(max_length=100)]
+    id: Name
+    verdict: Name
 
 
 class ExperimentResult(Strict, frozen=True):
@@ -42,32 +41,47 @@ class ExperimentResult(Strict, frozen=True):
 
     trials: _Counts
     claims: Annotated[list[_Claim], Meta(max_length=1_000)]
-    files: Annotated[list[Annotated[str, Meta(max_length=100)]], Meta(max_length=128)]
+    files: Annotated[list[Name], Meta(max_length=128)]
     shared_machine: bool
 
 
 class _Lane(Strict, frozen=True):
-    agent: str
-    decision_s: float
-    finished_distance_m: float
-    elapsed_s: float
+    agent: Name
+    decision_s: Seconds
+    finished_distance_m: Metres
+    elapsed_s: Seconds
     rank: Annotated[int, Meta(ge=1)]
 
 
 class _Result(Strict, frozen=True):
-    distances_m: Annotated[list[float], Meta(max_length=1_000)]
-    finished_distance_m: _Metres
-    elapsed_s: float | None
-    transitions: _Count
+    distances_m: Annotated[list[Metres], Meta(max_length=1_000)]
+    finished_distance_m: Metres | None
+    elapsed_s: Seconds | None
+    transitions: Large
     wall: list[_Lane] | None
-    failure: _Words | None
+    failure: Words | None
 
 
 class _Row(Strict, frozen=True):
     key: Annotated[str, Meta(max_length=1_000)]
     result: _Result | None
-    set_aside: _Words | None
-    compute_s: Annotated[float, Meta(ge=0)]
+    set_aside: Words | None
+    compute_s: Seconds
+
+
+class _Cost(msgspec.Struct):
+    wall_s: Seconds
+
+
+class _Summary(msgspec.Struct):
+    """What the server and the page rely on in a summary; the rest is for readers of it."""
+
+    experiment: Name
+    trials: dict[str, Any]
+    cost: _Cost | None
+    settings: list[Any]
+    claims: list[Any]
+    story: list[Any]
 
 
 def trials_json(rows: Sequence[Mapping[str, Any]]) -> bytes:
@@ -124,11 +138,30 @@ def check_reported(run: Run, files: Mapping[str, bytes], said: str) -> None:
             raise DamagedFile(f"{said} has {name}, which this experiment has not")
         if not data.startswith(_BEGINS.get(suffix, b"")):
             raise DamagedFile(f"{said} has {name}, which is no {suffix.upper()}")
+        if suffix == "csv":
+            _check_cells(data, f"{name} of {said}")
     if SUMMARY not in files:
         return
     try:
-        summary = msgspec.json.decode(files[SUMMARY], type=dict[str, Any])
-        if summary["experiment"] != run.config.experiment:  # type: ignore[union-attr]
+        summary = msgspec.json.decode(files[SUMMARY], type=_Summary)
+        if summary.experiment != run.config.experiment:  # type: ignore[union-attr]
             raise ValueError("it is of another experiment")
-    except (ValueError, KeyError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise DamagedFile(f"{SUMMARY} of {said} is no summary ({error})") from error
+
+
+def _check_cells(data: bytes, said: str) -> None:
+    """Make sure that a spreadsheet takes nothing in a table for a formula.
+
+    Raises:
+        DamagedFile: if it is no table, or it would.
+    """
+    try:
+        rows = list(csv.reader(io.StringIO(data.decode(), newline="")))
+    except (ValueError, csv.Error) as error:
+        raise DamagedFile(f"{said} is no table ({error})") from error
+    cell = next((cell for row in rows for cell in row if is_formula(cell)), None)
+    if cell is not None:
+        raise DamagedFile(
+            f"{said} has a cell that a spreadsheet takes for a formula: {cell[:40]!r}"
+        )

@@ -88,6 +88,8 @@ class ArtifactFiles:
             DamagedFile: if it is not what was written.
             StorageFailed: if it cannot be read.
         """
+        if not _is_ours(stored.file):
+            raise DamagedFile(f"{said} is damaged: the database names no file of ours")
         try:
             data = (self._folder / stored.file).read_bytes()
         except FileNotFoundError:
@@ -100,7 +102,7 @@ class ArtifactFiles:
 
     def remove(self, *names: str) -> None:
         """Take files away; those that are not there do not matter."""
-        for name in names:
+        for name in filter(_is_ours, names):
             # One that stays for now is swept up at the next start.
             with suppress(OSError):
                 (self._folder / name).unlink()
@@ -111,10 +113,15 @@ class ArtifactFiles:
         Returns:
             how many files that were.
         """
-        found = [path.name for path in self._folder.iterdir() if _OURS.fullmatch(path.name)]
+        found = [path.name for path in self._folder.iterdir() if _is_ours(path.name)]
         left_behind = set(found) - set(known)
         self.remove(*left_behind)
         return len(left_behind)
+
+
+def _is_ours(name: object) -> bool:
+    """Whether a name is one of those that are made here, and so no path out of the folder."""
+    return isinstance(name, str) and _OURS.fullmatch(name) is not None
 
 
 def sync_folder(folder: Path) -> None:

@@ -2,12 +2,13 @@
 
 import asyncio
 import itertools
-import json
 import threading
 import time
 from collections import OrderedDict, deque
 from collections.abc import AsyncIterator, Mapping
 from typing import Any, NamedTuple
+
+from app.services.json_text import json_text
 
 RING_EVENTS = 4096
 MAX_PENDING = 2048
@@ -111,13 +112,11 @@ class EventBus:
 
         Args:
             event: its name.
-            data: what is to be said, or the JSON of it.
+            data: what is to be said, or the JSON of it. A NaN or an infinity is sent as null: one
+                run's number is no reason to end every stream.
             run_id: the run that it is about.
-
-        Raises:
-            ValueError: if the data holds a NaN or an infinity, which JSON has not.
         """
-        text = data if isinstance(data, str) else json.dumps(data, allow_nan=False)
+        text = data if isinstance(data, str) else json_text(data)
         with self._lock:
             made = Event(next(self._ids), event, text, run_id)
             self._last_id = made.id

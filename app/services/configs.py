@@ -5,8 +5,15 @@ from typing import Any
 
 from app.experiments import config as experiments
 from app.experiments.config import ExperimentConfig
-from app.runs.config import as_json, config_from_json
-from app.services.store import Config
+from app.runs.config import RaceConfig, TrainingConfig, as_json, config_from_json
+from app.services.store import Config, Kind
+
+CONFIGS: Mapping[Kind, type[Config]] = {
+    "training": TrainingConfig,
+    "race": RaceConfig,
+    "experiment": ExperimentConfig,
+}
+"""The config of each kind of run."""
 
 
 def config_as_json(config: Config) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """What a training learned, row by row, in the forms that people take away."""
 
 import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -15,8 +16,13 @@ _ROWS_A_CHUNK = 64
 def as_csv(rows: Sequence[Mapping[str, Any]]) -> bytes:
     """A curve as CSV: step, distance_m, epsilon."""
     columns = ("step", "distance_m", "epsilon")
-    lines = [",".join(columns), *(",".join(str(row[c]) for c in columns) for row in rows)]
+    lines = [",".join(columns), *(",".join(_cell(row[c]) for c in columns) for row in rows)]
     return "".join(f"{line}\r\n" for line in lines).encode()
+
+
+def _cell(number: float) -> str:
+    """Empty where there is no number."""
+    return str(number) if math.isfinite(number) else ""
 
 
 def table_as_json(table: QTable, meta: Mapping[str, Any]) -> Iterator[str]:

@@ -15,6 +15,19 @@ class Conflict(HexapodError):
         self.state = state
 
 
+class Damaged(Conflict):
+    """A stored run cannot be read; the message says why, and how to be rid of it."""
+
+    def __init__(self, run_id: str, why: str) -> None:
+        super().__init__(
+            f"run {run_id} is damaged: {why}; delete it, or restore a backup", "damaged"
+        )
+
+
+class Gone(HexapodError):
+    """It was here once, and was deleted."""
+
+
 class Busy(HexapodError):
     """Too much is waiting; worth another try after `retry_after_s`."""
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.domain.errors import InvalidInput
+from app.domain.errors import DamagedFile, InvalidInput
 from app.experiments.config import GRID, ExperimentConfig
 from app.experiments.plan import Plan
 from app.runs.config import Walk
@@ -78,10 +78,17 @@ def plan_of(config: ExperimentConfig) -> Plan:
 
 
 def wall_s_of(store: RunStore, run_id: str) -> float:
-    """How long an experiment has run by its newest summary."""
+    """How long an experiment has run by its newest summary.
+
+    Raises:
+        DamagedFile: if that does not say.
+    """
     summary = store.artifact(run_id, SUMMARY)
-    cost = None if summary is None else json.loads(summary).get("cost")
-    return float(cost["wall_s"]) if cost else 0.0
+    try:
+        cost = None if summary is None else json.loads(summary).get("cost")
+        return float(cost["wall_s"]) if cost else 0.0
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise DamagedFile(f"{SUMMARY} of run {run_id} is no summary ({error!r})") from error
 
 
 def _settings(config: ExperimentConfig) -> int:

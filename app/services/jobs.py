@@ -22,6 +22,9 @@ from app.services.store import (
     RUNNING,
     TABLE,
     UNENDED,
+    AnyRun,
+    Content,
+    IdempotencyKey,
     Run,
     RunStore,
     State,
@@ -65,8 +68,7 @@ class Jobs:
         """
         self._store, self._recordings, self._bus = store, recordings, bus
         self._on_queued = on_queued
-        newest = store.list(limit=1).items
-        self.new_id = RunIds(after=newest[0].id if newest else None)
+        self.new_id = RunIds.of(store)
         self._waiting = WaitingRuns(store, self._publish)
         self._supervisor = Supervisor(
             store, recordings, bus, self._waiting, publish=self._publish, cores=cores
@@ -101,42 +103,54 @@ class Jobs:
         """Start no more, and end every process with a checkpoint: all is `interrupted` then."""
         self._supervisor.close()
 
-    def view(self, run: Run) -> dict[str, Any]:
+    def view(self, run: AnyRun) -> dict[str, Any]:
         """The resource of a run, with its place in the queue."""
         return run_view(run, self._waiting.position(run.id))
 
-    def train(self, start: TrainingStart) -> Run:
+    def train(self, start: TrainingStart, key: IdempotencyKey | None = None) -> Run:
         """Queue a training.
 
+        Args:
+            start: what is asked for.
+            key: of the request, remembered with the run.
+
         Raises:
             InvalidInput, Conflict: if it cannot be.
             Busy: if too many runs are waiting.
         """
-        return self._enqueue([training_entry(start, self._store, self.new_id)])
+        return self._enqueue([training_entry(start, self._store, self.new_id)], key)
 
-    def race(self, start: RaceStart) -> Run:
+    def race(self, start: RaceStart, key: IdempotencyKey | None = None) -> Run:
         """Queue a race, and before it the trainings that it brings along.
 
+        Args:
+            start: what is asked for.
+            key: of the request, remembered with the race.
+
         Raises:
             InvalidInput, Conflict: if it cannot be.
             Busy: if too many runs are waiting.
         """
-        return self._enqueue(race_entries(start, self._store, self.new_id))
+        return self._enqueue(race_entries(start, self._store, self.new_id), key)
 
-    def experiment(self, start: ExperimentStart) -> Run:
+    def experiment(self, start: ExperimentStart, key: IdempotencyKey | None = None) -> Run:
         """Queue an experiment.
+
+        Args:
+            start: what is asked for.
+            key: of the request, remembered with the run.
 
         Raises:
             InvalidInput: if it cannot be.
             Busy: if too many runs are waiting.
         """
-        return self._enqueue([experiment_entry(start, self.new_id)])
+        return self._enqueue([experiment_entry(start, self.new_id)], key)
 
-    def keep(self, run: Run, table: bytes) -> None:
+    def keep(self, run: Run, table: bytes, key: IdempotencyKey | None = None) -> Run:
         """Add a training that ended elsewhere, with its table."""
-        self._store.create(run)
-        self._store.put_artifact(run.id, TABLE, table)
+        run = self._store.add(run, Content(artifacts={TABLE: table}), self.new_id, key)
         self._publish(run)
+        return run
 
     def pause(self, run_id: str) -> Run:
         """Let a running job wait.
@@ -240,15 +254,16 @@ class Jobs:
         with self._changed:
             race = self._waiting.needing(run_id)
             if race is not None:
-                state = self._store.get(run_id).state
+                state = self._store.find(run_id).state or "damaged"
                 raise Conflict(f"race {race.id} waits, and needs its table", state)
             self._store.delete(run_id)
         self._recordings.discard(run_id)
         self._bus.publish("run-deleted", {"id": run_id}, run_id)
 
-    def _enqueue(self, entries: list[Entry]) -> Run:
+    def _enqueue(self, entries: list[Entry], key: IdempotencyKey | None = None) -> Run:
         with self._changed:
-            self._waiting.add(entries, max(0, self.cores - self._supervisor.running))
+            free = max(0, self.cores - self._supervisor.running)
+            self._waiting.add(entries, free, key)
             self._changed.notify_all()
         run = entries[-1].run
         if self._on_queued is not None and run.kind != "experiment":

@@ -3,12 +3,22 @@
 import math
 import threading
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from app.services.errors import Conflict, NotFound
-from app.services.store import UNENDED, Kind, Page, Run, State
+from app.services.store import (
+    UNENDED,
+    AnyRun,
+    Content,
+    IdempotencyKey,
+    Kind,
+    Page,
+    Run,
+    Started,
+    State,
+)
 
 
 class MemoryStore:
@@ -19,14 +29,40 @@ class MemoryStore:
         self._curves: dict[str, list[Mapping[str, Any]]] = {}
         self._trials: dict[str, dict[str, Mapping[str, Any]]] = {}
         self._artifacts: dict[str, dict[str, bytes]] = {}
+        self._keys: dict[str, Started] = {}
         self._lock = threading.Lock()
 
     def check_room(self) -> None:
         pass
 
-    def create(self, *runs: Run) -> None:
+    def create(self, *runs: Run, key: IdempotencyKey | None = None) -> None:
         with self._lock:
             self._runs |= {run.id: run for run in runs}
+            if key is not None:
+                self._keys[key.key] = Started(key.digest, runs[-1].id)
+
+    def add(
+        self,
+        run: Run,
+        content: Content,
+        new_id: Callable[[], str],
+        key: IdempotencyKey | None = None,
+    ) -> Run:
+        if run.id in self._runs:
+            run = replace(run, id=new_id())
+        self.create(run, key=key)
+        self.append_evaluations(run.id, content.evaluations)
+        self.append_trials(run.id, content.trials)
+        for name, data in content.artifacts.items():
+            self.put_artifact(run.id, name, data)
+        return run
+
+    def started_by(self, key: str) -> Started | None:
+        with self._lock:
+            return self._keys.get(key)
+
+    def find(self, run_id: str) -> AnyRun:
+        return self.get(run_id)
 
     def get(self, run_id: str) -> Run:
         with self._lock:
@@ -49,7 +85,7 @@ class MemoryStore:
             ]
         found.sort(key=lambda run: run.id, reverse=True)
         more = len(found) > limit
-        return Page(found[:limit], found[limit - 1].id if more else None)
+        return Page([*found[:limit]], found[limit - 1].id if more else None)
 
     def counts(self) -> Mapping[State, int]:
         with self._lock:

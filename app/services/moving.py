@@ -1,7 +1,6 @@
 """Moves a run between stores: all it has into an archive, and out of one, checked."""
 
-import threading
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
 
@@ -11,11 +10,10 @@ from app.services import archives
 from app.services.archived_files import check_files, files_of, is_file_of
 from app.services.archived_run import read_run_json, run_json
 from app.services.archived_trials import TRIALS, read_trials_json, trials_json
-from app.services.errors import NotFound
-from app.services.store import KINDS, Run, RunStore
+from app.services.ids import RunIds
+from app.services.store import KINDS, Content, IdempotencyKey, Run, RunStore
 
 RUN = "run.json"
-_creating = threading.Lock()
 
 
 def export_run(store: RunStore, run_id: str) -> bytes:
@@ -37,18 +35,27 @@ def export_run(store: RunStore, run_id: str) -> bytes:
 def import_run(
     store: RunStore,
     data: bytes,
-    new_id: Callable[[], str],
+    ids: RunIds,
     agents: Collection[str],
     said: str,
+    *,
+    key: IdempotencyKey | None = None,
 ) -> Run:
-    """Take in a run with all it has. Its id stays if it is free here, and no run is replaced.
+    """Take in a run with all it has: visible whole or not at all. No run is replaced.
+
+    Its id stays if it is free here, and one that could have been made by now; a later one would
+    sort before all runs to come.
 
     Args:
         store: where it goes.
         data: the archive.
-        new_id: makes ids.
+        ids: of this store.
         agents: the names that are registered here.
         said: what to call the archive in messages.
+        key: of the request, remembered with the run.
+
+    Returns:
+        the run as it is here.
 
     Raises:
         DamagedFile: if it is no archive, or was changed since it was made.
@@ -61,20 +68,10 @@ def import_run(
     run, curve = read_run_json(members.pop(RUN), f"{RUN} of {said}", agents)
     trials = _trials(run, members, said)
     check_files(run, members, said)
-    with _creating:
-        if _is_taken(store, run.id):
-            run = replace(run, id=new_id())
-        store.create(run)
-    try:
-        store.append_evaluations(run.id, curve)
-        store.append_trials(run.id, trials)
-        for name, content in members.items():
-            store.put_artifact(run.id, name, content)
-    except BaseException:
-        # Half a run would look like one that lost something.
-        store.delete(run.id)
-        raise
-    return store.get(run.id)
+    if not ids.may_have_made(run.id):
+        run = replace(run, id=ids())
+    content = Content(evaluations=curve, trials=trials, artifacts=members)
+    return store.add(run, content, ids, key)
 
 
 def _trials(run: Run, members: dict[str, bytes], said: str) -> list[dict[str, Any]]:
@@ -88,11 +85,3 @@ def _trials(run: Run, members: dict[str, bytes], said: str) -> list[dict[str, An
 
 def _is_known(name: str) -> bool:
     return name in (RUN, TRIALS) or any(is_file_of(name, kind) for kind in KINDS)
-
-
-def _is_taken(store: RunStore, run_id: str) -> bool:
-    try:
-        store.get(run_id)
-    except NotFound:
-        return False
-    return True

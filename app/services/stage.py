@@ -11,7 +11,7 @@ from app.runs.clocks import Clock, check_clock
 from app.runs.config import RaceConfig, TrainingConfig
 from app.services.bus import EventBus
 from app.services.casting import idle_cast, race_cast, rest_pose, training_cast
-from app.services.errors import NotFound
+from app.services.errors import Damaged, NotFound
 from app.services.frames import LaneView, StageFrame
 from app.services.recordings import Recordings
 from app.services.show import TIME_LAPSE, Billing, IdleShow, Show
@@ -177,12 +177,12 @@ class Stage:
         return any(run.state in UNENDED for run in self._fresh_bill())
 
     def _fresh_bill(self) -> list[Run]:
-        """The bill with each run as it is now; a run that was deleted is off it."""
+        """The bill with each run as it is now; one that was deleted, or is damaged, is off it."""
         fresh = []
         for run in self._bill:
             try:
                 fresh.append(self._store.get(run.id))
-            except NotFound:
+            except (NotFound, Damaged):
                 continue
         return fresh
 
@@ -215,7 +215,7 @@ class Stage:
 
     def _put_on_replay(self) -> None:
         finished = self._store.list(kind="race", state="finished", limit=_RECENT_RACES)
-        for run in finished.items:
+        for run in finished.runs:
             if self._recordings.race(run.id):
                 self._put_on([run], replay=True)
                 return

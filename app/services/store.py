@@ -1,8 +1,8 @@
 """Runs and what they leave behind, behind one interface."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from typing import Any, Literal, NamedTuple, Protocol, get_args
 
 from app.experiments.config import ExperimentConfig
@@ -38,6 +38,10 @@ SUMMARY = "summary.json"
 """The artifact of an experiment that says what its trials so far show."""
 REPORT = "report.html"
 """The artifact of an experiment that has ended: all of its report in one file."""
+KEY_KEPT = timedelta(days=1)
+"""How long an idempotency key is remembered."""
+MAX_KEYS = 10_000
+"""Of these the newest are remembered."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,12 +84,67 @@ class Run:
     ended_at: datetime | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class DamagedRun:
+    """A stored run that cannot be read, and what of it can; None for what cannot.
+
+    Attributes:
+        id: by which it can be deleted.
+        kind: of the run; one of none is listed with every kind.
+        damaged: what is wrong with it, in a sentence.
+    """
+
+    id: str
+    kind: Kind | None = None
+    name: str | None = None
+    state: State | None = None
+    created_at: datetime | None = None
+    damaged: str
+
+
+AnyRun = Run | DamagedRun
+
+
 class Page(NamedTuple):
     """Some runs of a list, newest first."""
 
-    items: list[Run]
+    items: list[AnyRun]
     next_cursor: str | None
     """Where the next page begins; None on the last."""
+
+    @property
+    def runs(self) -> list[Run]:
+        """Those that can be read."""
+        return [run for run in self.items if isinstance(run, Run)]
+
+
+class IdempotencyKey(NamedTuple):
+    """The key of a request that starts a run, and the SHA-256 of the request in hexadecimal."""
+
+    key: str
+    digest: str
+
+
+class Started(NamedTuple):
+    """What is known of an idempotency key that was used before."""
+
+    digest: str
+    run_id: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Content:
+    """All that a run has beside its row.
+
+    Attributes:
+        evaluations: as `RunStore.append_evaluations` takes them.
+        trials: as `RunStore.append_trials` takes them.
+        artifacts: files by name.
+    """
+
+    evaluations: Sequence[Mapping[str, Any]] = ()
+    trials: Sequence[Mapping[str, Any]] = ()
+    artifacts: Mapping[str, bytes] = field(default_factory=dict)
 
 
 class RunStore(Protocol):
@@ -98,11 +157,49 @@ class RunStore(Protocol):
             StorageFull: if there is not, or there may soon be none.
         """
 
-    def create(self, *runs: Run) -> None:
-        """Add new runs, all or none."""
+    def create(self, *runs: Run, key: IdempotencyKey | None = None) -> None:
+        """Add new runs, all or none.
+
+        Args:
+            runs: in order.
+            key: of the request for the last of them, remembered in the same transaction.
+        """
+
+    def add(
+        self,
+        run: Run,
+        content: Content,
+        new_id: Callable[[], str],
+        key: IdempotencyKey | None = None,
+    ) -> Run:
+        """Add a run that ended elsewhere with all it has: visible whole or not at all.
+
+        Args:
+            run: as it was there.
+            content: what else it has.
+            new_id: makes an id in place of the run's own, if that is taken here.
+            key: of the request, remembered in the same transaction.
+
+        Returns:
+            the run as it is here.
+
+        Raises:
+            StorageFull: if there is no room; nothing is left behind then.
+        """
+
+    def started_by(self, key: str) -> Started | None:
+        """What an idempotency key was used for in the last day; None if for nothing."""
 
     def get(self, run_id: str) -> Run:
         """The run as it is now.
+
+        Raises:
+            NotFound: if there is none.
+            Damaged: if it cannot be read.
+        """
+
+    def find(self, run_id: str) -> AnyRun:
+        """The run as it is now, or what can be read of it.
 
         Raises:
             NotFound: if there is none.
@@ -115,7 +212,11 @@ class RunStore(Protocol):
         limit: int = 50,
         cursor: str | None = None,
     ) -> Page:
-        """Runs, newest first."""
+        """Runs, newest first.
+
+        One that cannot be read stands in its place; if not even its kind can be, it is listed with
+        every kind.
+        """
 
     def counts(self) -> Mapping[State, int]:
         """How many runs there are in each state that any is in."""

@@ -18,10 +18,13 @@ def results_of(
     """
     results, set_aside = {}, {}
     for row in rows:
-        if row["result"] is not None:
-            results[row["key"]] = TrialResult.from_json(row["result"])
-        else:
+        if row["result"] is None:
             set_aside[row["key"]] = row["set_aside"] or "it has no result"
+            continue
+        try:
+            results[row["key"]] = TrialResult.from_json(row["result"])
+        except (KeyError, TypeError, ValueError):
+            set_aside[row["key"]] = "its result is damaged"
     return results, set_aside
 
 

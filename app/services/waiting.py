@@ -6,7 +6,15 @@ from datetime import UTC, datetime
 from app.domain.errors import HexapodError
 from app.services.entries import Entry
 from app.services.errors import Busy, StorageFailed, StorageFull
-from app.services.store import QUEUED, RESUMABLE, RUNNING, Run, RunStore, State
+from app.services.store import (
+    QUEUED,
+    RESUMABLE,
+    RUNNING,
+    IdempotencyKey,
+    Run,
+    RunStore,
+    State,
+)
 
 MAX_QUEUED = 32
 RETRY_AFTER_S = 10
@@ -26,12 +34,13 @@ class WaitingRuns:
         self._unsure: set[str] = set()
         """Runs that may be in the store although it failed to say so."""
 
-    def add(self, entries: Sequence[Entry], free: int) -> None:
+    def add(self, entries: Sequence[Entry], free: int, key: IdempotencyKey | None = None) -> None:
         """Store runs and let them wait, all or none.
 
         Args:
             entries: in order.
             free: how many could start at once.
+            key: of the request for the last of them.
 
         Raises:
             Busy: if too many are waiting.
@@ -44,8 +53,9 @@ class WaitingRuns:
                 RETRY_AFTER_S,
             )
         self._store.check_room()
+        new = [entry.run for entry in entries if not entry.goes_on]
         try:
-            self._store.create(*(entry.run for entry in entries if not entry.goes_on))
+            self._store.create(*new, key=key)
         except StorageFailed:
             self._unsure |= {entry.run.id for entry in entries}
             raise

@@ -15,17 +15,18 @@ from app.domain.errors import InvalidInput
 from app.runs.recording import race_arrays
 from app.services import archives
 from app.services.database.store import SqlStore
-from app.services.errors import Conflict, NotFound, StorageFull
+from app.services.errors import Conflict, NotFound
 from app.services.ids import RunIds
 from app.services.memory_store import MemoryStore
 from app.services.moving import RUN, export_run, import_run
 from app.services.recordings import Recordings
-from app.services.store import CHECKPOINT, TABLE, Run, RunStore
+from app.services.store import CHECKPOINT, TABLE, Run, RunStore, State
 from app.services.stored_recordings import PRACTICE, RACE
 from tests.services.ended import ended_race, ended_training
 from tests.services.stores import ODD, opened, training
 
 TRAINING, RACED = "00000000000t1", "00000000000r1"
+ONE, OTHER = "00000000000a1", "00000000000b1"
 Change = Callable[[Any], object]
 
 
@@ -103,8 +104,8 @@ def test_runs_of_every_end_move(source: SqlStore) -> None:
     states = ("stopped", "failed", "interrupted")
     for state in states:
         store = MemoryStore()
-        store.create(training("a", state=state, error="It broke.", greedy_distance_m=0.5))
-        assert taken_in(export_run(store, "a")) == store.get("a")
+        store.create(training(ONE, state=state, error="It broke.", greedy_distance_m=0.5))
+        assert taken_in(export_run(store, ONE)) == store.get(ONE)
     for state in ("queued", "running", "paused"):
         store = MemoryStore()
         store.create(training("a", state=state))
@@ -117,24 +118,25 @@ def test_runs_of_every_end_move(source: SqlStore) -> None:
 def test_what_was_interrupted_can_go_on_elsewhere(source: SqlStore) -> None:
     store, target, saved = MemoryStore(), MemoryStore(), source.artifact(TRAINING, TABLE) or b""
     config = source.get(TRAINING).config
-    for state in ("interrupted", "finished"):
-        store.create(training(state, state=state, config=config, done=120, total=120))
-        store.put_artifact(state, CHECKPOINT, saved)
-        taken_in(export_run(store, state), target)
-    assert target.artifact("interrupted", CHECKPOINT) == saved
+    states: dict[str, State] = {ONE: "interrupted", OTHER: "finished"}
+    for run_id, state in states.items():
+        store.create(training(run_id, state=state, config=config, done=120, total=120))
+        store.put_artifact(run_id, CHECKPOINT, saved)
+        taken_in(export_run(store, run_id), target)
+    assert target.artifact(ONE, CHECKPOINT) == saved
     # Nobody goes on from there, so that it is not carried along.
-    assert target.artifact("finished", CHECKPOINT) is None
-    data = export_run(store, "interrupted")
+    assert target.artifact(OTHER, CHECKPOINT) is None
+    data = export_run(store, ONE)
     assert "another step" in refusal(rewritten(data, _shorter))
     assert "is not a Q-table" in refusal(repacked(data, checkpoint_npz=b"milk"))
 
 
 def test_odd_configs_move_and_foreign_agents_do_not() -> None:
     store = MemoryStore()
-    store.create(training("a", state="finished", config=replace(ODD, agent="q-learning")))
-    store.create(training("b", state="finished", config=ODD))
-    assert taken_in(export_run(store, "a")) == store.get("a")
-    assert "q-learning, greedy, two-step" in refusal(export_run(store, "b"))
+    store.create(training(ONE, state="finished", config=replace(ODD, agent="q-learning")))
+    store.create(training(OTHER, state="finished", config=ODD))
+    assert taken_in(export_run(store, ONE)) == store.get(ONE)
+    assert "q-learning, greedy, two-step" in refusal(export_run(store, OTHER))
 
 
 def _set(name: str, value: Any, *path: str | int) -> Change:
@@ -172,6 +174,19 @@ def _shorter(shown: Any) -> None:
         (_set("name", "x" * 101, "run"), "name"),
         (_set("name", "a\x1b[2J", "run"), "control characters"),
         (_set("name", 3, "run"), "name"),
+        (_set("name", "a\u202eb", "run"), "U+202E"),
+        (_set("error", "x" * 10_001, "run"), "error"),
+        (_set("created_at", "9999-12-31T23:59:59-12:00", "run"), "created_at must be from 1970"),
+        (_set("created_at", "1969-12-31T23:59:59Z", "run"), "created_at must be from 1970"),
+        (_set("started_at", "2999-01-01T00:00:00Z", "run"), "started_at"),
+        (_set("ended_at", "0001-01-01T00:00:00+14:00", "run"), "ended_at"),
+        (_set("greedy_distance_m", float("nan"), "run"), "run.json"),
+        (_set("greedy_distance_m", 1e300, "run"), "greedy_distance_m"),
+        (_set("distance_m", 1e300, "run", "result"), "distance_m"),
+        (_set("changes", [{"step": 5, "alpha": 7.0}], "run"), "alpha"),
+        (_set("changes", [{"step": 5, "pace": -1.0}], "run"), "pace"),
+        (_set("curve", [{"step": 5, "distance_m": 1, "epsilon": 1.5}]), "epsilon"),
+        (_set("curve", [{"step": 10**30, "distance_m": 1, "epsilon": 0}]), "step"),
         (_set("done", -1, "run"), "done"),
         (_set("done", 121, "run"), "progress"),
         (_set("created_at", "2026-01-01T00:00:00", "run"), "created_at"),
@@ -270,13 +285,19 @@ def test_recordings_that_cannot_be_drawn_are_refused(source: SqlStore) -> None:
     assert "compressed" in refusal(bomb)
 
 
-class _Full(MemoryStore):
-    def put_artifact(self, *given: Any, **fields: Any) -> None:
-        raise StorageFull("the disk is full")
+def test_an_id_that_could_not_have_been_made_yet_is_not_kept(source: SqlStore) -> None:
+    for run_id in ("zzzzzzzzz0000", "0", "training", "1zzzzzzzzzzzz"):
+        store, ids = MemoryStore(), RunIds()
+        data = rewritten(export_run(source, TRAINING), _set("id", run_id, "run"))
+        run = import_run(store, data, ids, tuple(OURS), "run.zip")
+        assert run.id != run_id
+        assert store.get(run.id) == replace(source.get(TRAINING), id=run.id)
+        assert ids() > run.id
 
 
-def test_half_a_run_does_not_stay(source: SqlStore) -> None:
-    store = _Full()
-    with pytest.raises(StorageFull):
-        taken_in(export_run(source, TRAINING), store)
-    assert store.list().items == []
+def test_new_runs_sort_last_beside_one_of_the_year_3000() -> None:
+    store = MemoryStore()
+    believed = "1m7zzzzzz0000"  # of November 2026
+    store.create(training("zzzzzzzzz0000", state="finished"), training(believed, state="finished"))
+    first = RunIds.of(store)()
+    assert believed < first < "zzzzzzzzz0000"

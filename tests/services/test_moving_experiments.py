@@ -13,7 +13,7 @@ from app.services.archived_trials import TRIALS
 from app.services.database.store import SqlStore
 from app.services.memory_store import MemoryStore
 from app.services.moving import export_run
-from app.services.store import SUMMARY
+from app.services.store import SUMMARY, State
 from tests.services.ended import ended_experiment
 from tests.services.stores import SWEEP, experiment, opened
 from tests.services.test_moving import Change, _set, refusal, repacked, rewritten, taken_in
@@ -52,13 +52,14 @@ def test_everything_arrives(source: SqlStore, tmp_path: Path) -> None:
 def test_one_that_did_not_come_to_its_end_moves_with_what_it_has(source: SqlStore) -> None:
     store = MemoryStore()
     config, rows = source.get(RUN_ID).config, source.trials(RUN_ID)[:2]
-    for state in ("interrupted", "stopped", "failed"):
-        run = experiment(state, state=state, config=config, total=4, done=2, workers=2)
+    states: dict[str, State] = {"0000000000001": "interrupted", "0000000000002": "stopped"}
+    for run_id, state in {**states, "0000000000003": "failed"}.items():
+        run = experiment(run_id, state=state, config=config, total=4, done=2, workers=2)
         store.create(run)
-        store.append_trials(state, rows)
+        store.append_trials(run_id, rows)
         target = MemoryStore()
-        assert taken_in(export_run(store, state), target) == run
-        assert target.trials(state) == rows
+        assert taken_in(export_run(store, run_id), target) == run
+        assert target.trials(run_id) == rows
 
 
 def test_agents_that_are_not_here_do_not_get_in_and_are_not_even_imported(

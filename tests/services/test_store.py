@@ -126,7 +126,7 @@ def test_progress_is_seen_at_once_and_outlives_changes(store: RunStore) -> None:
     run = a_run(store)
     for done in range(1, 200):
         assert store.update_progress(run.id, done, eta_s=200.0 - done).done == done
-    assert store.list().items[0].done == 199
+    assert store.list().runs[0].done == 199
     assert store.get(run.id).eta_s == 1.0
     assert store.update(run.id, greedy_distance_m=0.5).done == 199
     store.update_progress(run.id, 200)

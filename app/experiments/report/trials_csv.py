@@ -7,6 +7,7 @@ from typing import Any
 
 from app.experiments.config import GRID, ExperimentConfig
 from app.experiments.plan import Plan, Trial
+from app.experiments.report.csv_cells import text_cell
 from app.experiments.trial import TrialResult
 
 _FIRST = ("trial", "role", "gait", "observation", "robot", "agent")
@@ -56,8 +57,8 @@ def _rows(trial: Trial, result: TrialResult) -> Iterator[list[Any]]:
     ]
     for block, distance_m in enumerate(result.distances_m or (None,)):
         yield [
-            *map(_text, named),
-            _text(training.agent),
+            *map(text_cell, named),
+            text_cell(training.agent),
             *rates,
             trial.seed_number,
             training.seed,
@@ -66,10 +67,5 @@ def _rows(trial: Trial, result: TrialResult) -> Iterator[list[Any]]:
             result.finished_distance_m,
             result.elapsed_s,
             result.transitions or None,
-            _text(result.failure or ""),
+            text_cell(result.failure or ""),
         ]
-
-
-def _text(value: str) -> str:
-    """A spreadsheet takes text that begins like this for a formula; a name never needs to."""
-    return f"'{value}" if value.startswith(("=", "+", "-", "@", "\t", "\r")) else value

@@ -63,7 +63,7 @@ class Plain(TypeDecorator[Any]):
 
     def process_result_value(self, value: Any, dialect: Dialect) -> Any:
         """On the way out."""
-        return _decoded(value)
+        return decoded(value)
 
 
 def _encoded(value: Any) -> Any:
@@ -76,11 +76,12 @@ def _encoded(value: Any) -> Any:
     return value
 
 
-def _decoded(value: Any) -> Any:
+def decoded(value: Any) -> Any:
+    """Plain types of JSON as they were before `Plain` encoded them."""
     if isinstance(value, dict):
         if value.keys() == {_NON_FINITE}:
             return float(value[_NON_FINITE])
-        return {key: _decoded(item) for key, item in value.items()}
+        return {key: decoded(item) for key, item in value.items()}
     if isinstance(value, list):
-        return [_decoded(item) for item in value]
+        return [decoded(item) for item in value]
     return value

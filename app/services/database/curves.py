@@ -20,16 +20,22 @@ class Curves:
         """See `RunStore.append_evaluations`."""
         if not rows:
             return
-        added = [{"run_id": run_id, **row} for row in rows]
         first = min(row["step"] for row in rows)
         repeated = EVALUATIONS.c.run_id == run_id, EVALUATIONS.c.step >= first
 
         def work(connection: Connection) -> None:
             row_of_run(connection, run_id, and_hold=True)
             connection.execute(delete(EVALUATIONS).where(*repeated))
-            connection.execute(insert(EVALUATIONS), added)
+            self.insert(connection, run_id, rows)
 
         self._database.write(work)
+
+    def insert(
+        self, connection: Connection, run_id: str, rows: Sequence[Mapping[str, Any]]
+    ) -> None:
+        """Add rows to a run that has none of these steps, within a transaction."""
+        if rows:
+            connection.execute(insert(EVALUATIONS), [{"run_id": run_id, **row} for row in rows])
 
     def of(self, run_id: str) -> Sequence[Mapping[str, Any]]:
         """See `RunStore.evaluations`."""
@@ -52,5 +58,6 @@ class Curves:
         )
 
 
-def _number(value: float | None) -> float:
-    return float("nan") if value is None else value
+def _number(value: Any) -> float:
+    """NULL, and whatever else SQLite may have there, is NaN."""
+    return value if isinstance(value, int | float) else float("nan")

@@ -184,8 +184,14 @@ def postgresql_engine(url: str) -> Engine:
     )
 
 
+def decode_leniently(connection: sqlite3.Connection) -> None:
+    """Let text that is no UTF-8 be read with what is wrong escaped, instead of failing a query."""
+    connection.text_factory = lambda data: data.decode("utf-8", "surrogateescape")
+
+
 def _prepare_sqlite(connection: sqlite3.Connection, record: object) -> None:
     del record
+    decode_leniently(connection)
     for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
         connection.execute(f"PRAGMA {pragma}")
 

@@ -9,6 +9,7 @@ from app.services.database.engine import Database, postgresql_engine, sqlite_eng
 from app.services.database.folder_lock import lock_folder
 from app.services.database.migrating import migrate
 from app.services.database.ownership import Ownership, claim
+from app.services.database.sqlite_file import begin_file, check_file
 from app.services.database.store import SqlStore
 from app.services.room import Room
 from app.settings import Settings
@@ -76,4 +77,7 @@ def _database(settings: Settings, room: Room) -> Database:
     if settings.database_url is not None:
         return Database(postgresql_engine(settings.database_url))
     room.reserve()
-    return Database(sqlite_engine(settings.data / DATABASE_FILE), on_full=room.release)
+    path = settings.data / DATABASE_FILE
+    check_file(path, settings.data / ARTIFACTS_FOLDER)
+    begin_file(path, on_full=room.release)
+    return Database(sqlite_engine(path), on_full=room.release)

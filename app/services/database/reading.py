@@ -10,10 +10,11 @@ from sqlalchemy import Connection, Engine, create_engine, event, select
 from sqlalchemy.pool import NullPool
 
 from app.services.artifacts import ArtifactFiles
-from app.services.database.engine import BUSY_S, Database, postgresql_engine
+from app.services.database.engine import BUSY_S, Database, decode_leniently, postgresql_engine
 from app.services.database.migrating import check_current
 from app.services.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
 from app.services.database.schema import ABOUT
+from app.services.database.sqlite_file import check_file
 from app.services.database.store import SqlStore
 from app.services.memory_store import MemoryStore
 from app.services.room import Room
@@ -49,6 +50,7 @@ def _engine(settings: Settings) -> Engine | None:
         event.listen(engine, "connect", _only_read)
         return engine
     path = settings.data / DATABASE_FILE
+    check_file(path, settings.data / ARTIFACTS_FOLDER)
     return _sqlite_engine(path) if path.is_file() else None
 
 
@@ -56,7 +58,9 @@ def _sqlite_engine(path: Path) -> Engine:
     def connect() -> sqlite3.Connection:
         # Not by a path: only a URI can ask for no writing.
         address = f"file:{quote(str(path))}?mode=ro"
-        return sqlite3.connect(address, timeout=BUSY_S, isolation_level=None, uri=True)
+        connection = sqlite3.connect(address, timeout=BUSY_S, isolation_level=None, uri=True)
+        decode_leniently(connection)
+        return connection
 
     engine = create_engine("sqlite://", creator=connect, poolclass=NullPool)
     event.listen(engine, "begin", lambda connection: connection.exec_driver_sql("BEGIN"))

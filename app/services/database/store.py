@@ -1,24 +1,58 @@
 """The store that lasts: rows in a database, arrays in files beside it."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import Connection, case, delete, func, insert, literal, select, update
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    case,
+    delete,
+    func,
+    insert,
+    literal,
+    or_,
+    select,
+    update,
+)
 
 from app.domain.errors import DamagedFile
 from app.services.artifacts import ArtifactFiles, Stored
 from app.services.database.columns import UtcTime
 from app.services.database.curves import Curves
 from app.services.database.engine import Database
-from app.services.database.finding import Row, found, row_of_run
+from app.services.database.finding import (
+    RAW_RUN,
+    Row,
+    found,
+    is_before,
+    is_run,
+    row_of_run,
+    select_runs,
+    shown_id,
+)
+from app.services.database.keys import Keys
 from app.services.database.progress import Progress
-from app.services.database.rows import columns_of, row_of, run_of
+from app.services.database.rows import any_run_of, columns_of, row_of, run_of
 from app.services.database.schema import ARTIFACTS, RUNS
 from app.services.database.trials import Trials
-from app.services.errors import Conflict, NotFound, StorageFull
+from app.services.errors import Conflict, Damaged, StorageFailed
 from app.services.room import START_BYTES
-from app.services.store import UNENDED, Kind, Page, Run, State
+from app.services.store import (
+    KINDS,
+    UNENDED,
+    AnyRun,
+    Content,
+    DamagedRun,
+    IdempotencyKey,
+    Kind,
+    Page,
+    Run,
+    Started,
+    State,
+)
 
 _DIED = "The server ended before the run did."
 _FILE = (ARTIFACTS.c.file, ARTIFACTS.c.size, ARTIFACTS.c.sha256)
@@ -34,18 +68,66 @@ class SqlStore:
     def __init__(self, database: Database, files: ArtifactFiles) -> None:
         self._database, self._files = database, files
         self._progress = Progress()
-        self._curves, self._trials = Curves(database), Trials(database)
+        self._curves, self._trials, self._keys = Curves(database), Trials(database), Keys(database)
 
     def check_room(self) -> None:
         self._files.check_room(START_BYTES)
 
-    def create(self, *runs: Run) -> None:
+    def create(self, *runs: Run, key: IdempotencyKey | None = None) -> None:
+        if not runs:
+            return
         rows = [row_of(run) for run in runs]
-        if rows:
-            self._database.write(lambda connection: connection.execute(insert(RUNS), rows))
+
+        def work(connection: Connection) -> None:
+            connection.execute(insert(RUNS), rows)
+            self._keys.note(connection, key, runs[-1].id)
+
+        self._database.write(work)
+
+    def add(
+        self,
+        run: Run,
+        content: Content,
+        new_id: Callable[[], str],
+        key: IdempotencyKey | None = None,
+    ) -> Run:
+        stored: dict[str, Stored] = {}
+        was_asked = False
+
+        def work(connection: Connection) -> Run:
+            taken = connection.execute(select(RUNS.c.id).where(RUNS.c.id == run.id)).first()
+            added = run if taken is None else replace(run, id=new_id())
+            connection.execute(insert(RUNS), [row_of(added)])
+            self._curves.insert(connection, added.id, content.evaluations)
+            self._trials.insert(connection, added.id, content.trials)
+            if stored:
+                connection.execute(insert(ARTIFACTS), _rows_of(added.id, stored))
+            self._keys.note(connection, key, added.id)
+            return added
+
+        try:
+            # Files first: whatever ends this process leaves no row, and the next start sweeps up.
+            for name, data in content.artifacts.items():
+                stored[name] = self._files.write(data)
+            was_asked = True
+            return self._database.write(work)
+        except BaseException as error:
+            # A database that fails may have taken it all the same, and the next start knows.
+            if not (was_asked and isinstance(error, StorageFailed)):
+                self._files.remove(*(one.file for one in stored.values()))
+            raise
+
+    def started_by(self, key: str) -> Started | None:
+        return self._keys.find(key)
 
     def get(self, run_id: str) -> Run:
-        return self._as_run(self._database.read(lambda connection: row_of_run(connection, run_id)))
+        run = self.find(run_id)
+        if isinstance(run, DamagedRun):
+            raise Damaged(run.id, run.damaged)
+        return run
+
+    def find(self, run_id: str) -> AnyRun:
+        return self._shown(self._database.read(lambda connection: row_of_run(connection, run_id)))
 
     def list(
         self,
@@ -54,16 +136,23 @@ class SqlStore:
         limit: int = 50,
         cursor: str | None = None,
     ) -> Page:
-        wanted = select(RUNS).order_by(RUNS.c.id.desc()).limit(limit + 1)
-        if kind is not None:
-            wanted = wanted.where(RUNS.c.kind == kind)
+        wanted = select_runs().order_by(RUNS.c.id.desc()).limit(limit + 1)
         if state is not None:
             wanted = wanted.where(RUNS.c.state == state)
-        if cursor is not None:
-            wanted = wanted.where(RUNS.c.id < cursor)
-        rows = self._database.read(lambda connection: found(connection, wanted))
-        runs = [self._as_run(row) for row in rows[:limit]]
-        return Page(runs, runs[-1].id if len(rows) > limit else None)
+
+        def work(connection: Connection) -> Sequence[Row]:
+            asked = wanted
+            if kind is not None:
+                asked = asked.where(_is_of_kind(connection, kind))
+            if cursor is not None:
+                asked = asked.where(is_before(connection, cursor))
+            return found(connection, asked)
+
+        rows = self._database.read(work)
+        return Page(
+            [self._shown(row) for row in rows[:limit]],
+            shown_id(rows[limit - 1]["id"]) if len(rows) > limit else None,
+        )
 
     def counts(self) -> Mapping[State, int]:
         wanted = select(RUNS.c.state, func.count()).group_by(RUNS.c.state)
@@ -82,7 +171,7 @@ class SqlStore:
         def work(connection: Connection) -> Row:
             nonlocal attempts
             attempts += 1
-            changed = found(connection, still.values(columns).returning(RUNS))
+            changed = found(connection, still.values(columns).returning(*RAW_RUN))
             if not changed:
                 run = row_of_run(connection, run_id)
                 if attempts > 1 and run["state"] == to_state:
@@ -97,7 +186,7 @@ class SqlStore:
 
     def update(self, run_id: str, **fields: Any) -> Run:
         columns = columns_of({**self._progress.of(run_id), **fields})
-        statement = update(RUNS).where(RUNS.c.id == run_id).values(columns).returning(RUNS)
+        statement = update(RUNS).where(RUNS.c.id == run_id).values(columns).returning(*RAW_RUN)
 
         def work(connection: Connection) -> Row:
             changed = found(connection, statement)
@@ -119,9 +208,12 @@ class SqlStore:
             state = row["state"]
             if state in UNENDED:
                 raise Conflict(f"{row['kind']} {run_id} is {state}; stop it first", state)
-            files = select(ARTIFACTS.c.file).where(ARTIFACTS.c.run_id == run_id)
+            is_it = is_run(connection, run_id)
+            files = select(ARTIFACTS.c.file).where(
+                ARTIFACTS.c.run_id.in_(select(RUNS.c.id).where(is_it))
+            )
             names = connection.execute(files).scalars().all()
-            connection.execute(delete(RUNS).where(RUNS.c.id == run_id))
+            connection.execute(delete(RUNS).where(is_it))
             return names
 
         self._files.remove(*self._database.write(work))
@@ -147,14 +239,13 @@ class SqlStore:
         columns = columns_of({**self._progress.of(run_id), **fields}) if fields else {}
         stored = self._files.write(data)
         of_this_name = ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name
-        row = {"run_id": run_id, "name": name, "written_at": datetime.now(UTC)}
 
         def work(connection: Connection) -> Sequence[str]:
             row_of_run(connection, run_id, and_hold=True)
             former = select(ARTIFACTS.c.file).where(*of_this_name)
             names = connection.execute(former).scalars().all()
             connection.execute(delete(ARTIFACTS).where(*of_this_name))
-            connection.execute(insert(ARTIFACTS), [{**row, **stored._asdict()}])
+            connection.execute(insert(ARTIFACTS), _rows_of(run_id, {name: stored}))
             if columns:
                 of_run = RUNS.c.id == run_id
                 connection.execute(update(RUNS).where(of_run).values(columns))
@@ -162,9 +253,10 @@ class SqlStore:
 
         try:
             former = self._database.write(work)
-        except (NotFound, StorageFull):
-            # After any other error the database may have taken it, and the next start knows.
-            self._files.remove(stored.file)
+        except BaseException as error:
+            # A database that fails may have taken it all the same, and the next start knows.
+            if not isinstance(error, StorageFailed):
+                self._files.remove(stored.file)
             raise
         if columns:
             self._progress.take(run_id)
@@ -223,5 +315,19 @@ class SqlStore:
         rows = self._database.read(work)
         return Stored(**rows[0]) if rows else None
 
-    def _as_run(self, row: Row) -> Run:
-        return run_of({**row, **self._progress.of(row["id"])})
+    def _shown(self, row: Row) -> AnyRun:
+        return any_run_of({**row, **self._progress.of(row["id"])})
+
+
+def _is_of_kind(connection: Connection, kind: Kind) -> ColumnElement[bool]:
+    """That a run is of this kind, or may be, since its own cannot be read."""
+    odd = connection.execute(select(RUNS.c.id).where(RUNS.c.kind.not_in(KINDS))).scalars().all()
+    return or_(RUNS.c.kind == kind, RUNS.c.kind.not_in(KINDS)) if odd else RUNS.c.kind == kind
+
+
+def _rows_of(run_id: str, stored: Mapping[str, Stored]) -> list[Row]:
+    now = datetime.now(UTC)
+    return [
+        {"run_id": run_id, "name": name, "written_at": now, **one._asdict()}
+        for name, one in stored.items()
+    ]

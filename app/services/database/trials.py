@@ -1,15 +1,16 @@
 """The trials of experiments, as rows."""
 
+import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sqlalchemy import Connection, bindparam, delete, insert, select
+from sqlalchemy import Connection, String, bindparam, cast, delete, insert, select
 
+from app.services.database.columns import decoded
 from app.services.database.engine import Database
 from app.services.database.finding import Row, found, row_of_run
 from app.services.database.schema import TRIALS
-
-_FIELDS = ("key", "result", "set_aside", "compute_s")
+from app.services.text import visible
 
 
 class Trials:
@@ -28,16 +29,47 @@ class Trials:
             row_of_run(connection, run_id, and_hold=True)
             if added:
                 connection.execute(again, [{"again": row["key"]} for row in added])
-                connection.execute(insert(TRIALS), added)
+                self.insert(connection, run_id, added)
 
         self._database.write(work)
 
+    def insert(
+        self, connection: Connection, run_id: str, rows: Sequence[Mapping[str, Any]]
+    ) -> None:
+        """Add rows to a run that has none of these keys, within a transaction."""
+        if rows:
+            connection.execute(insert(TRIALS), [{"run_id": run_id, **row} for row in rows])
+
     def of(self, run_id: str) -> Sequence[Mapping[str, Any]]:
-        """See `RunStore.trials`."""
-        wanted = select(TRIALS).where(TRIALS.c.run_id == run_id).order_by(TRIALS.c.key)
+        """See `RunStore.trials`. One that cannot be read has no result, and says so."""
+        wanted = select(*_RAW).where(TRIALS.c.run_id == run_id).order_by(TRIALS.c.key)
 
         def work(connection: Connection) -> Sequence[Row]:
             row_of_run(connection, run_id)
             return found(connection, wanted)
 
-        return [{name: row[name] for name in _FIELDS} for row in self._database.read(work)]
+        return [_decoded(row) for row in self._database.read(work)]
+
+
+_RAW = (
+    TRIALS.c.key,
+    cast(TRIALS.c.result, String).label("result"),
+    TRIALS.c.set_aside,
+    TRIALS.c.compute_s,
+)
+
+
+def _decoded(row: Row) -> dict[str, Any]:
+    seconds, set_aside = row["compute_s"], row["set_aside"]
+    fields = {
+        "key": visible(str(row["key"])),
+        "set_aside": None if set_aside is None else visible(str(set_aside)),
+        "compute_s": seconds if isinstance(seconds, int | float) else 0.0,
+    }
+    try:
+        result = None if row["result"] is None else decoded(json.loads(row["result"]))
+        if not isinstance(result, dict | None):
+            raise TypeError("it is no object")
+    except (ValueError, TypeError, RecursionError):
+        return {**fields, "result": None, "set_aside": "what the database holds of it is damaged"}
+    return {**fields, "result": result}
