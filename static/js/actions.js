@@ -6,7 +6,7 @@ import { count, whole } from "./format.js";
 import {
   claim, isActive, isOperator, learns, liveTraining, myWork, raceIsRun, shownRun, tableInHand, work,
 } from "./selectors.js";
-import { keepRun, rates, runs, scene, stage } from "./store.js";
+import { dropRun, keepRun, rates, runs, scene, stage } from "./store.js";
 
 /** Place → what went wrong there: "start", "work", "stage", "tune", or a run's id. */
 export const problems = signal({});
@@ -176,9 +176,7 @@ export const goOn = (run) =>
 export const remove = (run) =>
   attempt(run.id, async () => {
     await api.deleteRun(run);
-    const left = new Map(runs.value);
-    left.delete(run.id);
-    runs.value = left;
+    dropRun(run.id);
   });
 
 /** The form as that run had it. */

@@ -48,7 +48,8 @@ const parse = (text) => {
 };
 
 const collection = (kind) => `${kind}s`;
-const address = ({ kind, id }) => `${collection(kind)}/${encodeURIComponent(id)}`;
+/** A damaged run whose kind cannot be read is found under any. */
+const address = ({ kind, id }) => `${collection(kind ?? "training")}/${encodeURIComponent(id)}`;
 
 export const getOptions = () => call("GET", "options");
 export const getRun = (run) => call("GET", address(run));

@@ -1,4 +1,4 @@
-// What the page knows of the server, as signals. Only `applyEvent` and `keepRun` write to it.
+// What the page knows of the server, as signals. Only `applyEvent`, `keepRun` and `dropRun` write to it.
 import { batch, signal } from "@preact/signals";
 
 /** "connecting", "live" or "reconnecting". */
@@ -12,6 +12,8 @@ export const viewers = signal(null);
 export const options = signal(null);
 /** Every run that was heard of, by id. */
 export const runs = signal(new Map());
+/** By id the runs that the server cannot read; they are listed, can be deleted, and nothing else. */
+export const damagedRuns = signal(new Map());
 /** What everyone is shown, as GET /stage has it. */
 export const stage = signal(null);
 /** What everyone sees right now, about five times a second. */
@@ -33,16 +35,14 @@ const handlers = {
     version.value = data.version ?? null;
     role.value = data.role ?? "operator";
     viewers.value = data.viewers ?? null;
-    runs.value = new Map((data.runs ?? []).map((run) => [run.id, run]));
+    const byId = (some) => new Map(some.map((run) => [run.id, run]));
+    runs.value = byId((data.runs ?? []).filter((run) => !run.damaged));
+    damagedRuns.value = byId((data.runs ?? []).filter((run) => run.damaged));
     stage.value = data.stage ?? null;
     scene.value = data.scene ?? null;
   },
   run: (data) => keepRun(data),
-  "run-deleted"({ id }) {
-    const left = new Map(runs.value);
-    left.delete(id);
-    runs.value = left;
-  },
+  "run-deleted": ({ id }) => dropRun(id),
   evaluation({ run_id, ...evaluation }) {
     put(evaluations, run_id, [...(evaluations.value[run_id] ?? []), evaluation]);
   },
@@ -59,5 +59,19 @@ export const applyEvent = (name, data) => batch(() => handlers[name]?.(data));
 
 /** Take in a run as an answer or an event has it. */
 export function keepRun(run) {
-  runs.value = new Map(runs.value).set(run.id, run);
+  const [its, other] = run.damaged ? [damagedRuns, runs] : [runs, damagedRuns];
+  its.value = new Map(its.value).set(run.id, run);
+  if (other.value.has(run.id)) other.value = without(other.value, run.id);
+}
+
+export const dropRun = (id) =>
+  batch(() => {
+    runs.value = without(runs.value, id);
+    damagedRuns.value = without(damagedRuns.value, id);
+  });
+
+function without(map, id) {
+  const left = new Map(map);
+  left.delete(id);
+  return left;
 }

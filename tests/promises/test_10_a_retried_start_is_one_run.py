@@ -1,20 +1,32 @@
-"""Promise 10: a retried start is one run: the same `Idempotency-Key` 100 times."""
+"""Promise 10: a retried start is one run: the same `Idempotency-Key` 100 times.
 
+Also across restarts, and `kill -9` at random moments of the start: here 3 kills, 50 by `make soak`.
+"""
+
+import random
+import signal
+import threading
+import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+import httpx2
 import pytest
 
 from app.runs import tables
 from tests.api.calls import WALK, Api, refused
+from tests.promises.length import at_length
+from tests.served import BODY, Served
 
 TIMES = 100
 RACE = {**WALK, "steps": 5, "lanes": [{"agent": "greedy"}]}
 
 
-def start(api: Api, path: str, key: str, **request: Any) -> tuple[int, str, str]:
+def start(api: Api, path: str, key: str, **request: Any) -> tuple[int, str]:
     answer = api.call("POST", path, headers={"Idempotency-Key": key}, **request)
-    return answer.status_code, answer.headers["location"], answer.text
+    assert answer.headers["location"].endswith(answer.json()["id"])
+    return answer.status_code, answer.headers["location"]
 
 
 def runs(api: Api, kind: str, name: str) -> list[str]:
@@ -69,3 +81,61 @@ def test_what_was_refused_for_now_can_be_tried_again(api: Api) -> None:
     body = {**WALK, "continue_from": "nobody"}
     for _ in range(2):
         refused(api.call("POST", "/trainings", json=body, headers=headers), 422, "nobody")
+
+
+def test_a_key_whose_run_was_deleted_says_so(api: Api) -> None:
+    body = {**WALK, "steps": 5, "name": "deleted"}
+    headers = {"Idempotency-Key": "of one that is gone"[:19].replace(" ", "-")}
+    run = api.call("POST", "/trainings", json=body, headers=headers).json()
+    api.finished(run)
+    assert api.call("DELETE", f"/trainings/{run['id']}").status_code == 204
+    answer = api.call("POST", "/trainings", json=body, headers=headers)
+    refused(answer, 410, run["id"], "was deleted", "new key")
+    assert not runs(api, "training", "deleted")
+
+
+KILLS = at_length(3, 50)
+
+
+@pytest.mark.timeout(60 + 30 * KILLS)
+def test_a_key_outlives_its_server(launch: Callable[..., Served]) -> None:
+    chance = random.Random(10)
+    server = launch()
+    for number in range(KILLS):
+        bodies = {
+            "/trainings": {**BODY, "steps": 5, "name": f"training {number}"},
+            "/races": {**BODY, "steps": 5, "name": f"race {number}"},
+        }
+        told: list[str] = []
+        starter = threading.Thread(target=start_all, args=(server, number, bodies, told))
+        starter.start()
+        time.sleep(chance.uniform(0, 0.3))
+        server.process.send_signal(signal.SIGKILL)
+        starter.join()
+        server.end(signal.SIGKILL)
+        server = launch()
+        again: list[str] = []
+        start_all(server, number, bodies, again)
+        assert again[: len(told)] == told, "what was acknowledged is there"
+        for path, body in bodies.items():
+            shown = server.client.get(f"/api/v1{path}").json()["items"]
+            names = [run["name"] for run in shown if "damaged" not in run]
+            assert names.count(body["name"]) == 1
+        trainings = server.client.get("/api/v1/trainings").json()["items"]
+        assert len(trainings) == 2 * (number + 1), "a race brings its one training along"
+    assert len({*again, *told}) >= 2
+
+
+def start_all(
+    server: Served, number: int, bodies: dict[str, dict[str, Any]], told: list[str]
+) -> None:
+    """Ask for each with a key of its own; by `told` what was answered before the server died."""
+    for path, body in bodies.items():
+        headers = {"Idempotency-Key": f"{number}{path}"}
+        try:
+            with httpx2.Client(base_url=server.address, timeout=60, trust_env=False) as client:
+                answer = client.post(f"/api/v1{path}", json=body, headers=headers)
+        except httpx2.TransportError:
+            return
+        assert answer.status_code == 202, answer.text
+        told.append(answer.json()["id"])

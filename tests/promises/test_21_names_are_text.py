@@ -47,7 +47,7 @@ TAGS = [
     "<!--><img src onerror={}>",
     "]]><script>{}</script>",
 ]
-PREFIXES = ["", '"', "'", "'>", '">', "</title>", "</script>", "\u2028\u202e\ufeff"]
+PREFIXES = ["", '"', "'", "'>", '">', "</title>", "</script>", "\u0301\ufe0f\u0336"]
 
 
 def payloads() -> list[str]:

@@ -3,7 +3,8 @@ import { useState } from "preact/hooks";
 import { listRuns } from "../api.js";
 import { html } from "../html.js";
 import { everyRun } from "../selectors.js";
-import { keepRun } from "../store.js";
+import { damagedRuns, keepRun } from "../store.js";
+import { DamagedRunRow } from "./damaged-run-row.js";
 import { ExperimentRunRow } from "./experiments/experiment-run-row.js";
 import { RunRow } from "./run-row.js";
 import { Segments } from "./segments.js";
@@ -14,9 +15,10 @@ const STATES = ["any state", "running", "paused", "queued", "finished", "stopped
 export function Runs() {
   const [kind, setKind] = useState("all");
   const [state, setState] = useState("any state");
-  const all = everyRun.value;
+  const all = [...damagedRuns.value.values(), ...everyRun.value];
   const shown = all.filter(
-    (run) => (kind === "all" || run.kind === kind) && (state === "any state" || run.state === state),
+    (run) =>
+      (kind === "all" || (run.kind ?? kind) === kind) && (state === "any state" || run.state === state),
   );
   return html`
     <section class="panel runs" aria-labelledby="runs-title">
@@ -32,11 +34,13 @@ export function Runs() {
       </div>
       ${shown.length === 0
         ? html`<${NoRuns} isFiltered=${all.length > 0} />`
-        : html`<ul>${shown.map((run) => html`<${run.kind === "experiment" ? ExperimentRunRow : RunRow} key=${run.id} run=${run} />`)}</ul>`}
+        : html`<ul>${shown.map((run) => html`<${rowOf(run)} key=${run.id} run=${run} />`)}</ul>`}
       <${Older} count=${all.length} />
     </section>
   `;
 }
+
+const rowOf = (run) => (run.damaged ? DamagedRunRow : run.kind === "experiment" ? ExperimentRunRow : RunRow);
 
 const NoRuns = ({ isFiltered }) => html`
   <div class="no-runs">

@@ -1,0 +1,365 @@
+"""Promise 27: no stored row can break a listing.
+
+Promised: every field of every import, and every column of the database, with its worst value: all
+GETs, the events and the page still answer, and name the damaged run. Here some of these, chosen at
+random; all of them by `make soak`.
+"""
+
+import io
+import json
+import random
+import sqlite3
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import httpx2
+import numpy as np
+import pytest
+from playwright.sync_api import Page, expect
+from sqlalchemy import text
+
+from app.runs import tables
+from app.runs.tables import from_bytes
+from app.services import archives
+from app.services.archived_trials import TRIALS
+from app.services.database.engine import Database, postgresql_engine
+from app.services.database.opening import DATABASE_FILE
+from app.services.database.schema import METADATA
+from app.services.database.store import SqlStore
+from app.services.errors import Damaged
+from app.services.moving import RUN, export_run
+from app.services.store import TABLE, DamagedRun
+from app.services.views import run_view
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import serving
+from tests.cli.running import hexapods, output
+from tests.postgresql import PostgresServer
+from tests.promises.length import at_length
+from tests.promises.worst_values import BROKEN_TEXT, IMPORTED, STORED, places, put
+from tests.served import Served
+from tests.services.ended import ended_experiment, ended_race, ended_training
+from tests.services.stores import opened, training
+
+SOUND, TRAINING, RACED, TRIED = "00000000000s1", "00000000000t1", "00000000000r1", "00000000000e1"
+KINDS = {TRAINING: "trainings", RACED: "races", TRIED: "experiments"}
+BELOW = {
+    "trainings": ["", "/curve", "/curve?format=csv", "/q-table", "/q-table?format=npz", "/export"],
+    "races": ["", "/recording", "/recording?format=npz", "/timeline", "/export"],
+    "experiments": ["", "/summary", "/report", "/trials", "/trials?format=csv", "/export"],
+}
+FIELDS_A_FILE, COLUMNS = at_length(12, None), at_length(40, None)
+"""How many worst values are tried of each file, and of all columns; None is all."""
+
+
+@pytest.fixture
+def kept(tmp_path: Path) -> Path:
+    """A data folder with a run of each kind, and a sound one beside them."""
+    with opened(tmp_path, None) as store:
+        ended_training(store, SOUND, "sound", steps=20)
+        ended_training(store, TRAINING, steps=20)
+        ended_race(store, RACED, TRAINING)
+        ended_experiment(store, TRIED)
+    return tmp_path
+
+
+def some(cases: list[Any], count: int | None) -> list[Any]:
+    return cases if count is None else random.Random(27).sample(cases, min(count, len(cases)))
+
+
+def first_event(server: Served, query: str = "") -> dict[str, Any]:
+    event, data, _ = next(server.events(query))
+    assert event == "snapshot"
+    shown: dict[str, Any] = data
+    return shown
+
+
+def listed(server: Served, kind: str) -> dict[str, dict[str, Any]]:
+    answer = server.client.get(f"/api/v1/{kind}")
+    assert answer.status_code == 200, answer.text
+    return {run["id"]: run for run in answer.json()["items"]}
+
+
+def everything_answers(server: Served, ids: dict[str, str]) -> dict[str, str]:
+    """All that can be looked at, of all runs; by id what is said to be damaged."""
+    damaged: dict[str, str] = {}
+    for kind in ("trainings", "races", "experiments"):
+        runs = listed(server, kind)
+        damaged |= {i: run["damaged"] for i, run in runs.items() if "damaged" in run}
+        for state in ("finished", "running"):
+            assert server.client.get(f"/api/v1/{kind}?state={state}").status_code == 200
+    assert SOUND in listed(server, "trainings")
+    assert "damaged" not in listed(server, "trainings")[SOUND]
+    for run_id, kind in {**ids, **{i: kind for i in damaged for kind in KINDS.values()}}.items():
+        for below in BELOW[kind]:
+            answer = server.client.get(f"/api/v1/{kind}/{run_id}{below}")
+            assert answer.status_code < 500, (run_id, below, answer.text)
+    snapshot = first_event(server)
+    assert {run["id"] for run in snapshot["runs"]} >= {SOUND, *damaged}
+    assert server.client.get("/readyz").status_code == 200
+    assert server.client.get("/api/v1/stage").status_code == 200
+    return damaged
+
+
+# ---- imports
+
+
+def files_of(folder: Path) -> Iterator[tuple[str, bytes]]:
+    """What can be imported: by the address that takes it, the file."""
+    with opened(folder, None) as store:
+        yield "/trainings/import", store.artifact(TRAINING, TABLE) or b""
+        for run_id in (TRAINING, RACED, TRIED):
+            yield "/import", export_run(store, run_id)
+
+
+def mutations(path: str, data: bytes) -> Iterator[Callable[[], bytes]]:
+    """The same file with each of its fields as bad as can be, and with digests that are right."""
+    if path == "/trainings/import":
+        checkpoint = from_bytes(data, "the table")
+        for place in places(dict(checkpoint.meta)):
+            for value in IMPORTED:
+                yield partial(_table, checkpoint, place, value)
+        return
+    members = archives.unpack(data, "run.zip", lambda name: True)
+    for name in {RUN, TRIALS} & set(members):
+        shown = json.loads(members[name])
+        for place in places(shown):
+            for value in IMPORTED:
+                yield partial(_archive, members, name, place, value)
+
+
+def _table(checkpoint: tables.Checkpoint, place: tuple[Any, ...], value: Any) -> bytes:
+    meta = json.loads(json.dumps(dict(checkpoint.meta)))
+    put(meta, place, value)
+    return tables.to_bytes(tables.Checkpoint(meta, checkpoint.arrays))
+
+
+def _archive(members: dict[str, bytes], name: str, place: tuple[Any, ...], value: Any) -> bytes:
+    shown = json.loads(members[name])
+    put(shown, place, value)
+    return archives.pack({**members, name: json.dumps(shown).encode()})
+
+
+@pytest.mark.timeout(at_length(300, 7200))
+def test_no_import_can(kept: Path, launch: Callable[..., Served]) -> None:
+    files = list(files_of(kept))
+    server = launch()
+    taken = 0
+    for path, data in files:
+        for make in some(list(mutations(path, data)), FIELDS_A_FILE):
+            answer = server.client.post(f"/api/v1{path}", content=make())
+            assert answer.status_code in (201, 422), answer.text
+            if answer.status_code == 201:
+                taken += 1
+                run = answer.json()
+                assert "damaged" not in run
+                assert everything_answers(server, {run["id"]: f"{run['kind']}s"}) == {}
+                server.client.delete(f"/api/v1/{run['kind']}s/{run['id']}")
+    assert everything_answers(server, KINDS) == {}
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("greedy_distance_m", float("nan")),
+        ("greedy_distance_m", 1e300),
+        ("greedy_distance_m", "far"),
+        ("step", 10**30),
+        ("step", -5),
+        ("step", True),
+        ("step", 10**9),
+        ("rng", "{}"),
+        ("agent", "x" * 1000),
+        ("changes", [{"step": 3, "pace": float("inf")}]),
+    ],
+)
+def test_a_table_with_a_number_that_is_none_is_refused(
+    name: str, value: Any, kept: Path, quiet_import: Callable[[bytes], Any]
+) -> None:
+    [(_, data), *_] = files_of(kept)
+    answer = quiet_import(_table(from_bytes(data, "the table"), (name,), value))
+    assert answer.status_code == 422
+    assert any(word in answer.json()["detail"] for word in (name, "The file", "Pace"))
+
+
+@pytest.fixture
+def quiet_import(quiet_server: Any) -> Iterator[Callable[[bytes], Any]]:
+    with httpx2.Client(base_url=quiet_server.address, trust_env=False) as client:
+        before = client.get("api/v1/trainings").json()["items"]
+        yield lambda data: client.post("api/v1/trainings/import", content=data)
+        assert client.get("api/v1/trainings").json()["items"] == before
+
+
+def test_values_that_are_none_are_refused(kept: Path, quiet_import: Callable[[bytes], Any]) -> None:
+    [(_, data), *_] = files_of(kept)
+    checkpoint = from_bytes(data, "the table")
+    changes: dict[str, Any] = {
+        "agent.q": np.nan,
+        "agent.rates": np.nan,
+        "agent.learned": -(10**9),
+        "agent.where": -(10**9),
+    }
+    for name, value in changes.items():
+        arrays = {**checkpoint.arrays, name: checkpoint.arrays[name] + value}
+        data = tables.to_bytes(tables.Checkpoint(checkpoint.meta, arrays))
+        assert quiet_import(data).status_code == 422, name
+    buffer = io.BytesIO()
+    np.savez(buffer, meta=np.array("{}"))
+    assert quiet_import(buffer.getvalue()).status_code == 422
+
+
+# ---- rows
+
+
+@contextmanager
+def worsened(folder: Path, table: str, column: str, value: Any, run_id: str) -> Iterator[None]:
+    """A column of a run's rows with this value, until the context ends."""
+    key = "id" if table == "runs" else "run_id"
+    with closing(sqlite3.connect(folder / DATABASE_FILE, isolation_level=None)) as file:
+        where = f"{table} WHERE {key} = ?"
+        former = file.execute(f"SELECT rowid, {column} FROM {where} LIMIT 1", (run_id,)).fetchone()
+        if former is None:
+            yield
+            return
+        is_text = value == BROKEN_TEXT
+        new = "CAST(? AS TEXT)" if is_text else "?"
+        update = f"UPDATE {table} SET {column} = {new} WHERE rowid = ?"
+        file.execute(update, (value, former[0]))
+        try:
+            yield
+        finally:
+            file.execute(f"UPDATE {table} SET {column} = ? WHERE rowid = ?", former[::-1])
+
+
+def columns() -> list[tuple[str, str, Any, str]]:
+    cases = []
+    for name in ("runs", "evaluations", "trials", "artifacts"):
+        for column in METADATA.tables[name].columns:
+            for value in (*STORED, BROKEN_TEXT):
+                cases += [(name, column.name, value, run_id) for run_id in KINDS]
+    return cases
+
+
+@pytest.mark.timeout(at_length(300, 14_400))
+def test_no_row_can(kept: Path, launch: Callable[..., Served]) -> None:
+    server = launch()
+    seen = set()
+    for table, column, value, run_id in some(columns(), COLUMNS):
+        with worsened(kept, table, column, value, run_id):
+            damaged = everything_answers(server, KINDS)
+        assert len(damaged) <= 1, (table, column, value, damaged)
+        seen |= set(damaged)
+    assert seen, "some of these values are damage"
+    assert everything_answers(server, KINDS) == {}
+
+
+DAMAGE: list[tuple[str, Any]] = [
+    ("kind", "regatta"),
+    ("result", '{"distance_m": NaN}'),
+    ("id", BROKEN_TEXT),
+    ("config", "milk"),
+    ("config", '{"gait": "left-right-origin", "robot": {"preset": "stiff"}, "wings": 2}'),
+    ("state", "lost"),
+    ("result", '{"distance_m": "far"}'),
+    ("changes", '[{"step": 1, "alpha": NaN}]'),
+    ("greedy_distance_m", float("inf")),
+    ("created_at", "yesterday"),
+    ("done", "many"),
+    ("name", b"\x00\xff"),
+    ("id", "../x/y"),
+    ("id", b"\x00\xff"),
+]
+
+
+@pytest.mark.parametrize(("column", "value"), DAMAGE[: at_length(3, None)])
+def test_a_damaged_run_is_named_everywhere_and_can_be_deleted(
+    column: str, value: Any, kept: Path, launch: Callable[..., Served]
+) -> None:
+    with worsened(kept, "runs", column, value, TRAINING):
+        server = launch()
+        [(run_id, said)] = everything_answers(server, KINDS).items()
+        assert run_id == TRAINING or column == "id"
+        assert len(said) > 10
+        look = server.client.get(f"/api/v1/trainings/{run_id}").json()
+        assert look["damaged"] == said
+        assert look["id"] == run_id
+        assert ("hexapods_runs_damaged 1.0" in server.client.get("/metrics").text) is True
+        snapshot = first_event(server, f"?run_id={run_id}")
+        assert [run["damaged"] for run in snapshot["runs"]] == [said]
+        data = ("--data", str(kept))
+        rows = output("runs", "list", *data, folder=kept)["items"]
+        assert {run["id"]: run.get("damaged") for run in rows}[run_id] == said
+        assert output("runs", "show", run_id, *data, folder=kept)["damaged"] == said
+        doctor = hexapods("doctor", *data, "--json", folder=kept, HEXAPODS_PORT="0")
+        found = {check["name"]: check for check in json.loads(doctor.stdout)["checks"]}
+        assert not found["database"]["ok"]
+        assert run_id in found["database"]["said"]
+        assert server.client.post(f"/api/v1/trainings/{run_id}/resume").status_code in (404, 409)
+        deleted = server.client.delete(f"/api/v1/trainings/{run_id}")
+        assert deleted.status_code == 204, deleted.text
+        assert everything_answers(server, {RACED: "races"}) == {}
+        left = {run["id"] for run in output("runs", "list", *data, folder=kept)["items"]}
+        assert left == {SOUND, RACED, TRIED}
+
+
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [
+        ("config", "'{}'"),
+        ("kind", "'regatta'"),
+        ("state", "'lost'"),
+        ("result", "'[]'"),
+        ("greedy_distance_m", "'NaN'"),
+        ("eta_s", "'-Infinity'"),
+        ("created_at", "'infinity'"),
+        ("ended_at", "'-infinity'"),
+        ("created_at", "'4713-01-01 BC'"),
+        ("changes", "'{\"a\": 1}'"),
+        ("done", "-9223372036854775808"),
+        ("id", "'../x'"),
+        ("id", "''"),
+    ],
+)
+def test_nor_in_postgresql(
+    column: str, value: str, postgresql: PostgresServer, tmp_path: Path
+) -> None:
+    with postgresql.database() as url, opened(tmp_path, url) as store:
+        store.create(training("a", state="finished"), training("b", state="finished"))
+        database = Database(postgresql_engine(url))
+        change = text(f"UPDATE runs SET {column} = {value} WHERE id = 'a'")
+        database.write(lambda connection: connection.execute(change))
+        database.close()
+        shown = {run["id"]: run for run in map(run_view, store.list(kind="training").items)}
+        assert len(shown) == 2
+        assert "damaged" not in shown.pop("b")
+        [(run_id, damaged)] = shown.items()
+        assert damaged["damaged"]
+        check_refusal(store, run_id)
+        store.delete(run_id)
+        assert [run.id for run in store.list().items] == ["b"]
+
+
+def check_refusal(store: SqlStore, run_id: str) -> None:
+    run = store.find(run_id)
+    if isinstance(run, DamagedRun):
+        with pytest.raises(Damaged, match="delete it"):
+            store.get(run_id)
+
+
+def test_the_page_shows_the_others_and_deletes_the_damaged_one(
+    kept: Path, page: Page, dashboard: Dashboard
+) -> None:
+    with worsened(kept, "runs", "config", "milk", RACED), serving(kept) as server:
+        dashboard.open(server.address)
+        page.goto(f"{server.address}#runs")
+        expect(page.locator("li.run")).to_have_count(4)
+        row = page.locator("li.run", has_text=RACED)
+        expect(row).to_contain_text("damaged")
+        expect(row).to_contain_text("cannot read")
+        row.get_by_role("button", name="Delete").click()
+        row.get_by_role("button", name="Delete for good?").click()
+        expect(page.locator("li.run")).to_have_count(3)
+        page.reload()
+        expect(page.locator("li.run")).to_have_count(3)

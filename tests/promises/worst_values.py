@@ -1,0 +1,84 @@
+"""The worst that may stand in a row of the database, or in a file that is imported."""
+
+from collections.abc import Iterator
+from typing import Any
+
+_DEEP = "[" * 50_000 + "]" * 50_000
+STORED: list[Any] = [
+    "",
+    "milk",
+    "NaN",
+    "null",
+    "{}",
+    "[]",
+    "[null]",
+    '{"a": NaN}',
+    '{"distance_m": Infinity, "lanes": [], "claims": [], "files": []}',
+    '{"lanes": [{"agent": 3}]}',
+    '{"$float": "milk"}',
+    '[{"step": 1e999}]',
+    '{"gait": "left-right-origin", "robot": {"preset": "stiff"}, "wings": 2}',
+    _DEEP,
+    "9" * 5_000,
+    "x" * 5_000_000,
+    "../../../etc/passwd",
+    "a/b?c#d",
+    "\x00\x1b[2J\u202e\ud7ff",
+    "2026-01-01",
+    "9999-12-31T23:59:59-12:00",
+    "0000-00-00 00:00:00",
+    b"\x00\xff\xfe",
+    -1,
+    0,
+    2**63 - 1,
+    -(2**63),
+    float("inf"),
+    1e308,
+]
+"""For any column of SQLite, which holds values of any type in each; by `CAST` also text that is no
+UTF-8, see `BROKEN_TEXT`."""
+BROKEN_TEXT = b"\xff\xc3\x28"
+IMPORTED: list[Any] = [
+    None,
+    True,
+    "",
+    "milk",
+    "x" * 20_000,
+    "=1+1",
+    "a\u202eb",
+    "a\u200bb",
+    "a\x00b",
+    [],
+    [None],
+    {},
+    {"": {}},
+    -1,
+    -0.5,
+    10**30,
+    2**63,
+    1e308,
+    "9999-12-31T23:59:59-12:00",
+    "0001-01-01T00:00:00+14:00",
+    float("nan"),
+    float("-inf"),
+]
+"""For any field of JSON."""
+
+
+def places(shown: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """Where there is a value in plain types; of lists the first two entries."""
+    if path:
+        yield path
+    if isinstance(shown, dict):
+        for name, value in shown.items():
+            yield from places(value, (*path, name))
+    if isinstance(shown, list):
+        for number, value in enumerate(shown[:2]):
+            yield from places(value, (*path, number))
+
+
+def put(shown: Any, path: tuple[Any, ...], value: Any) -> None:
+    """Put a value to a place."""
+    for part in path[:-1]:
+        shown = shown[part]
+    shown[path[-1]] = value
