@@ -128,10 +128,17 @@ def test_trials_that_say_something_else_are_refused(
     assert names in refusal(with_trials(export_run(source, RUN_ID), change))
 
 
+def summary_with(data: bytes, **fields: Any) -> bytes:
+    return json.dumps({**json.loads(members(data)[SUMMARY]), **fields}).encode()
+
+
 def test_files_are_what_their_names_say(source: SqlStore) -> None:
     data = export_run(source, RUN_ID)
     for changed, names in (
         ({"summary_json": b"{}"}, "no summary"),
+        ({"summary_json": summary_with(data, cost={"wall_s": "long"})}, "no summary"),
+        ({"trials_csv": b"key,failure\r\na,=1+1\r\n"}, "takes for a formula"),
+        ({"trials_csv": b"key,failure\r\na,\xff\r\n"}, "no table"),
         ({"summary_json": b"[" * 100_000}, "no summary"),
         ({"trials_json": b"{}"}, "trials"),
         ({"trials_json": None}, "has no trials.json"),

@@ -1,0 +1,167 @@
+"""Promise 32: every write is all or nothing.
+
+Promised: `kill -9` and a full disk at each write of start, import, finish and delete: no half run is
+visible, and no file without a row stays for longer than a start. Here an eighth of the writes, chosen
+at random, and 2 kills of a server that takes in runs; all of them, and 30 kills, by `make soak`.
+"""
+
+import json
+import random
+import signal
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import httpx2
+import pytest
+
+from app.services.moving import export_run
+from app.services.room import MB
+from app.services.store import TABLE
+from tests.promises.breaking_writes import OPERATIONS
+from tests.promises.length import at_length
+from tests.promises.processes import start_script
+from tests.served import Served
+from tests.services.ended import ended_training
+from tests.services.stores import opened
+
+SHARE = at_length(0.125, 1.0)
+KILLS = at_length(2, 30)
+QUOTA_MB = 10
+
+
+@pytest.mark.timeout(at_length(300, 1800))
+def test_it_is_so_wherever_it_breaks_off(tmp_path: Path) -> None:
+    process = start_script("tests.promises.breaking_writes", str(tmp_path), str(SHARE))
+    out, _ = process.communicate()
+    assert process.returncode == 0
+    whole: dict[str, Any] = {}
+    tried = 0
+    for report in map(json.loads, out.splitlines()):
+        assert "broke" not in report, report["broke"]
+        operation = report["operation"]
+        if report["how"] == "none":
+            assert report["refused"] is None
+            whole[operation] = report
+        tried += report["how"] != "none"
+        check(report, whole[operation])
+    assert set(whole) == set(OPERATIONS)
+    assert all(report["writes"] > 3 for report in whole.values())
+    assert tried >= SHARE * 100
+
+
+def check(report: dict[str, Any], whole: dict[str, Any]) -> None:
+    after = report["after"]
+    assert after["missing_files"] == after["files_of_nobody"] == 0, report
+    if report["how"] == "kill":
+        assert report["killed"], report
+        # What has returned has lasted.
+        assert report["at"] <= whole["writes"] or after == whole["after"], report
+    if report["how"] == "full":
+        assert report["at_once"]["files_of_nobody"] == 0, report
+        assert report["refused"] or after == whole["after"], report
+    if report["operation"] == "finish":
+        check_finish(after, whole["after"])
+    elif after != whole["after"]:
+        assert [run["name"] for run in after["runs"]] == ["Kept"], report
+        assert after["key_is_of"] is None
+
+
+def check_finish(after: dict[str, Any], whole: dict[str, Any]) -> None:
+    [kept, learned] = after["runs"]
+    [kept_whole, learned_whole] = whole["runs"]
+    assert kept == kept_whole
+    if learned["state"] == "finished":
+        assert learned == learned_whole
+    else:
+        # It can be resumed, and shows nothing of an end that it has not come to.
+        assert (learned["state"], learned["has_result"]) == ("interrupted", False)
+        assert not learned["has_table"]
+        assert learned["recorded"] <= learned["evaluations"]
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> dict[str, bytes]:
+    """By address what can be imported there."""
+    with opened(tmp_path / "source", None) as store:
+        ended_training(store, "00000000000m1", "Moved", steps=120)
+        return {
+            "/api/v1/import": export_run(store, "00000000000m1"),
+            "/api/v1/trainings/import": store.artifact("00000000000m1", TABLE) or b"",
+        }
+
+
+def left_of(folder: Path) -> int:
+    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
+
+
+def test_over_quota_nothing_is_left_of_an_import(
+    files: dict[str, bytes], launch: Callable[..., Served], tmp_path: Path
+) -> None:
+    server = launch(HEXAPODS_QUOTA_MB=str(QUOTA_MB))
+    filler = tmp_path / "filler"
+    for path, data in files.items():
+        headers = {"Idempotency-Key": path}
+        # Room for a part of it.
+        filler.write_bytes(bytes(QUOTA_MB * MB - left_of(tmp_path) - len(data) // 2))
+        names = {one.name for one in tmp_path.glob("artifacts/*/*")}
+        for _ in range(3):
+            answer = server.client.post(path, content=data, headers=headers)
+            assert answer.status_code == 507, answer.text
+            assert server.client.get("/api/v1/trainings").json()["items"] == []
+            assert {one.name for one in tmp_path.glob("artifacts/*/*")} == names
+        filler.unlink()
+        runs = {
+            server.client.post(path, content=data, headers=headers).json()["id"] for _ in range(3)
+        }
+        assert len(runs) == 1
+        assert server.client.delete(f"/api/v1/trainings/{runs.pop()}").status_code == 204
+        assert server.client.post(path, content=data, headers=headers).status_code == 410
+
+
+@pytest.mark.timeout(60 + 30 * KILLS)
+def test_a_server_that_is_killed_leaves_no_half_run(
+    files: dict[str, bytes], launch: Callable[..., Served], tmp_path: Path
+) -> None:
+    chance = random.Random(32)
+    acknowledged: list[str] = []
+    server = launch()
+    for _ in range(KILLS):
+        takers = [
+            threading.Thread(target=take_in, args=(server.address, path, data, acknowledged))
+            for path, data in files.items()
+        ]
+        for one in takers:
+            one.start()
+        time.sleep(chance.uniform(0.3, 2))
+        server.process.send_signal(signal.SIGKILL)
+        for one in takers:
+            one.join()
+        server.end(signal.SIGKILL)
+        server = launch()
+        ids, cursor = [], ""
+        while cursor is not None:
+            page = server.client.get(f"/api/v1/trainings?limit=100{cursor}").json()
+            ids += [run["id"] for run in page["items"]]
+            cursor = page["next_cursor"] and f"&cursor={page['next_cursor']}"
+        assert set(acknowledged) <= set(ids)
+        for run_id in ids[-20:] + ids[:20]:
+            look = server.client.get(f"/api/v1/trainings/{run_id}").json()
+            assert look["state"] == "finished"
+            table = server.client.get(f"/api/v1/trainings/{run_id}/q-table?format=npz")
+            assert table.status_code == 200, table.text
+    assert acknowledged
+
+
+def take_in(address: str, path: str, data: bytes, acknowledged: list[str]) -> None:
+    """Import a file again and again, until the server is gone."""
+    with httpx2.Client(base_url=address, timeout=60, trust_env=False) as client:
+        while True:
+            try:
+                answer = client.post(path, content=data)
+            except httpx2.TransportError:
+                return
+            assert answer.status_code == 201, answer.text
+            acknowledged.append(answer.json()["id"])
