@@ -1,8 +1,9 @@
 """Breaks off each write of an operation in turn, and says as JSON what was left of it.
 
-For each way (`kill`: SIGKILL of the process; `full`: a full disk) and each operation, the data folder
-is copied, a process of its own opens it and does the operation, and at one of its writes it is killed,
-or no further write has room. Then the folder is opened as by the next server, and looked at.
+For each way (`kill`: SIGKILL of the process; `full`: a full disk) and each operation, the data
+folder is copied, a process of its own opens it and does the operation, and at one of its writes it
+is killed, or no further write has room. Then the folder is opened as by the next server, and looked
+at.
 """
 
 import errno
@@ -61,11 +62,11 @@ class Breaker:
         event.listen(engine, "commit", self._commit)
         fsync = os.fsync
 
-        def counted(descriptor: int) -> None:
+        def counted(descriptor: Any) -> None:
             self._count()
             fsync(descriptor)
 
-        os.fsync = counted
+        os.fsync = counted  # type: ignore[assignment] # a name of a parameter is another
 
     @property
     def is_full(self) -> bool:
@@ -133,7 +134,7 @@ def finish(store: SqlStore, folder: Path) -> None:
     rest = learner.walker.simulator.pose(learner.walker.state).astype(np.float32)
     take = job._take
     take(Began((rest,), 0))
-    records = [r for r in train(learner, CONFIG, record=True)]
+    records = list(train(learner, CONFIG, record=True))
     take(Batch(tuple(r for r in records if isinstance(r, StepTaken | Evaluated)), CONFIG.steps))
     data = to_bytes(snapshot(learner, CONFIG, changes=[]))
     take(Checkpointed(data, CONFIG.steps))

@@ -1,8 +1,9 @@
 """Promise 32: every write is all or nothing.
 
-Promised: `kill -9` and a full disk at each write of start, import, finish and delete: no half run is
-visible, and no file without a row stays for longer than a start. Here an eighth of the writes, chosen
-at random, and 2 kills of a server that takes in runs; all of them, and 30 kills, by `make soak`.
+Promised: `kill -9` and a full disk at each write of start, import, finish and delete: no half run
+is visible, and no file without a row stays for longer than a start. Here an eighth of the writes,
+chosen at random, and 2 kills of a server that takes in runs; all of them, and 30 kills, by
+`make soak`.
 """
 
 import json
@@ -141,11 +142,7 @@ def test_a_server_that_is_killed_leaves_no_half_run(
             one.join()
         server.end(signal.SIGKILL)
         server = launch()
-        ids, cursor = [], ""
-        while cursor is not None:
-            page = server.client.get(f"/api/v1/trainings?limit=100{cursor}").json()
-            ids += [run["id"] for run in page["items"]]
-            cursor = page["next_cursor"] and f"&cursor={page['next_cursor']}"
+        ids = all_ids(server)
         assert set(acknowledged) <= set(ids)
         for run_id in ids[-20:] + ids[:20]:
             look = server.client.get(f"/api/v1/trainings/{run_id}").json()
@@ -153,6 +150,16 @@ def test_a_server_that_is_killed_leaves_no_half_run(
             table = server.client.get(f"/api/v1/trainings/{run_id}/q-table?format=npz")
             assert table.status_code == 200, table.text
     assert acknowledged
+
+
+def all_ids(server: Served) -> list[str]:
+    page = server.client.get("/api/v1/trainings?limit=100").json()
+    ids = [run["id"] for run in page["items"]]
+    while page["next_cursor"] is not None:
+        where = f"/api/v1/trainings?limit=100&cursor={page['next_cursor']}"
+        page = server.client.get(where).json()
+        ids += [run["id"] for run in page["items"]]
+    return ids
 
 
 def take_in(address: str, path: str, data: bytes, acknowledged: list[str]) -> None:
