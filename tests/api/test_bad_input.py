@@ -166,3 +166,12 @@ def test_of_the_stage(api: Api) -> None:
 def post(api: Api, path: str, body: str) -> Any:
     content = body.encode("utf-8", "surrogatepass")
     return api.call("POST", path, content=content, headers={"Content-Type": "application/json"})
+
+
+@pytest.mark.parametrize("mark", ["\u202e", "\u2066", "\u200f", "\u061c", "\u200b", "\ufeff"])
+def test_a_name_has_no_characters_that_cannot_be_seen(api: Api, mark: str) -> None:
+    body = {**WALK, "steps": 5, "name": f"a{mark}b"}
+    refused(api.call("POST", "/trainings", json=body), 422, "invisible", "writing direction")
+    refused(api.call("POST", "/races", json={**WALK, "name": f"{mark}b"}), 422, "invisible")
+    imported = api.call("POST", "/trainings/import", params={"name": mark}, content=b"x")
+    refused(imported, 422, "invisible")

@@ -4,6 +4,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import fields
 from datetime import UTC, datetime
+from functools import lru_cache
 from typing import Any, TypeVar
 
 from app.runs.config import RaceConfig
@@ -19,7 +20,9 @@ MAX_ERROR = 10_000
 MAX_COUNT = 2**53
 """Of steps or trials: beyond it JavaScript no longer counts by ones."""
 _MAX_TEXT = 10_000
-_JSON = ("config", "lane_training_ids", "waiting_for", "changes", "result")
+_SHORT = 10_000
+"""Characters of a config that is kept in memory once it was parsed."""
+_JSON = ("lane_training_ids", "waiting_for", "changes", "result")
 _LISTS: Mapping[str, Any] = {"lane_training_ids": str | None, "waiting_for": str, "changes": dict}
 _TIMES = ("created_at", "started_at", "ended_at")
 T = TypeVar("T")
@@ -80,12 +83,19 @@ def _fields(row: Mapping[str, Any]) -> dict[str, Any]:
     _check_plain(row, values)
     for name, kinds in _LISTS.items():
         values[name] = tuple(_list(name, values[name], kinds))
-    values["config"] = config = config_of(row["kind"], values["config"])
+    parse = _config if len(row["config"]) <= _SHORT else _config.__wrapped__
+    values["config"] = config = parse(row["kind"], row["config"])
     if not isinstance(config, CONFIGS[row["kind"]]):
         raise ValueError("its config is that of another kind")
     if isinstance(config, RaceConfig) and len(config.lanes) != len(values["lane_training_ids"]):
         raise ValueError("its lanes do not fit together")
     return values
+
+
+@lru_cache(maxsize=512)
+def _config(kind: str, text: str) -> Config:
+    """The config in a column; most runs share theirs with others, and parsing takes the longest."""
+    return config_of(kind, _json("config", text))
 
 
 def _check_plain(row: Mapping[str, Any], values: Mapping[str, Any]) -> None:
