@@ -18,7 +18,7 @@ from app.runs.records import Knowledge
 from app.runs.stored_practice import practice_recording
 from app.services.archived_trials import check_reported, is_reported, reported_files
 from app.services.imported_tables import checked_table
-from app.services.store import CHECKPOINT, TABLE, Run, RunStore
+from app.services.store import CHECKPOINT, RESUMABLE, TABLE, Run, RunStore
 from app.services.stored_recordings import PRACTICE, RACE, evaluations_file
 from app.services.strict import Large, Metres, Seconds, Share, Step, Words
 
@@ -46,7 +46,7 @@ def files_of(store: RunStore, run: Run) -> dict[str, bytes]:
         names = reported_files(run)
     if run.kind == "training":
         names = [TABLE, PRACTICE, *map(evaluations_file, range(MAX_EVALUATION_FILES))]
-        if run.state == "interrupted":
+        if run.state in RESUMABLE[run.kind]:
             names.append(CHECKPOINT)
     found = {name: store.artifact(run.id, name) for name in names}
     return {name: data for name, data in found.items() if data is not None}

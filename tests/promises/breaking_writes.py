@@ -13,6 +13,7 @@ import random
 import shutil
 import signal
 import sys
+import threading
 import traceback
 from collections.abc import Callable
 from pathlib import Path
@@ -129,7 +130,8 @@ def finish(store: SqlStore, folder: Path) -> None:
     """What a job's process says, taken in by its job: the last checkpoint, the table, the end."""
     run = store.get(LEARNING)
     recordings = Recordings(store)
-    job = Job(run, TrainingOrder(CONFIG, None), store, recordings, EventBus())
+    order, shutdown = TrainingOrder(CONFIG, None), threading.Event()
+    job = Job(run, order, store, recordings, EventBus(), shutdown=shutdown)
     learner = build_learner(CONFIG)
     rest = learner.walker.simulator.pose(learner.walker.state).astype(np.float32)
     take = job._take
