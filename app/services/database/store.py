@@ -18,7 +18,7 @@ from app.services.database.schema import ARTIFACTS, RUNS
 from app.services.database.trials import Trials
 from app.services.errors import Conflict, NotFound, StorageFull
 from app.services.room import START_BYTES
-from app.services.store import UNENDED, Kind, Page, Run, State
+from app.services.store import LIVE, RUNNING, UNENDED, Kind, Page, Run, State
 
 _DIED = "The server ended before the run did."
 _FILE = (ARTIFACTS.c.file, ARTIFACTS.c.size, ARTIFACTS.c.sha256)
@@ -45,7 +45,10 @@ class SqlStore:
             self._database.write(lambda connection: connection.execute(insert(RUNS), rows))
 
     def get(self, run_id: str) -> Run:
-        return self._as_run(self._database.read(lambda connection: row_of_run(connection, run_id)))
+        # Before the row, which has it once it is forgotten: so progress never goes back.
+        progress = self._progress.of(run_id)
+        row = self._database.read(lambda connection: row_of_run(connection, run_id))
+        return _as_run(row, progress)
 
     def list(
         self,
@@ -61,8 +64,9 @@ class SqlStore:
             wanted = wanted.where(RUNS.c.state == state)
         if cursor is not None:
             wanted = wanted.where(RUNS.c.id < cursor)
+        progress = self._progress.newest()
         rows = self._database.read(lambda connection: found(connection, wanted))
-        runs = [self._as_run(row) for row in rows[:limit]]
+        runs = [_as_run(row, progress.get(row["id"], {})) for row in rows[:limit]]
         return Page(runs, runs[-1].id if len(rows) > limit else None)
 
     def counts(self) -> Mapping[State, int]:
@@ -73,9 +77,8 @@ class SqlStore:
     def change(
         self, run_id: str, from_states: Collection[State], to_state: State, **fields: Any
     ) -> Run:
-        # Whoever reads meanwhile sees the progress until the row has it.
-        columns = columns_of({**self._progress.of(run_id), "state": to_state, **fields})
-
+        progress = self._progress.of(run_id)
+        columns = columns_of({**progress, "eta_s": None, "state": to_state, **fields})
         still = update(RUNS).where(RUNS.c.id == run_id, RUNS.c.state.in_(from_states))
         attempts = 0
 
@@ -92,20 +95,24 @@ class SqlStore:
             return changed[0]
 
         row = self._database.write(work)
-        self._progress.take(run_id)
-        return run_of(row)
+        if to_state in LIVE:
+            self._progress.forget_estimate(run_id)
+        else:
+            self._progress.forget(run_id)
+        return _as_run(row, {})
 
     def update(self, run_id: str, **fields: Any) -> Run:
-        columns = columns_of({**self._progress.of(run_id), **fields})
-        statement = update(RUNS).where(RUNS.c.id == run_id).values(columns).returning(RUNS)
+        progress = self._progress.of(run_id)
+        values = columns_of(fields)
+        statement = update(RUNS).where(RUNS.c.id == run_id).values(values).returning(RUNS)
 
         def work(connection: Connection) -> Row:
             changed = found(connection, statement)
             return changed[0] if changed else row_of_run(connection, run_id)
 
         row = self._database.write(work)
-        self._progress.take(run_id)
-        return run_of(row)
+        self._note_written(run_id, fields)
+        return _as_run(row, {k: v for k, v in progress.items() if k not in fields})
 
     def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> Run:
         if self._progress.note(run_id, {"done": done, "eta_s": eta_s}):
@@ -125,7 +132,7 @@ class SqlStore:
             return names
 
         self._files.remove(*self._database.write(work))
-        self._progress.take(run_id)
+        self._progress.forget(run_id)
 
     def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
         self._curves.append(run_id, rows)
@@ -144,7 +151,7 @@ class SqlStore:
 
     def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
         self.get(run_id)
-        columns = columns_of({**self._progress.of(run_id), **fields}) if fields else {}
+        columns = columns_of(fields)
         stored = self._files.write(data)
         of_this_name = ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name
         row = {"run_id": run_id, "name": name, "written_at": datetime.now(UTC)}
@@ -166,8 +173,7 @@ class SqlStore:
             # After any other error the database may have taken it, and the next start knows.
             self._files.remove(stored.file)
             raise
-        if columns:
-            self._progress.take(run_id)
+        self._note_written(run_id, fields)
         # Itself is among them if the answer to a first attempt was lost.
         self._files.remove(*(name for name in former if name != stored.file))
 
@@ -213,6 +219,10 @@ class SqlStore:
         files = self._database.read(lambda connection: connection.execute(known).scalars().all())
         return self._files.sweep(files)
 
+    def _note_written(self, run_id: str, fields: Mapping[str, Any]) -> None:
+        if "done" in fields:
+            self._progress.forget(run_id)
+
     def _stored(self, run_id: str, name: str) -> Stored | None:
         wanted = select(*_FILE).where(ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name)
 
@@ -223,5 +233,10 @@ class SqlStore:
         rows = self._database.read(work)
         return Stored(**rows[0]) if rows else None
 
-    def _as_run(self, row: Row) -> Run:
-        return run_of({**row, **self._progress.of(row["id"])})
+
+def _as_run(row: Row, progress: Mapping[str, Any]) -> Run:
+    """The run of a row, with newer progress while a process works on it."""
+    newest = {**row, **progress} if row["state"] in LIVE else dict(row)
+    if row["state"] not in RUNNING:
+        newest["eta_s"] = None
+    return run_of(newest)
