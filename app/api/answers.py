@@ -133,6 +133,7 @@ class RunView(Answer):
     id: str
     name: str
     state: State
+    can_resume: bool
     queue_position: Annotated[int, Field(ge=1)] | None
     progress: ProgressView
     eta_s: float | None
