@@ -22,6 +22,7 @@ import re
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -61,6 +62,7 @@ def schemathesis(server: Served, folder: Path, *options: str) -> int:
     config.write_text(CONFIG)
     command = [sys.executable, "-m", "schemathesis.cli", "--config-file", str(config), "run"]
     common = ["--seed", "1", "--continue-on-failure", "--exclude-path", ENDLESS, "--no-color"]
+    began_s = time.monotonic()
     paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     done = subprocess.run(
         [*command, f"{server.address}/openapi.json", *common, *options],
@@ -77,6 +79,7 @@ def schemathesis(server: Served, folder: Path, *options: str) -> int:
     assert done.returncode == 0, done.stdout[-20_000:] + done.stderr[-5_000:]
     found = re.search(r"^ *(\d+) generated, \1 passed", done.stdout, re.MULTILINE)
     assert found is not None, done.stdout[-5_000:]
+    sys.stdout.write(f"{found[0]} in {time.monotonic() - began_s:.0f} s\n")
     return int(found[1])
 
 
