@@ -15,6 +15,7 @@ from fastapi import APIRouter, FastAPI
 from app import __version__, assets
 from app.agents.registry import registered
 from app.api import (
+    contract,
     docs,
     events,
     experiments,
@@ -97,6 +98,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
     app.state.metrics = metrics.registry_of(app.state.services)
     _add_routes(app, theatre)
     problems.install(app)
+    contract.install(app, app.state.services.agents, settings)
     # The last is the first to see a request.
     app.add_middleware(BodyLimit)
     app.add_middleware(RateLimit, settings=settings)

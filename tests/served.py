@@ -14,7 +14,9 @@ from typing import Any
 import httpx2
 import psutil
 
-LONG_S = 60.0
+from tests import patience
+
+LONG_S = patience.LONG_S
 BODY = {"gait": "left-right-origin", "simulator": "kinematic"}
 ENDLESS = {**BODY, "steps": 10_000_000, "pace": 20, "evaluate_every": 0}
 HEXAPODS = [sys.executable, "-c", "import sys; from app.cli import main; sys.exit(main())"]
@@ -53,23 +55,17 @@ class Served:
         return run
 
     def moving(self, run: dict[str, Any]) -> dict[str, Any]:
-        deadline = time.monotonic() + LONG_S
-        while True:
-            now: dict[str, Any] = self.client.get(f"/api/v1/trainings/{run['id']}").json()
-            if now["progress"]["done"] > 0:
-                return now
-            assert time.monotonic() < deadline
-            time.sleep(0.02)
+        return self.until(run, lambda now: now["progress"]["done"] > 0)
 
     def look(self, run: dict[str, Any]) -> dict[str, Any]:
         shown: dict[str, Any] = self.client.get(f"/api/v1/{run['kind']}s/{run['id']}").json()
         return shown
 
     def until(self, run: dict[str, Any], is_so: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
-        """The run once it is as it should be."""
-        deadline = time.monotonic() + LONG_S
+        """The run once it is as it should be, for as long as it gets on."""
+        waiting = patience.Patience()
         while not is_so(now := self.look(run)):
-            assert time.monotonic() < deadline, now
+            waiting.check(now)
             time.sleep(0.02)
         return now
 
@@ -78,6 +74,12 @@ class Served:
 
     def in_state(self, run: dict[str, Any], *states: str) -> dict[str, Any]:
         return self.until(run, lambda now: now["state"] in states)
+
+    def hurry(self, training_id: str) -> None:
+        """Let a training go on as fast as it can."""
+        self.in_state({"kind": "training", "id": training_id}, "running")
+        path = f"/api/v1/trainings/{training_id}"
+        assert self.client.patch(path, json={"pace": "max"}).status_code == 200
 
     def tell(self, run: dict[str, Any], verb: str) -> httpx2.Response:
         return self.client.post(f"/api/v1/{run['kind']}s/{run['id']}/{verb}")

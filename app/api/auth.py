@@ -21,7 +21,7 @@ Role = Literal["operator", "spectator"]
 COOKIE = "hexapods_operator"
 _COOKIE_AGE_S = 30 * 24 * 3600
 _READS = frozenset({"GET", "HEAD", "OPTIONS"})
-_OPEN = ("/healthz", "/readyz")
+OPEN = ("/healthz", "/readyz")
 _OPEN_FOLDERS = ("/static/",)
 WRONG_TOKENS, WRONG_TOKENS_PER_S = 20, 0.2
 _HOW = (
@@ -85,7 +85,7 @@ class TokenGuard:
             return False
         path: str = scope["path"]
         # The page itself is no secret; what it shows is.
-        is_open = path == "/" or path in _OPEN or path.startswith(_OPEN_FOLDERS)
+        is_open = path == "/" or path in OPEN or path.startswith(_OPEN_FOLDERS)
         return self._all_may_watch or is_open
 
     def _let_in(self, request: Request) -> Response:

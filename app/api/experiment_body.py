@@ -3,9 +3,23 @@
 from collections.abc import Collection
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
-from app.api.fields import Alpha, Body, Divisions, Epsilon, Gamma, Name, Seed, Side, Steps
+from app.api.fields import (
+    INTEGRAL,
+    Alpha,
+    Body,
+    Divisions,
+    Epsilon,
+    Gamma,
+    Name,
+    RobotBody,
+    Seed,
+    Side,
+    Steps,
+)
 from app.api.schemas import Gait, GaitBody, check_agent
 from app.api.sentences import VALID
 from app.domain.observation import Observation
@@ -27,10 +41,24 @@ def _as_list(value: Any) -> Any:
     return value if isinstance(value, list) or value is None else [value]
 
 
+class _AlsoOne:
+    """Describes that an item may stand for a list of it."""
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        kinds = handler(schema)["anyOf"]
+        return {"anyOf": [kinds[0]["items"], *kinds]}
+
+
 T = TypeVar("T")
 Some = Annotated[
-    Annotated[list[T], Field(min_length=1, max_length=MAX_VALUES)] | None,
+    Annotated[
+        list[T], Field(min_length=1, max_length=MAX_VALUES, json_schema_extra={"uniqueItems": True})
+    ]
+    | None,
     BeforeValidator(_as_list),
+    _AlsoOne(),
 ]
 """One value stands for a list of it."""
 
@@ -43,13 +71,15 @@ class ExperimentBody(Body):
 
     experiment: Annotated[ExperimentName, Field(description=VALID["experiment"])]
     name: Name | None = None
-    seeds: Annotated[int, Field(strict=True, ge=1, le=MAX_SEEDS, description=VALID["seeds"])] = (
-        ExperimentConfig.seeds
-    )
+    seeds: Annotated[
+        int,
+        Field(strict=True, ge=1, le=MAX_SEEDS, description=VALID["seeds"]),
+        INTEGRAL,
+    ] = ExperimentConfig.seeds
     seed: Seed = ExperimentConfig.seed
     gaits: Some[Gait] = None
     observations: Some[Observation] = None
-    robots: Some[str | dict[str, Any]] = None
+    robots: Some[RobotBody] = None
     simulator: SimulatorName = ExperimentConfig.simulator
     agents: Some[str] = None
     steps: Some[Steps] = None
@@ -61,7 +91,9 @@ class ExperimentBody(Body):
     divisions: Some[Divisions] = None
     grid_side_m: Some[Side] = None
     workers: Annotated[
-        int | None, Field(strict=True, ge=1, le=MAX_WORKERS, description=VALID["workers"])
+        int | None,
+        Field(strict=True, ge=1, le=MAX_WORKERS, description=VALID["workers"]),
+        INTEGRAL,
     ] = None
 
     def start(self, agents: Collection[str]) -> ExperimentStart:

@@ -5,7 +5,10 @@ from typing import Annotated, Any, Literal
 from fastapi import Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
+from app.api.answers import ExperimentView
+from app.api.contract import ATTACHMENT, BINARY, LOCATION, TEXT, answers
 from app.api.deps import Given, StartRequest
+from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.experiment_body import ExperimentBody
 from app.api.formats import attachment, chosen
 from app.api.runs import RunPath, accepted, find, run_routes
@@ -29,11 +32,25 @@ _TYPES = {
     ".svg": "image/svg+xml",
     ".pdf": "application/pdf",
 }
+_FILES: dict[str, dict[str, Any]] = {
+    "text/html": TEXT,
+    "application/json": {"$ref": "#/components/schemas/SummaryView"},
+    "text/csv": TEXT,
+    "image/png": BINARY,
+    "image/svg+xml": TEXT,
+    "application/pdf": BINARY,
+}
 
 router = run_routes("experiment")
 
 
-@router.post("", status_code=202, summary="Start an experiment over many seeds")
+@router.post(
+    "",
+    status_code=202,
+    summary="Start an experiment over many seeds",
+    response_model=ExperimentView,
+    responses=answers(202, headers=LOCATION),
+)
 def start_experiment(
     services: Given, request: Request, asked: StartRequest, body: ExperimentBody
 ) -> Response:
@@ -43,7 +60,7 @@ def start_experiment(
     return accepted(request, jobs.view(run))
 
 
-@router.get("/{run_id}/summary", summary="What its trials show so far")
+@router.get("/{run_id}/summary", summary="What its trials show so far", response_model=SummaryView)
 def get_summary(services: Given, run_id: RunPath) -> Response:
     """The newest summary; it is made again every few seconds while trials come in."""
     run = find(services, "experiment", run_id)
@@ -53,14 +70,24 @@ def get_summary(services: Given, run_id: RunPath) -> Response:
     return Response(summary, media_type="application/json")
 
 
-@router.get("/{run_id}/report", summary="Its report, as one HTML file")
+@router.get(
+    "/{run_id}/report",
+    summary="Its report, as one HTML file",
+    response_class=Response,
+    responses=answers(200, {"text/html": TEXT}, headers=ATTACHMENT),
+)
 def get_report(services: Given, run_id: RunPath) -> Response:
     """All of it in one file, once the experiment has ended."""
     run = find(services, "experiment", run_id)
     return _file(run, REPORT, _reported(services, run, REPORT), "inline")
 
 
-@router.get("/{run_id}/files/{name:path}", summary="A file of its report")
+@router.get(
+    "/{run_id}/files/{name:path}",
+    summary="A file of its report",
+    response_class=Response,
+    responses=answers(200, _FILES, headers=ATTACHMENT),
+)
 def get_file(
     services: Given, run_id: RunPath, name: Annotated[str, Path(description="of the file")]
 ) -> Response:
@@ -69,7 +96,12 @@ def get_file(
     return _file(run, name, _reported(services, run, name), "attachment")
 
 
-@router.get("/{run_id}/trials", summary="Its trials so far; also as CSV")
+@router.get(
+    "/{run_id}/trials",
+    summary="Its trials so far; also as CSV",
+    response_model=TrialsView,
+    responses=answers(200, {"text/csv": TEXT}),
+)
 def get_trials(
     services: Given,
     request: Request,

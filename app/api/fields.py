@@ -2,12 +2,21 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    WithJsonSchema,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from app.api.sentences import VALID
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, MIN_SIDE_M
+from app.domain.robot import AZIMUTH, MAX_LEGS, MIN_LEGS, MOUNT_RADIUS, PRESETS, RANGES
 from app.runs.config import MAX_STEPS
 from app.services.text import MAX_NAME, check_name
 
@@ -24,20 +33,78 @@ def number(**limits: Any) -> Any:
     return Field(strict=True, allow_inf_nan=False, **limits)
 
 
+def _integral(value: Any) -> Any:
+    """To JSON 2.0 is the same number as 2."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+INTEGRAL = BeforeValidator(_integral)
+"""After the limits of a strict int: takes a whole number however JSON writes it."""
 Name = Annotated[
     str,
-    Field(max_length=MAX_NAME, description=VALID["name"]),
+    Field(
+        max_length=MAX_NAME,
+        description=VALID["name"],
+        json_schema_extra={"pattern": r"^[^\x00-\x1f\x7f-\x9f]*$"},
+    ),
     AfterValidator(_name),
 ]
 RunId = Annotated[str, Field(min_length=1, max_length=64)]
-Steps = Annotated[int, Field(strict=True, ge=1, le=MAX_STEPS, description=VALID["steps"])]
-Seed = Annotated[int, Field(strict=True, ge=0, description=VALID["seed"])]
+Steps = Annotated[int, Field(strict=True, ge=1, le=MAX_STEPS, description=VALID["steps"]), INTEGRAL]
+Seed = Annotated[int, Field(strict=True, ge=0, description=VALID["seed"]), INTEGRAL]
 Alpha = Annotated[float, number(gt=0, le=1, description=VALID["alpha"])]
 Gamma = Annotated[float, number(ge=0, lt=1, description=VALID["gamma"])]
 Epsilon = Annotated[float, number(ge=0, le=1, description=VALID["epsilon"])]
-Divisions = Annotated[int, Field(strict=True, ge=MIN_DIVISIONS, le=MAX_DIVISIONS)]
+Divisions = Annotated[int, Field(strict=True, ge=MIN_DIVISIONS, le=MAX_DIVISIONS), INTEGRAL]
 Side = Annotated[float, number(ge=MIN_SIDE_M)]
 Pace = Literal["max"] | Annotated[float, number(ge=0.01, le=1000)]
+
+
+def _numbers(ranges: dict[str, tuple[float, float]]) -> dict[str, Any]:
+    return {
+        name: {"type": "number", "minimum": low, "maximum": high}
+        for name, (low, high) in ranges.items()
+    }
+
+
+_ROBOT_PARTS = {
+    "preset": {"enum": list(PRESETS)},
+    "n_legs": {"type": "integer", "minimum": MIN_LEGS, "maximum": MAX_LEGS, "multipleOf": 2},
+    "legs": {
+        "type": "array",
+        "minItems": MIN_LEGS,
+        "maxItems": MAX_LEGS,
+        "items": {
+            "type": "object",
+            "properties": _numbers({"azimuth_deg": AZIMUTH, "radius_m": MOUNT_RADIUS}),
+            "required": ["azimuth_deg"],
+            "additionalProperties": False,
+        },
+    },
+    **_numbers({"mount_radius_m": MOUNT_RADIUS, **RANGES}),
+}
+RobotBody = Annotated[
+    str | dict[str, Any],
+    # Its parts are checked by the domain, whose limits these are.
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "string", "enum": list(PRESETS)},
+                {
+                    "type": "object",
+                    "properties": _ROBOT_PARTS,
+                    "additionalProperties": False,
+                    "not": {
+                        "required": ["legs"],
+                        "anyOf": [{"required": ["n_legs"]}, {"required": ["mount_radius_m"]}],
+                    },
+                },
+            ],
+            "description": VALID["robot"],
+            "examples": ["stiff"],
+        }
+    ),
+]
 
 
 class Body(BaseModel):

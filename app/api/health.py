@@ -4,19 +4,20 @@ from fastapi import APIRouter
 from starlette.responses import JSONResponse, Response
 
 from app import __version__
+from app.api.answers import HealthView
 from app.api.deps import Given
 from app.api.problems import problem
 
 router = APIRouter(tags=["health"])
 
 
-@router.get("/healthz", summary="Whether the server lives")
+@router.get("/healthz", response_model=HealthView, summary="Whether the server lives")
 async def get_health() -> Response:
     """Answers as long as the server can answer at all."""
     return JSONResponse({"status": "ok", "version": __version__})
 
 
-@router.get("/readyz", summary="Whether the server is ready to work")
+@router.get("/readyz", response_model=HealthView, summary="Whether the server is ready to work")
 def get_readiness(services: Given) -> Response:
     """503 with the reason while something that runs need is away."""
     trouble = services.ready()

@@ -20,6 +20,7 @@ from prometheus_client.registry import Collector
 from starlette.responses import Response
 
 from app import __version__
+from app.api.contract import TEXT, answers
 from app.api.deps import Services
 from app.services.damage import DamageCount
 from app.services.store import STATES
@@ -27,7 +28,14 @@ from app.services.store import STATES
 router = APIRouter(tags=["health"])
 
 
-@router.get("/metrics", summary="Figures for Prometheus")
+@router.get(
+    "/metrics",
+    summary="Figures for Prometheus",
+    response_class=Response,
+    responses=answers(
+        200, {"text/plain; version=0.0.4": TEXT, "application/openmetrics-text": TEXT}
+    ),
+)
 def get_metrics(request: Request) -> Response:
     """Runs by state, steps, viewers, frames, the queue, and the server's own process."""
     encode, content_type = exposition.choose_encoder(request.headers.get("accept", ""))

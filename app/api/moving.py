@@ -3,6 +3,8 @@
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
+from app.api.answers import ExperimentView, RaceView, TrainingView
+from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
 from app.api.deps import Given, StartRequest
 from app.api.formats import attachment
 from app.api.runs import RunPath, find
@@ -11,10 +13,18 @@ from app.services import archives
 from app.services.moving import export_run, import_run
 from app.services.views import run_view
 
+_ARCHIVE = answers(200, {archives.MEDIA_TYPE: BINARY}, headers=ATTACHMENT)
+
 router = APIRouter()
 
 
-@router.get("/trainings/{run_id}/export", tags=["trainings"], summary="A training with all it has")
+@router.get(
+    "/trainings/{run_id}/export",
+    tags=["trainings"],
+    summary="A training with all it has",
+    response_class=Response,
+    responses=_ARCHIVE,
+)
 def export_training(services: Given, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "training", run_id)
@@ -22,7 +32,13 @@ def export_training(services: Given, run_id: RunPath) -> Response:
     return attachment(data, archives.MEDIA_TYPE, f"training-{run.id}.zip")
 
 
-@router.get("/races/{run_id}/export", tags=["races"], summary="A race with all it has")
+@router.get(
+    "/races/{run_id}/export",
+    tags=["races"],
+    summary="A race with all it has",
+    response_class=Response,
+    responses=_ARCHIVE,
+)
 def export_race(services: Given, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "race", run_id)
@@ -31,7 +47,11 @@ def export_race(services: Given, run_id: RunPath) -> Response:
 
 
 @router.get(
-    "/experiments/{run_id}/export", tags=["experiments"], summary="An experiment with all it has"
+    "/experiments/{run_id}/export",
+    tags=["experiments"],
+    summary="An experiment with all it has",
+    response_class=Response,
+    responses=_ARCHIVE,
 )
 def export_experiment(services: Given, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
@@ -45,12 +65,9 @@ def export_experiment(services: Given, run_id: RunPath) -> Response:
     status_code=201,
     tags=["trainings", "races", "experiments"],
     summary="Take in a run that was exported",
-    openapi_extra={
-        "requestBody": {
-            "content": {"application/octet-stream": {"schema": {"type": "string"}}},
-            "required": True,
-        }
-    },
+    response_model=TrainingView | RaceView | ExperimentView,
+    responses=answers(201, headers=LOCATION),
+    openapi_extra=takes_file("application/octet-stream"),
 )
 def import_archive(services: Given, request: Request, asked: StartRequest) -> Response:
     """The archive is the body. A run that is here already is not replaced: it comes twice.

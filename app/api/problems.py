@@ -29,11 +29,15 @@ from app.services.errors import (
 MEDIA_TYPE = "application/problem+json"
 MAX_DETAIL = 1000
 _STORAGE_RETRY_S = 10
-_STATUSES: dict[type[HexapodError], int] = {
+STATUSES: dict[type[HexapodError], int] = {
     InvalidInput: 422,
     NotFound: 404,
     Gone: 410,
+    Conflict: 409,
+    Busy: 429,
     StorageFull: 507,
+    StorageFailed: 503,
+    NotAnswering: 503,
 }
 _logger = logging.getLogger(__name__)
 
@@ -85,19 +89,17 @@ def install(app: FastAPI) -> None:
 async def _hexapod_error(request: Request, error: Exception) -> Response:
     message = str(error)
     sentence = message[:1].upper() + message[1:] + ("" if message.endswith((".", "!")) else ".")
+    status = next((found for kind, found in STATUSES.items() if isinstance(error, kind)), None)
+    if status is None:
+        return await _unexpected(request, error)
     match error:
         case Conflict(state=state):
-            return problem(409, sentence, state=state)
-        case Busy(retry_after_s=seconds):
-            return problem(429, sentence, headers={"Retry-After": str(seconds)})
-        case NotAnswering(retry_after_s=seconds):
-            return problem(503, sentence, headers={"Retry-After": str(seconds)})
+            return problem(status, sentence, state=state)
+        case Busy(retry_after_s=seconds) | NotAnswering(retry_after_s=seconds):
+            return problem(status, sentence, headers={"Retry-After": str(seconds)})
         case StorageFailed():
-            return problem(503, sentence, headers={"Retry-After": str(_STORAGE_RETRY_S)})
-    for kind, status in _STATUSES.items():
-        if isinstance(error, kind):
-            return problem(status, sentence)
-    return await _unexpected(request, error)
+            return problem(status, sentence, headers={"Retry-After": str(_STORAGE_RETRY_S)})
+    return problem(status, sentence)
 
 
 async def _validation_error(request: Request, error: Exception) -> Response:
@@ -120,11 +122,12 @@ async def _http_error(request: Request, error: Exception) -> Response:
 
 def _allowed(request: Request) -> str:
     """The methods of all routes with this path; a router only knows of the first."""
-    methods: set[str] = set()
-    for route in iter_route_contexts(request.app.routes):
-        if route.path and compile_path(route.path)[0].match(request.url.path):
-            methods |= set(route.methods or ())
-    return ", ".join(sorted(methods))
+    routes = [route for route in iter_route_contexts(request.app.routes) if route.path]
+    path = request.url.path
+    # A path that is spelled out hides those with a parameter in its place.
+    spelled_out = [route for route in routes if route.path == path]
+    found = spelled_out or [r for r in routes if r.path and compile_path(r.path)[0].match(path)]
+    return ", ".join(sorted({method for route in found for method in route.methods or ()}))
 
 
 async def _unexpected(request: Request, error: Exception) -> Response:

@@ -5,6 +5,8 @@ from typing import Annotated, Literal
 from fastapi import Query, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
+from app.api.answers import RaceView, RecordingView, TimelineView
+from app.api.contract import BINARY, LOCATION, answers
 from app.api.deps import Given, Services, StartRequest
 from app.api.formats import attachment, chosen
 from app.api.runs import RunPath, accepted, find, run_routes
@@ -20,7 +22,13 @@ from app.services.timeline import timeline
 router = run_routes("race")
 
 
-@router.post("", status_code=202, summary="Start a race, and the practice that it needs")
+@router.post(
+    "",
+    status_code=202,
+    summary="Start a race, and the practice that it needs",
+    response_model=RaceView,
+    responses=answers(202, headers=LOCATION),
+)
 def start_race(services: Given, request: Request, asked: StartRequest, body: RaceBody) -> Response:
     """Queue the trainings of its lanes and then the race, and answer with the race's run."""
     jobs, agents = services.jobs, services.agents
@@ -28,7 +36,12 @@ def start_race(services: Given, request: Request, asked: StartRequest, body: Rac
     return accepted(request, jobs.view(run))
 
 
-@router.get("/{run_id}/recording", summary="What a replay needs; also as .npz and for viser")
+@router.get(
+    "/{run_id}/recording",
+    summary="What a replay needs; also as .npz and for viser",
+    response_model=RecordingView,
+    responses=answers(200, {"application/x-npz": BINARY, "application/octet-stream": BINARY}),
+)
 def get_recording(
     services: Given,
     request: Request,
@@ -48,7 +61,11 @@ def get_recording(
     return StreamingResponse(chunks, media_type="application/json")
 
 
-@router.get("/{run_id}/timeline", summary="Distance over time under one clock")
+@router.get(
+    "/{run_id}/timeline",
+    summary="Distance over time under one clock",
+    response_model=TimelineView,
+)
 def get_timeline(
     services: Given, run_id: RunPath, clock: Annotated[Clock, Query()] = "paper"
 ) -> Response:

@@ -1,11 +1,21 @@
 """What trainings and races have in common: list, look, stop, pause, resume, delete."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
+from app.api.answers import (
+    ExperimentPage,
+    ExperimentView,
+    Page,
+    RacePage,
+    RaceView,
+    RunView,
+    TrainingPage,
+    TrainingView,
+)
 from app.api.deps import Given, Services
 from app.api.sentences import MAX_PAGE, VALID
 from app.services.errors import Damaged, NotFound
@@ -52,8 +62,9 @@ def accepted(request: Request, shown: dict[str, Any]) -> Response:
 def run_routes(kind: Kind) -> APIRouter:
     """The routes that every kind of run has."""
     router = APIRouter(prefix=f"/{kind}s", tags=[f"{kind}s"])
+    view, page = _VIEWS[kind]
 
-    @router.get("", summary=f"The {kind}s, newest first", name=f"list_{kind}s")
+    @router.get("", summary=f"The {kind}s, newest first", name=f"list_{kind}s", response_model=page)
     def list_runs(
         services: Given,
         state: Annotated[State | None, Query(description=VALID["state"])] = None,
@@ -64,12 +75,15 @@ def run_routes(kind: Kind) -> APIRouter:
         items = [services.jobs.view(run) for run in page.items]
         return JSONResponse({"items": items, "next_cursor": page.next_cursor})
 
-    @router.get("/{run_id}", summary=f"A {kind}", name=f"get_{kind}")
+    @router.get("/{run_id}", summary=_phrase("{}", kind), name=f"get_{kind}", response_model=view)
     def get_run(services: Given, run_id: RunPath) -> Response:
         return JSONResponse(services.jobs.view(find_any(services, kind, run_id)))
 
     @router.delete(
-        "/{run_id}", status_code=204, summary=f"Delete a {kind} that has ended", name=f"del_{kind}"
+        "/{run_id}",
+        status_code=204,
+        summary=_phrase("Delete {} that has ended", kind),
+        name=f"del_{kind}",
     )
     def delete_run(services: Given, run_id: RunPath) -> None:
         find_any(services, kind, run_id)
@@ -81,17 +95,28 @@ def run_routes(kind: Kind) -> APIRouter:
             _command(kind, verb),
             methods=["POST"],
             status_code=202,
-            summary=summary.format(kind),
+            summary=_phrase(summary, kind),
+            response_model=view,
             name=f"{verb}_{kind}",
         )
     return router
 
 
 _VERBS = {
-    "stop": "End a {} with what has come of it",
-    "pause": "Let a {} wait",
-    "resume": "Let a paused or interrupted {} go on",
+    "stop": "End {} with what has come of it",
+    "pause": "Let {} wait",
+    "resume": "Let {} go on that is paused or was interrupted",
 }
+_VIEWS: Mapping[Kind, tuple[type[RunView], type[Page]]] = {
+    "training": (TrainingView, TrainingPage),
+    "race": (RaceView, RacePage),
+    "experiment": (ExperimentView, ExperimentPage),
+}
+
+
+def _phrase(template: str, kind: Kind) -> str:
+    phrase = template.format(f"an {kind}" if kind[0] in "aeiou" else f"a {kind}")
+    return phrase[0].upper() + phrase[1:]
 
 
 def _command(kind: Kind, verb: str) -> Callable[..., Any]:

@@ -3,10 +3,11 @@
 from collections.abc import Collection
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import ConfigDict, Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
 from app.api.fields import (
+    INTEGRAL,
     Alpha,
     Body,
     Divisions,
@@ -14,6 +15,7 @@ from app.api.fields import (
     Gamma,
     Name,
     Pace,
+    RobotBody,
     RunId,
     Seed,
     Side,
@@ -22,9 +24,9 @@ from app.api.fields import (
 )
 from app.api.sentences import VALID
 from app.domain.errors import InvalidInput, UnknownName
-from app.domain.gait import GaitSpec, Symmetry
+from app.domain.gait import NAMED_GAITS, GaitSpec, Symmetry
 from app.domain.observation import Observation
-from app.domain.robot import robot
+from app.domain.robot import MAX_LEGS, robot
 from app.runs.clocks import Clock
 from app.runs.config import (
     MAX_LANES,
@@ -36,16 +38,28 @@ from app.runs.config import (
 )
 from app.services.entries import LaneStart, RaceStart, TrainingStart
 
+Leg = Annotated[
+    # Which legs there are depends on the robot, so the domain checks them.
+    int, Field(strict=True, json_schema_extra={"minimum": 1, "maximum": MAX_LEGS}), INTEGRAL
+]
+
 
 class GaitBody(Body):
     """A gait of one's own."""
 
-    right_leg: Annotated[int, Field(strict=True)]
-    left_leg: Annotated[int, Field(strict=True)]
+    model_config = ConfigDict(
+        json_schema_extra={
+            "oneOf": [
+                {"required": ["symmetry"], "properties": {"symmetry": {"type": "string"}}},
+                {"required": ["pairs"], "properties": {"pairs": {"type": "array"}}},
+            ]
+        }
+    )
+
+    right_leg: Leg
+    left_leg: Leg
     symmetry: Symmetry | None = None
-    pairs: list[tuple[Annotated[int, Field(strict=True)], Annotated[int, Field(strict=True)]]] | (
-        None
-    ) = None
+    pairs: list[tuple[Leg, Leg]] | None = None
 
     def spec(self) -> GaitSpec:
         """As the domain says it."""
@@ -58,7 +72,8 @@ def _gait_tag(value: Any) -> str:
 
 
 Gait = Annotated[
-    Annotated[str, Tag("its name")] | Annotated[GaitBody, Tag("its parts")],
+    Annotated[str, Tag("its name"), WithJsonSchema({"type": "string", "enum": list(NAMED_GAITS)})]
+    | Annotated[GaitBody, Tag("its parts")],
     Discriminator(_gait_tag),
     Field(description=VALID["gait"]),
 ]
@@ -68,9 +83,7 @@ class WalkBody(Body):
     """Which robot walks how, on which foot grid, in which simulator."""
 
     gait: Gait
-    robot: Annotated[
-        str | dict[str, Any], Field(description=VALID["robot"], examples=["stiff"])
-    ] = "stiff"
+    robot: RobotBody = "stiff"
     simulator: SimulatorName = Walk.simulator
     divisions: Divisions = Walk.divisions
     grid_side_m: Side = Walk.grid_side_m
@@ -102,7 +115,7 @@ class PracticeBody(Body):
     epsilon_start: Epsilon = TrainingConfig.epsilon_start
     epsilon_end: Epsilon = TrainingConfig.epsilon_end
     steps_per_episode: Steps = TrainingConfig.steps_per_episode
-    evaluate_every: Annotated[int, Field(strict=True, ge=0, le=MAX_STEPS)] = (
+    evaluate_every: Annotated[int, Field(strict=True, ge=0, le=MAX_STEPS), INTEGRAL] = (
         TrainingConfig.evaluate_every
     )
     pace: Pace = TrainingConfig.pace
@@ -185,6 +198,15 @@ class RaceBody(WalkBody):
 
 class ChangeBody(Body):
     """What may be changed while a training runs."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "anyOf": [
+                {"required": [name], "properties": {name: {"not": {"type": "null"}}}}
+                for name in ("pace", "alpha", "gamma", "epsilon")
+            ]
+        }
+    )
 
     pace: Pace | None = None
     alpha: Alpha | None = None

@@ -5,6 +5,8 @@ from typing import Annotated, Literal
 from fastapi import Query, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
+from app.api.answers import CurveView, QTableView, TrainingView
+from app.api.contract import BINARY, LOCATION, TEXT, answers, takes_file
 from app.api.deps import Given, StartRequest
 from app.api.fields import Name
 from app.api.formats import attachment, chosen
@@ -22,7 +24,13 @@ from app.services.store import TABLE
 router = run_routes("training")
 
 
-@router.post("", status_code=202, summary="Start a training")
+@router.post(
+    "",
+    status_code=202,
+    summary="Start a training",
+    response_model=TrainingView,
+    responses=answers(202, headers=LOCATION),
+)
 def start_training(
     services: Given, request: Request, asked: StartRequest, body: TrainingBody
 ) -> Response:
@@ -36,12 +44,9 @@ def start_training(
     "/import",
     status_code=201,
     summary="Add a training out of a Q-table's file",
-    openapi_extra={
-        "requestBody": {
-            "content": {"application/octet-stream": {"schema": {"type": "string"}}},
-            "required": True,
-        }
-    },
+    response_model=TrainingView,
+    responses=answers(201, headers=LOCATION),
+    openapi_extra=takes_file("application/octet-stream"),
 )
 def import_training(
     services: Given,
@@ -58,14 +63,21 @@ def import_training(
     return JSONResponse(jobs.view(run), 201, {"Location": location})
 
 
-@router.patch("/{run_id}", summary="Change pace or rates while it runs")
+@router.patch(
+    "/{run_id}", summary="Change pace or rates while it runs", response_model=TrainingView
+)
 def change_training(services: Given, run_id: RunPath, body: ChangeBody) -> Response:
     """Obeyed between two steps, and kept with the step's number in `changes`."""
     find(services, "training", run_id)
     return JSONResponse(services.jobs.view(services.jobs.change(run_id, body.changes())))
 
 
-@router.get("/{run_id}/curve", summary="The learning curve; also as CSV")
+@router.get(
+    "/{run_id}/curve",
+    summary="The learning curve; also as CSV",
+    response_model=CurveView,
+    responses=answers(200, {"text/csv": TEXT}),
+)
 def get_curve(
     services: Given,
     request: Request,
@@ -81,7 +93,12 @@ def get_curve(
     return JSONResponse(finite(shown))
 
 
-@router.get("/{run_id}/q-table", summary="What was learned; also as .npz and CSV")
+@router.get(
+    "/{run_id}/q-table",
+    summary="What was learned; also as .npz and CSV",
+    response_model=QTableView,
+    responses=answers(200, {"text/csv": TEXT, tables.MEDIA_TYPE: BINARY}),
+)
 def get_table(
     services: Given,
     request: Request,

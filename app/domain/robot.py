@@ -115,7 +115,7 @@ PRESETS: dict[str, Robot] = {
     "slippery": Robot(name="slippery", friction=0.1),
 }
 
-_RANGES: dict[str, tuple[float, float]] = {
+RANGES: dict[str, tuple[float, float]] = {
     "coxa_m": (0.001, 2.0),
     "femur_m": (0.001, 2.0),
     "tibia_m": (0.001, 2.0),
@@ -140,6 +140,7 @@ _RANGES: dict[str, tuple[float, float]] = {
     "shift_s": (0.02, 5.0),
     "dt_s": (0.0005, 0.005),
 }
+MOUNT_RADIUS, AZIMUTH = (0.0, 2.0), (-360.0, 360.0)
 
 
 def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
@@ -200,6 +201,8 @@ def _legs(given: dict[str, Any], base: Robot) -> tuple[LegMount, ...]:
         return base.legs
     if count is None:
         count = len(base.legs)
+    if isinstance(count, float) and count.is_integer():
+        count = int(count)
     if not isinstance(count, int) or isinstance(count, bool):
         raise InvalidInput(f"robot.n_legs must be a whole number, not {count!r}")
     return ring(count, 0.10 if radius is None else _number("mount_radius_m", radius))
@@ -221,7 +224,7 @@ def _mounts(mounts: object) -> tuple[LegMount, ...]:
 def _number(name: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InvalidInput(f"robot.{name} must be a number, not {value!r}")
-    low, high = _RANGES.get(name, (0.0, 2.0) if name == "mount_radius_m" else (-360.0, 360.0))
+    low, high = RANGES.get(name, MOUNT_RADIUS if name == "mount_radius_m" else AZIMUTH)
     if not low <= value <= high:
         raise InvalidInput(f"robot.{name} must be from {low:g} to {high:g}, not {value}")
     return float(value)

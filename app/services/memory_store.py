@@ -9,6 +9,7 @@ from typing import Any
 
 from app.services.errors import Conflict, NotFound
 from app.services.store import (
+    RUNNING,
     UNENDED,
     AnyRun,
     Content,
@@ -98,7 +99,7 @@ class MemoryStore:
             run = self._run(run_id)
             if run.state not in from_states:
                 raise Conflict(f"{run.kind} {run_id} is {run.state}", run.state)
-            self._runs[run_id] = replace(run, state=to_state, **fields)
+            self._runs[run_id] = replace(run, state=to_state, **{"eta_s": None, **fields})
             return self._runs[run_id]
 
     def update(self, run_id: str, **fields: Any) -> Run:
@@ -107,7 +108,11 @@ class MemoryStore:
             return self._runs[run_id]
 
     def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> Run:
-        return self.update(run_id, done=done, eta_s=eta_s)
+        with self._lock:
+            run = self._run(run_id)
+            left_s = eta_s if run.state in RUNNING else None
+            self._runs[run_id] = replace(run, done=done, eta_s=left_s)
+            return self._runs[run_id]
 
     def delete(self, run_id: str) -> None:
         with self._lock:

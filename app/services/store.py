@@ -55,7 +55,7 @@ class Run:
         continued_from: the training whose table this training went on from.
         done, total: steps, of all lanes together; trials, of an experiment.
         workers: of an experiment's cluster; None is one for each core.
-        eta_s: how much longer it will take, as far as that can be told.
+        eta_s: how much longer it will take [s], as far as that can be told; None unless it runs.
         changes: rates and pace that were changed while it ran, each with the number of steps
             that were done before.
         greedy_distance_m: of a training, the line to beat, once it is known.
@@ -225,6 +225,8 @@ class RunStore(Protocol):
         self, run_id: str, from_states: Collection[State], to_state: State, **fields: Any
     ) -> Run:
         """Change the state, and with it other fields, if it still is one of `from_states`.
+
+        The time left is told anew: `eta_s` is None afterwards.
 
         Raises:
             NotFound: if there is no such run.

@@ -7,10 +7,9 @@ from typing import Any
 import httpx2
 from starlette.testclient import TestClient
 
-ADDRESS = "http://127.0.0.1:8000"
-LONG_S = 60.0
-"""Only a broken server takes so long; a busy machine does not."""
+from tests.patience import Patience
 
+ADDRESS = "http://127.0.0.1:8000"
 WALK = {"gait": "left-right-origin", "simulator": "kinematic"}
 ENDED = ("finished", "stopped", "failed", "interrupted")
 
@@ -52,10 +51,10 @@ class Api:
         return shown
 
     def until(self, run: dict[str, Any], is_so: Any) -> dict[str, Any]:
-        deadline = time.monotonic() + LONG_S
+        patience = Patience()
         while not is_so(now := self.look(run)):
             assert now["state"] not in ENDED, now
-            assert time.monotonic() < deadline, now
+            patience.check(now)
             time.sleep(0.01)
         return now
 

@@ -114,7 +114,7 @@ def test_before_it_has_begun_there_is_an_empty_summary_and_no_report(serve: Serv
     stopped = calm.tell(run, "stop").json()
     assert stopped["state"] == "stopped"
     assert calm.tell(run, "resume").json()["state"] == "queued"
-    refused(calm.tell(run, "resume"), 409, "paused or failed or interrupted or stopped")
+    refused(calm.tell(run, "resume"), 409, "failed or interrupted or paused or stopped")
 
 
 def test_the_same_key_is_the_same_experiment(serve: Serve) -> None:

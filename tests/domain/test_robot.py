@@ -133,7 +133,7 @@ def test_a_preset_is_written_as_its_name_alone() -> None:
         ({"n_legs": 7}, "even number of legs, 4 to 12"),
         ({"n_legs": 2}, "even number of legs, 4 to 12"),
         ({"n_legs": 14}, "even number of legs, 4 to 12"),
-        ({"n_legs": 6.0}, "robot.n_legs must be a whole number"),
+        ({"n_legs": 6.5}, "robot.n_legs must be a whole number"),
         ({"n_legs": True}, "robot.n_legs must be a whole number"),
         ({"mount_radius_m": -0.1}, "robot.mount_radius_m must be from 0 to 2"),
         ({"legs": 6}, "robot.legs must be a list of {azimuth_deg, radius_m}"),

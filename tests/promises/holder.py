@@ -1,4 +1,4 @@
-"""Holds a database so that nobody else can write, for as long as it is told."""
+"""Holds a database against all other writers, for so long after a line on standard input."""
 
 import sqlite3
 import sys
@@ -23,6 +23,7 @@ def main(where: str, seconds: float) -> None:
 def hold(seconds: float) -> None:
     sys.stdout.write("held\n")
     sys.stdout.flush()
+    sys.stdin.readline()
     time.sleep(seconds)
 
 

@@ -57,14 +57,14 @@ def test_a_locked_database_loses_nothing(
         threads = [threading.Thread(target=write, args=(n,)) for n in range(THREADS)]
         for thread in threads:
             thread.start()
+        holder.communicate("go on\n")
         for thread in threads:
             thread.join()
         took_s = time.monotonic() - began
-        holder.communicate()
 
         assert holder.returncode == 0
         assert failed == []
-        assert took_s > HELD_S / 2, "nobody had to wait"
+        assert took_s > HELD_S, "nobody had to wait"
         assert sorted(won) == contested, "each has one winner"
         for number in range(THREADS):
             assert [row["step"] for row in store.evaluations(f"t{number}")] == list(range(WRITES))

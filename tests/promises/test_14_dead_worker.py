@@ -34,8 +34,10 @@ def test_a_killed_job_is_failed_within_five_seconds(launch: Callable[..., Served
 
 def test_a_dead_servers_runs_are_interrupted_and_go_on(launch: Callable[..., Served]) -> None:
     server = launch()
-    short = {**BODY, "steps": 200, "pace": 50}
-    lanes = [{"agent": "q-learning", "training": {"steps": 200, "pace": 50}}, {"agent": "greedy"}]
+    # Half a minute, which is more than it takes to kill the server even on a busy machine.
+    short = {**BODY, "steps": 1000, "pace": 12, "evaluate_every": 0}
+    practice_body = {"steps": 1000, "pace": 12, "evaluate_every": 0}
+    lanes = [{"agent": "q-learning", "training": practice_body}, {"agent": "greedy"}]
     running = server.start(short)
     race = server.start({**BODY, "steps": 10, "lanes": lanes}, "/races")
     (practice,) = race["waiting_for"]
@@ -53,6 +55,8 @@ def test_a_dead_servers_runs_are_interrupted_and_go_on(launch: Callable[..., Ser
     for run in (race, running):
         assert server.tell(run, "resume").status_code == 202
         assert server.tell(run, "resume").status_code == 409, "it goes on already"
+    for training in (running["id"], practice):
+        server.hurry(training)
     assert server.in_state(running, "finished", "failed")["state"] == "finished"
     raced = server.in_state(race, "finished", "failed", "stopped")
     assert raced["state"] == "finished", raced

@@ -2,7 +2,7 @@
 
 import math
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
@@ -13,7 +13,7 @@ import pytest
 from app.services.errors import Conflict, NotFound
 from app.services.ids import RunIds
 from app.services.memory_store import MemoryStore
-from app.services.store import LIVE, QUEUED, RUNNING, UNENDED, Run, RunStore, State
+from app.services.store import LIVE, QUEUED, RUNNING, UNENDED, AnyRun, Run, RunStore, State
 from tests.services.stores import (
     BACKENDS,
     ODD,
@@ -49,7 +49,7 @@ def test_what_went_in_comes_out(store: RunStore) -> None:
     runs = [
         training("a", config=ODD, continued_from="x", changes=({"step": 3, "pace": "max"},)),
         training("b", result={"nan": math.inf, "more": [1, None, {"a": True}]}, error="It broke."),
-        race("c", waiting_for=("a", "b"), state="interrupted", done=2**40, eta_s=1.25),
+        race("c", waiting_for=("a", "b"), state="running", done=2**40, eta_s=1.25),
         training("d", name="ü 🕷 <b>'--", created_at=now, started_at=now, ended_at=now),
         experiment("d2", workers=2, done=7),
         training("e", greedy_distance_m=-0.1, state="failed", config=replace(ODD, pace="max")),
@@ -124,16 +124,87 @@ def test_lists_are_filtered(store: RunStore) -> None:
 
 def test_progress_is_seen_at_once_and_outlives_changes(store: RunStore) -> None:
     run = a_run(store)
+    store.change(run.id, QUEUED, "running")
     for done in range(1, 200):
         assert store.update_progress(run.id, done, eta_s=200.0 - done).done == done
     assert store.list().runs[0].done == 199
     assert store.get(run.id).eta_s == 1.0
     assert store.update(run.id, greedy_distance_m=0.5).done == 199
-    store.update_progress(run.id, 200)
-    ended = store.change(run.id, QUEUED, "finished", eta_s=None)
+    store.update_progress(run.id, 200, eta_s=0.0)
+    ended = store.change(run.id, RUNNING, "finished")
     assert (ended.done, ended.eta_s, ended.greedy_distance_m) == (200, None, 0.5)
     assert store.get(run.id) == ended
     assert store.update(run.id, done=7).done == 7
+
+
+@pytest.mark.parametrize("state", ["paused", "finished", "failed"])
+def test_only_a_running_run_has_time_left(store: RunStore, state: State) -> None:
+    """A late report of progress does not bring the estimate back."""
+    run = a_run(store)
+    store.change(run.id, QUEUED, "running")
+    store.update_progress(run.id, 10, eta_s=5.0)
+    shown: list[AnyRun] = [store.change(run.id, RUNNING, state)]
+    for done in (11, 12):
+        shown.append(store.update_progress(run.id, done, eta_s=4.0))
+        shown += [store.get(run.id), *store.list().items, store.update(run.id, error="late")]
+    assert [one.eta_s for one in shown if isinstance(one, Run)] == [None] * len(shown)
+
+
+def test_a_reader_never_sees_the_estimate_of_an_ended_run(store: RunStore) -> None:
+    """Readers look between the write of the last state and the removal of the newest progress."""
+    runs = [a_run(store) for _ in range(50)]
+    seen: list[Run] = []
+    over = threading.Event()
+
+    def read() -> None:
+        is_last = False
+        while not is_last:
+            is_last = over.is_set()
+            found = store.list().items
+            seen.extend(run for run in found if isinstance(run, Run) and run.state == "finished")
+
+    readers = [threading.Thread(target=read) for _ in range(2)]
+    for reader in readers:
+        reader.start()
+    for run in runs:
+        store.change(run.id, QUEUED, "running")
+        store.update_progress(run.id, 500, eta_s=0.0)
+        store.change(run.id, RUNNING, "finished", eta_s=None)
+    over.set()
+    for reader in readers:
+        reader.join()
+    assert seen
+    assert {run.eta_s for run in seen} == {None}
+
+
+def test_progress_never_goes_back(store: RunStore) -> None:
+    """Whatever is written to the run meanwhile."""
+    run = a_run(store)
+    store.change(run.id, QUEUED, "running")
+    seen: list[int] = []
+    over = threading.Event()
+
+    def act(what: Callable[[], object]) -> threading.Thread:
+        def repeat() -> None:
+            while not over.is_set():
+                what()
+
+        thread = threading.Thread(target=repeat)
+        thread.start()
+        return thread
+
+    threads = [
+        act(lambda: seen.append(store.get(run.id).done)),
+        act(lambda: store.update(run.id, greedy_distance_m=0.5)),
+        act(lambda: store.put_artifact(run.id, "a", b"", error=None)),
+    ]
+    for done in range(1, 300):
+        store.update_progress(run.id, done, eta_s=1.0)
+    over.set()
+    for thread in threads:
+        thread.join()
+    assert seen == sorted(seen)
+    assert store.get(run.id).done == 299
 
 
 def test_a_curve_grows_and_what_is_evaluated_again_takes_its_place(store: RunStore) -> None:

@@ -5,8 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from app.services.store import UNENDED, Run, RunStore
-
-LONG_S = 60.0
+from tests.patience import LONG_S, Patience
 
 
 def until(is_so: Callable[[], Any]) -> None:
@@ -19,8 +18,11 @@ def until(is_so: Callable[[], Any]) -> None:
 
 def ended(store: RunStore, run: Run) -> Run:
     """The run once it has ended."""
-    until(lambda: store.get(run.id).state not in UNENDED)
-    return store.get(run.id)
+    patience = Patience()
+    while (now := store.get(run.id)).state in UNENDED:
+        patience.check((now.state, now.done))
+        time.sleep(0.005)
+    return now
 
 
 def moving(store: RunStore, run: Run) -> None:

@@ -22,6 +22,10 @@ BUSY_S = 10.0
 POOL_WAIT_S = 5.0
 """How long to wait for a connection while others have them all."""
 _FIRST_RETRY_S, _LAST_RETRY_S = 0.1, 1.0
+SQLITE_CONNECTIONS = 5
+"""Reads of the database at once; further ones wait for a turn."""
+SQLITE_FILES = 2 * SQLITE_CONNECTIONS + 1
+"""Open files of the database at most: each connection has it and its log, all share an index."""
 T = TypeVar("T")
 _ONLY_READS = "hexapods_only_reads"
 _SECONDARY = 0xFF  # an error code of SQLite's, without what it says beyond its kind
@@ -164,6 +168,10 @@ def sqlite_engine(path: Path) -> Engine:
         URL.create("sqlite", database=str(path)),
         # Without the driver's own transactions, which begin late and so lose updates.
         connect_args={"isolation_level": None, "timeout": BUSY_S},
+        # All are kept, and none is opened beyond them.
+        pool_size=SQLITE_CONNECTIONS,
+        max_overflow=0,
+        pool_timeout=BUSY_S,
     )
     event.listen(engine, "connect", _prepare_sqlite)
     event.listen(engine, "begin", _begin_sqlite)

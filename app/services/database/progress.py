@@ -31,13 +31,24 @@ class Progress:
             return is_due
 
     def of(self, run_id: str) -> dict[str, Any]:
-        """What is newer than the database, or the same."""
+        """The fields that are newer than the database, or the same."""
         with self._lock:
             noted = self._noted.get(run_id)
             return {} if noted is None else noted.fields
 
-    def take(self, run_id: str) -> dict[str, Any]:
-        """The same, and forget it, because it is about to be written."""
+    def newest(self) -> dict[str, dict[str, Any]]:
+        """The fields of every run that has any, by id."""
         with self._lock:
-            noted = self._noted.pop(run_id, None)
-            return {} if noted is None else noted.fields
+            return {run_id: noted.fields for run_id, noted in self._noted.items()}
+
+    def forget_estimate(self, run_id: str) -> None:
+        """Keep how far it is, and drop how long it will take."""
+        with self._lock:
+            noted = self._noted.get(run_id)
+            if noted is not None:
+                self._noted[run_id] = noted._replace(fields={**noted.fields, "eta_s": None})
+
+    def forget(self, run_id: str) -> None:
+        """Drop all of a run, because the database has it or something else."""
+        with self._lock:
+            self._noted.pop(run_id, None)

@@ -42,6 +42,8 @@ from app.services.errors import Conflict, Damaged, StorageFailed
 from app.services.room import START_BYTES
 from app.services.store import (
     KINDS,
+    LIVE,
+    RUNNING,
     UNENDED,
     AnyRun,
     Content,
@@ -127,7 +129,10 @@ class SqlStore:
         return run
 
     def find(self, run_id: str) -> AnyRun:
-        return self._shown(self._database.read(lambda connection: row_of_run(connection, run_id)))
+        # Before the row, which has it once it is forgotten: so progress never goes back.
+        progress = self._progress.of(run_id)
+        row = self._database.read(lambda connection: row_of_run(connection, run_id))
+        return any_run_of(_newest(row, progress))
 
     def list(
         self,
@@ -148,9 +153,10 @@ class SqlStore:
                 asked = asked.where(is_before(connection, cursor))
             return found(connection, asked)
 
+        progress = self._progress.newest()
         rows = self._database.read(work)
         return Page(
-            [self._shown(row) for row in rows[:limit]],
+            [any_run_of(_newest(row, progress.get(row["id"], {}))) for row in rows[:limit]],
             shown_id(rows[limit - 1]["id"]) if len(rows) > limit else None,
         )
 
@@ -162,9 +168,8 @@ class SqlStore:
     def change(
         self, run_id: str, from_states: Collection[State], to_state: State, **fields: Any
     ) -> Run:
-        # Whoever reads meanwhile sees the progress until the row has it.
-        columns = columns_of({**self._progress.of(run_id), "state": to_state, **fields})
-
+        progress = self._progress.of(run_id)
+        columns = columns_of({**progress, "eta_s": None, "state": to_state, **fields})
         still = update(RUNS).where(RUNS.c.id == run_id, RUNS.c.state.in_(from_states))
         attempts = 0
 
@@ -181,20 +186,24 @@ class SqlStore:
             return changed[0]
 
         row = self._database.write(work)
-        self._progress.take(run_id)
-        return run_of(row)
+        if to_state in LIVE:
+            self._progress.forget_estimate(run_id)
+        else:
+            self._progress.forget(run_id)
+        return run_of(_newest(row, {}))
 
     def update(self, run_id: str, **fields: Any) -> Run:
-        columns = columns_of({**self._progress.of(run_id), **fields})
-        statement = update(RUNS).where(RUNS.c.id == run_id).values(columns).returning(*RAW_RUN)
+        progress = self._progress.of(run_id)
+        values = columns_of(fields)
+        statement = update(RUNS).where(RUNS.c.id == run_id).values(values).returning(*RAW_RUN)
 
         def work(connection: Connection) -> Row:
             changed = found(connection, statement)
             return changed[0] if changed else row_of_run(connection, run_id)
 
         row = self._database.write(work)
-        self._progress.take(run_id)
-        return run_of(row)
+        self._note_written(run_id, fields)
+        return run_of(_newest(row, {k: v for k, v in progress.items() if k not in fields}))
 
     def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> Run:
         if self._progress.note(run_id, {"done": done, "eta_s": eta_s}):
@@ -217,7 +226,7 @@ class SqlStore:
             return names
 
         self._files.remove(*self._database.write(work))
-        self._progress.take(run_id)
+        self._progress.forget(run_id)
 
     def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
         self._curves.append(run_id, rows)
@@ -236,7 +245,7 @@ class SqlStore:
 
     def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
         self.get(run_id)
-        columns = columns_of({**self._progress.of(run_id), **fields}) if fields else {}
+        columns = columns_of(fields)
         stored = self._files.write(data)
         of_this_name = ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name
 
@@ -258,8 +267,7 @@ class SqlStore:
             if not isinstance(error, StorageFailed):
                 self._files.remove(stored.file)
             raise
-        if columns:
-            self._progress.take(run_id)
+        self._note_written(run_id, fields)
         # Itself is among them if the answer to a first attempt was lost.
         self._files.remove(*(name for name in former if name != stored.file))
 
@@ -305,6 +313,10 @@ class SqlStore:
         files = self._database.read(lambda connection: connection.execute(known).scalars().all())
         return self._files.sweep(files)
 
+    def _note_written(self, run_id: str, fields: Mapping[str, Any]) -> None:
+        if "done" in fields:
+            self._progress.forget(run_id)
+
     def _stored(self, run_id: str, name: str) -> Stored | None:
         wanted = select(*_FILE).where(ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name)
 
@@ -314,9 +326,6 @@ class SqlStore:
 
         rows = self._database.read(work)
         return Stored(**rows[0]) if rows else None
-
-    def _shown(self, row: Row) -> AnyRun:
-        return any_run_of({**row, **self._progress.of(row["id"])})
 
 
 def _is_of_kind(connection: Connection, kind: Kind) -> ColumnElement[bool]:
@@ -331,3 +340,11 @@ def _rows_of(run_id: str, stored: Mapping[str, Stored]) -> list[Row]:
         {"run_id": run_id, "name": name, "written_at": now, **one._asdict()}
         for name, one in stored.items()
     ]
+
+
+def _newest(row: Row, progress: Mapping[str, Any]) -> Row:
+    """A row with newer progress while a process works on its run."""
+    newest = {**row, **progress} if row["state"] in LIVE else dict(row)
+    if row["state"] not in RUNNING:
+        newest["eta_s"] = None
+    return newest

@@ -1,0 +1,474 @@
+"""Response models: the shape of every JSON answer, for the API's description and its tests.
+
+Answers are made of plain types by the services and are sent as they are; these models validate
+nothing at run time. Tests hold the answers to them.
+"""
+
+from datetime import datetime
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.domain.observation import Observation
+from app.domain.robot import PRESETS
+from app.experiments.config import ExperimentName
+from app.runs.clocks import Clock
+from app.runs.config import SimulatorName
+from app.services.store import State
+
+Preset = Annotated[str, Field(json_schema_extra={"enum": list(PRESETS)})]
+Count = Annotated[int, Field(ge=0)]
+
+
+class Answer(BaseModel):
+    """An object with exactly these members."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class LegView(Answer):
+    """The mount of a leg: its direction [°] and its distance from the body's middle [m]."""
+
+    azimuth_deg: float
+    radius_m: float
+
+
+class RobotView(BaseModel):
+    """A preset, and by name the numbers in which the robot differs from it."""
+
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, float]
+
+    preset: Preset
+    legs: list[LegView] = Field(default_factory=list)
+
+
+class GaitParts(Answer):
+    """A gait of one's own; members that were not given are left out."""
+
+    right_leg: int
+    left_leg: int
+    symmetry: Literal["origin", "vertical"] = "origin"
+    pairs: list[tuple[int, int]] = Field(default_factory=list)
+
+
+Gait = str | GaitParts
+
+
+class WalkView(Answer):
+    """Which robot walks how, on which foot grid, in which simulator."""
+
+    gait: Gait
+    robot: RobotView
+    simulator: SimulatorName
+    divisions: int
+    grid_side_m: float
+
+
+class TrainingConfigView(WalkView):
+    """What a training was asked to do."""
+
+    steps: int
+    seed: int
+    observation: Observation
+    alpha: float
+    gamma: float
+    epsilon_start: float
+    epsilon_end: float
+    steps_per_episode: int
+    evaluate_every: int
+    pace: float | Literal["max"]
+    agent: str
+    continue_from: str | None
+
+
+class LaneView(Answer):
+    """A lane of a race, and the training whose table it uses."""
+
+    agent: str
+    observation: Observation
+    training_id: str | None
+
+
+class RaceConfigView(WalkView):
+    """What a race was asked to do."""
+
+    lanes: list[LaneView]
+    steps: int
+    seed: int
+
+
+class ExperimentConfigView(Answer):
+    """What an experiment was asked to do: every combination of the lists is a setting."""
+
+    experiment: ExperimentName
+    seeds: int
+    seed: int
+    agents: list[str]
+    gaits: list[Gait]
+    observations: list[Observation]
+    robots: list[RobotView]
+    simulator: SimulatorName
+    steps: list[int]
+    alpha: list[float]
+    gamma: list[float]
+    epsilon_start: list[float]
+    epsilon_end: list[float]
+    steps_per_episode: list[int]
+    divisions: list[int]
+    grid_side_m: list[float]
+    blocks: int
+
+
+class ProgressView(Answer):
+    """Steps of a training or of all lanes of a race; trials of an experiment."""
+
+    done: Count
+    total: Count
+
+
+class RunView(Answer):
+    """The members that every kind of run has. Times are ISO 8601 in UTC."""
+
+    id: str
+    name: str
+    state: State
+    can_resume: bool
+    queue_position: Annotated[int, Field(ge=1)] | None
+    progress: ProgressView
+    eta_s: float | None
+    error: str | None
+    created_at: datetime
+    started_at: datetime | None
+    ended_at: datetime | None
+
+
+class TrainingResult(Answer):
+    """How far it walks in the end [m], and how far greedy does."""
+
+    distance_m: float | None
+    greedy_distance_m: float | None
+    q_table_sha256: str | None
+
+
+class Change(Answer):
+    """Rates and pace that were changed after so many steps; the others are left out."""
+
+    step: Count
+    pace: float | Literal["max"] = "max"
+    alpha: float = 0.0
+    gamma: float = 0.0
+    epsilon: float = 0.0
+
+
+class TrainingView(RunView):
+    """A training."""
+
+    kind: Literal["training"]
+    config: TrainingConfigView
+    result: TrainingResult | None
+    greedy_distance_m: float | None
+    changes: list[Change]
+
+
+class FiguresUnderClock(Answer):
+    """Of a lane under one clock; the distance at the first finish ranks the race."""
+
+    finished_distance_m: float
+    elapsed_s: float
+    crossed_s: float | None
+    rank: Annotated[int, Field(ge=1)]
+
+
+class LaneFigures(Answer):
+    """Of a lane under each clock."""
+
+    paper: FiguresUnderClock
+    wall: FiguresUnderClock
+    free: FiguresUnderClock
+
+
+class LaneResult(Answer):
+    """What came of a lane; `trained_robot` where its table was learned on another robot."""
+
+    agent: str
+    training_id: str | None
+    trained_robot: RobotView | None
+    steps: Count
+    total_distance_m: float | None
+    failure: str | None
+    decision_s: float
+    simulated_transitions: Count
+    clocks: LaneFigures
+
+
+class RaceResult(Answer):
+    """What came of a race, by lane."""
+
+    lanes: list[LaneResult]
+    shared_machine: bool
+
+
+class RaceView(RunView):
+    """A race."""
+
+    kind: Literal["race"]
+    config: RaceConfigView
+    result: RaceResult | None
+    waiting_for: list[str]
+
+
+class TrialCounts(Answer):
+    """How many trials there are, and what became of them."""
+
+    done: Count
+    total: Count
+    failed: Count
+    set_aside: Count
+
+
+class Verdict(Answer):
+    """What became of one of the paper's claims."""
+
+    id: str
+    verdict: Literal["holds", "does not hold", "not established", "depends"]
+
+
+class ExperimentResult(Answer):
+    """What came of an experiment; `files` are those of its report."""
+
+    trials: TrialCounts
+    claims: list[Verdict]
+    files: list[str]
+    shared_machine: bool
+
+
+class ExperimentView(RunView):
+    """An experiment."""
+
+    kind: Literal["experiment"]
+    config: ExperimentConfigView
+    result: ExperimentResult | None
+    workers: int | None
+
+
+class Page(Answer):
+    """A part of a list, newest first."""
+
+    next_cursor: str | None
+    """Where the next page begins; null on the last."""
+
+
+class TrainingPage(Page):
+    """Trainings."""
+
+    items: list[TrainingView]
+
+
+class RacePage(Page):
+    """Races."""
+
+    items: list[RaceView]
+
+
+class ExperimentPage(Page):
+    """Experiments."""
+
+    items: list[ExperimentView]
+
+
+class Evaluation(Answer):
+    """How far it walked after so many steps of practice [m]."""
+
+    step: Count
+    distance_m: float
+    epsilon: float
+
+
+class CurveView(Answer):
+    """A learning curve, and greedy's distance to compare with [m]."""
+
+    evaluations: list[Evaluation]
+    greedy_distance_m: float | None
+
+
+class ActionValue(Answer):
+    """The value of an action, [pair, cell], in a state: the cell of each pair."""
+
+    state: list[int]
+    action: tuple[int, int]
+    value: float
+    visits: Count
+
+
+class QTableView(Answer):
+    """All legal actions in all states; `cells` are the (x, y) of each cell [m]."""
+
+    gait: Gait
+    divisions: int
+    grid_side_m: float
+    cells: list[tuple[float, float]]
+    values: list[ActionValue]
+
+
+class RecordedStep(Answer):
+    """A step, with the joints' `qpos` at the times `time_s` since its motion began."""
+
+    step: Count
+    observation: list[int]
+    action: tuple[int, int]
+    reward_m: float
+    distance_m: float
+    transitions: Count
+    decision_s: float
+    time_s: list[float]
+    qpos: list[list[float]]
+
+
+class RecordedLane(Answer):
+    """A lane of a recording, and how its robot stands before the first step."""
+
+    agent: str
+    training_id: str | None
+    failure: str | None
+    rest_qpos: list[float]
+    steps: list[RecordedStep]
+
+
+class RecordingView(Answer):
+    """All that a replay needs."""
+
+    steps: int
+    lanes: list[RecordedLane]
+
+
+class TimelineLane(Answer):
+    """Points are [s, m]; stretches of thinking are [from s, to s]."""
+
+    agent: str
+    training_id: str | None
+    color: str
+    points: list[tuple[float, float]]
+    thinking: list[tuple[float, float]]
+    futures: list[int]
+    crossed_s: float | None
+    total_s: float
+    failure: str | None
+
+
+class TimelineView(Answer):
+    """A race over time under one clock."""
+
+    clock: Clock
+    steps: int
+    finish_line_m: float
+    first_finish_s: float | None
+    lanes: list[TimelineLane]
+
+
+class StageView(Answer):
+    """What everyone is shown."""
+
+    run_id: str | None
+    kind: Literal["idle", "training", "race"]
+    time_s: float
+    playing: bool
+    speed: float | Literal["time-lapse"]
+    clock: Clock
+    replay: bool
+    live: bool
+    ended: bool
+    next_run_id: str | None
+    holder: str | None
+
+
+class WhatIfHalf(Answer):
+    """Thirty seeds with these rates: how far each comes [m], and what lies in the middle."""
+
+    alpha: float
+    gamma: float
+    epsilon_start: float
+    epsilon_end: float
+    steps_per_episode: int
+    distances_m: list[float]
+    walkers: Annotated[float, Field(ge=0, le=1)]
+    iqm_m: float
+
+
+class WhatIfView(Answer):
+    """The answer to a what-if."""
+
+    seeds: int
+    greedy_m: float
+    chosen: WhatIfHalf
+    default: WhatIfHalf
+    compute_s: float
+
+
+class Described(Answer):
+    """A choice, in a sentence."""
+
+    name: str
+    description: str
+
+
+class GaitOption(Described):
+    """A gait, with its legs' directions [°] and the pairs that move together."""
+
+    title: str
+    forward_deg: float
+    azimuths_deg: list[float]
+    pairs: list[tuple[int, int]]
+
+
+class RobotOption(Described):
+    """A preset."""
+
+    robot: RobotView
+
+
+class AgentOption(Described):
+    """An agent."""
+
+    title: str
+    learns: bool
+    color: str
+
+
+class ExperimentOption(Described):
+    """An experiment, the fields that it takes, and their defaults."""
+
+    title: str
+    fields: list[str]
+    grid: list[str]
+    defaults: dict[str, Any]
+
+
+class DefaultsView(Answer):
+    """The bodies of a training and of a race as they are by default."""
+
+    training: dict[str, Any]
+    race: dict[str, Any]
+
+
+class OptionsView(Answer):
+    """All that a form needs."""
+
+    version: str
+    gaits: list[GaitOption]
+    robots: list[RobotOption]
+    agents: list[AgentOption]
+    simulators: list[Described]
+    observations: list[Described]
+    clocks: list[Described]
+    experiments: list[ExperimentOption]
+    defaults: DefaultsView
+    limits: dict[str, tuple[float | None, float | None]]
+    help: dict[str, str]
+
+
+class HealthView(Answer):
+    """The server answers."""
+
+    status: Literal["ok", "ready"]
+    version: str

@@ -1,0 +1,268 @@
+"""Response models of an experiment's summary and trials."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from app.api.answers import Answer, Count, ExperimentConfigView
+from app.domain.observation import Observation
+from app.experiments.config import ExperimentName
+
+Share = Annotated[float, Field(ge=0, le=1)]
+Decided = Literal["yes", "no", "not established"]
+
+
+class WallLane(Answer):
+    """A lane of a race that was measured by the wall clock."""
+
+    agent: str
+    decision_s: float
+    finished_distance_m: float
+    elapsed_s: float
+    rank: int
+
+
+class TrialFigures(Answer):
+    """What came of a trial; `distances_m` after each block."""
+
+    distances_m: list[float]
+    finished_distance_m: float | None
+    elapsed_s: float | None
+    transitions: Count
+    wall: list[WallLane] | None
+    failure: str | None
+
+
+class TrialRow(Answer):
+    """A trial by its key: the setting, `#`, and the number of the seed."""
+
+    key: str
+    result: TrialFigures | None
+    set_aside: str | None
+    compute_s: float
+
+
+class TrialsView(Answer):
+    """The trials so far."""
+
+    trials: list[TrialRow]
+
+
+class Reason(Answer):
+    """Why a trial has no result."""
+
+    key: str
+    reason: str
+
+
+class SummaryCounts(Answer):
+    """How many trials there are, and what became of them."""
+
+    done: Count
+    total: Count
+    failed: Count
+    failures: list[Reason] = Field(default_factory=list)
+    set_aside: list[Reason]
+
+
+class Cost(Answer):
+    """What the run took."""
+
+    wall_s: float
+    compute_s: float
+    trials_per_s: float | None
+    workers: int
+
+
+class Machine(Answer):
+    """Where it ran; empty before it began."""
+
+    platform: str = ""
+    cores: int | None = None
+
+
+class Interval95(Answer):
+    """A value in the middle of its 95 % interval, where there are seeds enough for one."""
+
+    iqm: float
+    low: float | None
+    high: float | None
+
+
+class SharedBy(Answer):
+    """A share of the seeds with its 95 % interval."""
+
+    share: Share
+    low: float | None
+    high: float | None
+
+
+class Beats(SharedBy):
+    """A share of the seeds, and whether it is over one half."""
+
+    verdict: Decided
+
+
+class Distances(Answer):
+    """The seeds' distances and what lies in their middle [m]."""
+
+    points_m: list[float]
+    mean_m: float
+    median_m: float
+    iqm_m: float
+    low_m: float | None
+    high_m: float | None
+
+
+class PublishedView(Answer):
+    """What the paper printed [m], and in which quantile of our seeds it falls."""
+
+    total_m: float | None
+    finished_m: float | None
+    total_quantile: Share | None
+    finished_quantile: Share | None
+
+
+class Practice(Answer):
+    """Rates of a setting; an agent that looks ahead has none."""
+
+    alpha: float | None
+    gamma: float | None
+    epsilon_start: float | None
+    epsilon_end: float | None
+    steps_per_episode: int | None
+
+
+class Named(Practice):
+    """What tells a setting from the others, without its gait."""
+
+    observation: Observation
+    robot: str
+    agent: str
+    steps: int
+    blocks: int
+    divisions: int
+    grid_side_m: float
+    half_side_m: float
+
+
+class Measured(Answer):
+    """Everything that is measured against greedy; null where it cannot be said."""
+
+    relative: Interval95 | None
+    relative_finished: Interval95 | None
+    walkers: SharedBy | None
+    beats_greedy: Beats | None
+    beats_greedy_total: Beats | None
+    reaches_greedy: SharedBy | None
+
+
+class SettingView(Named, Measured):
+    """A setting over its seeds."""
+
+    key: str
+    role: Literal["learner", "reference"]
+    gait: str
+    n: Count
+    failed: Count
+    total: Distances | None
+    finished: Distances | None
+    elapsed_s: float | None
+    published: PublishedView | None
+
+
+class PooledView(Named, Measured):
+    """A setting over its gaits."""
+
+    gaits: list[str]
+    n: Count
+
+
+class CurveOfSetting(Named):
+    """Distance against practice [m], by block."""
+
+    key: str
+    gait: str
+    greedy_m: float | None
+    iqm_m: list[float]
+    low_m: list[float | None]
+    high_m: list[float | None]
+    mean_m: list[float]
+    walkers: list[Share | None]
+    points_m: list[list[float]]
+    steps: list[int]  # type: ignore[assignment] # after each block, in place of a block's own
+
+
+class VersusView(Practice):
+    """The probability that agent `a` comes farther than agent `b`."""
+
+    gait: str
+    observation: Observation
+    robot: str
+    steps: int
+    blocks: int
+    divisions: int
+    grid_side_m: float
+    half_side_m: float
+    a: str
+    b: str
+    probability: Share
+    low: float | None
+    high: float | None
+    verdict: Decided
+
+
+class TimedView(Answer):
+    """A race that was measured by the wall clock."""
+
+    gait: str
+    observation: Observation
+    robot: str
+    lanes: list[WallLane]
+
+
+class Finding(Answer):
+    """What one case says of a claim."""
+
+    observation: Observation
+    robot: str
+    label: str
+    verdict: Literal["holds", "does not hold", "not established", "depends"]
+    evidence: str
+
+
+class ClaimView(Answer):
+    """One of the paper's claims, and what the trials say of it."""
+
+    id: str
+    claim: str
+    criterion: str
+    verdict: Literal["holds", "does not hold", "not established", "depends"]
+    evidence: str
+    where: list[Finding]
+
+
+class Told(Answer):
+    """A short text under a heading."""
+
+    heading: str
+    text: str
+
+
+class SummaryView(Answer):
+    """What an experiment's trials show so far."""
+
+    format: int
+    experiment: ExperimentName
+    config: ExperimentConfigView
+    versions: dict[str, str]
+    machine: Machine
+    trials: SummaryCounts
+    cost: Cost | None
+    settings: list[SettingView]
+    pooled: list[PooledView]
+    curves: list[CurveOfSetting]
+    versus: list[VersusView]
+    timed: list[TimedView]
+    claims: list[ClaimView]
+    story: list[Told]

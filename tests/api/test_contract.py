@@ -1,0 +1,218 @@
+"""The API's description: every route, every answer, and real answers as it says."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi import FastAPI
+from fastapi.routing import iter_route_contexts
+from pydantic import TypeAdapter
+
+from app.api.answers import (
+    CurveView,
+    ExperimentView,
+    OptionsView,
+    QTableView,
+    RaceView,
+    RecordingView,
+    StageView,
+    TimelineView,
+    TrainingPage,
+    TrainingView,
+    WhatIfView,
+)
+from app.api.contract import operations, problems_of
+from app.api.experiment_answers import SummaryView, TrialsView
+from app.api.problems import STATUSES
+from app.domain.errors import HexapodError
+from app.server import create_app
+from app.settings import Settings
+from tests.api.calls import WALK, Api
+from tests.experiments.made import around, summary_of, walked
+
+PAGES = {"/", "/docs", "/favicon.ico", "/openapi.json", "/static", "/viewer", "/viewer/"}
+"""For browsers: they are no part of the API."""
+Serve = Callable[..., Api]
+
+
+@pytest.fixture(scope="module")
+def app(tmp_path_factory: pytest.TempPathFactory) -> FastAPI:
+    return create_app(Settings(data=tmp_path_factory.mktemp("none")))
+
+
+@pytest.fixture(scope="module")
+def described(app: FastAPI) -> dict[str, Any]:
+    return app.openapi()
+
+
+def resolved(described: dict[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
+    """The answer that a reference leads to."""
+    if "$ref" not in answer:
+        return answer
+    found: dict[str, Any] = described["components"]["responses"][answer["$ref"].rpartition("/")[2]]
+    return found
+
+
+def test_every_route_is_described(app: FastAPI, described: dict[str, Any]) -> None:
+    routes = {
+        (method.lower(), context.path.replace(":path", ""))
+        for context in iter_route_contexts(app.routes)
+        if context.path and context.path not in PAGES
+        for method in set(context.methods or ()) - {"HEAD"}
+    }
+    assert len(routes) > 40
+    assert {(method, path) for method, path, _ in operations(described)} == routes
+
+
+def test_every_operation_names_all_that_it_can_answer(described: dict[str, Any]) -> None:
+    for method, path, operation in operations(described):
+        said = {int(status) for status in operation["responses"]}
+        assert problems_of(method, path, operation) <= said, path
+        assert [status for status in said if 200 <= status < 300], path
+        for status, answer in operation["responses"].items():
+            content = resolved(described, answer).get("content", {})
+            if status == "204":
+                assert content == {}
+                continue
+            assert content, (path, status)
+            is_problem = int(status) >= 400
+            assert is_problem == (list(content) == ["application/problem+json"]), (path, status)
+            for media_type, form in content.items():
+                schema = form.get("schema") or form.get("itemSchema")
+                assert schema, (path, status, media_type)
+
+
+def test_every_error_of_the_product_has_a_described_answer(described: dict[str, Any]) -> None:
+    statuses = {
+        problem["content"]["application/problem+json"]["schema"]["$ref"]
+        for problem in described["components"]["responses"].values()
+    }
+    assert statuses == {"#/components/schemas/Problem"}
+    everywhere = {
+        status for _, _, operation in operations(described) for status in operation["responses"]
+    }
+    assert {str(status) for status in STATUSES.values()} <= everywhere
+    assert all(issubclass(error, HexapodError) for error in STATUSES)
+
+
+def test_what_a_new_route_can_answer_follows_from_what_it_is(tmp_path: Path) -> None:
+    app = create_app(Settings(data=tmp_path))
+
+    @app.put("/api/v1/new/{thing}/part")
+    def put_part(thing: str, body: dict[str, int]) -> None:
+        """A route that says nothing of its errors."""
+
+    operation = app.openapi()["paths"]["/api/v1/new/{thing}/part"]["put"]
+    errors = {int(status) for status in operation["responses"] if int(status) >= 400}
+    assert errors == {400, 401, 403, 404, 409, 413, 415, 422, 429, 500, 503, 507}
+    assert operation["responses"]["422"]["$ref"].endswith("/UnprocessableContent")
+
+
+@pytest.mark.parametrize(
+    ("settings", "reads", "writes"),
+    [
+        ({}, True, True),
+        ({"token": "a-token-for-tests"}, True, False),
+        ({"token": "a-token-for-tests", "spectators": "token"}, False, False),
+    ],
+)
+def test_who_needs_the_token_is_described(
+    serve: Serve, settings: dict[str, Any], reads: bool, writes: bool
+) -> None:
+    api = serve(**settings)
+    bearer = {"Authorization": "Bearer a-token-for-tests"} if settings else {}
+    described = api.client.get("/openapi.json", headers=bearer).json()
+    assert set(described["components"]["securitySchemes"]) == {"bearer", "cookie"}
+    for method, path, operation in operations(described):
+        is_free = {} in operation["security"]
+        if path in ("/healthz", "/readyz"):
+            assert is_free
+        else:
+            assert is_free == (reads if method == "get" else writes), path
+            if path != "/api/v1/events":  # it has no end
+                answer = api.client.request(method, path.replace("{run_id}", "none"))
+                assert (answer.status_code != 401) == is_free, path
+
+
+def test_starts_say_where_the_run_is_and_what_can_be_done_with_it(
+    described: dict[str, Any],
+) -> None:
+    for kind in ("training", "race", "experiment"):
+        started = described["paths"][f"/api/v1/{kind}s"]["post"]["responses"]["202"]
+        assert started["headers"]["Location"]["required"]
+        assert len(started["links"]) >= 6
+    too_many = described["components"]["responses"]["TooManyRequests"]
+    assert too_many["headers"]["Retry-After"]["required"]
+
+
+def test_figures_are_described_in_the_types_in_which_they_come(
+    api: Api, described: dict[str, Any]
+) -> None:
+    forms = described["paths"]["/metrics"]["get"]["responses"]["200"]["content"]
+    for accept in ("", "application/openmetrics-text; version=1.0.0", "text/html", "a/b;version=x"):
+        answer = api.client.get("/metrics", headers={"Accept": accept})
+        assert answer.status_code == 200
+        assert answer.headers["content-type"].partition(";")[0] in {
+            form.partition(";")[0] for form in forms
+        }
+
+
+def real_answers(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, Any]]:
+    """Answers of all kinds, each with its model."""
+    race = api.race(
+        lanes=[{"agent": "greedy"}, {"agent": "q-learning", "training_id": training["id"]}], steps=3
+    )
+    yield RaceView, race
+    yield RaceView, api.finished(race)
+    yield TrainingView, api.train(gait={"right_leg": 1, "left_leg": 2, "symmetry": "vertical"})
+    changed = api.slow_training(
+        robot={"preset": "stiff", "n_legs": 8, "friction": 0.5}, divisions=2
+    )
+    yield TrainingView, api.call("PATCH", f"/trainings/{changed['id']}", json={"pace": 30}).json()
+    yield TrainingView, api.tell(changed, "pause").json()
+    yield TrainingView, api.tell(changed, "stop").json()
+    yield TrainingView, training
+    yield TrainingPage, api.get("/trainings")
+    yield CurveView, api.get(f"/trainings/{training['id']}/curve")
+    yield QTableView, api.get(f"/trainings/{training['id']}/q-table")
+    yield RecordingView, api.get(f"/races/{race['id']}/recording")
+    for clock in ("paper", "wall", "free"):
+        yield TimelineView, api.get(f"/races/{race['id']}/timeline?clock={clock}")
+    yield OptionsView, api.get("/options")
+    yield StageView, api.get("/stage")
+    asked = api.call("POST", "/what-if", json={"gait": WALK["gait"], "steps": 50})
+    yield WhatIfView, asked.json()
+    body = {"experiment": "sweep", "seeds": 2, "steps": 20, "gaits": "left-right-origin"}
+    experiment = api.start("/experiments", {**body, "simulator": "kinematic", "workers": 1})
+    yield ExperimentView, experiment
+    yield SummaryView, api.get(f"/experiments/{experiment['id']}/summary")
+    yield ExperimentView, api.finished(experiment)
+    yield SummaryView, api.get(f"/experiments/{experiment['id']}/summary")
+    yield TrialsView, api.get(f"/experiments/{experiment['id']}/trials")
+
+
+def test_real_answers_are_as_described(api: Api, trained: dict[str, Any]) -> None:
+    count = 0
+    for model, answer in real_answers(api, trained):
+        TypeAdapter(model).validate_python(answer)
+        count += 1
+    assert count > 20
+
+
+@pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep"])
+def test_summaries_of_every_experiment_are_as_described(experiment: str) -> None:
+    agents = {} if experiment == "table1" else {"agents": ("q-learning", "greedy")}
+    if experiment == "figure4":
+        agents = {}
+    for seeds in (1, 10):
+        summary = summary_of(experiment, lambda setting: around(0.4), seeds=seeds, **agents)
+        SummaryView.model_validate(summary)
+        assert summary["settings"]
+
+
+def test_the_summary_of_an_experiment_that_ran_is_as_described() -> None:
+    from app.experiments.summary import summarise
+
+    tried, results = walked("table1", 2)
+    SummaryView.model_validate(summarise(tried, results, {"key#0": "it died"}))

@@ -1,0 +1,22 @@
+"""How long tests wait: for as long as something gets on, and no longer."""
+
+import time
+from typing import Any
+
+LONG_S = 60.0
+"""Only a broken server stands still for so long; a busy machine is slow, and gets on."""
+
+
+class Patience:
+    """Fails once what it is shown has stayed the same for `LONG_S`."""
+
+    def __init__(self) -> None:
+        self._newest: Any = None
+        self._deadline = time.monotonic() + LONG_S
+
+    def check(self, shown: Any) -> None:
+        """Take in how it is now."""
+        now = time.monotonic()
+        if shown != self._newest:
+            self._newest, self._deadline = shown, now + LONG_S
+        assert now < self._deadline, shown
