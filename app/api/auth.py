@@ -11,8 +11,10 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from app.api.addresses import caller
+from app.api.connections import Connection
 from app.api.problems import problem
-from app.api.rates import caller, too_many
+from app.api.rates import too_many
 from app.services.buckets import Buckets
 from app.settings import Settings
 
@@ -62,6 +64,8 @@ class TokenGuard:
         role = self._role(headers, scope)
         if role == "operator" or self._may_anyone(scope):
             scope.setdefault("state", {})["role"] = role
+            if role == "operator" and self._token is not None:
+                _note_operator(scope)
             await self._app(scope, receive, send)
         elif scope["type"] == "websocket":
             await _refuse_websocket(scope, receive, send)
@@ -110,6 +114,13 @@ class TokenGuard:
             secure=self._is_https or request.url.scheme == "https",
         )
         return response
+
+
+def _note_operator(scope: Scope) -> None:
+    """Keep the connection from being closed to make room for a stranger's."""
+    connection: Connection | None = scope["state"].get("connection")
+    if connection is not None:
+        connection.authenticated()
 
 
 def _offers_token(scope: Scope) -> bool:

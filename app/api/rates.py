@@ -1,12 +1,12 @@
 """How often one address may start what costs the machine something."""
 
-import ipaddress
 import math
 import re
 
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from app.api.addresses import caller
 from app.api.problems import problem
 from app.services.buckets import Buckets
 from app.settings import PREFIX, Settings
@@ -41,18 +41,6 @@ class RateLimit:
             f"raise {PREFIX}STARTS_PER_MINUTE."
         )
         await too_many(detail, wait_s)(scope, receive, send)
-
-
-def caller(scope: Scope) -> str:
-    """Who counts as one: an IPv4 address, or a network of IPv6, since anyone there has many."""
-    host = scope["client"][0] if scope.get("client") else ""
-    try:
-        address = ipaddress.ip_address(host)
-    except ValueError:
-        return host
-    if isinstance(address, ipaddress.IPv6Address) and address.ipv4_mapped is None:
-        return str(ipaddress.ip_network((address, 64), strict=False))
-    return host
 
 
 def too_many(detail: str, wait_s: float) -> Response:
