@@ -91,16 +91,23 @@ class _Turn:
 
     def __init__(self, semaphore: FairSemaphore, who: str) -> None:
         self._semaphore, self._who = semaphore, who
-        self._is_held = self._is_given_up = False
+        self._is_held = False
+        self._given_up = asyncio.Event()
+        # An answer may be sent while another task of the request waits for its client to go.
+        self._taking = asyncio.Lock()
 
     async def take(self) -> None:
-        if not self._is_given_up:
+        async with self._taking:
+            if self._is_held or self._given_up.is_set():
+                return
             await self._semaphore.acquire(self._who)
             self._is_held = True
+            if self._given_up.is_set():  # meanwhile
+                self._let_go()
 
     def give_up(self) -> None:
         """For good."""
-        self._is_given_up = True
+        self._given_up.set()
         self._let_go()
 
     def receiving(self, receive: Receive) -> Receive:

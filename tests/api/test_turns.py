@@ -96,3 +96,28 @@ def test_who_does_not_read_and_who_streams_has_no_turn() -> None:
         return answered
 
     assert asyncio.run(play()) == 20 * TURNS["spectator"]
+
+
+def test_a_turn_is_taken_once_though_two_tasks_of_a_request_wait() -> None:
+    """As where an answer is sent while another task waits for the client to go."""
+
+    async def play() -> None:
+        async def answer(scope: Scope, receive: Receive, send: Send) -> None:
+            async def stream() -> None:
+                for _ in range(3):
+                    await send({"type": "http.response.body", "body": b"x", "more_body": True})
+
+            await asyncio.gather(stream(), receive(), receive())
+
+        async def later() -> Message:
+            await asyncio.sleep(0)
+            return await nothing()
+
+        async def slowly(message: Message) -> None:
+            await asyncio.sleep(0)
+
+        app = Turns(answer)
+        for _ in range(10 * TURNS["spectator"]):
+            await asyncio.wait_for(app(scope("spectator", "a"), later, slowly), 1)
+
+    asyncio.run(play())
