@@ -38,6 +38,7 @@ from app.api.listener import ACCEPTS_AT_ONCE, WAITING, Listener, listen
 from app.api.origins import HostGuard
 from app.api.rates import RateLimit
 from app.api.turns import Turns
+from app.api.wellformed import WellFormed
 from app.domain.errors import HexapodError
 from app.services import logs
 from app.services.database.opening import open_store
@@ -109,6 +110,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
     app.add_middleware(RateLimit, settings=settings)
     app.add_middleware(TokenGuard, settings=settings)
     app.add_middleware(HostGuard, settings=settings)
+    app.add_middleware(WellFormed)
     app.add_middleware(SecurityHeaders)
     return app
 

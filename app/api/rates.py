@@ -3,6 +3,7 @@
 import math
 import re
 
+from starlette.datastructures import QueryParams
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
@@ -53,4 +54,7 @@ def _starts_work(scope: Scope) -> bool:
         return False
     if scope["method"] == "POST":
         return _STARTS.fullmatch(scope["path"]) is not None
-    return b"viser" in scope["query_string"] and _FILM.fullmatch(scope["path"]) is not None
+    if _FILM.fullmatch(scope["path"]) is None:
+        return False
+    # As the endpoint reads it, however it is encoded.
+    return "viser" in QueryParams(scope["query_string"]).getlist("format")
