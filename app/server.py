@@ -47,6 +47,7 @@ from app.services.jobs import Jobs
 from app.services.memory_store import MemoryStore
 from app.services.once import Once
 from app.services.recordings import Recordings
+from app.services.sessions import Sessions
 from app.services.stage import Stage
 from app.services.store import RunStore
 from app.services.trial_pool import TrialPool
@@ -108,7 +109,8 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
     app.add_middleware(BodyLimit)
     app.add_middleware(Turns)
     app.add_middleware(RateLimit, settings=settings)
-    app.add_middleware(TokenGuard, settings=settings)
+    sessions = None if settings.token is None else Sessions(store.sessions, settings.token)
+    app.add_middleware(TokenGuard, settings=settings, sessions=sessions)
     app.add_middleware(HostGuard, settings=settings)
     app.add_middleware(WellFormed)
     app.add_middleware(SecurityHeaders)

@@ -31,7 +31,8 @@ _WHOLE_NUMBERS = {
     "max_connections_per_address": (1, ""),
 }
 """By setting the least, and of what."""
-_TOKEN = re.compile(r"[\x21-\x7e]{8,200}")
+MIN_TOKEN_LENGTH, MAX_TOKEN_LENGTH = 16, 200
+_TOKEN = re.compile(rf"[\x21-\x7e]{{{MIN_TOKEN_LENGTH},{MAX_TOKEN_LENGTH}}}")
 _HOST_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9_]([a-z0-9_-]*[a-z0-9_])?(\.[a-z0-9_-]+)*")
 
 
@@ -77,7 +78,8 @@ class Settings:
             raise InvalidInput(f"the port must be from 0 to 65535, not {self.port}")
         if self.token is not None and not _TOKEN.fullmatch(self.token):
             raise InvalidInput(
-                f"{PREFIX}TOKEN must have 8 to 200 printable ASCII characters and no spaces"
+                f"{PREFIX}TOKEN must have {MIN_TOKEN_LENGTH} to {MAX_TOKEN_LENGTH} printable ASCII "
+                "characters and no spaces; `openssl rand -hex 16` makes a good one"
             )
         for name, choices in _CHOICES.items():
             if getattr(self, name) not in choices:

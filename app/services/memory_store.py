@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.services.errors import Conflict, NotFound
+from app.services.sessions import MemorySessionRows
 from app.services.store import UNENDED, Kind, Page, Run, State
 
 
@@ -20,6 +21,7 @@ class MemoryStore:
         self._trials: dict[str, dict[str, Mapping[str, Any]]] = {}
         self._artifacts: dict[str, dict[str, bytes]] = {}
         self._lock = threading.Lock()
+        self.sessions = MemorySessionRows()
 
     def check_room(self) -> None:
         pass

@@ -15,6 +15,7 @@ from app.services.database.finding import Row, found, row_of_run
 from app.services.database.progress import Progress
 from app.services.database.rows import columns_of, row_of, run_of
 from app.services.database.schema import ARTIFACTS, RUNS
+from app.services.database.sessions import SqlSessionRows
 from app.services.database.trials import Trials
 from app.services.errors import Conflict, NotFound, StorageFull
 from app.services.room import START_BYTES
@@ -35,6 +36,7 @@ class SqlStore:
         self._database, self._files = database, files
         self._progress = Progress()
         self._curves, self._trials = Curves(database), Trials(database)
+        self.sessions = SqlSessionRows(database)
 
     def check_room(self) -> None:
         self._files.check_room(START_BYTES)
