@@ -10,7 +10,7 @@ from app.settings import Settings
 MOST_CONNECTIONS = 2000
 """Unless the settings say more: each costs memory as well."""
 _MOST_FILES = 65_536
-_OWN_FILES, _OWN_FILES_PER_CORE = 160, 8
+_OWN_FILES, _OWN_FILES_PER_CORE = 224, 8
 """Kept for the database, the threads that read artifacts, viser, and the pipes of jobs."""
 
 
