@@ -29,7 +29,6 @@ from app.api import (
     what_if,
 )
 from app.api.auth import TokenGuard
-from app.api.connections import ConnectionTable
 from app.api.deps import Services
 from app.api.files import connection_table, raise_file_limit
 from app.api.http_protocol import KEEP_ALIVE_S, limited_http
@@ -194,7 +193,7 @@ def serve(settings: Settings) -> None:
             backlog=ACCEPTS_AT_ONCE,
             **websocket_options(),
         )
-        _Server(config, app, settings, listener, table, lost).run(sockets=[listener])
+        _Server(config, app, settings, listener, lost).run(sockets=[listener])
     if lost.is_set():
         raise OwnershipLost("another server has taken the database over, so this one has ended")
 
@@ -208,11 +207,10 @@ class _Server(uvicorn.Server):
         app: FastAPI,
         settings: Settings,
         listener: Listener,
-        table: ConnectionTable,
         lost: threading.Event,
     ) -> None:
         super().__init__(config)
-        self._app, self._settings, self._listener, self._table = app, settings, listener, table
+        self._app, self._settings, self._listener = app, settings, listener
         self._lost = lost
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
@@ -226,7 +224,7 @@ class _Server(uvicorn.Server):
 
     async def on_tick(self, counter: int) -> bool:
         if counter % _TICKS_PER_S == 0:
-            self._table.close_overdue()
+            self._listener.table.close_overdue()
         return await super().on_tick(counter) or self._lost.is_set()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:

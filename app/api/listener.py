@@ -37,6 +37,9 @@ class Listener(socket.socket):
 
     asyncio's server calls `accept` as if it were any socket. What is refused here has cost one
     system call more than being accepted, and neither a transport nor a line in the log.
+
+    Attributes:
+        table: counts the connections.
     """
 
     def __init__(self, family: int, kind: int, protocol: int, table: ConnectionTable) -> None:
@@ -49,7 +52,7 @@ class Listener(socket.socket):
             table: counts the connections.
         """
         super().__init__(family, kind, protocol)
-        self._table = table
+        self.table = table
         # Given up for a moment where files have run out all the same.
         self._spare: int | None = _open_spare()
 
@@ -67,7 +70,7 @@ class Listener(socket.socket):
                     raise
                 continue
             accepted = AdmittedSocket(plain.family, plain.type, plain.proto, plain.detach())
-            connection = self._table.admit(str(address[0]), accepted.fileno())
+            connection = self.table.admit(str(address[0]), accepted.fileno())
             if connection is not None:
                 accepted.connection = connection
                 return accepted, address
@@ -92,7 +95,7 @@ class Listener(socket.socket):
             refused.close()
         finally:
             self._spare = _open_spare()
-        self._table.refused += 1
+        self.table.refused += 1
         return True
 
     def _close_spare(self) -> None:
