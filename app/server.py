@@ -2,7 +2,6 @@
 
 import asyncio
 import contextlib
-import errno
 import socket
 import sys
 import threading
@@ -32,10 +31,15 @@ from app.api import (
 )
 from app.api.auth import TokenGuard
 from app.api.deps import Services
+from app.api.files import connection_table, raise_file_limit
+from app.api.http_protocol import KEEP_ALIVE_S, limited_http
 from app.api.limits import BodyLimit, SecurityHeaders
+from app.api.listener import ACCEPTS_AT_ONCE, WAITING, Listener, listen
 from app.api.origins import HostGuard
 from app.api.rates import RateLimit
-from app.domain.errors import HexapodError, InvalidInput
+from app.api.turns import Turns
+from app.api.wellformed import WellFormed
+from app.domain.errors import HexapodError
 from app.services import logs
 from app.services.database.opening import open_store
 from app.services.errors import OwnershipLost
@@ -43,18 +47,21 @@ from app.services.idempotency import Idempotency
 from app.services.jobs import Jobs
 from app.services.memory_store import MemoryStore
 from app.services.recordings import Recordings
+from app.services.sessions import Sessions
 from app.services.stage import Stage
 from app.services.store import RunStore
 from app.services.trial_pool import TrialPool
 from app.services.what_if import WhatIf
 from app.services.whereabouts import note_address
 from app.services.witness import Witness
-from app.settings import PREFIX, Settings
+from app.settings import Settings
 from app.viewer.protocol import websocket_options
 from app.viewer.routes import viewer_routes
 from app.viewer.theatre import Theatre
 
 GRACE_S = 3
+_TICKS_PER_S = 10
+"""Of uvicorn's main loop."""
 _DESCRIPTION = (
     "Hexapods that learn to walk, and race against look-ahead search. Errors are problem "
     "documents (RFC 9457), and each says what is valid."
@@ -101,9 +108,12 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
     contract.install(app, app.state.services.agents, settings)
     # The last is the first to see a request.
     app.add_middleware(BodyLimit)
+    app.add_middleware(Turns)
     app.add_middleware(RateLimit, settings=settings)
-    app.add_middleware(TokenGuard, settings=settings)
+    sessions = None if settings.token is None else Sessions(store.sessions, settings.token)
+    app.add_middleware(TokenGuard, settings=settings, sessions=sessions)
     app.add_middleware(HostGuard, settings=settings)
+    app.add_middleware(WellFormed)
     app.add_middleware(SecurityHeaders)
     return app
 
@@ -163,7 +173,8 @@ def serve(settings: Settings) -> None:
         OwnershipLost: if another server took the database over while this one served.
     """
     settings.prepare_data()
-    listener = _listen(settings)
+    table = connection_table(settings, raise_file_limit())
+    listener = listen(settings, table)
     logs.install(settings.log_level)
     lost = threading.Event()
     with listener, open_store(settings, on_lost=lost.set) as store:
@@ -176,6 +187,12 @@ def serve(settings: Settings) -> None:
             access_log=False,
             server_header=False,
             timeout_graceful_shutdown=GRACE_S,
+            timeout_keep_alive=KEEP_ALIVE_S,
+            http=limited_http(table),
+            # Another loop may not close sockets by their `close`, which counts them.
+            loop="asyncio",
+            # asyncio takes it for how many to accept at once, too.
+            backlog=ACCEPTS_AT_ONCE,
             **websocket_options(),
         )
         _Server(config, app, settings, listener, lost).run(sockets=[listener])
@@ -191,23 +208,26 @@ class _Server(uvicorn.Server):
         config: uvicorn.Config,
         app: FastAPI,
         settings: Settings,
-        listener: socket.socket,
+        listener: Listener,
         lost: threading.Event,
     ) -> None:
         super().__init__(config)
         self._app, self._settings, self._listener = app, settings, listener
         self._lost = lost
 
-    async def on_tick(self, counter: int) -> bool:
-        return await super().on_tick(counter) or self._lost.is_set()
-
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
         if self.started:
+            self._listener.listen(WAITING)
             note_address(self._settings.data, _local_address(self._listener))
             address = self._settings.public_url or _local_address(self._listener, "localhost")
             sys.stdout.write(f"Racing Hexapods is at {address} (Ctrl-C stops it)\n")
             sys.stdout.flush()
+
+    async def on_tick(self, counter: int) -> bool:
+        if counter % _TICKS_PER_S == 0:
+            self._listener.table.close_overdue()
+        return await super().on_tick(counter) or self._lost.is_set()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         # The lifespan ends after all connections have, and a stream of events never would.
@@ -220,35 +240,6 @@ class _Server(uvicorn.Server):
         del sig, frame
         self.force_exit = self.should_exit
         self.should_exit = True
-
-
-def _listen(settings: Settings) -> socket.socket:
-    try:
-        found = socket.getaddrinfo(
-            settings.host, settings.port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
-        )
-        family, kind, protocol, _, address = found[0]
-        listener = socket.socket(family, kind, protocol)
-    except OSError as error:
-        raise InvalidInput(
-            f"cannot find the address {settings.host} ({error.strerror}); choose one of this "
-            f"machine's with --host or {PREFIX}HOST"
-        ) from error
-    try:
-        if sys.platform != "win32":
-            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listener.bind(address)
-        listener.listen(2048)
-    except OSError as error:
-        listener.close()
-        why = error.strerror or str(error)
-        if error.errno == errno.EADDRINUSE:
-            why = "something else listens there"
-        raise InvalidInput(
-            f"cannot listen on {settings.host} port {settings.port} ({why}); choose another with "
-            f"--port or {PREFIX}PORT, or 0 for any that is free"
-        ) from error
-    return listener
 
 
 def _local_address(listener: socket.socket, any_address: str = "127.0.0.1") -> str:

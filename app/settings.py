@@ -24,9 +24,15 @@ LogLevel = Literal["debug", "info", "warning", "error"]
 PREFIX = "HEXAPODS_"
 MIN_QUOTA_MB = 10
 _CHOICES = {"spectators": get_args(Spectators), "log_level": get_args(LogLevel)}
-_WHOLE_NUMBERS = {"quota_mb": (MIN_QUOTA_MB, " of megabytes"), "starts_per_minute": (1, "")}
+_WHOLE_NUMBERS = {
+    "quota_mb": (MIN_QUOTA_MB, " of megabytes"),
+    "starts_per_minute": (1, ""),
+    "max_connections": (1, ""),
+    "max_connections_per_address": (1, ""),
+}
 """By setting the least, and of what."""
-_TOKEN = re.compile(r"[\x21-\x7e]{8,200}")
+MIN_TOKEN_LENGTH, MAX_TOKEN_LENGTH = 16, 200
+_TOKEN = re.compile(rf"[\x21-\x7e]{{{MIN_TOKEN_LENGTH},{MAX_TOKEN_LENGTH}}}")
 _HOST_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9_]([a-z0-9_-]*[a-z0-9_])?(\.[a-z0-9_-]+)*")
 
 
@@ -45,6 +51,9 @@ class Settings:
         allowed_hosts: further host names by which the server may be called.
         database_url: of a PostgreSQL database, which may hold a password; None for SQLite in the
             data folder.
+        max_connections: how many may be open at once; None for as many as the limit of open files
+            allows beside the server's own.
+        max_connections_per_address: of these, how many one address may have; None for half.
         starts_per_minute: how often one address may start something that costs the machine work.
         log_level: below which records are left out of the log.
         quota_mb: how much the data folder may take, in MB; None for as much as the disk has.
@@ -59,6 +68,8 @@ class Settings:
     allowed_hosts: tuple[str, ...] = ()
     database_url: str | None = field(default=None, repr=False)
     quota_mb: int | None = None
+    max_connections: int | None = None
+    max_connections_per_address: int | None = None
     starts_per_minute: int = 1200
     log_level: LogLevel = "info"
 
@@ -67,7 +78,8 @@ class Settings:
             raise InvalidInput(f"the port must be from 0 to 65535, not {self.port}")
         if self.token is not None and not _TOKEN.fullmatch(self.token):
             raise InvalidInput(
-                f"{PREFIX}TOKEN must have 8 to 200 printable ASCII characters and no spaces"
+                f"{PREFIX}TOKEN must have {MIN_TOKEN_LENGTH} to {MAX_TOKEN_LENGTH} printable ASCII "
+                "characters and no spaces; `openssl rand -hex 16` makes a good one"
             )
         for name, choices in _CHOICES.items():
             if getattr(self, name) not in choices:

@@ -6,10 +6,10 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import httpx2
 import psutil
@@ -35,10 +35,24 @@ class NotStartedError(Exception):
 class Served:
     """`hexapods serve` on a port that the system chose."""
 
-    def __init__(self, data: Path, **variables: str) -> None:
-        command = [*HEXAPODS, "serve", "--port", "0", "--data", str(data)]
+    def __init__(
+        self,
+        data: Path,
+        log: IO[str] | None = None,
+        before: Sequence[str] = (),
+        **variables: str,
+    ) -> None:
+        """Start it.
+
+        Args:
+            data: its folder.
+            log: what its standard error goes to; None for that of the tests.
+            before: what to put before its command.
+            variables: of its environment.
+        """
+        command = [*before, *HEXAPODS, "serve", "--port", "0", "--data", str(data)]
         self.process = subprocess.Popen(
-            command, stdout=subprocess.PIPE, text=True, env=environ(**variables)
+            command, stdout=subprocess.PIPE, stderr=log, text=True, env=environ(**variables)
         )
         assert self.process.stdout is not None
         line = self.process.stdout.readline()
@@ -126,8 +140,8 @@ def serving_from(data: Path) -> Iterator[Callable[..., Served]]:
     """Starts servers on a data folder, one after another; none outlives the test."""
     served: list[Served] = []
 
-    def make(**variables: str) -> Served:
-        served.append(Served(data, **variables))
+    def make(**options: Any) -> Served:
+        served.append(Served(data, **options))
         return served[-1]
 
     try:

@@ -70,6 +70,13 @@ def test_postgresql_is_a_profile_of_its_own(services: dict[str, Any]) -> None:
     assert postgres["environment"]["POSTGRES_PASSWORD"] == f"${{{_PASSWORD}:-}}"
 
 
+def test_a_service_takes_no_more_than_its_share(services: dict[str, Any]) -> None:
+    for service in services.values():
+        assert re.fullmatch(r"\d+g", filled_in(service["mem_limit"], {}))
+        assert 100 < service["pids_limit"] < 10_000
+    assert services["hexapods"]["ulimits"] == {"nofile": 4096}
+
+
 def test_what_is_kept_is_kept_in_named_volumes(services: dict[str, Any]) -> None:
     volumes = import_module("yaml").safe_load(FILE.read_text("utf-8"))["volumes"]
     used = {v.partition(":")[0] for service in services.values() for v in service["volumes"]}

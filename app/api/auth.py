@@ -1,25 +1,26 @@
 """Roles: a spectator may watch, an operator may start, change, stop and delete."""
 
-import hashlib
+import asyncio
 import hmac
-from http.cookies import CookieError, SimpleCookie
 from typing import Literal
 from urllib.parse import parse_qsl, urlencode
 
-from starlette.datastructures import Headers
-from starlette.requests import Request
+from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import RedirectResponse, Response
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.api.addresses import caller
+from app.api.connections import Connection
+from app.api.cookies import SessionCookie
 from app.api.problems import problem
-from app.api.rates import caller, too_many
+from app.api.rates import too_many
+from app.domain.errors import HexapodError
 from app.services.buckets import Buckets
+from app.services.sessions import Sessions
 from app.settings import Settings
 
 Role = Literal["operator", "spectator"]
 
-COOKIE = "hexapods_operator"
-_COOKIE_AGE_S = 30 * 24 * 3600
 _READS = frozenset({"GET", "HEAD", "OPTIONS"})
 OPEN = ("/healthz", "/readyz")
 _OPEN_FOLDERS = ("/static/",)
@@ -34,12 +35,20 @@ class TokenGuard:
     """Lets operators do everything, and others what they may; for every route, known or not.
 
     Without a token in the settings everyone is operator: then the server listens on loopback only.
+    An operator's browser has a session, whose id is in a cookie. Wrong tokens and wrong session
+    ids of an address are counted together.
     """
 
-    def __init__(self, app: ASGIApp, settings: Settings) -> None:
-        """Guard an app with the token in the settings."""
+    def __init__(self, app: ASGIApp, settings: Settings, sessions: Sessions | None) -> None:
+        """Guard an app.
+
+        Args:
+            app: to be guarded.
+            settings: have the token, and say who may watch.
+            sessions: that the token opened; None where there is no token.
+        """
         self._app = app
-        self._token = settings.token
+        self._token, self._sessions = settings.token, sessions
         self._all_may_watch = settings.token is None or settings.spectators == "public"
         self._guesses = Buckets(WRONG_TOKENS, WRONG_TOKENS_PER_S)
         self._is_https = (settings.public_url or "").startswith("https:")
@@ -57,11 +66,22 @@ class TokenGuard:
             await _too_many_guesses(scope, wait_s)(scope, receive, send)
             return
         if is_link:
-            await self._let_in(Request(scope))(scope, receive, send)
+            response = await self._let_in(scope, headers)
+            await response(scope, receive, send)
             return
         role = self._role(headers, scope)
+        if role == "spectator":
+            cookie = self._cookie(scope, headers)
+            if cookie.value:
+                wait_s = self._guesses.take(caller(scope))
+                send = _forgetting(cookie, send)
+            if wait_s > 0:
+                await _too_many_guesses(scope, wait_s)(scope, receive, send)
+                return
         if role == "operator" or self._may_anyone(scope):
             scope.setdefault("state", {})["role"] = role
+            if role == "operator" and self._token is not None:
+                _note_operator(scope)
             await self._app(scope, receive, send)
         elif scope["type"] == "websocket":
             await _refuse_websocket(scope, receive, send)
@@ -69,16 +89,18 @@ class TokenGuard:
             await _unauthorized(f"This needs the operator: {_HOW}.")(scope, receive, send)
 
     def _role(self, headers: Headers, scope: Scope) -> Role:
-        if self._token is None:
+        if self._token is None or self._sessions is None:
             return "operator"
         token = _bearer(headers)
         if token and _same(token, self._token):
             return "operator"
         if token:
             self._guesses.take(caller(scope))
-        if _same(_cookie(headers), _cookie_value(self._token)):
-            return "operator"
-        return "spectator"
+        session_id = self._cookie(scope, headers).value
+        return "operator" if session_id and self._sessions.is_open(session_id) else "spectator"
+
+    def _cookie(self, scope: Scope, headers: Headers) -> SessionCookie:
+        return SessionCookie(headers, self._is_https or scope["scheme"] in ("https", "wss"))
 
     def _may_anyone(self, scope: Scope) -> bool:
         if scope["type"] == "http" and scope["method"] not in _READS:
@@ -88,35 +110,53 @@ class TokenGuard:
         is_open = path == "/" or path in OPEN or path.startswith(_OPEN_FOLDERS)
         return self._all_may_watch or is_open
 
-    def _let_in(self, request: Request) -> Response:
-        """Keep the token of `/?token=…` in a cookie, and clean the address of it."""
-        items = parse_qsl(request.url.query, keep_blank_values=True)
+    async def _let_in(self, scope: Scope, headers: Headers) -> Response:
+        """Open a session for the token of `/?token=…`, and clean the address of it."""
+        items = _query(scope)
         rest = urlencode([(name, value) for name, value in items if name != "token"])
         given = next(value for name, value in items if name == "token")
         # Relative, so that it holds behind a proxy that serves the app under a prefix.
         response = RedirectResponse(f"?{rest}" if rest else "./", 303)
         response.headers["Cache-Control"] = "no-store"
-        if self._token is None:
+        if self._token is None or self._sessions is None:
             return response
         if not _same(given, self._token):
-            self._guesses.take(caller(request.scope))
+            self._guesses.take(caller(scope))
             return _unauthorized("This is not the server's token; look at what its start printed.")
-        response.set_cookie(
-            COOKIE,
-            _cookie_value(self._token),
-            max_age=_COOKIE_AGE_S,
-            httponly=True,
-            samesite="strict",
-            secure=self._is_https or request.url.scheme == "https",
-        )
+        try:
+            session_id = await asyncio.to_thread(self._sessions.open)
+        except HexapodError as error:
+            return problem(503, f"No session can be kept: {error}.", headers={"Retry-After": "10"})
+        response.headers.append("Set-Cookie", self._cookie(scope, headers).holding(session_id))
         return response
+
+
+def _note_operator(scope: Scope) -> None:
+    """Keep the connection from being closed to make room for a stranger's."""
+    connection: Connection | None = scope["state"].get("connection")
+    if connection is not None:
+        connection.authenticated()
 
 
 def _offers_token(scope: Scope) -> bool:
     if scope["type"] != "http" or scope["path"] != "/" or scope["method"] not in ("GET", "HEAD"):
         return False
-    query = scope["query_string"].decode("latin-1")
-    return any(name == "token" for name, _ in parse_qsl(query, keep_blank_values=True))
+    return any(name == "token" for name, _ in _query(scope))
+
+
+def _query(scope: Scope) -> list[tuple[str, str]]:
+    return parse_qsl(scope["query_string"].decode("latin-1"), keep_blank_values=True)
+
+
+def _forgetting(cookie: SessionCookie, send: Send) -> Send:
+    """Tell a browser to drop its cookie, lest all its requests count as wrong guesses."""
+
+    async def also_forget(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            MutableHeaders(scope=message).append("Set-Cookie", cookie.gone())
+        await send(message)
+
+    return also_forget
 
 
 def _bearer(headers: Headers) -> str:
@@ -137,19 +177,6 @@ async def _refuse_websocket(scope: Scope, receive: Receive, send: Send) -> None:
 
 def _unauthorized(detail: str) -> Response:
     return problem(401, detail, headers={"WWW-Authenticate": 'Bearer realm="Racing Hexapods"'})
-
-
-def _cookie(headers: Headers) -> str:
-    try:
-        morsel = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
-    except CookieError:
-        return ""
-    return morsel.value if morsel else ""
-
-
-def _cookie_value(token: str) -> str:
-    """Proves the token without holding it, and outlives a restart of the server."""
-    return hmac.new(token.encode(), b"operator's cookie", hashlib.sha256).hexdigest()
 
 
 def _same(one: str, other: str) -> bool:

@@ -11,7 +11,8 @@ from typing import Any
 from fastapi import FastAPI
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.api.auth import COOKIE, OPEN
+from app.api.auth import OPEN
+from app.api.cookies import NAME
 from app.api.problems import MEDIA_TYPE
 from app.settings import Settings
 
@@ -59,6 +60,7 @@ _PROBLEMS: Mapping[int, tuple[str, str]] = {
     404: ("NotFound", "There is no such thing (any more)."),
     405: ("MethodNotAllowed", "The method is not possible here."),
     409: ("Conflict", "It cannot be done in the run's present state."),
+    410: ("Gone", "The run that this Idempotency-Key started was deleted."),
     413: ("ContentTooLarge", "The request's body is too large."),
     415: ("UnsupportedMediaType", "The request's body is of a type that is not taken here."),
     422: ("UnprocessableContent", "A value cannot be; the detail says what can."),
@@ -173,6 +175,8 @@ def problems_of(method: str, path: str, operation: Mapping[str, Any]) -> set[int
         statuses |= {409, 422, 507}
     if "requestBody" in operation:
         statuses |= {404, 413, 415}
+    if "Idempotency-Key" in map(str.title, parameters):
+        statuses |= {410}
     return statuses
 
 
@@ -215,8 +219,9 @@ def _add_security(schema: Schema, settings: Settings) -> None:
         "cookie": {
             "type": "apiKey",
             "in": "cookie",
-            "name": COOKIE,
-            "description": "set by opening the page once with ?token=… in its address",
+            "name": f"{NAME}_{settings.port}",
+            "description": "set by opening the page once with ?token=… in its address; the name "
+            "ends with the port of that address, and begins with __Host- over HTTPS",
         },
     }
     operator: list[Schema] = [{"bearer": []}, {"cookie": []}]

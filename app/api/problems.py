@@ -127,7 +127,8 @@ def _allowed(request: Request) -> str:
     # A path that is spelled out hides those with a parameter in its place.
     spelled_out = [route for route in routes if route.path == path]
     found = spelled_out or [r for r in routes if r.path and compile_path(r.path)[0].match(path)]
-    return ", ".join(sorted({method for route in found for method in route.methods or ()}))
+    methods = {method for route in found for method in route.methods or ()}
+    return ", ".join(sorted(methods | ({"HEAD"} if "GET" in methods else set())))
 
 
 async def _unexpected(request: Request, error: Exception) -> Response:

@@ -1,12 +1,13 @@
 """How often one address may start what costs the machine something."""
 
-import ipaddress
 import math
 import re
 
+from starlette.datastructures import QueryParams
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from app.api.addresses import caller
 from app.api.problems import problem
 from app.services.buckets import Buckets
 from app.settings import PREFIX, Settings
@@ -43,18 +44,6 @@ class RateLimit:
         await too_many(detail, wait_s)(scope, receive, send)
 
 
-def caller(scope: Scope) -> str:
-    """Who counts as one: an IPv4 address, or a network of IPv6, since anyone there has many."""
-    host = scope["client"][0] if scope.get("client") else ""
-    try:
-        address = ipaddress.ip_address(host)
-    except ValueError:
-        return host
-    if isinstance(address, ipaddress.IPv6Address) and address.ipv4_mapped is None:
-        return str(ipaddress.ip_network((address, 64), strict=False))
-    return host
-
-
 def too_many(detail: str, wait_s: float) -> Response:
     """Say that it is enough for now, and when it will not be."""
     return problem(429, detail, headers={"Retry-After": str(max(1, math.ceil(wait_s)))})
@@ -65,4 +54,7 @@ def _starts_work(scope: Scope) -> bool:
         return False
     if scope["method"] == "POST":
         return _STARTS.fullmatch(scope["path"]) is not None
-    return b"viser" in scope["query_string"] and _FILM.fullmatch(scope["path"]) is not None
+    if _FILM.fullmatch(scope["path"]) is None:
+        return False
+    # As the endpoint reads it, however it is encoded.
+    return "viser" in QueryParams(scope["query_string"]).getlist("format")

@@ -1,4 +1,7 @@
-"""The log: one line a record on standard error, JSON for programs and key=value for people."""
+"""The log: one line a record on standard error, JSON for programs and key=value for people.
+
+Its size is limited: see `log_limit`.
+"""
 
 import json
 import logging
@@ -6,6 +9,7 @@ import sys
 from datetime import UTC, datetime
 from typing import Any, TextIO
 
+from app.services.log_limit import LimitedHandler
 from app.services.store import KINDS
 
 _KNOWN = frozenset(vars(logging.makeLogRecord({}))) | {"message", "asctime", "taskName"}
@@ -19,7 +23,7 @@ def install(level: str, stream: TextIO | None = None) -> None:
         stream: standard error if None.
     """
     stream = stream or sys.stderr
-    handler = logging.StreamHandler(stream)
+    handler = LimitedHandler(stream)
     handler.setFormatter(LineFormatter(as_json=not stream.isatty()))
     logging.basicConfig(level=level.upper(), handlers=[handler], force=True)
     # viser's, which speaks of an address that is for nobody.

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.services.errors import Conflict, NotFound
+from app.services.sessions import MemorySessionRows
 from app.services.store import (
     RUNNING,
     UNENDED,
@@ -32,6 +33,7 @@ class MemoryStore:
         self._artifacts: dict[str, dict[str, bytes]] = {}
         self._keys: dict[str, Started] = {}
         self._lock = threading.Lock()
+        self.sessions = MemorySessionRows()
 
     def check_room(self) -> None:
         pass

@@ -7,6 +7,7 @@ from typing import Any, Literal, NamedTuple, Protocol, get_args
 
 from app.experiments.config import ExperimentConfig
 from app.runs.config import RaceConfig, TrainingConfig
+from app.services.sessions import SessionRows
 
 Kind = Literal["training", "race", "experiment"]
 State = Literal["queued", "running", "paused", "finished", "stopped", "failed", "interrupted"]
@@ -149,6 +150,10 @@ class Content:
 
 class RunStore(Protocol):
     """Where runs live. Safe to use from any thread."""
+
+    @property
+    def sessions(self) -> SessionRows:
+        """The sessions of operators, which are kept in the same place."""
 
     def check_room(self) -> None:
         """Make sure that there is room for one more run.

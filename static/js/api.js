@@ -29,7 +29,8 @@ async function call(method, path, body, headers = {}) {
   const type = body === undefined ? {} : { "Content-Type": "application/json" };
   const response = await fetch(new URL(path, BASE), {
     method,
-    headers: { ...type, ...headers },
+    // No form of another page can send this header, so that the server knows the request for ours.
+    headers: { "X-Requested-With": "hexapods", ...type, ...headers },
     body: body === undefined ? undefined : JSON.stringify(body),
   }).catch(() => {
     throw new Unreachable();

@@ -9,11 +9,13 @@ from fastapi.routing import iter_route_contexts
 from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
-from app.api.auth import COOKIE
+from app.api.auth import WRONG_TOKENS
+from app.api.cookies import NAME
 from app.api.limits import IMPORT_PATH, MAX_BODY_BYTES
 from tests.api.calls import Api, refused
 
 TOKEN = "a-token-for-tests"
+COOKIE = f"{NAME}_8000"
 SAFE = {"GET", "HEAD"}
 Serve = Callable[..., Api]
 
@@ -71,6 +73,15 @@ def quick(routes: list[tuple[str, str]]) -> list[tuple[str, str]]:
         {"Host": "192.168.1.5:8000", "Origin": "http://192.168.1.6:8000"},
         {"Host": "192.168.1.5:8000", "Origin": "http://localhost:8000"},
         {"Host": "192.168.1.5:8000", "Origin": "http://192.168.1.5:9000"},
+        {"Origin": "http://127.0.0.1:8399"},
+        {"Origin": "http://127.0.0.1"},
+        {"Origin": "http://localhost:8000"},
+        {"Host": "127.0.0.1:8000", "Origin": "http://localhost:9000"},
+        {"Host": "localhost:8000", "Origin": "http://a.localhost:8000"},
+        {"Sec-Fetch-Site": "same-site"},
+        {"Sec-Fetch-Site": "cross-site"},
+        {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "navigate", "Sec-Fetch-Dest": "iframe"},
+        {"Sec-Fetch-Site": "none, cross-site"},
     ],
     ids=str,
 )
@@ -90,8 +101,11 @@ def test_foreign_names_and_pages_get_nowhere(serve: Serve, headers: dict[str, st
         {"Host": "192.168.1.5:8000", "Origin": "http://192.168.1.5:8000"},
         {"Host": "192.168.1.5", "Origin": "http://192.168.1.5"},
         {"Origin": "http://127.0.0.1:8000"},
-        {"Host": "127.0.0.1:8000", "Origin": "http://localhost:9000"},
+        {"Origin": "http://127.0.0.1:8000", "Sec-Fetch-Site": "same-origin"},
+        {"Sec-Fetch-Site": "none"},
+        {"Host": "localhost", "Origin": "http://localhost:80"},
         {"Host": "lab.example", "Origin": "http://lab.example"},
+        {"Host": "127.0.0.1:8000", "Origin": "https://lab.example"},
         {"Host": "hexapods.example", "Origin": "https://hexapods.example"},
         {"Host": "127.0.0.1:8000", "Origin": "https://hexapods.example"},
     ],
@@ -99,6 +113,7 @@ def test_foreign_names_and_pages_get_nowhere(serve: Serve, headers: dict[str, st
 )
 def test_ones_own_names_and_pages_get_in(serve: Serve, headers: dict[str, str]) -> None:
     client = serve(public_url="https://hexapods.example", allowed_hosts=("lab.example",)).client
+    headers = {"X-Requested-With": "tests", **headers}
     for method, path in quick(every_route(client)):
         assert answer(client, method, path, headers) not in (401, 403), (method, path)
 
@@ -131,7 +146,10 @@ def test_with_the_token_one_may_do_everything(serve: Serve, how: str) -> None:
     headers = {}
     if how == "cookie":
         assert client.get(f"/?token={TOKEN}").status_code == 303
-        headers["Cookie"] = f"{COOKIE}={client.cookies[COOKIE]}"
+        headers = {
+            "Cookie": f"{COOKIE}={client.cookies[COOKIE]}",
+            "X-Requested-With": "tests",
+        }
     else:
         headers["Authorization"] = f"{how} {TOKEN}"
     for method, path in quick(every_route(client)):
@@ -171,8 +189,67 @@ def test_the_link_sets_a_cookie_and_cleans_the_address(serve: Serve) -> None:
     assert client.put("/api/v1/stage", json={"playing": True}).status_code == 200
     refused(client.get("/?token=wrong"), 401, "not the server's token")
     secure = serve(token=TOKEN, public_url="https://hexapods.example").client
-    assert "secure" in secure.get(f"/?token={TOKEN}").headers["set-cookie"].lower()
+    shown = {"Host": "hexapods.example"}
+    cookie = secure.get(f"/?token={TOKEN}", headers=shown).headers["set-cookie"]
+    assert cookie.startswith(f"__Host-{NAME}_443=")
+    assert cookie.endswith("; Secure")
     assert serve().client.get("/?token=any").headers["location"] == "./"
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Content-Type": "text/plain"},
+        {"Content-Type": "text/plain; application/json"},
+        {"Content-Type": "application/x-www-form-urlencoded"},
+        {"Content-Type": "multipart/form-data; boundary=x"},
+        {},
+    ],
+    ids=str,
+)
+@pytest.mark.parametrize("mark", ["Origin", "Cookie", "Referer", "Sec-Fetch-Site"])
+def test_what_a_form_could_send_changes_nothing(
+    serve: Serve, mark: str, headers: dict[str, str]
+) -> None:
+    client = serve().client
+    value = {"Origin": "http://127.0.0.1:8000", "Sec-Fetch-Site": "same-origin"}.get(mark, "x=y")
+    for method, path in quick(every_route(client)):
+        if method in SAFE | {"WS"}:
+            continue
+        by_browser = {mark: value, **headers}
+        refused(client.request(method, path, headers=by_browser), 403, "X-Requested-With")
+        for told in ({"X-Requested-With": "x"}, {"Content-Type": "application/json"}):
+            own = {**by_browser, **told}
+            assert client.request(method, path, headers=own).status_code != 403, (method, path)
+        # Other programs need not know of it.
+        assert client.request(method, path, headers=headers).status_code != 403, (method, path)
+
+
+def test_links_from_elsewhere_can_be_followed(serve: Serve) -> None:
+    headers = {
+        "Sec-Fetch-Site": "cross-site",
+        "Sec-Fetch-Mode": "navigate",
+        "Sec-Fetch-Dest": "document",
+    }
+    client = serve(token=TOKEN).client
+    assert client.get("/", headers=headers).status_code == 200
+    assert client.get(f"/?token={TOKEN}", headers=headers).status_code == 303
+    refused(client.post("/api/v1/trainings", headers=headers), 403, "another origin")
+
+
+def test_wrong_cookies_are_counted_like_tokens(serve: Serve) -> None:
+    client = serve(token=TOKEN).client
+    statuses = [
+        client.get("/healthz", headers={"Cookie": f"{COOKIE}=guess-{number}"}).status_code
+        for number in range(2000)
+    ]
+    assert statuses[:WRONG_TOKENS] == [200] * WRONG_TOKENS
+    assert statuses.count(429) > 1900
+    # A browser whose session has ended is told to forget it, and watches on.
+    answer = client.get("/healthz", headers={"Cookie": f"{COOKIE}=guess"})
+    refused(answer, 429, "wrong tokens")
+    assert f"{COOKIE}=; Max-Age=0" in answer.headers["set-cookie"]
+    assert client.get("/healthz").status_code == 200
 
 
 def test_every_answer_tells_browsers_to_be_careful(serve: Serve) -> None:

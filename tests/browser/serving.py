@@ -24,14 +24,24 @@ class Serving:
     """
 
     def __init__(
-        self, data: Path, port: int = 0, token: str = "", spectators: str = "public"
+        self,
+        data: Path,
+        port: int = 0,
+        token: str = "",
+        spectators: str = "public",
+        **settings: object,
     ) -> None:
-        """Start it, and wait until it says where it is."""
+        """Start it, with further settings by their names, and wait until it says where it is."""
         self.data = data
         environment = {k: v for k, v in os.environ.items() if not k.startswith("HEXAPODS_")}
         self._process = subprocess.Popen(
             [sys.executable, "-m", "app.cli", "serve", "--port", str(port), "--data", str(data)],
-            env={**environment, "HEXAPODS_TOKEN": token, "HEXAPODS_SPECTATORS": spectators},
+            env={
+                **environment,
+                "HEXAPODS_TOKEN": token,
+                "HEXAPODS_SPECTATORS": spectators,
+                **{f"HEXAPODS_{name.upper()}": str(value) for name, value in settings.items()},
+            },
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
@@ -84,10 +94,10 @@ class Serving:
 
 @contextmanager
 def serving(
-    data: Path, port: int = 0, token: str = "", spectators: str = "public"
+    data: Path, port: int = 0, token: str = "", spectators: str = "public", **settings: object
 ) -> Iterator[Serving]:
     """A server for as long as the block lasts."""
-    server = Serving(data, port, token, spectators)
+    server = Serving(data, port, token, spectators, **settings)
     try:
         yield server
     finally:

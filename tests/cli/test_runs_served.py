@@ -52,7 +52,7 @@ def test_the_server_does_what_changes_something(server: Served, data: Path, tmp_
 
 def test_the_servers_refusals_are_passed_on(server: Served, data: Path, tmp_path: Path) -> None:
     here = ("--data", str(data))
-    for token in ("", "another-token"):
+    for token in ("", "another-token-for-tests"):
         done = hexapods("runs", "delete", RACED, *here, folder=tmp_path, HEXAPODS_TOKEN=token)
         assert done.returncode == 2
         assert "needs its token: set HEXAPODS_TOKEN" in done.stderr

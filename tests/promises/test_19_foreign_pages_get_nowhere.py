@@ -1,4 +1,5 @@
-"""Promise 19: foreign pages get nowhere: Host and Origin over every route and websocket.
+"""Promise 19: foreign pages get nowhere: Host, Origin and Fetch metadata over every route and
+websocket.
 
 In full, over raw sockets: 100 % refused.
 """
@@ -31,6 +32,20 @@ FOREIGN_ORIGINS = [
     "null",
     "",
     "http://127.0.0.1:{port}, http://evil.example",
+    # The same machine: on another port, by the standard one, and by another of its names.
+    "http://127.0.0.1:8399",
+    "http://127.0.0.1",
+    "https://127.0.0.1",
+    "http://localhost:{port}",
+    "http://[::1]:{port}",
+]
+FOREIGN_FETCHES = [
+    {"Sec-Fetch-Site": "cross-site"},
+    {"Sec-Fetch-Site": "same-site"},
+    {"Sec-Fetch-Site": "same-origin, cross-site"},
+    {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "no-cors", "Sec-Fetch-Dest": "image"},
+    {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "navigate", "Sec-Fetch-Dest": "iframe"},
+    {"Sec-Fetch-Site": "same-site", "Sec-Fetch-Mode": "websocket", "Sec-Fetch-Dest": "websocket"},
 ]
 
 
@@ -39,6 +54,7 @@ def test_all_are_refused_everywhere(quiet_server: Serving) -> None:
     own = f"127.0.0.1:{port}"
     headers = [{"Host": host.format(port=port)} for host in FOREIGN_HOSTS]
     headers += [{"Origin": origin.format(port=port)} for origin in FOREIGN_ORIGINS]
+    headers += FOREIGN_FETCHES
     routes = every_route(create_app(Settings(data=quiet_server.data)))
     assert {"WS"} < {route.method for route in routes}
     let_in = []

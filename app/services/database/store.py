@@ -37,6 +37,7 @@ from app.services.database.keys import Keys
 from app.services.database.progress import Progress
 from app.services.database.rows import any_run_of, columns_of, row_of, run_of
 from app.services.database.schema import ARTIFACTS, RUNS
+from app.services.database.sessions import SqlSessionRows
 from app.services.database.trials import Trials
 from app.services.errors import Conflict, Damaged, StorageFailed
 from app.services.room import START_BYTES
@@ -71,6 +72,7 @@ class SqlStore:
         self._database, self._files = database, files
         self._progress = Progress()
         self._curves, self._trials, self._keys = Curves(database), Trials(database), Keys(database)
+        self.sessions = SqlSessionRows(database)
 
     def check_room(self) -> None:
         self._files.check_room(START_BYTES)

@@ -1,0 +1,63 @@
+"""Refuses requests that are not well-formed, before anything reads them in a way of its own."""
+
+from starlette.datastructures import Headers
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.api.problems import problem
+
+MAX_TARGET_BYTES = 8 << 10
+
+
+class WellFormed:
+    """Refuses ambiguous framing and odd targets, and answers HEAD wherever there is a GET."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        """Guard an app."""
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on what is well-formed."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        status, detail = _fault(scope)
+        if status:
+            # What comes next on the connection may be a part of this request.
+            refusal = problem(status, detail, headers={"Connection": "close"})
+            await refusal(scope, receive, send)
+        elif scope["method"] == "HEAD":
+            await self._app({**scope, "method": "GET"}, receive, _head_only(send))
+        else:
+            await self._app(scope, receive, send)
+
+
+def _fault(scope: Scope) -> tuple[int, str]:
+    """Status and detail of a refusal; status 0 for a request that is well-formed."""
+    headers = Headers(scope=scope)
+    if "transfer-encoding" in headers and "content-length" in headers:
+        return 400, "A request has either a Content-Length or a Transfer-Encoding, not both."
+    if len(headers.getlist("content-length")) > 1:
+        return 400, "A request has one Content-Length."
+    target: bytes = scope.get("raw_path") or scope["path"].encode("utf-8", "surrogateescape")
+    if len(target) + len(scope["query_string"]) > MAX_TARGET_BYTES:
+        return 414, f"The request's target may have at most {MAX_TARGET_BYTES:,} bytes."
+    if not target.startswith(b"/"):
+        return 400, "The request's target must be a path, which begins with a slash."
+    target += scope["query_string"]
+    if b"#" in target or not all(0x21 <= byte <= 0x7E for byte in target):
+        return 400, "The request's target has a character that must be percent-encoded."
+    return 0, ""
+
+
+def _head_only(send: Send) -> Send:
+    """Send the head of an answer, and end it there: a stream would go on without an end."""
+    is_answered = False
+
+    async def head(message: Message) -> None:
+        nonlocal is_answered
+        if message["type"] == "http.response.start" and not is_answered:
+            is_answered = True
+            await send(message)
+            await send({"type": "http.response.body", "body": b"", "more_body": False})
+
+    return head

@@ -1,0 +1,122 @@
+"""A crowd of strangers: `python -m tests.promises.crowd PORT COUNT ADDRESSES PATH…`.
+
+Opens connections and keeps them open, each of one of these kinds in turn: one that says nothing,
+one that sends a byte of a head now and then, one that does so with a body, and one that asks for
+something and does not read it. Whatever the server closes comes back, so many a second. Says a
+line once all were tried, another when standard input ends, and ends then.
+"""
+
+import json
+import resource
+import select
+import selectors
+import socket
+import sys
+import time
+from collections.abc import Sequence
+
+COMES_BACK_PER_S = 100
+TRICKLE_S = 2.0
+_RECEIVE_BYTES = 2048
+_KINDS = 4
+
+
+class Stranger:
+    """One connection, which is opened again when it was closed."""
+
+    def __init__(self, number: int, port: int, address: str, paths: Sequence[str]) -> None:
+        self.kind = number % _KINDS
+        self._port, self._address = port, address
+        self._path = paths[number // _KINDS % len(paths)]
+        self.sock: socket.socket | None = None
+
+    def open(self) -> None:
+        """Connect, and say what this kind says at first."""
+        self.sock = sock = socket.socket()
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BYTES)
+        sock.settimeout(5)
+        try:
+            sock.bind((self._address, 0))
+            sock.connect(("127.0.0.1", self._port))
+            sock.send(self._first_words())
+            sock.setblocking(False)
+        except OSError:
+            self.close()
+
+    def trickle(self) -> None:
+        """Say one byte more, if this kind does."""
+        if self.sock is None or self.kind not in (1, 2):
+            return
+        try:
+            self.sock.send(b"x")
+        except BlockingIOError:
+            pass
+        except OSError:
+            self.close()
+
+    def close(self) -> None:
+        """Close it, to be opened again."""
+        sock, self.sock = self.sock, None
+        if sock is not None:
+            sock.close()
+
+    def _first_words(self) -> bytes:
+        host = f"Host: 127.0.0.1:{self._port}\r\n"
+        return (
+            b"",
+            f"GET / HTTP/1.1\r\n{host}X-Slow: ".encode(),
+            f"GET / HTTP/1.1\r\n{host}Content-Length: 1000000\r\n\r\n".encode(),
+            f"GET {self._path} HTTP/1.1\r\n{host}\r\n".encode(),
+        )[self.kind]
+
+
+def main(port: int, count: int, addresses: int, paths: Sequence[str]) -> None:
+    """Be a crowd from 127.0.0.2 on until standard input ends."""
+    _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
+    crowd = [
+        Stranger(number, port, f"127.0.0.{2 + number % addresses}", paths)
+        for number in range(count)
+    ]
+    for one in crowd:
+        one.open()
+    _say(open=sum(one.sock is not None for one in crowd))
+    came_back = 0
+    while not select.select([sys.stdin], [], [], 1.0)[0]:
+        _close_lost(crowd)
+        away = [one for one in crowd if one.sock is None]
+        for one in away[:COMES_BACK_PER_S]:
+            one.open()
+            came_back += one.sock is not None
+        if int(time.monotonic()) % int(TRICKLE_S) == 0:
+            for one in crowd:
+                one.trickle()
+    _say(open=sum(one.sock is not None for one in crowd), came_back=came_back)
+
+
+def _say(**figures: int) -> None:
+    sys.stdout.write(json.dumps(figures) + "\n")
+    sys.stdout.flush()
+
+
+def _close_lost(crowd: Sequence[Stranger]) -> None:
+    """Find the connections that the server has closed, without reading what it says on others."""
+    with selectors.DefaultSelector() as selector:
+        for one in crowd:
+            if one.sock is not None:
+                selector.register(one.sock, selectors.EVENT_READ, one)
+        ready = selector.select(0) if selector.get_map() else []
+    for key, _ in ready:
+        stranger: Stranger = key.data
+        try:
+            is_lost = key.fileobj.recv(1, socket.MSG_PEEK) == b""  # type: ignore[union-attr]
+        except BlockingIOError:
+            continue
+        except OSError:
+            is_lost = True
+        if is_lost:
+            stranger.close()
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]), sys.argv[4:])
