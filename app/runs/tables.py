@@ -225,5 +225,6 @@ def _digest(members: Arrays) -> str:
     for key in sorted(members):
         array = np.ascontiguousarray(members[key])
         digest.update(f"{key} {array.dtype.str} {array.shape}".encode())
-        digest.update(array.tobytes())
+        # A view where there can be one: a large table is not copied to be hashed.
+        digest.update(array.tobytes() if array.dtype.kind == "U" else array.data)
     return digest.hexdigest()
