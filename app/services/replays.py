@@ -1,12 +1,11 @@
 """A race's recording in the forms that leave the server."""
 
-import io
 import json
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from app.runs.recording import LaneRecording, race_arrays
+from app.runs.recording import LaneRecording
 from app.runs.records import LaneStep
 
 
@@ -30,13 +29,6 @@ def as_json(
             yield (",\n" if place else "") + json.dumps(_step(step))
         yield "]}"
     yield "]}\n"
-
-
-def as_npz(lanes: Sequence[LaneRecording]) -> bytes:
-    """The recording's arrays, as `app.runs.recording.race_recording` reads them."""
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, **race_arrays(lanes))  # type: ignore[arg-type]
-    return buffer.getvalue()
 
 
 def _step(step: LaneStep) -> dict[str, object]:

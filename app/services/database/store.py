@@ -1,12 +1,13 @@
 """The store that lasts: rows in a database, arrays in files beside it."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, TypeVar
 
 from sqlalchemy import Connection, case, delete, func, insert, literal, select, update
 
 from app.domain.errors import DamagedFile
+from app.services.artifact_file import ArtifactFile
 from app.services.artifacts import ArtifactFiles, Stored
 from app.services.database.columns import UtcTime
 from app.services.database.curves import Curves
@@ -20,6 +21,7 @@ from app.services.errors import Conflict, NotFound, StorageFull
 from app.services.room import START_BYTES
 from app.services.store import UNENDED, Kind, Page, Run, State
 
+T = TypeVar("T")
 _DIED = "The server ended before the run did."
 _FILE = (ARTIFACTS.c.file, ARTIFACTS.c.size, ARTIFACTS.c.sha256)
 
@@ -165,11 +167,17 @@ class SqlStore:
         self._files.remove(*former)
 
     def artifact(self, run_id: str, name: str) -> bytes | None:
+        return self._found(run_id, name, self._files.read)
+
+    def open_artifact(self, run_id: str, name: str) -> ArtifactFile | None:
+        return self._found(run_id, name, self._files.open)
+
+    def _found(self, run_id: str, name: str, read: Callable[[Stored, str], T]) -> T | None:
         said = f"{name} of run {run_id}"
         missing: Stored | None = None
         while (stored := self._stored(run_id, name)) is not None:
             try:
-                return self._files.read(stored, said)
+                return read(stored, said)
             except FileNotFoundError as error:
                 # It may have made way for a newer one since we asked.
                 if stored == missing:
