@@ -30,6 +30,7 @@ from app.api import (
 )
 from app.api.auth import TokenGuard
 from app.api.deps import Services
+from app.api.held import HeldBodies
 from app.api.limits import BodyLimit, SecurityHeaders
 from app.api.origins import HostGuard
 from app.api.rates import RateLimit
@@ -97,6 +98,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
     problems.install(app)
     # The last is the first to see a request.
     app.add_middleware(BodyLimit)
+    app.add_middleware(HeldBodies)
     app.add_middleware(RateLimit, settings=settings)
     app.add_middleware(TokenGuard, settings=settings)
     app.add_middleware(HostGuard, settings=settings)

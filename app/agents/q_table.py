@@ -1,13 +1,14 @@
 """The table of state-action values: one row per state, one column per (pair, cell)."""
 
 import hashlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from app.agents.table_rows import NOT_RISING
 from app.domain.errors import InvalidInput, TableMismatch
 from app.domain.types import Action, Cells, FloatArray
 
@@ -37,12 +38,7 @@ class QTable:
         self.pairs, self.cells = pairs, cells
         self.states: int = cells**pairs
         self.actions = pairs * cells
-        if self.states * self.actions > MAX_VALUES:
-            raise InvalidInput(
-                f"a table of {pairs} leg pairs and {cells} cells has "
-                f"{self.states * self.actions:,} values; the most is {MAX_VALUES:,}: "
-                "choose fewer divisions or fewer legs"
-            )
+        check_size(pairs, cells)
         self._clear()
 
     def _clear(self) -> None:
@@ -138,22 +134,8 @@ class QTable:
         Raises:
             TableMismatch: if they are of a table of another shape, or do not fit together.
         """
-        if missing := {"shape", "where", "q", "n"} - set(arrays):
-            raise TableMismatch(f"this is no Q-table: it lacks {', '.join(sorted(missing))}")
-        shape, where, q, n = (arrays[name] for name in ("shape", "where", "q", "n"))
-        if shape.tolist() != [self.pairs, self.cells]:
-            raise TableMismatch(
-                f"the table's leg pairs and cells are {shape.tolist()}, "
-                f"this problem's {[self.pairs, self.cells]}"
-            )
-        kinds = where.dtype.kind + q.dtype.kind + n.dtype.kind
-        is_whole = where.ndim == 1 and where.shape == q.shape == n.shape
-        if kinds != "ifu" or not is_whole or not np.isfinite(q).all():
-            raise TableMismatch("the table's values, visits and places do not fit together")
-        if where.size and not (where.min() >= 0 and where.max() < self.states * self.actions):
-            raise TableMismatch("the table has values for states that do not exist")
-        if not np.all(np.diff(where) > 0):
-            raise TableMismatch("the table's values are not in rising order of their states")
+        check_arrays(arrays, self.pairs, self.cells)
+        where, q, n = (arrays[name] for name in ("where", "q", "n"))
         self._clear()
         for first in range(0, len(where), _VALUES_AT_ONCE):
             part = slice(first, first + _VALUES_AT_ONCE)
@@ -179,3 +161,36 @@ class QTable:
         row = row.reshape(self.pairs, self.cells)
         row[range(self.pairs), observation] = np.nan
         return row
+
+
+def check_size(pairs: int, cells: int) -> None:
+    """Raise `InvalidInput` if a table of this shape would be larger than `MAX_VALUES`."""
+    values: int = cells**pairs * pairs * cells
+    if values > MAX_VALUES:
+        raise InvalidInput(
+            f"a table of {pairs} leg pairs and {cells} cells has {values:,} values; the most is "
+            f"{MAX_VALUES:,}: choose fewer divisions or fewer legs"
+        )
+
+
+def check_arrays(arrays: Mapping[str, NDArray[np.generic]], pairs: int, cells: int) -> None:
+    """Make sure that arrays are what `QTable.dump` returns for a table of this shape.
+
+    Raises:
+        TableMismatch: if they are of a table of another shape, or do not fit together.
+    """
+    if missing := {"shape", "where", "q", "n"} - set(arrays):
+        raise TableMismatch(f"this is no Q-table: it lacks {', '.join(sorted(missing))}")
+    shape, where, q, n = (arrays[name] for name in ("shape", "where", "q", "n"))
+    if shape.tolist() != [pairs, cells]:
+        raise TableMismatch(
+            f"the table's leg pairs and cells are {shape.tolist()}, this problem's {[pairs, cells]}"
+        )
+    kinds = where.dtype.kind + q.dtype.kind + n.dtype.kind
+    is_whole = where.ndim == 1 and where.shape == q.shape == n.shape
+    if kinds != "ifu" or not is_whole or not np.isfinite(q).all():
+        raise TableMismatch("the table's values, visits and places do not fit together")
+    if where.size and not (where.min() >= 0 and where.max() < cells**pairs * pairs * cells):
+        raise TableMismatch("the table has values for states that do not exist")
+    if not np.all(np.diff(where) > 0):
+        raise TableMismatch(NOT_RISING)

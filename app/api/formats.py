@@ -36,7 +36,7 @@ def chosen(request: Request, query: str | None, formats: Sequence[str]) -> str:
 
 
 def attachment(
-    content: bytes | Iterable[str] | ArtifactFile, media_type: str, name: str
+    content: bytes | Iterable[str] | Iterable[bytes] | ArtifactFile, media_type: str, name: str
 ) -> Response:
     """A file to be saved under this name."""
     headers = {"Content-Disposition": f'attachment; filename="{name}"'}

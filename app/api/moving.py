@@ -8,7 +8,7 @@ from app.api.formats import attachment
 from app.api.runs import RunPath, find
 from app.domain.errors import InvalidInput
 from app.services import archives
-from app.services.moving import export_run, import_run
+from app.services.moving import export_pieces, import_run
 from app.services.views import run_view
 
 router = APIRouter()
@@ -18,7 +18,7 @@ router = APIRouter()
 def export_training(services: Given, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "training", run_id)
-    data = export_run(services.store, run.id)
+    data = export_pieces(services.store, run.id, services.exports)
     return attachment(data, archives.MEDIA_TYPE, f"training-{run.id}.zip")
 
 
@@ -26,7 +26,7 @@ def export_training(services: Given, run_id: RunPath) -> Response:
 def export_race(services: Given, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "race", run_id)
-    data = export_run(services.store, run.id)
+    data = export_pieces(services.store, run.id, services.exports)
     return attachment(data, archives.MEDIA_TYPE, f"race-{run.id}.zip")
 
 
@@ -36,7 +36,7 @@ def export_race(services: Given, run_id: RunPath) -> Response:
 def export_experiment(services: Given, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "experiment", run_id)
-    data = export_run(services.store, run.id)
+    data = export_pieces(services.store, run.id, services.exports)
     return attachment(data, archives.MEDIA_TYPE, f"experiment-{run.id}.zip")
 
 

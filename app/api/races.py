@@ -39,14 +39,14 @@ def get_recording(
     clock: Annotated[Clock, Query()] = "paper",
 ) -> Response:
     """Joint positions over time; `viser`, timed by `clock`, is for `/viewer/?playbackPath=…`."""
-    run, config, lanes = _recorded(services, run_id)
+    run, config, _ = _recorded(services, run_id)
     kind = chosen(request, format, ("json", "npz"))
     if kind == "viser":
         film = _film(services, run, config, clock)
         return attachment(film, "application/octet-stream", f"race-{run_id}.viser")
     if kind == "npz":
         return attachment(_arrays(services, run), "application/x-npz", f"race-{run_id}.npz")
-    chunks = replays.as_json(lanes, run.lane_training_ids, config.steps)
+    chunks = replays.as_json(lambda: _lanes(services, run), run.lane_training_ids, config.steps)
     return StreamingResponse(chunks, media_type="application/json")
 
 
@@ -87,7 +87,14 @@ def _film(services: Services, run: Run, config: RaceConfig, clock: Clock) -> Art
 
 def _recorded(services: Services, run_id: str) -> tuple[Run, RaceConfig, list[LaneRecording]]:
     run = find(services, "race", run_id)
-    lanes = services.recordings.race(run_id)
-    if lanes is None or not isinstance(run.config, RaceConfig):
+    lanes = _lanes(services, run)
+    if not isinstance(run.config, RaceConfig):
         raise Conflict(f"race {run_id} is {run.state} and has no recording (yet)", run.state)
     return run, run.config, lanes
+
+
+def _lanes(services: Services, run: Run) -> list[LaneRecording]:
+    lanes = services.recordings.race(run.id)
+    if lanes is None:
+        raise Conflict(f"race {run.id} is {run.state} and has no recording (yet)", run.state)
+    return lanes

@@ -5,18 +5,18 @@ import json
 import struct
 import zipfile
 from collections.abc import Iterator, Mapping
-from itertools import product
 from typing import Any, BinaryIO, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from app.agents.q_table import check_size
+from app.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
 from app.domain.errors import DamagedFile, TableMismatch
 from app.domain.grid import FootGrid
 from app.domain.types import Cells, FloatArray
 from app.runs.tables import FORMAT
 
-_VALUES_AT_ONCE = 4096
 _LOCAL_HEADER = struct.Struct("<26xHH")
 """Of a zip's member: where it says how long its name and its extra field are."""
 
@@ -47,6 +47,7 @@ class TableFile:
         Raises:
             TableMismatch: if the agent that learned keeps no table, or its values do not fit.
             DamagedFile: if it is no table.
+            InvalidInput: if it is too large.
         """
         self._file = file
         try:
@@ -71,51 +72,18 @@ class TableFile:
         if kinds != "ifu" or not self._where.length == self._q.length == self._n.length:
             raise TableMismatch("the table's values, visits and places do not fit together")
 
+        check_size(self.pairs, self.cells)
+
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
         """Every state in order with its values and visits, (pairs, cells), NaN where illegal."""
-        actions = self.pairs * self.cells
-        states = product(range(self.cells), repeat=self.pairs)
-        at_once = max(1, _VALUES_AT_ONCE // actions)
-        for q, n in self._dense(actions, at_once):
-            for number in range(len(q)):
-                state = next(states, None)
-                if state is None:
-                    return
-                values, visits = (
-                    part[number].reshape(self.pairs, self.cells).copy() for part in (q, n)
-                )
-                values[range(self.pairs), state] = np.nan
-                visits[range(self.pairs), state] = np.nan
-                yield state, values, visits
+        return TableRows(self.pairs, self.cells, self._parts).rows()
 
-    def _dense(self, actions: int, at_once: int) -> Iterator[tuple[FloatArray, FloatArray]]:
-        """The values and visits of some rows at a time, (rows, actions) each."""
-        parts = self._parts()
-        where, q, n = next(parts, _NOTHING)
-        for first in range(0, self.cells**self.pairs, at_once):
-            values, visits = np.zeros(at_once * actions), np.zeros(at_once * actions)
-            begin, end = first * actions, (first + at_once) * actions
-            while where.size:
-                here = int(np.searchsorted(where, end))
-                if (where[:here] < begin).any():
-                    raise DamagedFile("the table's values are not in rising order of their states")
-                values[where[:here] - begin], visits[where[:here] - begin] = q[:here], n[:here]
-                where, q, n = where[here:], q[here:], n[here:]
-                if where.size:
-                    break
-                where, q, n = next(parts, _NOTHING)
-            yield values.reshape(at_once, actions), visits.reshape(at_once, actions)
-
-    def _parts(self) -> Iterator[tuple[NDArray[Any], NDArray[Any], NDArray[Any]]]:
-        """The places with their values and visits, some at a time."""
-        for first in range(0, self._where.length, _VALUES_AT_ONCE):
+    def _parts(self) -> Iterator[Part]:
+        for first in range(0, self._where.length, VALUES_AT_ONCE):
             where, q, n = (
                 column.read(self._file, first) for column in (self._where, self._q, self._n)
             )
             yield where, q, n
-
-
-_NOTHING = (np.empty(0, np.int64), np.empty(0), np.empty(0))
 
 
 class _Column(NamedTuple):
@@ -127,7 +95,7 @@ class _Column(NamedTuple):
 
     def read(self, file: Pieces, first: int) -> NDArray[Any]:
         """Some of its elements."""
-        count = min(_VALUES_AT_ONCE, self.length - first)
+        count = min(VALUES_AT_ONCE, self.length - first)
         size = self.dtype.itemsize
         return np.frombuffer(file.read_at(self.offset + first * size, count * size), self.dtype)
 

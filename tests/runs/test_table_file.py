@@ -112,7 +112,7 @@ def test_values_out_of_order_are_found() -> None:
     where[-1] = 0
     arrays = {**checkpoint.arrays, "agent.where": where}
 
-    with pytest.raises(DamagedFile, match="rising order"):
+    with pytest.raises(TableMismatch, match="rising order"):
         list(opened(to_bytes(Checkpoint(checkpoint.meta, arrays))).rows())
 
 
