@@ -64,7 +64,11 @@ def build_learner(
             settings=settings,
             explore=False,
         )
-        copy.agent.load(walker.agent.state())
+        if isinstance(walker.agent, QLearning) and isinstance(copy.agent, QLearning):
+            # A large table, copied for every evaluation, would be most of the memory.
+            copy.agent.share_table(walker.agent)
+        else:
+            copy.agent.load(walker.agent.state())
         return copy
 
     def rival() -> Walker:

@@ -32,6 +32,7 @@ from app.api import (
 from app.api.auth import TokenGuard
 from app.api.deps import Services
 from app.api.files import connection_table, raise_file_limit
+from app.api.held import HeldBodies
 from app.api.http_protocol import KEEP_ALIVE_S, limited_http
 from app.api.limits import BodyLimit, SecurityHeaders
 from app.api.listener import ACCEPTS_AT_ONCE, WAITING, Listener, listen
@@ -109,6 +110,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
     # The last is the first to see a request.
     app.add_middleware(BodyLimit)
     app.add_middleware(Turns)
+    app.add_middleware(HeldBodies)
     app.add_middleware(RateLimit, settings=settings)
     sessions = None if settings.token is None else Sessions(store.sessions, settings.token)
     app.add_middleware(TokenGuard, settings=settings, sessions=sessions)

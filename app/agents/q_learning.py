@@ -83,9 +83,9 @@ class QLearning:
         observation, action, reward, after, legal = transition
         table = self.table
         sample = reward + self._gamma * max(table.values_of(after, legal))
-        here = table.index(observation), table.column(action)
-        table.q[here] = (1 - self._alpha) * table.q[here] + self._alpha * sample
-        table.n[here] += 1
+        (q, n), column = table.row(table.index(observation)), table.column(action)
+        q[column] = (1 - self._alpha) * q[column] + self._alpha * sample
+        n[column] += 1
         self._learned += 1
 
     def tune(
@@ -120,6 +120,10 @@ class QLearning:
         self._learned = int(state["learned"][0])
         self._alpha, self._gamma, fixed = state["rates"].tolist()
         self._fixed_epsilon = None if np.isnan(fixed) else fixed
+
+    def share_table(self, other: "QLearning") -> None:
+        """Use the table that another learner writes; for a policy that learns nothing."""
+        self.table = other.table
 
     def continue_from(self, state: AgentState) -> None:
         """Take over values and visits only: the rates are the new run's, ε restarts."""

@@ -1,18 +1,22 @@
 """The table of state-action values: one row per state, one column per (pair, cell)."""
 
 import hashlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from app.agents.table_rows import NOT_RISING
 from app.domain.errors import InvalidInput, TableMismatch
 from app.domain.types import Action, Cells, FloatArray
 
 MAX_VALUES = 64_000_000
 """A table of six legs at eight divisions has 53,551,875."""
-_ROWS_AT_ONCE = 10_000
+_ROWS_AT_ONCE = 1_000
+_VALUES_AT_ONCE = 100_000
+_NO_SLOT = -1
 
 
 class QTable:
@@ -22,6 +26,10 @@ class QTable:
     pair · cells + cell. A pair may not be sent to the cell that it is on: those columns are never
     read, and are NaN in what leaves the table.
 
+    Sparse by rows: memory is taken by the states that were written to, 12 bytes a value, whatever
+    the table's size. The rows lie in the order in which they were first written, in arrays of the
+    full size of which the system commits only the pages that are used.
+
     Raises:
         InvalidInput: if the table would be larger than `MAX_VALUES`.
     """
@@ -30,14 +38,15 @@ class QTable:
         self.pairs, self.cells = pairs, cells
         self.states: int = cells**pairs
         self.actions = pairs * cells
-        if self.states * self.actions > MAX_VALUES:
-            raise InvalidInput(
-                f"a table of {pairs} leg pairs and {cells} cells has "
-                f"{self.states * self.actions:,} values; the most is {MAX_VALUES:,}: "
-                "choose fewer divisions or fewer legs"
-            )
-        self.q: FloatArray = np.zeros((self.states, self.actions))
-        self.n: NDArray[np.uint32] = np.zeros((self.states, self.actions), np.uint32)
+        check_size(pairs, cells)
+        self._clear()
+
+    def _clear(self) -> None:
+        self._q: FloatArray = np.zeros((self.states, self.actions))
+        self._n: NDArray[np.uint32] = np.zeros((self.states, self.actions), np.uint32)
+        self._slots = np.full(self.states, _NO_SLOT, np.int32)
+        """Of each state, which row of the arrays is its own."""
+        self._used = 0
 
     def index(self, observation: Cells) -> int:
         """The row of a state."""
@@ -52,17 +61,28 @@ class QTable:
 
     def values_of(self, observation: Cells, actions: Sequence[Action]) -> list[float]:
         """The values of some actions in this state, as plain floats."""
-        row: list[float] = self.q[self.index(observation)].tolist()
+        slot = self._slots[self.index(observation)]
+        if slot == _NO_SLOT:
+            return [0.0] * len(actions)
+        row: list[float] = self._q[slot].tolist()
         cells = self.cells
         return [row[pair * cells + cell] for pair, cell in actions]
 
     def values(self, observation: Cells) -> FloatArray:
         """(pairs, cells) values of the actions in this state, NaN where illegal."""
-        return self._row(self.q, observation)
+        return self._row(self._q, observation)
 
     def visits(self, observation: Cells) -> FloatArray:
         """(pairs, cells) visits of the actions in this state, NaN where illegal."""
-        return self._row(self.n, observation)
+        return self._row(self._n, observation)
+
+    def row(self, state: int) -> tuple[FloatArray, NDArray[np.uint32]]:
+        """The values and visits of a state by its index, (actions,) each, to be written to."""
+        slot = self._slots[state]
+        if slot == _NO_SLOT:
+            slot = self._slots[state] = self._used
+            self._used += 1
+        return self._q[slot], self._n[slot]
 
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
         """Every state in order with its values and visits, (pairs, cells), NaN where illegal."""
@@ -78,24 +98,35 @@ class QTable:
         """Hash of the values as little-endian float64, states then actions, illegal ones NaN."""
         digest = hashlib.sha256()
         for first in range(0, self.states, _ROWS_AT_ONCE):
-            rows = self.q[first : first + _ROWS_AT_ONCE].astype("<f8")
-            rows = rows.reshape(-1, self.pairs, self.cells)
+            slots = self._slots[first : first + _ROWS_AT_ONCE]
+            rows = np.zeros((len(slots), self.actions), "<f8")
+            written = np.flatnonzero(slots != _NO_SLOT)
+            rows[written] = self._q[slots[written]]
+            by_pair = rows.reshape(-1, self.pairs, self.cells)
             places = np.arange(len(rows))
             at = np.unravel_index(first + places, (self.cells,) * self.pairs)
             for pair in range(self.pairs):
-                rows[places, pair, at[pair]] = np.nan
-            digest.update(rows.tobytes())
+                by_pair[places, pair, at[pair]] = np.nan
+            digest.update(rows.data)
         return digest.hexdigest()
 
     def dump(self) -> dict[str, NDArray[np.generic]]:
         """Only what was ever visited, so that a large table is a small file."""
-        where = np.flatnonzero(self.n)
-        return {
-            "shape": np.array([self.pairs, self.cells]),
-            "where": where,
-            "q": self.q.ravel()[where],
-            "n": self.n.ravel()[where],
-        }
+        visited = sum(np.count_nonzero(n) for n in self._in_parts(self._n))
+        where = np.empty(visited, np.int64)
+        q, n = np.empty(visited), np.empty(visited, np.uint32)
+        states, begin = np.flatnonzero(self._slots != _NO_SLOT), 0
+        for first in range(0, len(states), _ROWS_AT_ONCE):
+            some = states[first : first + _ROWS_AT_ONCE]
+            slots = self._slots[some]
+            visits = self._n[slots]
+            row, column = np.nonzero(visits)
+            end = begin + len(row)
+            where[begin:end] = some[row] * self.actions + column
+            q[begin:end] = self._q[slots[row], column]
+            n[begin:end] = visits[row, column]
+            begin = end
+        return {"shape": np.array([self.pairs, self.cells]), "where": where, "q": q, "n": n}
 
     def load(self, arrays: dict[str, NDArray[np.generic]]) -> None:
         """Replace all values and visits by those that `dump` returned.
@@ -103,24 +134,63 @@ class QTable:
         Raises:
             TableMismatch: if they are of a table of another shape, or do not fit together.
         """
-        if missing := {"shape", "where", "q", "n"} - set(arrays):
-            raise TableMismatch(f"this is no Q-table: it lacks {', '.join(sorted(missing))}")
-        shape, where, q, n = (arrays[name] for name in ("shape", "where", "q", "n"))
-        if shape.tolist() != [self.pairs, self.cells]:
-            raise TableMismatch(
-                f"the table's leg pairs and cells are {shape.tolist()}, "
-                f"this problem's {[self.pairs, self.cells]}"
-            )
-        kinds = where.dtype.kind + q.dtype.kind + n.dtype.kind
-        if kinds != "ifu" or not (where.shape == q.shape == n.shape) or not np.isfinite(q).all():
-            raise TableMismatch("the table's values, visits and places do not fit together")
-        if where.size and not (where.min() >= 0 and where.max() < self.q.size):
-            raise TableMismatch("the table has values for states that do not exist")
-        self.q[:], self.n[:] = 0, 0
-        self.q.ravel()[where], self.n.ravel()[where] = q, n
+        check_arrays(arrays, self.pairs, self.cells)
+        where, q, n = (arrays[name] for name in ("where", "q", "n"))
+        self._clear()
+        for first in range(0, len(where), _VALUES_AT_ONCE):
+            part = slice(first, first + _VALUES_AT_ONCE)
+            states, columns = np.divmod(where[part].astype(np.int64), self.actions)
+            slots = self._slots_of(states)
+            self._q[slots, columns], self._n[slots, columns] = q[part], n[part]
 
-    def _row(self, table: NDArray[np.generic], observation: Cells) -> FloatArray:
-        row: FloatArray = table[self.index(observation)].astype(float)
+    def _slots_of(self, states: NDArray[np.int64]) -> NDArray[np.int32]:
+        """The rows of some states, which have one from now on."""
+        new = np.unique(states[self._slots[states] == _NO_SLOT])
+        self._slots[new] = np.arange(self._used, self._used + len(new), dtype=np.int32)
+        self._used += len(new)
+        return self._slots[states]
+
+    def _in_parts(self, table: NDArray[np.uint32]) -> Iterator[NDArray[np.uint32]]:
+        """The rows that are in use, some at a time."""
+        for first in range(0, self._used, _ROWS_AT_ONCE):
+            yield table[first : min(first + _ROWS_AT_ONCE, self._used)]
+
+    def _row(self, table: NDArray[Any], observation: Cells) -> FloatArray:
+        slot = self._slots[self.index(observation)]
+        row = np.zeros(self.actions) if slot == _NO_SLOT else table[slot].astype(float)
         row = row.reshape(self.pairs, self.cells)
         row[range(self.pairs), observation] = np.nan
         return row
+
+
+def check_size(pairs: int, cells: int) -> None:
+    """Raise `InvalidInput` if a table of this shape would be larger than `MAX_VALUES`."""
+    values: int = cells**pairs * pairs * cells
+    if values > MAX_VALUES:
+        raise InvalidInput(
+            f"a table of {pairs} leg pairs and {cells} cells has {values:,} values; the most is "
+            f"{MAX_VALUES:,}: choose fewer divisions or fewer legs"
+        )
+
+
+def check_arrays(arrays: Mapping[str, NDArray[np.generic]], pairs: int, cells: int) -> None:
+    """Make sure that arrays are what `QTable.dump` returns for a table of this shape.
+
+    Raises:
+        TableMismatch: if they are of a table of another shape, or do not fit together.
+    """
+    if missing := {"shape", "where", "q", "n"} - set(arrays):
+        raise TableMismatch(f"this is no Q-table: it lacks {', '.join(sorted(missing))}")
+    shape, where, q, n = (arrays[name] for name in ("shape", "where", "q", "n"))
+    if shape.tolist() != [pairs, cells]:
+        raise TableMismatch(
+            f"the table's leg pairs and cells are {shape.tolist()}, this problem's {[pairs, cells]}"
+        )
+    kinds = where.dtype.kind + q.dtype.kind + n.dtype.kind
+    is_whole = where.ndim == 1 and where.shape == q.shape == n.shape
+    if kinds != "ifu" or not is_whole or not np.isfinite(q).all():
+        raise TableMismatch("the table's values, visits and places do not fit together")
+    if where.size and not (where.min() >= 0 and where.max() < cells**pairs * pairs * cells):
+        raise TableMismatch("the table has values for states that do not exist")
+    if not np.all(np.diff(where) > 0):
+        raise TableMismatch(NOT_RISING)

@@ -1,7 +1,7 @@
 """What routes are given: the services that `create_app` built, and who is asking."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, NamedTuple, Protocol
 
 from fastapi import Depends, Header, HTTPException, Request
@@ -14,6 +14,7 @@ from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.services.idempotency import Idempotency, Start
 from app.services.jobs import Jobs
+from app.services.memory_budget import MemoryBudget
 from app.services.recordings import Recordings
 from app.services.stage import Stage
 from app.services.store import Run, RunStore
@@ -43,6 +44,7 @@ class Services:
         ready: says what is not ready, or None.
         what_if: tries settings out.
         film: makes a race's recording playable.
+        exports: counts what exports hold in memory until they are read.
     """
 
     store: RunStore
@@ -56,6 +58,7 @@ class Services:
     ready: Callable[[], str | None]
     film: Film
     what_if: WhatIf
+    exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
 
 
 class Asked(NamedTuple):

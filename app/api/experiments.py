@@ -10,9 +10,10 @@ from app.api.contract import ATTACHMENT, BINARY, LOCATION, TEXT, answers
 from app.api.deps import Given, StartRequest
 from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.experiment_body import ExperimentBody
-from app.api.formats import attachment, chosen
+from app.api.formats import attachment, chosen, file_response
 from app.api.runs import RunPath, accepted, find, run_routes
 from app.experiments.config import ExperimentConfig
+from app.services.artifact_file import ArtifactFile
 from app.services.configs import config_as_json
 from app.services.errors import Conflict, NotFound
 from app.services.json_text import finite
@@ -64,10 +65,10 @@ def start_experiment(
 def get_summary(services: Given, run_id: RunPath) -> Response:
     """The newest summary; it is made again every few seconds while trials come in."""
     run = find(services, "experiment", run_id)
-    summary = services.store.artifact(run_id, SUMMARY)
+    summary = services.store.open_artifact(run_id, SUMMARY)
     if summary is None:
         return JSONResponse(_nothing_yet(run))
-    return Response(summary, media_type="application/json")
+    return file_response(summary, "application/json")
 
 
 @router.get(
@@ -139,7 +140,7 @@ def _nothing_yet(run: Run) -> dict[str, Any]:
     }
 
 
-def _reported(services: Given, run: Run, name: str) -> bytes:
+def _reported(services: Given, run: Run, name: str) -> ArtifactFile:
     if run.state in UNENDED or run.state == "interrupted":
         raise Conflict(
             f"experiment {run.id} is {run.state}; its report can be had once it is finished or "
@@ -147,18 +148,18 @@ def _reported(services: Given, run: Run, name: str) -> bytes:
             run.state,
         )
     files = (run.result or {}).get("files", [])
-    data = services.store.artifact(run.id, name) if name in files else None
-    if data is None:
+    file = services.store.open_artifact(run.id, name) if name in files else None
+    if file is None:
         there_are = ", ".join(files) or "none"
         raise NotFound(f"experiment {run.id} has no such file; there are: {there_are}")
-    return data
+    return file
 
 
-def _file(run: Run, name: str, data: bytes, disposition: str) -> Response:
+def _file(run: Run, name: str, file: ArtifactFile, disposition: str) -> Response:
     last = name.rpartition("/")[2]
     stem, dot, suffix = last.rpartition(".")
     headers = {
         "Content-Disposition": f'{disposition}; filename="{stem}-{run.id}{dot}{suffix}"',
         "Content-Security-Policy": REPORT_POLICY,
     }
-    return Response(data, headers=headers, media_type=_TYPES.get(f"{dot}{suffix}"))
+    return file_response(file, _TYPES.get(f"{dot}{suffix}"), headers)

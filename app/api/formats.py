@@ -1,9 +1,11 @@
 """In which form an answer is wanted: `?format=` decides, else the Accept header."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
+
+from app.services.artifact_file import ArtifactFile, pieces
 
 _TYPES = {
     "application/json": "json",
@@ -33,12 +35,24 @@ def chosen(request: Request, query: str | None, formats: Sequence[str]) -> str:
     return best if wanted.get(best, 1.0) > 0 else formats[0]
 
 
-def attachment(content: object, media_type: str, name: str) -> Response:
+def attachment(
+    content: bytes | Iterable[str] | Iterable[bytes] | ArtifactFile, media_type: str, name: str
+) -> Response:
     """A file to be saved under this name."""
     headers = {"Content-Disposition": f'attachment; filename="{name}"'}
     if isinstance(content, bytes):
         return Response(content, headers=headers, media_type=media_type)
-    return StreamingResponse(content, headers=headers, media_type=media_type)  # type: ignore[arg-type]
+    if isinstance(content, Iterable):
+        return StreamingResponse(content, headers=headers, media_type=media_type)
+    return file_response(content, media_type, headers)
+
+
+def file_response(
+    file: ArtifactFile, media_type: str | None, headers: Mapping[str, str] | None = None
+) -> Response:
+    """A file that is sent piece by piece, as fast as the client takes it, and closed then."""
+    told = {**(headers or {}), "Content-Length": str(file.size)}
+    return StreamingResponse(pieces(file), headers=told, media_type=media_type)
 
 
 def _quality(parameters: Sequence[str]) -> float:

@@ -10,7 +10,7 @@ from app.api.formats import attachment
 from app.api.runs import RunPath, find
 from app.domain.errors import InvalidInput
 from app.services import archives
-from app.services.moving import export_run, import_run
+from app.services.moving import export_pieces, import_run
 from app.services.views import run_view
 
 _ARCHIVE = answers(200, {archives.MEDIA_TYPE: BINARY}, headers=ATTACHMENT)
@@ -28,7 +28,7 @@ router = APIRouter()
 def export_training(services: Given, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "training", run_id)
-    data = export_run(services.store, run.id)
+    data = export_pieces(services.store, run.id, services.exports)
     return attachment(data, archives.MEDIA_TYPE, f"training-{run.id}.zip")
 
 
@@ -42,7 +42,7 @@ def export_training(services: Given, run_id: RunPath) -> Response:
 def export_race(services: Given, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "race", run_id)
-    data = export_run(services.store, run.id)
+    data = export_pieces(services.store, run.id, services.exports)
     return attachment(data, archives.MEDIA_TYPE, f"race-{run.id}.zip")
 
 
@@ -56,7 +56,7 @@ def export_race(services: Given, run_id: RunPath) -> Response:
 def export_experiment(services: Given, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "experiment", run_id)
-    data = export_run(services.store, run.id)
+    data = export_pieces(services.store, run.id, services.exports)
     return attachment(data, archives.MEDIA_TYPE, f"experiment-{run.id}.zip")
 
 

@@ -15,8 +15,10 @@ from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.services import replays
+from app.services.artifact_file import ArtifactFile, BytesFile
 from app.services.errors import Conflict
 from app.services.store import UNENDED, Run
+from app.services.stored_recordings import RACE
 from app.services.timeline import timeline
 
 router = run_routes("race")
@@ -50,14 +52,14 @@ def get_recording(
     clock: Annotated[Clock, Query()] = "paper",
 ) -> Response:
     """Joint positions over time; `viser`, timed by `clock`, is for `/viewer/?playbackPath=…`."""
-    run, config, lanes = _recorded(services, run_id)
+    run, config, _ = _recorded(services, run_id)
     kind = chosen(request, format, ("json", "npz"))
     if kind == "viser":
         film = _film(services, run, config, clock)
         return attachment(film, "application/octet-stream", f"race-{run_id}.viser")
     if kind == "npz":
-        return attachment(replays.as_npz(lanes), "application/x-npz", f"race-{run_id}.npz")
-    chunks = replays.as_json(lanes, run.lane_training_ids, config.steps)
+        return attachment(_arrays(services, run), "application/x-npz", f"race-{run_id}.npz")
+    chunks = replays.as_json(lambda: _lanes(services, run), run.lane_training_ids, config.steps)
     return StreamingResponse(chunks, media_type="application/json")
 
 
@@ -74,7 +76,17 @@ def get_timeline(
     return JSONResponse(timeline(lanes, run.lane_training_ids, config.steps, clock))
 
 
-def _film(services: Services, run: Run, config: RaceConfig, clock: Clock) -> bytes:
+def _arrays(services: Services, run: Run) -> ArtifactFile:
+    """The recording as it is kept once the race ended: one that grows would be in memory twice."""
+    file = None if run.state in UNENDED else services.store.open_artifact(run.id, RACE)
+    if file is None:
+        raise Conflict(
+            f"race {run.id} is {run.state}; its arrays can be had once it ended", run.state
+        )
+    return file
+
+
+def _film(services: Services, run: Run, config: RaceConfig, clock: Clock) -> ArtifactFile:
     """Made once: it takes seconds."""
     lanes = services.recordings.race(run.id)
     if run.state in UNENDED or lanes is None:
@@ -82,16 +94,24 @@ def _film(services: Services, run: Run, config: RaceConfig, clock: Clock) -> byt
             f"race {run.id} is {run.state}; its film can be had once it ended", run.state
         )
     name = f"film-{clock}.viser"
-    film = services.store.artifact(run.id, name)
+    film = services.store.open_artifact(run.id, name)
     if film is None:
-        film = services.film(config, lanes, run.name, clock)
-        services.store.put_artifact(run.id, name, film)
+        made = services.film(config, lanes, run.name, clock)
+        services.store.put_artifact(run.id, name, made)
+        film = BytesFile(made)
     return film
 
 
 def _recorded(services: Services, run_id: str) -> tuple[Run, RaceConfig, list[LaneRecording]]:
     run = find(services, "race", run_id)
-    lanes = services.recordings.race(run_id)
-    if lanes is None or not isinstance(run.config, RaceConfig):
+    lanes = _lanes(services, run)
+    if not isinstance(run.config, RaceConfig):
         raise Conflict(f"race {run_id} is {run.state} and has no recording (yet)", run.state)
     return run, run.config, lanes
+
+
+def _lanes(services: Services, run: Run) -> list[LaneRecording]:
+    lanes = services.recordings.race(run.id)
+    if lanes is None:
+        raise Conflict(f"race {run.id} is {run.state} and has no recording (yet)", run.state)
+    return lanes

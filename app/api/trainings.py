@@ -15,10 +15,10 @@ from app.api.schemas import ChangeBody, TrainingBody
 from app.domain.errors import InvalidInput
 from app.runs import tables
 from app.services import curves, imports
-from app.services.entries import load_table
+from app.services.artifact_file import closing_after
+from app.services.entries import open_table, read_rows
 from app.services.errors import Conflict
 from app.services.json_text import finite
-from app.services.store import TABLE
 
 # Before the routes that all runs have: `import` is no run's id.
 router = run_routes("training")
@@ -107,18 +107,17 @@ def get_table(
 ) -> Response:
     """The values of all legal actions in all states; as `.npz` all that is needed to go on."""
     run = find(services, "training", run_id)
-    table = load_table(services.store, run_id)
+    file = open_table(services.store, run_id)
     kind = chosen(request, format, ("json", "npz", "csv"))
     if kind == "npz":
-        data = services.store.artifact(run_id, TABLE)
-        return attachment(data, tables.MEDIA_TYPE, f"q-table-{run_id}.npz")
+        return attachment(file, tables.MEDIA_TYPE, f"q-table-{run_id}.npz")
     try:
-        values = tables.table_of(table)
+        table = read_rows(file, run_id)
     except InvalidInput as error:
+        file.close()
         raise Conflict(f"{error}; take it as ?format=npz", run.state) from error
     if kind == "csv":
-        rows = curves.table_as_csv(values)
+        rows = closing_after(file, curves.table_as_csv(table))
         return attachment(rows, "text/csv; charset=utf-8", f"q-table-{run_id}.csv")
-    return StreamingResponse(
-        curves.table_as_json(values, table.meta), media_type="application/json"
-    )
+    rows = closing_after(file, curves.table_as_json(table, table.meta))
+    return StreamingResponse(rows, media_type="application/json")

@@ -5,6 +5,7 @@ the cell it was sent to. The paper does not say which of the two its state holds
 """
 
 from functools import lru_cache
+from itertools import chain
 from typing import Literal, get_args
 
 from app.domain.errors import UnknownName
@@ -32,12 +33,20 @@ def observe(simulator: Simulator[S], state: S, how: Observation) -> Cells:
     return tuple(nearest(x, y) for x, y in simulator.pair_offsets(state))
 
 
-@lru_cache(maxsize=1 << 16)
+@lru_cache(maxsize=1 << 10)
 def legal_actions(cells: Cells, cell_count: int) -> tuple[Action, ...]:
     """Every (pair, cell) but the cell that the pair is seen on, pair by pair."""
-    return tuple(
-        Action(pair, cell)
-        for pair, present in enumerate(cells)
-        for cell in range(cell_count)
-        if cell != present
-    )
+    parts = [_but(pair, present, cell_count) for pair, present in enumerate(cells)]
+    return tuple(chain.from_iterable(parts))
+
+
+@lru_cache(maxsize=1 << 12)
+def _but(pair: int, present: int, cell_count: int) -> tuple[Action, ...]:
+    """The actions of a pair that is seen on a cell. States share them: there are many states."""
+    every = _every(pair, cell_count)
+    return every[:present] + every[present + 1 :]
+
+
+@lru_cache(maxsize=1 << 7)
+def _every(pair: int, cell_count: int) -> tuple[Action, ...]:
+    return tuple(Action(pair, cell) for cell in range(cell_count))

@@ -9,7 +9,10 @@ from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from distributed import Client, LocalCluster
+    from distributed import Client, SpecCluster
+
+
+_logger = logging.getLogger(__name__)
 
 
 def cores() -> int:
@@ -27,7 +30,11 @@ def own_cluster(workers: int) -> "Iterator[Client]":
         workers: processes, of one thread each.
     """
     import dask  # noqa: PLC0415
-    from distributed import Client, LocalCluster  # noqa: PLC0415
+    from distributed import Client, Nanny, SpecCluster  # noqa: PLC0415
+    from distributed.security import Security  # noqa: PLC0415
+    from distributed.worker_memory import parse_memory_limit  # noqa: PLC0415
+
+    from app.experiments.cluster_nodes import PagelessScheduler, PagelessWorker  # noqa: PLC0415
 
     with ExitStack() as stack:
         folder = tempfile.TemporaryDirectory(prefix="hexapods-", ignore_cleanup_errors=True)
@@ -35,24 +42,39 @@ def own_cluster(workers: int) -> "Iterator[Client]":
         settings = {**_OWN_SETTINGS, "temporary-directory": folder.name}
         stack.enter_context(dask.config.set(settings))
         with _deaf_to_ctrl_c():
-            cluster = LocalCluster(
-                n_workers=workers,
-                threads_per_worker=1,
-                host="127.0.0.1",
-                # Anyone on the machine could otherwise send code to the port.
-                security=True,
-                dashboard_address=None,
-                local_directory=folder.name,
-                # What a trial has there goes with the folder, when its worker is ended in it.
-                env={"TMPDIR": folder.name},
-                silence_logs=logging.CRITICAL,
-                scheduler_kwargs={
+            # Anyone on the machine could otherwise send code to the ports.
+            security = Security.temporary()
+            anywhere = {"host": "127.0.0.1", "protocol": "tls://", "security": security}
+            worker = {
+                "cls": Nanny,
+                "options": {
+                    **anywhere,
+                    "worker_class": PagelessWorker,
+                    "nthreads": 1,
+                    "memory_limit": parse_memory_limit("auto", 1, workers, logger=_logger),
+                    "dashboard": False,
+                    "local_directory": folder.name,
+                    # What a trial has there goes with the folder, when its worker is ended in it.
+                    "env": {"TMPDIR": folder.name},
+                    "silence_logs": logging.CRITICAL,
+                },
+            }
+            scheduler = {
+                "cls": PagelessScheduler,
+                "options": {
+                    **anywhere,
+                    "port": 0,
+                    "dashboard": False,
                     # Each death comes to the engine, which says what follows from it.
                     "allowed_failures": 0,
-                    # No page, and not on the port that others expect it on.
-                    "dashboard": False,
-                    "dashboard_address": "127.0.0.1:0",
                 },
+            }
+            cluster = SpecCluster(
+                workers=dict.fromkeys(range(workers), worker),
+                worker=worker,
+                scheduler=scheduler,
+                security=security,
+                silence_logs=logging.CRITICAL,
             )
         stack.enter_context(cluster)
         client = stack.enter_context(Client(cluster, set_as_default=False))
@@ -90,7 +112,7 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _drop_work(cluster: "LocalCluster") -> None:
+def _drop_work(cluster: "SpecCluster") -> None:
     """End the workers at once; asked politely, each would finish its trial first."""
 
     async def drop() -> None:

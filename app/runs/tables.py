@@ -9,7 +9,7 @@ import hashlib
 import io
 import json
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +17,8 @@ import numpy as np
 
 from app.agents.protocol import Agent
 from app.agents.q_learning import QLearning
-from app.agents.q_table import QTable
+from app.agents.q_table import check_arrays, check_size
+from app.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
 from app.domain.errors import DamagedFile, TableMismatch
 from app.domain.grid import FootGrid
 from app.runs import seeding
@@ -125,18 +126,28 @@ def load_agent(agent: Agent, checkpoint: Checkpoint) -> None:
         ) from error
 
 
-def table_of(checkpoint: Checkpoint) -> QTable:
+def table_of(checkpoint: Checkpoint) -> TableRows:
     """The Q-table inside.
 
     Raises:
         TableMismatch: if the agent that learned keeps none, or it is of another problem.
+        InvalidInput: if it is too large.
     """
     state, meta = agent_state(checkpoint), checkpoint.meta
     if "where" not in state:
         raise TableMismatch(f"the agent {meta['agent']} keeps no Q-table")
-    table = QTable(len(meta["pairs"]), len(FootGrid(meta["grid_side_m"], meta["divisions"])))
-    table.load(state)
-    return table
+    pairs, cells = len(meta["pairs"]), len(FootGrid(meta["grid_side_m"], meta["divisions"]))
+    check_size(pairs, cells)
+    check_arrays(state, pairs, cells)
+
+    def parts() -> Iterator[Part]:
+        for first in range(0, len(state["where"]), VALUES_AT_ONCE):
+            where, q, n = (
+                state[name][first : first + VALUES_AT_ONCE] for name in ("where", "q", "n")
+            )
+            yield where, q, n
+
+    return TableRows(pairs, cells, parts)
 
 
 def check_fits(checkpoint: Checkpoint, walk: Walk, observation: str | None = None) -> None:
@@ -225,5 +236,6 @@ def _digest(members: Arrays) -> str:
     for key in sorted(members):
         array = np.ascontiguousarray(members[key])
         digest.update(f"{key} {array.dtype.str} {array.shape}".encode())
-        digest.update(array.tobytes())
+        # A view where there can be one: a large table is not copied to be hashed.
+        digest.update(array.tobytes() if array.dtype.kind == "U" else array.data)
     return digest.hexdigest()

@@ -1,7 +1,8 @@
 """The files of a run in its archive: which there are, and that each is what it should be."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
 
 import msgspec
 import numpy as np
@@ -17,6 +18,8 @@ from app.runs.recording import race_recording
 from app.runs.records import Knowledge
 from app.runs.stored_practice import practice_recording
 from app.services.archived_trials import check_reported, is_reported, reported_files
+from app.services.archives import Member
+from app.services.artifact_file import pieces
 from app.services.imported_tables import checked_table
 from app.services.store import CHECKPOINT, RESUMABLE, TABLE, Run, RunStore
 from app.services.stored_recordings import PRACTICE, RACE, evaluations_file
@@ -35,8 +38,8 @@ def is_file_of(name: str, kind: str) -> bool:
     return name in (TABLE, CHECKPOINT, PRACTICE) or _EVALUATIONS.fullmatch(name) is not None
 
 
-def files_of(store: RunStore, run: Run) -> dict[str, bytes]:
-    """All files of a run that go with it.
+def files_of(store: RunStore, run: Run) -> dict[str, Member]:
+    """All files of a run that go with it, each found whole now, and read when its turn comes.
 
     Raises:
         DamagedFile: if one is damaged, or missing.
@@ -48,8 +51,20 @@ def files_of(store: RunStore, run: Run) -> dict[str, bytes]:
         names = [TABLE, PRACTICE, *map(evaluations_file, range(MAX_EVALUATION_FILES))]
         if run.state in RESUMABLE[run.kind]:
             names.append(CHECKPOINT)
-    found = {name: store.artifact(run.id, name) for name in names}
-    return {name: data for name, data in found.items() if data is not None}
+    found = {}
+    for name in names:
+        file = store.open_artifact(run.id, name)
+        if file is not None:
+            found[name] = Member(file.size, partial(_pieces_of, store, run.id, name))
+            file.close()
+    return found
+
+
+def _pieces_of(store: RunStore, run_id: str, name: str) -> Iterator[bytes]:
+    file = store.open_artifact(run_id, name)
+    if file is None:
+        raise DamagedFile(f"{name} of run {run_id} is not there any more")
+    return pieces(file)
 
 
 def check_files(run: Run, files: Mapping[str, bytes], said: str) -> None:

@@ -10,7 +10,8 @@ import json
 import stat
 import struct
 import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple
 
 from app.domain.errors import DamagedFile, InvalidInput
 
@@ -24,23 +25,84 @@ _END = struct.Struct("<4s4H2LH")  # the record with which a zip without a commen
 _ANY_DAY = (1980, 1, 1, 0, 0, 0)
 
 
+class Member(NamedTuple):
+    """A member that is to be packed."""
+
+    size: int
+    """In bytes."""
+    pieces: Callable[[], Iterator[bytes]]
+    """Begins to read it."""
+
+
+def member(data: bytes) -> Member:
+    """A member out of memory."""
+    return Member(len(data), lambda: iter([data]))
+
+
 def pack(members: Mapping[str, bytes]) -> bytes:
     """An archive of these members; the same members give the same archive.
 
     Raises:
         InvalidInput: if it would be too large to be taken in again.
     """
-    hashes = {name: hashlib.sha256(data).hexdigest() for name, data in members.items()}
-    manifest = json.dumps({"sha256": hashes}, indent=1).encode()
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
-        for name, data in {**members, MANIFEST: manifest}.items():
-            about = zipfile.ZipInfo(name, _ANY_DAY)
-            about.external_attr = (stat.S_IFREG | 0o644) << 16
-            archive.writestr(about, data)
-    if buffer.tell() > MAX_BYTES or len(members) >= MAX_MEMBERS:
+    return b"".join(packed({name: member(data) for name, data in members.items()}))
+
+
+def packed(members: Mapping[str, Member]) -> Iterator[bytes]:
+    """The same archive piece by piece: what is read of a member is not kept.
+
+    Raises:
+        InvalidInput: at once, if it would be too large to be taken in again.
+    """
+    beside = _MAX_MANIFEST_BYTES + _MAX_DIRECTORY_BYTES
+    if sum(one.size for one in members.values()) + beside > MAX_BYTES or (
+        len(members) >= MAX_MEMBERS
+    ):
         raise InvalidInput(f"the run is too large for an archive, which has up to {MAX_BYTES:,} B")
-    return buffer.getvalue()
+    return _packed(members)
+
+
+def _packed(members: Mapping[str, Member]) -> Iterator[bytes]:
+    written, hashes = _Written(), dict[str, str]()
+    with zipfile.ZipFile(written, "w", zipfile.ZIP_STORED) as archive:
+        for name, one in members.items():
+            digest = hashlib.sha256()
+            with archive.open(_about(name, one.size), "w") as file:
+                for piece in one.pieces():
+                    digest.update(piece)
+                    file.write(piece)
+                    yield written.take()
+            hashes[name] = digest.hexdigest()
+        manifest = json.dumps({"sha256": hashes}, indent=1).encode()
+        archive.writestr(_about(MANIFEST, len(manifest)), manifest)
+    yield written.take()
+
+
+def _about(name: str, size: int) -> zipfile.ZipInfo:
+    about = zipfile.ZipInfo(name, _ANY_DAY)
+    about.external_attr = (stat.S_IFREG | 0o644) << 16
+    about.file_size = size
+    return about
+
+
+class _Written(io.RawIOBase):
+    """What was written and not yet taken; zipfile cannot seek in it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._parts: list[bytes] = []
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: Any) -> int:
+        self._parts.append(bytes(data))
+        return len(data)
+
+    def take(self) -> bytes:
+        taken = b"".join(self._parts)
+        self._parts.clear()
+        return taken
 
 
 def unpack(data: bytes, said: str, is_known: Callable[[str], bool]) -> dict[str, bytes]:

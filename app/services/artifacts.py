@@ -10,16 +10,19 @@ import os
 import re
 import secrets
 import sys
+import threading
 from collections.abc import Collection
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
 from app.domain.errors import DamagedFile
+from app.services.artifact_file import ArtifactFile, SharedFile
 from app.services.errors import StorageFailed, StorageFull
 from app.services.room import Room
 
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+_HASHED_AT_ONCE = 1 << 20
 _OURS = re.compile(r"[0-9a-f]{32}(\.part)?")
 
 
@@ -39,6 +42,8 @@ class ArtifactFiles:
         folder.mkdir(parents=True, exist_ok=True)
         sync_folder(folder.parent)
         self._folder, self._room = folder, room
+        self._open: dict[str, SharedFile] = {}
+        self._opening = threading.RLock()
 
     def write(self, data: bytes) -> Stored:
         """Keep data in a new file. When this returns, it lasts.
@@ -99,6 +104,53 @@ class ArtifactFiles:
         if len(data) != stored.size or hashlib.sha256(data).hexdigest() != stored.sha256:
             raise DamagedFile(f"{said} is damaged: it is not what was written")
         return data
+
+    def open(self, stored: Stored, said: str) -> ArtifactFile:
+        """Open a file, once it is found to be what was written.
+
+        Args:
+            stored: what is known of the file.
+            said: what to call it in messages.
+
+        Raises:
+            FileNotFoundError: if it is not there.
+            DamagedFile: if it is not what was written.
+            StorageFailed: if it cannot be read.
+        """
+        reader = self._reader(stored, said)
+        try:
+            digest = hashlib.sha256()
+            for offset in range(0, reader.size, _HASHED_AT_ONCE):
+                digest.update(reader.read_at(offset, _HASHED_AT_ONCE))
+        except OSError as error:
+            reader.close()
+            raise StorageFailed(f"{said} cannot be read ({error.strerror})") from error
+        if reader.size != stored.size or digest.hexdigest() != stored.sha256:
+            reader.close()
+            raise DamagedFile(f"{said} is damaged: it is not what was written")
+        return reader
+
+    def _reader(self, stored: Stored, said: str) -> ArtifactFile:
+        name = stored.file
+
+        def forget() -> None:
+            with self._opening:
+                if self._open.get(name) is shared:
+                    del self._open[name]
+
+        with self._opening:
+            shared = self._open.get(name)
+            reader = None if shared is None else shared.reader(forget)
+            if reader is not None:
+                return reader
+            try:
+                file = (self._folder / name).open("rb", buffering=0)
+            except FileNotFoundError:
+                raise
+            except OSError as error:
+                raise StorageFailed(f"{said} cannot be read ({error.strerror})") from error
+            shared = self._open[name] = SharedFile(file, os.fstat(file.fileno()).st_size)
+            return shared.first_reader(forget)
 
     def remove(self, *names: str) -> None:
         """Take files away; those that are not there do not matter."""

@@ -3,14 +3,24 @@
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
-from app.agents.q_table import QTable
 from app.domain.grid import FootGrid
+from app.domain.types import Cells, FloatArray
 
-_ROWS_A_CHUNK = 64
+_VALUES_A_CHUNK = 500
+"""Some 30 kB of text: it is held while a client takes it."""
+
+
+class Rows(Protocol):
+    """A Q-table, in memory or in its file."""
+
+    pairs: int
+
+    def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
+        """Every state in order with its values and visits, (pairs, cells), NaN where illegal."""
 
 
 def as_csv(rows: Sequence[Mapping[str, Any]]) -> bytes:
@@ -25,7 +35,7 @@ def _cell(number: float) -> str:
     return str(number) if math.isfinite(number) else ""
 
 
-def table_as_json(table: QTable, meta: Mapping[str, Any]) -> Iterator[str]:
+def table_as_json(table: Rows, meta: Mapping[str, Any]) -> Iterator[str]:
     """The values of all legal actions, in chunks: large tables have millions."""
     grid = FootGrid(meta["grid_side_m"], meta["divisions"])
     head = {
@@ -49,7 +59,7 @@ def table_as_json(table: QTable, meta: Mapping[str, Any]) -> Iterator[str]:
     yield "]}\n"
 
 
-def table_as_csv(table: QTable) -> Iterator[str]:
+def table_as_csv(table: Rows) -> Iterator[str]:
     """The same as CSV: the state's cells, pair, cell, value, visits."""
     cells = [f"state_{pair}" for pair in range(table.pairs)]
     yield ",".join([*cells, "action_pair", "action_cell", "value", "visits"]) + "\r\n"
@@ -63,13 +73,13 @@ def table_as_csv(table: QTable) -> Iterator[str]:
 _Row = tuple[tuple[int, ...], int, int, float, int]
 
 
-def _chunks(table: QTable) -> Iterator[list[_Row]]:
+def _chunks(table: Rows) -> Iterator[list[_Row]]:
     chunk: list[_Row] = []
-    for number, (state, values, visits) in enumerate(table.rows(), start=1):
+    for state, values, visits in table.rows():
         for pair, cell in np.argwhere(~np.isnan(values)).tolist():
             value, times = float(values[pair, cell]), int(visits[pair, cell])
             chunk.append((state, pair, cell, value, times))
-        if number % _ROWS_A_CHUNK == 0:
+        if len(chunk) >= _VALUES_A_CHUNK:
             yield chunk
             chunk = []
     if chunk:

@@ -1,7 +1,9 @@
 """From what a user asks for to runs that can be queued: everything is checked before any starts."""
 
+import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 from app.agents.q_table import MAX_VALUES
 from app.agents.registry import learns
@@ -9,11 +11,14 @@ from app.domain.errors import InvalidInput, TableMismatch
 from app.domain.kinematics import check_reach
 from app.domain.observation import Observation
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, Walk
+from app.runs.table_file import TableFile
 from app.runs.tables import Checkpoint, check_fits, from_bytes
+from app.services.artifact_file import ArtifactFile, ReadableArtifact
 from app.services.errors import Conflict, NotFound
 from app.services.orders import Order, RaceOrder, TrainingOrder
 from app.services.store import TABLE, Run, RunStore
 
+T = TypeVar("T")
 MAX_RECORDED_STEPS = 300_000
 """Of all lanes of a race together: every one is recorded, in about 3 kB."""
 
@@ -169,14 +174,42 @@ def load_table(store: RunStore, training_id: str) -> Checkpoint:
     """
     run = _training(store, training_id)
     data = store.artifact(training_id, TABLE)
+    return from_bytes(_learned(run, data), _said(training_id))
+
+
+def open_table(store: RunStore, training_id: str) -> ArtifactFile:
+    """The file of what a training has learned, to be read piece by piece, and to be closed.
+
+    Raises:
+        NotFound, Conflict, DamagedFile: as `load_table`.
+    """
+    run = _training(store, training_id)
+    return _learned(run, store.open_artifact(training_id, TABLE))
+
+
+def read_rows(file: ArtifactFile, training_id: str) -> TableFile:
+    """The Q-table in such a file.
+
+    Raises:
+        TableMismatch: if its agent keeps none.
+        DamagedFile: if it is none.
+    """
+    readable = io.BufferedReader(ReadableArtifact(file))
+    return TableFile(file, readable, _said(training_id))
+
+
+def _learned(run: Run, table: T | None) -> T:
     if run.state not in ("finished", "stopped"):
         raise Conflict(
-            f"training {training_id} is {run.state}; choose one that is finished or stopped",
-            run.state,
+            f"training {run.id} is {run.state}; choose one that is finished or stopped", run.state
         )
-    if data is None:
-        raise Conflict(f"training {training_id} was {run.state} before it began", run.state)
-    return from_bytes(data, f"the table of training {training_id}")
+    if table is None:
+        raise Conflict(f"training {run.id} was {run.state} before it began", run.state)
+    return table
+
+
+def _said(training_id: str) -> str:
+    return f"the table of training {training_id}"
 
 
 def _training(store: RunStore, training_id: str) -> Run:

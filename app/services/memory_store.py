@@ -7,6 +7,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from app.services.artifact_file import ArtifactFile, BytesFile
 from app.services.errors import Conflict, NotFound
 from app.services.sessions import MemorySessionRows
 from app.services.store import (
@@ -160,6 +161,10 @@ class MemoryStore:
         with self._lock:
             self._run(run_id)
             return self._artifacts.get(run_id, {}).get(name)
+
+    def open_artifact(self, run_id: str, name: str) -> ArtifactFile | None:
+        data = self.artifact(run_id, name)
+        return None if data is None else BytesFile(data)
 
     def _run(self, run_id: str) -> Run:
         if run_id not in self._runs:

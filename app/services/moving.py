@@ -1,6 +1,6 @@
 """Moves a run between stores: all it has into an archive, and out of one, checked."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -10,26 +10,65 @@ from app.services import archives
 from app.services.archived_files import check_files, files_of, is_file_of
 from app.services.archived_run import read_run_json, run_json
 from app.services.archived_trials import TRIALS, read_trials_json, trials_json
+from app.services.errors import Busy
 from app.services.ids import RunIds
+from app.services.memory_budget import MemoryBudget
 from app.services.store import KINDS, Content, IdempotencyKey, Run, RunStore
 
 RUN = "run.json"
+_ANYONE = "anyone"
 
 
 def export_run(store: RunStore, run_id: str) -> bytes:
-    """The archive of a run that has ended.
+    """The archive of a run that has ended, all at once; raises as `export_pieces`."""
+    return b"".join(export_pieces(store, run_id))
+
+
+def export_pieces(
+    store: RunStore, run_id: str, budget: MemoryBudget | None = None
+) -> Iterator[bytes]:
+    """The archive of a run that has ended, piece by piece: its files are not held in memory.
+
+    Args:
+        store: where it is.
+        run_id: of the run.
+        budget: for what is held until the last piece: the run's row, its curve or its trials.
 
     Raises:
         NotFound: if there is no such run.
         Conflict: if it has not ended.
         DamagedFile: if one of its files is damaged.
         InvalidInput: if it is too large.
+        Busy: if the budget does not allow for it now.
     """
     run = store.get(run_id)
-    members = {RUN: run_json(run, store.evaluations(run_id))}
+    texts = {RUN: run_json(run, store.evaluations(run_id))}
     if run.kind == "experiment":
-        members[TRIALS] = trials_json(store.trials(run_id))
-    return archives.pack(members | files_of(store, run))
+        texts[TRIALS] = trials_json(store.trials(run_id))
+    held = {name: archives.member(text) for name, text in texts.items()}
+    pieces = archives.packed(held | files_of(store, run))
+    return pieces if budget is None else _HeldPieces(pieces, sum(map(len, texts.values())), budget)
+
+
+class _HeldPieces:
+    """Pieces whose beginnings stay in memory, and count, for as long as this object is there."""
+
+    def __init__(self, pieces: Iterator[bytes], size: int, budget: MemoryBudget) -> None:
+        self._pieces, self._size, self._budget = pieces, 0, budget
+        if budget.take(_ANYONE, size) is not None:
+            raise Busy("as much is exported as the server can at once; try again in a moment", 5)
+        self._size = size
+
+    def __iter__(self) -> Iterator[bytes]:
+        return self
+
+    def __next__(self) -> bytes:
+        return next(self._pieces)
+
+    def __del__(self) -> None:
+        # Also of an answer that was never begun, whose generator's `finally` would not run.
+        if self._size:
+            self._budget.give_back(_ANYONE, self._size)
 
 
 def import_run(

@@ -1,42 +1,45 @@
 """A race's recording in the forms that leave the server."""
 
-import io
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from app.runs.recording import LaneRecording, race_arrays
+from app.runs.recording import LaneRecording
 from app.runs.records import LaneStep
 
 
 def as_json(
-    lanes: Sequence[LaneRecording], training_ids: Sequence[str | None], steps: int
+    look: Callable[[], Sequence[LaneRecording]], training_ids: Sequence[str | None], steps: int
 ) -> Iterator[str]:
     """All that a replay needs, in chunks.
 
     Of each step: what was seen and done, and `qpos` at the times `time_s` since its motion began.
+
+    Args:
+        look: the recording. It is asked for anew for each chunk, and not held while a client
+            takes that: recordings are large, and readers may be many and slow.
+        training_ids: for each lane where its table is from.
+        steps: that each lane is to take.
     """
     yield f'{{"steps": {steps}, "lanes": ['
-    for number, (lane, training) in enumerate(zip(lanes, training_ids, strict=True)):
-        head = {
-            "agent": lane.agent,
-            "training_id": training,
-            "failure": lane.failure,
-            "rest_qpos": _rounded(lane.rest_qpos),
-        }
-        yield (", " if number else "") + json.dumps(head)[:-1] + ', "steps": ['
-        for place, step in enumerate(list(lane.steps)):
-            yield (",\n" if place else "") + json.dumps(_step(step))
+    for number, training in enumerate(training_ids):
+        yield (", " if number else "") + _head(look()[number], training)
+        # Others may add to the recording meanwhile.
+        for place in range(len(look()[number].steps)):
+            yield (",\n" if place else "") + json.dumps(_step(look()[number].steps[place]))
         yield "]}"
     yield "]}\n"
 
 
-def as_npz(lanes: Sequence[LaneRecording]) -> bytes:
-    """The recording's arrays, as `app.runs.recording.race_recording` reads them."""
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, **race_arrays(lanes))  # type: ignore[arg-type]
-    return buffer.getvalue()
+def _head(lane: LaneRecording, training_id: str | None) -> str:
+    head = {
+        "agent": lane.agent,
+        "training_id": training_id,
+        "failure": lane.failure,
+        "rest_qpos": _rounded(lane.rest_qpos),
+    }
+    return json.dumps(head)[:-1] + ', "steps": ['
 
 
 def _step(step: LaneStep) -> dict[str, object]:

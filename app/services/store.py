@@ -7,6 +7,7 @@ from typing import Any, Literal, NamedTuple, Protocol, get_args
 
 from app.experiments.config import ExperimentConfig
 from app.runs.config import RaceConfig, TrainingConfig
+from app.services.artifact_file import ArtifactFile
 from app.services.sessions import SessionRows
 
 Kind = Literal["training", "race", "experiment"]
@@ -296,3 +297,6 @@ class RunStore(Protocol):
 
     def artifact(self, run_id: str, name: str) -> bytes | None:
         """A file of the run's; None if it has none of this name."""
+
+    def open_artifact(self, run_id: str, name: str) -> ArtifactFile | None:
+        """The same, to be read piece by piece, and to be closed."""

@@ -19,14 +19,17 @@ from app.runs.recording import (
     race_recording,
 )
 from app.runs.stored_practice import evaluation_arrays, practice_arrays, practice_recording
+from app.services.artifact_file import ReadableArtifact
 from app.services.errors import NotFound
 from app.services.store import RunStore
 
 RACE, PRACTICE = "race.npz", "practice.npz"
 EVALUATIONS_A_FILE = 20
-KEPT_IN_MEMORY = 4
-"""Of either kind: a long training's takes up to 80 MB."""
+KEPT_IN_MEMORY, KEPT_BYTES = 4, 100_000_000
+"""Of either kind, and how large together; the one that was asked for last is kept in any case."""
 _ASK_AGAIN_S = 1.0
+_BESIDE_MOTION = 1000
+"""Bytes of a step beside its motion, about."""
 T = TypeVar("T")
 _logger = logging.getLogger(__name__)
 
@@ -36,8 +39,12 @@ class StoredRecordings:
 
     def __init__(self, store: RunStore) -> None:
         self._store = store
-        self._trainings = _Newest[PracticeRecording](lambda run_id: _read_training(store, run_id))
-        self._races = _Newest[list[LaneRecording]](lambda run_id: _read_race(store, run_id))
+        self._trainings = _Newest[PracticeRecording](
+            lambda run_id: _read_training(store, run_id), _size_of_training
+        )
+        self._races = _Newest[list[LaneRecording]](
+            lambda run_id: _read_race(store, run_id), _size_of_race
+        )
         self._evaluations: dict[str, int] = {}
 
     def training(self, run_id: str) -> PracticeRecording | None:
@@ -96,26 +103,27 @@ class StoredRecordings:
 class _Found(NamedTuple, Generic[T]):
     value: T | None
     asked_s: float
+    size: int
 
 
 class _Newest(Generic[T]):
     """The values that were asked for last; that there is none is believed for a second."""
 
-    def __init__(self, read: Callable[[str], T | None]) -> None:
-        self._read, self._lock = read, threading.Lock()
+    def __init__(self, read: Callable[[str], T | None], size_of: Callable[[T], int]) -> None:
+        self._read, self._size_of, self._lock = read, size_of, threading.Lock()
         self._found: OrderedDict[str, _Found[T]] = OrderedDict()
 
     def get(self, key: str) -> T | None:
         with self._lock:
             found, now = self._found.get(key), time.monotonic()
             if found is None or (found.value is None and now - found.asked_s > _ASK_AGAIN_S):
-                found = _Found(self._tried(key), now)
+                found = self._sized(self._tried(key), now)
             self._put(key, found)
             return found.value
 
     def put(self, key: str, value: T) -> None:
         with self._lock:
-            self._put(key, _Found(value, time.monotonic()))
+            self._put(key, self._sized(value, time.monotonic()))
 
     def drop(self, key: str) -> None:
         with self._lock:
@@ -124,8 +132,15 @@ class _Newest(Generic[T]):
     def _put(self, key: str, found: _Found[T]) -> None:
         self._found[key] = found
         self._found.move_to_end(key)
-        while len(self._found) > KEPT_IN_MEMORY:
+        while len(self._found) > 1 and self._is_too_much():
             self._found.popitem(last=False)
+
+    def _is_too_much(self) -> bool:
+        size = sum(found.size for found in self._found.values())
+        return len(self._found) > KEPT_IN_MEMORY or size > KEPT_BYTES
+
+    def _sized(self, value: T | None, now: float) -> _Found[T]:
+        return _Found(value, now, 0 if value is None else self._size_of(value))
 
     def _tried(self, key: str) -> T | None:
         try:
@@ -139,22 +154,34 @@ class _Newest(Generic[T]):
 
 
 def _read_training(store: RunStore, run_id: str) -> PracticeRecording | None:
-    data = store.artifact(run_id, PRACTICE)
-    if data is None:
-        return None
-    return practice_recording(_arrays(data), _evaluation_files(store, run_id))
+    arrays = _arrays(store, run_id, PRACTICE)
+    return None if arrays is None else practice_recording(arrays, _evaluations(store, run_id))
 
 
-def _evaluation_files(store: RunStore, run_id: str) -> Iterator[Arrays]:
+def _evaluations(store: RunStore, run_id: str) -> Iterator[Arrays]:
     number = 0
-    while (data := store.artifact(run_id, evaluations_file(number))) is not None:
-        yield _arrays(data)
+    while (arrays := _arrays(store, run_id, evaluations_file(number))) is not None:
+        yield arrays
         number += 1
 
 
 def _read_race(store: RunStore, run_id: str) -> list[LaneRecording] | None:
-    data = store.artifact(run_id, RACE)
-    return None if data is None else race_recording(_arrays(data))
+    arrays = _arrays(store, run_id, RACE)
+    return None if arrays is None else race_recording(arrays)
+
+
+def _size_of_training(recording: PracticeRecording) -> int:
+    motions = [step.motion for step in recording.steps]
+    motions += [evaluation.motion for evaluation in recording.evaluations]
+    return sum(motion.qpos.nbytes + motion.time_s.nbytes for motion in motions if motion)
+
+
+def _size_of_race(lanes: list[LaneRecording]) -> int:
+    return sum(
+        step.motion.qpos.nbytes + step.motion.time_s.nbytes + _BESIDE_MOTION
+        for lane in lanes
+        for step in lane.steps
+    )
 
 
 def evaluations_file(number: int) -> str:
@@ -162,6 +189,13 @@ def evaluations_file(number: int) -> str:
     return f"evaluations-{number:04}.npz"
 
 
-def _arrays(data: bytes) -> Arrays:
-    with np.load(io.BytesIO(data), allow_pickle=False) as file:
-        return {name: file[name] for name in file.files}
+def _arrays(store: RunStore, run_id: str, name: str) -> Arrays | None:
+    file = store.open_artifact(run_id, name)
+    if file is None:
+        return None
+    try:
+        # From the file rather than from its bytes, which would be in memory beside the arrays.
+        with np.load(io.BufferedReader(ReadableArtifact(file)), allow_pickle=False) as arrays:
+            return {name: arrays[name] for name in arrays.files}
+    finally:
+        file.close()

@@ -8,7 +8,7 @@ from app.runs.recording import LaneRecording
 from app.services.casting import race_cast
 from app.services.show import Billing
 from app.services.show_race import RaceShow
-from app.viewer.loopback import loopback_viser
+from app.viewer.in_process import in_process_viser
 from app.viewer.scene import StageScene
 
 FRAMES_PER_S = 30
@@ -35,7 +35,7 @@ def film(
     length_s = show.duration_s or 0.0
     speed = length_s / LONGEST_S if length_s > 2 * LONGEST_S else None
     frame_s, billing = 1 / FRAMES_PER_S, Billing(None, name)
-    with loopback_viser() as server:
+    with in_process_viser() as server:
         scene = StageScene(server)
         scene.draw(show.frame(billing), now=0.0)
         serializer = server.get_scene_serializer()

@@ -1,20 +1,18 @@
 """The hub: one connection to viser, shown to every browser.
 
-viser encodes anew for each client and has no notion of who may do what. So it has one client, this
-one, on loopback, and browsers get the bytes it gets, on the app's own port. They cannot say
+viser encodes anew for each client and has no notion of who may do what. So it has one reader, this
+one, within the process, and browsers get the bytes it gets, on the app's own port. They cannot say
 anything to viser: the hub listens to nothing but which robot they want to follow.
 """
 
 import asyncio
+import contextlib
 import logging
-from collections.abc import Callable, Collection
+from collections.abc import AsyncGenerator, Callable, Collection
 from types import TracebackType
 from typing import Self
 
 from starlette.websockets import WebSocket
-from websockets.asyncio.client import connect
-from websockets.exceptions import WebSocketException
-from websockets.typing import Subprotocol
 
 from app.viewer import follow, wire
 from app.viewer.session import Counters, Session
@@ -29,6 +27,8 @@ _GOING_AWAY = 1001
 _SERVICE_RESTART = 1012
 _TRY_AGAIN_LATER = 1013
 
+Upstream = Callable[[], AsyncGenerator[bytes, None]]
+
 _logger = logging.getLogger(__name__)
 
 
@@ -40,7 +40,7 @@ class Hub:
 
     def __init__(
         self,
-        port: int,
+        upstream: Upstream | None = None,
         *,
         follow_position: follow.FollowPosition | None = None,
         follow_frame: str = "/world",
@@ -51,7 +51,8 @@ class Hub:
         """Connect to nothing yet.
 
         Args:
-            port: viser's, on 127.0.0.1.
+            upstream: Begins viser's stream of encoded frames, and ends with a ConnectionError
+                when viser does; None while there is no viser.
             follow_position: Where the robots are that can be followed; without it, none can.
             follow_frame: The scene node that everything is drawn under.
             max_viewers: Further ones are asked to try again later.
@@ -59,7 +60,7 @@ class Hub:
                 that changes the Host.
             on_viewers_changed: Called with how many watch when that changes.
         """
-        self.port = port
+        self.upstream = upstream
         """May be changed; counts from the next time that viser is lost and found."""
         self.counters = Counters()
         self._follow_position = follow_position
@@ -71,7 +72,7 @@ class Hub:
         self._snapshot = Snapshot()
         self._packed: dict[tuple[int | None, str], wire.Frame] = {}
         self._live = False
-        self._upstream: asyncio.Task[None] | None = None
+        self._relaying: asyncio.Task[None] | None = None
 
     @property
     def live(self) -> bool:
@@ -92,20 +93,20 @@ class Hub:
 
     def start(self) -> None:
         """Connect to viser, now and whenever it comes back. Needs a running event loop."""
-        if self._upstream is None:
-            self._upstream = asyncio.create_task(self._stay_connected())
+        if self._relaying is None:
+            self._relaying = asyncio.create_task(self._stay_connected())
 
     async def stop(self) -> None:
         """Close every viewer, in about a second at most, and disconnect. May be called twice."""
-        upstream, self._upstream = self._upstream, None
-        if upstream is None:
+        relaying, self._relaying = self._relaying, None
+        if relaying is None:
             return
-        upstream.cancel()
+        relaying.cancel()
         sessions = list(self._sessions)
         for session in sessions:
             session.close(_GOING_AWAY, "the server stops")
         await asyncio.gather(*(session.closed(_GOODBYE_S) for session in sessions))
-        await asyncio.gather(upstream, return_exceptions=True)
+        await asyncio.gather(relaying, return_exceptions=True)
 
     async def serve(self, websocket: WebSocket) -> None:
         """Serve one browser until it leaves: the endpoint of the websocket route.
@@ -137,7 +138,7 @@ class Hub:
     def _refusal(self, offered: list[str]) -> tuple[int, str] | None:
         if wire.SUBPROTOCOL not in offered:
             return _PROTOCOL_ERROR, "reload"
-        if self._upstream is None:
+        if self._relaying is None:
             return _GOING_AWAY, "the server stops"
         if len(self._sessions) >= self._max_viewers:
             return _TRY_AGAIN_LATER, "full"
@@ -159,7 +160,7 @@ class Hub:
         while True:
             try:
                 await self._relay()
-            except (OSError, WebSocketException) as error:
+            except ConnectionError as error:
                 if self._live:
                     _logger.warning("lost viser, trying again: %s", error)
             except Exception:
@@ -169,17 +170,11 @@ class Hub:
             await asyncio.sleep(_RETRY_S)
 
     async def _relay(self) -> None:
-        async with connect(
-            f"ws://127.0.0.1:{self.port}/",
-            subprotocols=[Subprotocol(wire.SUBPROTOCOL)],
-            compression=None,
-            max_size=None,
-            ping_interval=None,
-            proxy=None,
-        ) as upstream:
-            self._snapshot = Snapshot()
-            while True:
-                raw = await upstream.recv(decode=False)
+        if self.upstream is None:
+            raise ConnectionError("there is no viser yet")
+        self._snapshot = Snapshot()
+        async with contextlib.aclosing(self.upstream()) as frames:
+            async for raw in frames:
                 self._take(wire.parse(raw).without(UNWANTED))
 
     def _take(self, frame: wire.Frame) -> None:

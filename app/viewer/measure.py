@@ -1,12 +1,10 @@
-"""What one update of the stage costs, as a viewer's connection sees it."""
+"""What one update of the stage costs, as the hub sees it."""
 
+import asyncio
+import contextlib
 import statistics
 import threading
 import time
-
-from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import connect
-from websockets.typing import Subprotocol
 
 from app.assembly import build_walkers
 from app.runs.config import LaneConfig, RaceConfig
@@ -14,9 +12,8 @@ from app.runs.racing import record_race
 from app.services.casting import PAPERS_LANES, race_cast
 from app.services.show import Billing
 from app.services.show_race import RaceShow
-from app.viewer.loopback import loopback_viser
+from app.viewer.in_process import InProcessViser, in_process_viser
 from app.viewer.scene import StageScene
-from app.viewer.wire import SUBPROTOCOL
 
 _BETWEEN_S = 1 / 60
 _SETTLED_S = 0.5
@@ -25,14 +22,14 @@ _SETTLED_S = 0.5
 def measure_stage_update(updates: int = 200) -> tuple[float, float]:
     """Milliseconds to make, and bytes to send, one update with three robots that walk.
 
-    Each is the median over updates that a real client on loopback receives; the time is that of
+    Each is the median over updates that viser's reader receives; the time is that of
     the drawing thread from the stage's frame to viser's queue.
 
     Args:
         updates: how many are measured.
     """
     show = _walking_show()
-    with loopback_viser() as server, _Receiver(server.get_port()) as receiver:
+    with in_process_viser() as server, _Receiver(server) as receiver:
         scene = StageScene(server)
         scene.draw(show.frame(Billing(None, "Race")), now=0.0)
         receiver.wait_until_quiet()
@@ -60,25 +57,21 @@ def _walking_show() -> RaceShow:
 
 
 class _Receiver:
-    """A viewer that only counts what it gets."""
+    """A reader of viser's stream that only counts what it gets."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, server: InProcessViser) -> None:
         self.sizes: list[int] = []
-        self._socket = connect(
-            f"ws://127.0.0.1:{port}/",
-            subprotocols=[Subprotocol(SUBPROTOCOL)],
-            compression=None,
-            max_size=None,
-            proxy=None,
-        )
-        self._thread = threading.Thread(target=self._receive, daemon=True)
+        self._server = server
+        self._loop = asyncio.new_event_loop()
+        self._receiving = self._loop.create_task(self._receive())
+        self._thread = threading.Thread(target=self._run, daemon=True)
 
     def __enter__(self) -> "_Receiver":
         self._thread.start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._socket.close()
+        self._loop.call_soon_threadsafe(self._receiving.cancel)
         self._thread.join()
 
     def wait_until_quiet(self) -> None:
@@ -88,9 +81,12 @@ class _Receiver:
             before = len(self.sizes)
             time.sleep(_SETTLED_S)
 
-    def _receive(self) -> None:
-        try:
-            while True:
-                self.sizes.append(len(self._socket.recv(decode=False)))
-        except ConnectionClosed:
-            return
+    def _run(self) -> None:
+        with contextlib.suppress(asyncio.CancelledError):
+            self._loop.run_until_complete(self._receiving)
+        self._loop.close()
+
+    async def _receive(self) -> None:
+        async with contextlib.aclosing(self._server.frames()) as frames:
+            async for frame in frames:
+                self.sizes.append(len(frame))

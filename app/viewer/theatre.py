@@ -15,13 +15,13 @@ from app.services.stage import Stage
 from app.viewer.film import film
 from app.viewer.follow import Position
 from app.viewer.hub import Hub
-from app.viewer.loopback import loopback_viser
+from app.viewer.in_process import in_process_viser
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop
 
 
 class Theatre:
-    """`async with theatre:` lets the show go on; all of viser stays on loopback."""
+    """`async with theatre:` lets the show go on; viser listens nowhere."""
 
     def __init__(self, stage: Stage, bus: EventBus, allowed_origins: Collection[str] = ()) -> None:
         """Start nothing yet.
@@ -36,7 +36,6 @@ class Theatre:
         self._running = ExitStack()
         self._filming = threading.Lock()
         self.hub = Hub(
-            0,  # until viser has one
             follow_position=self._follow_position,
             allowed_origins=allowed_origins,
             on_viewers_changed=lambda count: bus.publish("viewers", {"count": count}),
@@ -64,8 +63,8 @@ class Theatre:
             return film(config, lanes, name, clock)
 
     def _open(self) -> None:
-        server = self._running.enter_context(loopback_viser())
-        self.hub.port = server.get_port()
+        server = self._running.enter_context(in_process_viser())
+        self.hub.upstream = server.frames
         self._scene = StageScene(server)
         self._running.enter_context(StageLoop(self._stage, self._scene, self._bus))
 

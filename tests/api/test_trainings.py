@@ -67,10 +67,11 @@ def test_its_table_is_there_in_three_forms(api: Api, trained: dict[str, Any]) ->
     assert len(shown["values"]) == 1500
     table = table_of(from_bytes(api.call("GET", path, params={"format": "npz"}).content, "it"))
     assert table.sha256() == trained["result"]["q_table_sha256"]
+    by_state = {state: (values, visits) for state, values, visits in table.rows()}
     for entry in shown["values"]:
-        pair, cell = entry["action"]
-        assert table.values(tuple(entry["state"]))[pair, cell] == entry["value"]
-        assert table.visits(tuple(entry["state"]))[pair, cell] == entry["visits"]
+        (values, visits), (pair, cell) = by_state[tuple(entry["state"])], entry["action"]
+        assert values[pair, cell] == entry["value"]
+        assert visits[pair, cell] == entry["visits"]
     rows = list(csv.DictReader(io.StringIO(api.call("GET", f"{path}?format=csv").text)))
     assert len(rows) == 1500
     assert sum(int(row["visits"]) for row in rows) == 100

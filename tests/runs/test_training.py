@@ -251,7 +251,7 @@ def test_going_on_from_a_table_takes_what_was_learned_and_nothing_else() -> None
 
     # Values, visits and the learning generator go on …
     assert table_hash(onward) == table_hash(first)
-    assert np.array_equal(successor.table.n, agent.table.n)
+    assert np.array_equal(successor.table.dump()["n"], agent.table.dump()["n"])
     assert seeding.dump(onward.rng) == seeding.dump(first.rng)
     # … ε restarts, rates are the new run's, the robot starts from rest.
     assert onward.epsilon == 1

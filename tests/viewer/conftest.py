@@ -3,18 +3,18 @@
 from collections.abc import Iterator
 
 import pytest
-import viser
 
+from app.viewer.in_process import InProcessViser
 from tests.viewer.serving import Robots, start_viser
 
 
 @pytest.fixture
-def stage() -> Iterator[viser.ViserServer]:
+def stage() -> Iterator[InProcessViser]:
     server = start_viser()
     yield server
     server.stop()
 
 
 @pytest.fixture
-def robots(stage: viser.ViserServer) -> Robots:
+def robots(stage: InProcessViser) -> Robots:
     return Robots(stage)

@@ -1,11 +1,12 @@
 """A hub on a real server, and real clients to it, all on loopback."""
 
+import asyncio
 import socket
 import threading
 import time
-from collections.abc import AsyncIterator, Callable, Iterator, Sequence
-from contextlib import asynccontextmanager, contextmanager
-from typing import Any
+from collections.abc import AsyncGenerator, AsyncIterator, Callable, Coroutine, Iterator, Sequence
+from contextlib import aclosing, asynccontextmanager, contextmanager
+from typing import Any, TypeVar
 
 import numpy as np
 import uvicorn
@@ -18,18 +19,40 @@ from websockets.typing import Subprotocol
 
 from app.viewer import wire
 from app.viewer.hub import Hub
+from app.viewer.in_process import InProcessViser
 from app.viewer.protocol import websocket_options
 from app.viewer.routes import viewer_routes
+
+T = TypeVar("T")
 
 PATIENCE_S = 30.0
 """No test depends on how long anything takes; this only ends one that would hang."""
 
 
-def start_viser(port: int = 0) -> viser.ViserServer:
-    """viser on loopback, drawing everything under the frame that followers move."""
-    stage = viser.ViserServer(host="127.0.0.1", port=port, verbose=False)
+def start_viser() -> InProcessViser:
+    """viser, drawing everything under the frame that followers move."""
+    stage = InProcessViser()
     stage.scene.add_frame("/world", show_axes=False)
     return stage
+
+
+class Upstream:
+    """viser's stream to the hub, which can be lost, and is found again."""
+
+    def __init__(self, stage: InProcessViser) -> None:
+        self._stage, self._is_lost = stage, False
+
+    async def frames(self) -> AsyncGenerator[bytes, None]:
+        async with aclosing(self._stage.frames()) as frames:
+            async for frame in frames:
+                if self._is_lost:
+                    self._is_lost = False
+                    raise ConnectionError("lost by the test")
+                yield frame
+
+    def lose(self) -> None:
+        self._is_lost = True
+        self._stage.scene.add_frame("/lost", show_axes=False)
 
 
 class Robots:
@@ -90,6 +113,46 @@ class Address:
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
         sock.connect(("127.0.0.1", self.port))
         return self.watch(view, sock=sock, max_queue=1, ping_interval=None, close_timeout=0.1)
+
+
+class Reader:
+    """Reads viser's own stream, as the hub does, from a thread that has no loop."""
+
+    def __init__(self, stage: InProcessViser) -> None:
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
+        self._thread.start()
+        self._frames = stage.frames()
+
+    def __enter__(self) -> "Reader":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._wait(self._frames.aclose())
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+        self._loop.close()
+
+    def frame(self) -> wire.Frame:
+        """The next frame.
+
+        Raises:
+            ConnectionError: There is none any more.
+        """
+        return wire.parse(self._wait(self._next()))
+
+    def frames_until(self, is_last: Callable[[wire.Frame], object]) -> list[wire.Frame]:
+        """The next frames, up to the first one that is the last."""
+        frames = [self.frame()]
+        while not is_last(frames[-1]):
+            frames.append(self.frame())
+        return frames
+
+    async def _next(self) -> bytes:
+        return await anext(self._frames)
+
+    def _wait(self, work: Coroutine[Any, Any, T]) -> T:
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result(PATIENCE_S)
 
 
 class Viewer:

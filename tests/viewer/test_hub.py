@@ -1,19 +1,18 @@
 """Every browser sees what viser draws; none can say anything to it."""
 
 import logging
-import socket
 from collections.abc import Iterator
 from typing import Any
 
 import msgspec
 import numpy as np
 import pytest
-import viser
 from viser import _messages
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from app.viewer import follow, wire
 from app.viewer.hub import Hub
+from app.viewer.in_process import InProcessViser
 from tests.viewer.serving import (
     Address,
     Robots,
@@ -29,8 +28,8 @@ FULL = says("ReplayDoneMessage")
 
 
 @pytest.fixture
-def address(stage: viser.ViserServer, robots: Robots) -> Iterator[Address]:
-    with serving(Hub(stage.get_port())) as address:
+def address(stage: InProcessViser, robots: Robots) -> Iterator[Address]:
+    with serving(Hub(stage.frames)) as address:
         yield address
 
 
@@ -74,9 +73,9 @@ def test_all_get_the_same_bytes(address: Address, robots: Robots) -> None:
             ]
 
 
-def test_viewers_are_counted(stage: viser.ViserServer) -> None:
+def test_viewers_are_counted(stage: InProcessViser) -> None:
     counts: list[int] = []
-    hub = Hub(stage.get_port(), on_viewers_changed=counts.append)
+    hub = Hub(stage.frames, on_viewers_changed=counts.append)
     with serving(hub) as address:
         with address.watch() as one, address.watch() as other:
             one.frame()
@@ -108,8 +107,8 @@ def test_who_does_not_read_is_merged_and_harms_nobody(address: Address, robots: 
         assert counters.resyncs == 0
 
 
-def test_who_answers_no_ping_is_let_go(stage: viser.ViserServer, robots: Robots) -> None:
-    hub = Hub(stage.get_port())
+def test_who_answers_no_ping_is_let_go(stage: InProcessViser, robots: Robots) -> None:
+    hub = Hub(stage.frames)
     with (
         # The one who answers may be slow to, beside other work on the machine.
         serving(hub, ws_ping_interval=0.2, ws_ping_timeout=3.0) as address,
@@ -129,8 +128,8 @@ def test_who_answers_no_ping_is_let_go(stage: viser.ViserServer, robots: Robots)
         assert hub.counters.viewers == 1
 
 
-def test_stalled_viewers_do_not_hold_up_the_end(stage: viser.ViserServer, robots: Robots) -> None:
-    hub = Hub(stage.get_port())
+def test_stalled_viewers_do_not_hold_up_the_end(stage: InProcessViser, robots: Robots) -> None:
+    hub = Hub(stage.frames)
     with serving(hub) as address:
         slow = address.watch_slowly()
         quick = address.watch()
@@ -147,7 +146,7 @@ def test_stalled_viewers_do_not_hold_up_the_end(stage: viser.ViserServer, robots
     slow.socket.close()
 
 
-def test_nobody_is_heard_by_viser(stage: viser.ViserServer, address: Address) -> None:
+def test_nobody_is_heard_by_viser(stage: InProcessViser, address: Address) -> None:
     heard: list[object] = []
     stage.on_client_connect(heard.append)
     box = stage.gui.add_checkbox("box", initial_value=False)
@@ -186,8 +185,8 @@ def test_another_version_is_told_to_reload(address: Address, protocol: str) -> N
         assert close_code(viewer) == (1002, "reload")
 
 
-def test_a_full_house_says_so_and_has_room_again(stage: viser.ViserServer) -> None:
-    with serving(Hub(stage.get_port(), max_viewers=1)) as address:
+def test_a_full_house_says_so_and_has_room_again(stage: InProcessViser) -> None:
+    with serving(Hub(stage.frames, max_viewers=1)) as address:
         with address.watch() as first:
             first.frame()
             with address.watch() as second:
@@ -205,15 +204,15 @@ def test_foreign_pages_get_nothing(address: Address, origin: str) -> None:
     assert refused.value.response.status_code == 403
 
 
-def test_our_own_page_and_a_named_one_get_in(stage: viser.ViserServer) -> None:
-    hub = Hub(stage.get_port(), allowed_origins=["https://race.example"])
+def test_our_own_page_and_a_named_one_get_in(stage: InProcessViser) -> None:
+    hub = Hub(stage.frames, allowed_origins=["https://race.example"])
     with serving(hub) as address:
         for origin in (f"http://{address.host}", "https://race.example"):
             with address.watch(origin=origin) as viewer:
                 assert FULL(viewer.frame())
 
 
-def test_scripts_reach_no_browser(stage: viser.ViserServer, address: Address) -> None:
+def test_scripts_reach_no_browser(stage: InProcessViser, address: Address) -> None:
     with address.watch() as early:
         early.frame()
         with stage.atomic():
@@ -231,12 +230,13 @@ def test_scripts_reach_no_browser(stage: viser.ViserServer, address: Address) ->
 def test_viser_s_return_is_seen_by_all(caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.WARNING, "app.viewer.hub")
     stage = start_viser()
-    port = stage.get_port()
-    with serving(Hub(port)) as address, address.watch() as before:
+    hub = Hub(stage.frames)
+    with serving(hub) as address, address.watch() as before:
         assert FULL(before.frame())
         stage.stop()
         with address.watch() as meanwhile:
-            again = start_viser(port)
+            again = start_viser()
+            hub.upstream = again.frames
             again.scene.add_label("/world/again", "here")
 
             assert close_code(before) == (1012, "resync")
@@ -252,11 +252,10 @@ def test_viser_s_return_is_seen_by_all(caplog: pytest.LogCaptureFixture) -> None
 
 
 def test_viewers_wait_for_viser() -> None:
-    with socket.socket() as reserved:
-        reserved.bind(("127.0.0.1", 0))
-        port = reserved.getsockname()[1]
-    with serving(Hub(port)) as address, address.watch() as viewer:
-        stage = start_viser(port)
+    hub = Hub()
+    with serving(hub) as address, address.watch() as viewer:
+        stage = start_viser()
+        hub.upstream = stage.frames
         assert FULL(viewer.frame())
         stage.stop()
 
@@ -277,8 +276,8 @@ def race() -> Race:
 
 
 @pytest.fixture
-def followed(stage: viser.ViserServer, robots: Robots, race: Race) -> Iterator[Address]:
-    with serving(Hub(stage.get_port(), follow_position=race)) as address:
+def followed(stage: InProcessViser, robots: Robots, race: Race) -> Iterator[Address]:
+    with serving(Hub(stage.frames, follow_position=race)) as address:
         yield address
 
 

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-import viser
 from playwright.sync_api import Browser, ConsoleMessage, Frame, Page
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, Response
@@ -13,7 +12,8 @@ from starlette.routing import Route
 
 from app.viewer import follow, wire
 from app.viewer.hub import Hub
-from tests.viewer.serving import Address, eventually, serving, start_viser
+from app.viewer.in_process import InProcessViser
+from tests.viewer.serving import Address, Upstream, eventually, serving, start_viser
 
 DASHBOARD = """
 <!doctype html>
@@ -45,13 +45,18 @@ def recording() -> Recording:
 
 
 @pytest.fixture
-def address(stage: viser.ViserServer, recording: Recording) -> Iterator[Address]:
+def upstream(stage: InProcessViser) -> Upstream:
+    return Upstream(stage)
+
+
+@pytest.fixture
+def address(stage: InProcessViser, upstream: Upstream, recording: Recording) -> Iterator[Address]:
     stage.scene.add_box("/world/box", color=(255, 255, 255), dimensions=(2, 2, 2))
     more_routes = [
         Route("/", lambda _: HTMLResponse(DASHBOARD)),
         Route("/api/v1/races/{id}/recording", recording.send),
     ]
-    hub = Hub(stage.get_port(), follow_position=POSITIONS.get)
+    hub = Hub(upstream.frames, follow_position=POSITIONS.get)
     with serving(hub, more_routes=more_routes) as address:
         yield address
 
@@ -123,7 +128,7 @@ def socket_addresses(page: Page) -> list[str]:
     return addresses
 
 
-def test_the_picture_changes_with_the_scene(viewer: Frame, stage: viser.ViserServer) -> None:
+def test_the_picture_changes_with_the_scene(viewer: Frame, stage: InProcessViser) -> None:
     eventually(lambda: drawn_pixels(viewer) > 0)
     before = drawn_pixels(viewer)
 
@@ -157,15 +162,15 @@ def test_the_view_changes_without_a_reload(
 
 
 def test_the_view_outlives_a_lost_connection(
-    dashboard: Page, viewer: Frame, stage: viser.ViserServer
+    dashboard: Page, viewer: Frame, upstream: Upstream
 ) -> None:
     dashboard.evaluate("show({ view: '2' })")
     is_centred_on(viewer, 2, 0)
     viewer.evaluate("__viserMutable.nodePoseData['/world'].position = [9, 9, 9]")
     dashboard.evaluate("heard.length = 0")
 
-    # viser drops the hub, the hub then sends its viewers back to the door.
-    stage._websock_server.disconnect_all_clients()
+    # The hub loses viser, and then sends its viewers back to the door.
+    upstream.lose()
 
     dashboard.wait_for_function("heard.some((message) => message.status === 'connected')")
     is_centred_on(viewer, 2, 0)
@@ -221,9 +226,9 @@ def test_a_page_of_another_version_reloads_once(
     assert len(loads) == 2
 
 
-def test_a_full_house_is_told_to_the_dashboard(page: Page, stage: viser.ViserServer) -> None:
+def test_a_full_house_is_told_to_the_dashboard(page: Page, stage: InProcessViser) -> None:
     root = Route("/", lambda _: HTMLResponse(DASHBOARD))
-    with serving(Hub(stage.get_port(), max_viewers=0), more_routes=[root]) as address:
+    with serving(Hub(stage.frames, max_viewers=0), more_routes=[root]) as address:
         page.goto(f"http://{address.host}/")
 
         page.wait_for_function("heard.some((message) => message.status === 'full')")

@@ -16,7 +16,7 @@ from app.viewer.routes import viewer_routes
 
 @pytest.fixture(scope="module")
 def client() -> TestClient:
-    routes = viewer_routes(Hub(port=1))
+    routes = viewer_routes(Hub())
     return TestClient(Starlette(routes=routes), follow_redirects=False)
 
 

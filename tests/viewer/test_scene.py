@@ -1,15 +1,11 @@
 """The stage drawn in a real viser, as a real client is told it."""
 
-import socket
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
-import viser
-from websockets.sync.client import connect
-from websockets.typing import Subprotocol
 
 from app.domain.grid import FootGrid
 from app.domain.robot import Robot, ring
@@ -17,28 +13,28 @@ from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
 from app.services.casting import idle_cast, race_cast, rest_pose, training_cast
 from app.services.frames import Cast, Ghost, KnowledgeView, LaneView, StageFrame
 from app.viewer import wire
-from app.viewer.loopback import loopback_viser
+from app.viewer.in_process import InProcessViser, in_process_viser
 from app.viewer.measure import measure_stage_update
 from app.viewer.robot_mesh import RobotMesh
 from app.viewer.scene import StageScene
 from app.viewer.snapshot import Snapshot
+from tests.viewer.serving import Reader
 
 GAIT = "left-right-vertical"
 
 
 @pytest.fixture
-def server() -> Iterator[viser.ViserServer]:
-    with loopback_viser() as started:
+def server() -> Iterator[InProcessViser]:
+    with in_process_viser() as started:
         yield started
 
 
-def told(server: viser.ViserServer) -> dict[str, dict[str, Any]]:
+def told(server: InProcessViser) -> dict[str, dict[str, Any]]:
     """Every node of the scene with its properties, as a newcomer is told them."""
-    url, snapshot = f"ws://127.0.0.1:{server.get_port()}/", Snapshot()
-    protocol = Subprotocol(wire.SUBPROTOCOL)
-    with connect(url, subprotocols=[protocol], compression=None, max_size=None, proxy=None) as ws:
+    snapshot = Snapshot()
+    with Reader(server) as reader:
         while not snapshot.complete:
-            snapshot.apply(wire.parse(ws.recv(timeout=30, decode=False)))
+            snapshot.apply(reader.frame())
     frame, nodes = snapshot.pack(), dict[str, dict[str, Any]]()
     for message in frame.messages:
         if not message.get("name", "").startswith("/world"):
@@ -76,7 +72,7 @@ def knowing(cast: Cast, current: tuple[int, ...] = (0, 1, 2)) -> KnowledgeView:
 
 
 def test_everything_is_under_one_frame_and_no_robot_is_many_nodes(
-    server: viser.ViserServer,
+    server: InProcessViser,
 ) -> None:
     StageScene(server).draw(standing(race_of(3)))
     three = {name for name in told(server) if "/robots/" in name}
@@ -107,7 +103,7 @@ def test_a_robot_of_any_number_of_legs_stands_where_its_pose_says(legs: int) -> 
         assert part.shape.faces.max() < len(part.shape.vertices)
 
 
-def test_lanes_stand_side_by_side_in_their_agents_colours(server: viser.ViserServer) -> None:
+def test_lanes_stand_side_by_side_in_their_agents_colours(server: InProcessViser) -> None:
     cast = race_of(3)
     scene = StageScene(server)
     scene.draw(standing(cast))
@@ -121,7 +117,7 @@ def test_lanes_stand_side_by_side_in_their_agents_colours(server: viser.ViserSer
     assert plates == [f"{role.name}\n0.00 m, step 3" for role in cast.roles]
 
 
-def test_start_and_finish_have_a_word(server: viser.ViserServer) -> None:
+def test_start_and_finish_have_a_word(server: InProcessViser) -> None:
     StageScene(server).draw(standing(race_of(1)))
     nodes = told(server)
     words = {m["text"] for n, m in nodes.items() if n.endswith("/word")}
@@ -132,7 +128,7 @@ def test_start_and_finish_have_a_word(server: viser.ViserServer) -> None:
     assert np.argmax(green["color"]) == 1
 
 
-def test_the_view_goes_along_with_the_leader(server: viser.ViserServer) -> None:
+def test_the_view_goes_along_with_the_leader(server: InProcessViser) -> None:
     cast, scene = race_of(2), StageScene(server)
     ahead = rest_pose(cast).copy()
     ahead[1] = 0.4
@@ -151,7 +147,7 @@ def test_the_view_goes_along_with_the_leader(server: viser.ViserServer) -> None:
     assert ys[-1] == pytest.approx(0.4, abs=0.01)
 
 
-def test_nothing_is_sent_while_nothing_moves(server: viser.ViserServer) -> None:
+def test_nothing_is_sent_while_nothing_moves(server: InProcessViser) -> None:
     scene, frame = StageScene(server), standing(race_of(3))
     serializer = server.get_scene_serializer()
     assert scene.draw(frame, now=0.0)
@@ -161,7 +157,7 @@ def test_nothing_is_sent_while_nothing_moves(server: viser.ViserServer) -> None:
     assert len(serializer._messages) == once
 
 
-def test_a_new_cast_leaves_nothing_of_the_old(server: viser.ViserServer) -> None:
+def test_a_new_cast_leaves_nothing_of_the_old(server: InProcessViser) -> None:
     scene = StageScene(server)
     practice = training_cast(TrainingConfig(gait=GAIT, divisions=3))
     ghosts = (Ghost(50, 0.1), Ghost(100, 0.3))
@@ -183,7 +179,7 @@ def test_a_new_cast_leaves_nothing_of_the_old(server: viser.ViserServer) -> None
 
 
 def test_cells_take_the_colour_of_their_value_and_the_present_one_none(
-    server: viser.ViserServer,
+    server: InProcessViser,
 ) -> None:
     cast, scene = race_of(1), StageScene(server)
     lane = replace(standing(cast).lanes[0], knowledge=knowing(cast))
@@ -200,7 +196,7 @@ def test_cells_take_the_colour_of_their_value_and_the_present_one_none(
 
 
 @pytest.mark.parametrize("divisions", [2, 3, 8])
-def test_cells_of_every_grid_can_be_drawn(server: viser.ViserServer, divisions: int) -> None:
+def test_cells_of_every_grid_can_be_drawn(server: InProcessViser, divisions: int) -> None:
     cast = replace(race_of(1), grid=FootGrid(0.04, divisions))
     lane = replace(standing(cast).lanes[0], knowledge=knowing(cast))
 
@@ -209,7 +205,7 @@ def test_cells_of_every_grid_can_be_drawn(server: viser.ViserServer, divisions: 
     assert sum(name.endswith("/fills") for name in told(server)) == 2
 
 
-def test_a_photo_finish_draws_every_distance_and_goes_again(server: viser.ViserServer) -> None:
+def test_a_photo_finish_draws_every_distance_and_goes_again(server: InProcessViser) -> None:
     cast, scene = race_of(2), StageScene(server)
     far = replace(standing(cast).lanes[0], distance_m=0.375, rank=1)
     frame = replace(standing(cast), lanes=(far, replace(far, distance_m=-0.01, rank=2)))
@@ -222,7 +218,7 @@ def test_a_photo_finish_draws_every_distance_and_goes_again(server: viser.ViserS
     assert not [name for name in told(server) if "/photo" in name]
 
 
-def test_a_photo_finish_under_another_clock_is_another_photo(server: viser.ViserServer) -> None:
+def test_a_photo_finish_under_another_clock_is_another_photo(server: InProcessViser) -> None:
     scene, frame = StageScene(server), standing(race_of(3))
     scene.draw(replace(frame, phase="photo-finish"))
     retimed = tuple(replace(lane, distance_m=0.25, rank=2) for lane in frame.lanes)
@@ -232,7 +228,7 @@ def test_a_photo_finish_under_another_clock_is_another_photo(server: viser.Viser
     assert said == ["2.  0.25 m"] * 3
 
 
-def test_a_finished_lane_shows_its_flag(server: viser.ViserServer) -> None:
+def test_a_finished_lane_shows_its_flag(server: InProcessViser) -> None:
     cast, scene = race_of(1), StageScene(server)
     frame = standing(cast)
     scene.draw(frame)
@@ -247,11 +243,3 @@ def test_an_update_of_three_walking_robots_is_small() -> None:
 
     assert spent_ms > 0
     assert 500 < size <= 4096
-
-
-def test_viser_is_gone_afterwards() -> None:
-    with loopback_viser() as server:
-        port = server.get_port()
-
-    with pytest.raises(OSError, match="refused"), socket.create_connection(("127.0.0.1", port)):
-        pass

@@ -1,30 +1,31 @@
 """A snapshot says the same as all the frames it was made of, and no more."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import pytest
-import viser
 
 from app.viewer import wire
+from app.viewer.in_process import InProcessViser
 from app.viewer.snapshot import Snapshot
-from tests.viewer.serving import Robots, Viewer, array, says
+from tests.viewer.serving import Reader, Robots, array, says
 
 Record = Callable[[], list[wire.Frame]]
 
 
 @pytest.fixture
-def record(stage: viser.ViserServer) -> Record:
+def record(stage: InProcessViser) -> Iterator[Record]:
     """Every frame that viser has sent since the test began, up to now."""
-    viewer = Viewer(f"ws://127.0.0.1:{stage.get_port()}/")
-    frames = viewer.frames_until(says("ReplayDoneMessage"))
+    reader = Reader(stage)
+    frames = reader.frames_until(says("ReplayDoneMessage"))
 
     def so_far() -> list[wire.Frame]:
         stage.scene.set_up_direction("-y")
         mark = says("SetOrientationMessage", name="")
-        frames.extend(viewer.frames_until(mark))
+        frames.extend(reader.frames_until(mark))
         return frames
 
-    return so_far
+    with reader:
+        yield so_far
 
 
 def folded(frames: list[wire.Frame], since: int | None = None) -> wire.Frame:
@@ -41,7 +42,7 @@ def about(frame: wire.Frame, name: str) -> list[str]:
 
 
 def test_only_the_newest_pose_is_kept(
-    stage: viser.ViserServer, robots: Robots, record: Record
+    stage: InProcessViser, robots: Robots, record: Record
 ) -> None:
     frame_of_robot = stage.scene.add_frame("/world/frame")
     for place in range(10):
@@ -58,7 +59,7 @@ def test_only_the_newest_pose_is_kept(
     assert says("SetPositionMessage", name="/world/frame", position=[9.0, 0.0, 0.0])(all_in_one)
 
 
-def test_a_thing_is_made_before_it_is_changed(stage: viser.ViserServer, record: Record) -> None:
+def test_a_thing_is_made_before_it_is_changed(stage: InProcessViser, record: Record) -> None:
     label = stage.scene.add_label("/world/plate", "one")
     label.text = "two"
     label.visible = False
@@ -69,7 +70,7 @@ def test_a_thing_is_made_before_it_is_changed(stage: viser.ViserServer, record: 
     assert set(types[1:]) >= {"SceneNodeUpdateMessage", "SetSceneNodeVisibilityMessage"}
 
 
-def test_what_is_gone_is_forgotten(stage: viser.ViserServer, record: Record) -> None:
+def test_what_is_gone_is_forgotten(stage: InProcessViser, record: Record) -> None:
     parent = stage.scene.add_frame("/world/ghost")
     child = stage.scene.add_label("/world/ghost/name", "gone")
     child.text = "still gone"
@@ -89,7 +90,7 @@ def test_what_is_gone_is_forgotten(stage: viser.ViserServer, record: Record) -> 
     }
 
 
-def test_who_saw_it_is_told_that_it_is_gone(stage: viser.ViserServer, record: Record) -> None:
+def test_who_saw_it_is_told_that_it_is_gone(stage: InProcessViser, record: Record) -> None:
     ghost = stage.scene.add_frame("/world/ghost")
     seen = len(record())
     ghost.position = (1, 2, 3)
@@ -100,7 +101,7 @@ def test_who_saw_it_is_told_that_it_is_gone(stage: viser.ViserServer, record: Re
     assert about(news, "/world/ghost") == ["RemoveSceneNodeMessage"]
 
 
-def test_a_successor_comes_after_the_removal(stage: viser.ViserServer, record: Record) -> None:
+def test_a_successor_comes_after_the_removal(stage: InProcessViser, record: Record) -> None:
     ghost = stage.scene.add_frame("/world/ghost")
     seen = len(record())
     ghost.remove()
@@ -113,7 +114,7 @@ def test_a_successor_comes_after_the_removal(stage: viser.ViserServer, record: R
 
 
 def test_a_replacement_takes_the_old_ones_changes_with_it(
-    stage: viser.ViserServer, record: Record
+    stage: InProcessViser, record: Record
 ) -> None:
     stage.scene.add_label("/world/plate", "old").font_screen_scale = 7
     stage.scene.add_label("/world/plate", "new")
@@ -151,7 +152,7 @@ def test_a_laggard_gets_what_it_has_missed_and_no_more(robots: Robots, record: R
 
 @pytest.mark.parametrize("since", [1, 3, 7, 12])
 def test_catching_up_is_as_good_as_having_seen_all(
-    stage: viser.ViserServer, robots: Robots, record: Record, since: int
+    stage: InProcessViser, robots: Robots, record: Record, since: int
 ) -> None:
     for step in range(6):
         robots.stand_at(step)
@@ -186,9 +187,7 @@ def test_more_can_be_said_at_the_end(record: Record) -> None:
     assert snapshot.pack(None, [{"type": "X"}]).messages[-1] == {"type": "X"}
 
 
-def test_what_was_gone_for_all_viewers_is_forgotten(
-    stage: viser.ViserServer, record: Record
-) -> None:
+def test_what_was_gone_for_all_viewers_is_forgotten(stage: InProcessViser, record: Record) -> None:
     snapshot = Snapshot()
     for number in range(3):
         ghost = stage.scene.add_frame(f"/world/ghost{number}")

@@ -13,7 +13,7 @@ from app.services.frames import StageFrame
 from app.services.memory_store import MemoryStore
 from app.services.recordings import Recordings
 from app.services.stage import Stage
-from app.viewer.loopback import loopback_viser
+from app.viewer.in_process import in_process_viser
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop
 from tests.services.theatre import Theatre
@@ -34,7 +34,7 @@ class ThrowsAtFirst(StageScene):
 
 def test_it_draws_until_it_is_stopped() -> None:
     stage, bus = Stage(MemoryStore(), Recordings(), EventBus()), EventBus()
-    with loopback_viser() as server:
+    with in_process_viser() as server:
         scene = StageScene(server)
         with StageLoop(stage, scene, bus) as loop:
             eventually(lambda: scene.follow_position("leader"))
@@ -45,7 +45,7 @@ def test_it_draws_until_it_is_stopped() -> None:
 
 def test_a_fault_in_a_frame_does_not_end_the_show(caplog: pytest.LogCaptureFixture) -> None:
     stage, bus = Stage(MemoryStore(), Recordings(), EventBus()), EventBus()
-    with loopback_viser() as server, caplog.at_level(logging.INFO):
+    with in_process_viser() as server, caplog.at_level(logging.INFO):
         scene = ThrowsAtFirst(server)
         with StageLoop(stage, scene, bus):
             eventually(lambda: scene.follow_position("leader"))
@@ -69,7 +69,7 @@ def test_a_race_moves_and_the_page_is_told() -> None:
                 heard.close()
         return scenes
 
-    with loopback_viser() as server:
+    with in_process_viser() as server:
         scene = StageScene(server)
         with StageLoop(stage, scene, theatre.bus):
             scenes = asyncio.run(hear())
@@ -83,5 +83,5 @@ def test_a_race_moves_and_the_page_is_told() -> None:
 
 def test_a_loop_that_never_began_can_be_stopped() -> None:
     stage = Stage(MemoryStore(), Recordings(), EventBus())
-    with loopback_viser() as server:
+    with in_process_viser() as server:
         StageLoop(stage, StageScene(server), EventBus()).stop()

@@ -1,18 +1,18 @@
 """The wire format is viser's own, to the byte."""
 
 import pytest
-import viser
 
 from app.viewer import wire
-from tests.viewer.serving import Robots, Viewer, array, says
+from app.viewer.in_process import InProcessViser
+from tests.viewer.serving import Reader, Robots, array, says
 
 
 @pytest.fixture
-def replay(stage: viser.ViserServer, robots: Robots) -> list[wire.Frame]:
+def replay(stage: InProcessViser, robots: Robots) -> list[wire.Frame]:
     """What viser itself sends to a newcomer."""
     robots.stand_at(3)
-    with Viewer(f"ws://127.0.0.1:{stage.get_port()}/") as viewer:
-        return viewer.frames_until(says("ReplayDoneMessage"))
+    with Reader(stage) as reader:
+        return reader.frames_until(says("ReplayDoneMessage"))
 
 
 def test_viser_s_frames_are_understood(replay: list[wire.Frame]) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, TypeVar
 
 from sqlalchemy import (
     ColumnElement,
@@ -19,6 +19,7 @@ from sqlalchemy import (
 )
 
 from app.domain.errors import DamagedFile
+from app.services.artifact_file import ArtifactFile
 from app.services.artifacts import ArtifactFiles, Stored
 from app.services.database.columns import UtcTime
 from app.services.database.curves import Curves
@@ -57,6 +58,7 @@ from app.services.store import (
     State,
 )
 
+T = TypeVar("T")
 _DIED = "The server ended before the run did."
 _FILE = (ARTIFACTS.c.file, ARTIFACTS.c.size, ARTIFACTS.c.sha256)
 
@@ -274,11 +276,17 @@ class SqlStore:
         self._files.remove(*(name for name in former if name != stored.file))
 
     def artifact(self, run_id: str, name: str) -> bytes | None:
+        return self._found(run_id, name, self._files.read)
+
+    def open_artifact(self, run_id: str, name: str) -> ArtifactFile | None:
+        return self._found(run_id, name, self._files.open)
+
+    def _found(self, run_id: str, name: str, read: Callable[[Stored, str], T]) -> T | None:
         said = f"{name} of run {run_id}"
         missing: Stored | None = None
         while (stored := self._stored(run_id, name)) is not None:
             try:
-                return self._files.read(stored, said)
+                return read(stored, said)
             except FileNotFoundError as error:
                 # It may have made way for a newer one since we asked.
                 if stored == missing:

@@ -1,0 +1,172 @@
+"""Promise 36: reading is bounded: 25 clients that ask for the largest table and read nothing of it
+cost the server less than 100 MB, and so do 25 of every other heavy answer.
+
+The largest table is one of 8 divisions, 52,728,000 values, as JSON, CSV and `.npz`. Beside it a
+race's recording, its arrays, its film and its timeline, an experiment's trials, report and files,
+curves, and exports. The gate's form has a table of 300,000 values that were visited and leaves the
+experiment out; `make soak` has 2,500,000 and all of it.
+"""
+
+import io
+import socket
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import psutil
+import pytest
+
+from app.agents.q_table import QTable
+from app.assembly import build_learner
+from app.runs.config import TrainingConfig
+from app.runs.tables import Checkpoint, snapshot, to_bytes
+from tests.promises.length import at_length
+from tests.promises.raw import watched_memory
+from tests.served import BODY, Served, serving_from
+
+READERS = 25
+MOST_BYTES = 100_000_000
+VISITED_STATES = at_length(60_000, 250_000)
+SETTLED_S = at_length(1.5, 10.0)
+RACE = {**BODY, "steps": 60, "lanes": [{"agent": "greedy"}] * 4}
+EXPERIMENT = {
+    "experiment": "sweep",
+    "seeds": 30,
+    "simulator": "kinematic",
+    "gaits": "left-right-origin",
+    "steps": 40,
+    "alpha": [0.1, 0.2, 0.3, 0.4, 0.5],
+}
+TABLES = ("q-table", "q-table?format=csv", "q-table?format=npz", "curve", "export")
+RACES = (
+    "recording",
+    "recording?format=npz",
+    "recording?format=viser",
+    "timeline",
+    "timeline?clock=wall",
+    "export",
+)
+EXPERIMENTS = ("trials", "trials?format=csv", "summary", "report", "files/trials.csv", "export")
+
+
+def large_table() -> bytes:
+    """The file of a table of 8 divisions as a long training leaves it."""
+    config = TrainingConfig(gait="left-right-origin", simulator="kinematic", divisions=8, steps=1)
+    table, chance = QTable(3, len(config.grid)), np.random.default_rng(0)
+    for state in chance.permutation(table.states)[:VISITED_STATES].tolist():
+        q, n = table.row(state)
+        columns = chance.integers(table.actions, size=10)
+        q[columns], n[columns] = chance.normal(size=10), 1
+    checkpoint = snapshot(build_learner(config), replace(config, steps=1))
+    agent = {f"agent.{name}": array for name, array in table.dump().items()}
+    return to_bytes(Checkpoint(checkpoint.meta, {**checkpoint.arrays, **agent}))
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    with serving_from(tmp_path_factory.mktemp("data")) as make:
+        yield make()
+
+
+@pytest.fixture(scope="module")
+def paths(server: Served) -> list[str]:
+    """Every heavy answer that the server has."""
+    table = large_table()
+    answer = server.client.post("/api/v1/trainings/import", content=table)
+    assert answer.status_code == 201, answer.text
+    runs: list[dict[str, Any]] = [answer.json(), server.start(RACE, "/races")]
+    heavy = [TABLES, RACES]
+    if at_length(False, True):
+        runs.append(server.start(EXPERIMENT, "/experiments"))
+        heavy.append(EXPERIMENTS)
+    for run in runs:
+        server.in_state(run, "finished")
+    return [
+        f"/api/v1/{run['kind']}s/{run['id']}/{path}"
+        for run, paths in zip(runs, heavy, strict=True)
+        for path in paths
+    ]
+
+
+@contextmanager
+def unread(server: Served, path: str) -> Iterator[list[socket.socket]]:
+    """Clients that ask and do not read."""
+    host, port = server.address.removeprefix("http://").split(":")
+    with ExitStack() as stack:
+        clients = []
+        for _ in range(READERS):
+            client = stack.enter_context(socket.socket())
+            client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            client.connect((host, int(port)))
+            client.sendall(f"GET {path} HTTP/1.1\r\nHost: {host}:{port}\r\n\r\n".encode())
+            clients.append(client)
+        yield clients
+
+
+def statuses(clients: list[socket.socket]) -> set[bytes]:
+    for client in clients:
+        client.settimeout(60)
+    return {client.recv(12) for client in clients}
+
+
+def settle(server: Served) -> None:
+    """Wait until the server has nothing to do any more."""
+    process, quiet_s = psutil.Process(server.process.pid), 0.0
+    deadline = time.monotonic() + 60
+    while quiet_s < SETTLED_S and time.monotonic() < deadline:
+        busy = process.cpu_percent(0.25)
+        quiet_s = quiet_s + 0.25 if busy < 40 else 0.0
+
+
+@pytest.mark.timeout(1800)
+def test_unread_answers_cost_little(server: Served, paths: list[str]) -> None:
+    for path in paths:
+        # Whatever is loaded for the first time is loaded once for all.
+        with server.client.stream("GET", path) as response:
+            assert response.status_code == 200, path
+            next(response.iter_bytes())
+    grown = {}
+    for path in paths:
+        settle(server)
+        with watched_memory(server.process.pid) as memory, unread(server, path) as clients:
+            settle(server)
+            answered = statuses(clients)
+        assert answered == {b"HTTP/1.1 200"}, path
+        grown[path] = memory.grown_bytes
+
+    assert max(grown.values()) < MOST_BYTES, grown
+
+
+@pytest.mark.timeout(1800)
+def test_a_table_that_is_read_meanwhile_is_whole(server: Served, paths: list[str]) -> None:
+    npz = next(path for path in paths if path.endswith("format=npz"))
+    with unread(server, paths[0]), unread(server, npz):
+        whole = server.client.get(npz).content
+
+    with np.load(io.BytesIO(whole)) as file:
+        assert len(file["agent.where"]) > 9 * VISITED_STATES
+
+
+@pytest.mark.timeout(1800)
+def test_a_large_training_needs_little(tmp_path: Path) -> None:
+    """The training's own process: 1.5 GB before its table was sparse."""
+    steps = at_length(2_000, 200_000)
+    body = {**BODY, "divisions": 8, "steps": steps, "evaluate_every": steps // 2}
+    with serving_from(tmp_path) as make:
+        server = make()
+        run = server.start(body)
+        peak = 0
+        while server.look(run)["state"] not in ("finished", "failed"):
+            for job in server.jobs():
+                try:
+                    peak = max(peak, job.memory_info().rss)
+                except psutil.NoSuchProcess:
+                    continue
+            time.sleep(0.02)
+        assert server.look(run)["state"] == "finished"
+
+    assert 0 < peak < 350_000_000

@@ -1,0 +1,124 @@
+"""A table read from its file row by row is the table that was written."""
+
+import io
+import json
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import psutil
+import pytest
+
+from app.agents.q_table import QTable
+from app.assembly import build_learner
+from app.domain.errors import DamagedFile, TableMismatch
+from app.runs.config import TrainingConfig
+from app.runs.table_file import TableFile
+from app.runs.tables import Checkpoint, snapshot, to_bytes
+
+CONFIG = TrainingConfig(gait="left-right-origin", simulator="kinematic", steps=10)
+
+
+class Held:
+    def __init__(self, data: bytes) -> None:
+        self.data = data
+
+    def read_at(self, offset: int, length: int) -> bytes:
+        return self.data[offset : offset + length]
+
+
+def opened(data: bytes) -> TableFile:
+    return TableFile(Held(data), io.BytesIO(data), "it")
+
+
+def with_values(table: QTable, config: TrainingConfig) -> Checkpoint:
+    checkpoint = snapshot(build_learner(config), config)
+    agent = {f"agent.{name}": array for name, array in table.dump().items()}
+    return Checkpoint(checkpoint.meta, {**checkpoint.arrays, **agent})
+
+
+def filled(divisions: int, states: float, seed: int = 0) -> tuple[QTable, Checkpoint]:
+    """A table with values in a share of its states, and its file."""
+    config = replace(CONFIG, divisions=divisions)
+    table, chance = QTable(3, len(config.grid)), np.random.default_rng(seed)
+    for state in chance.permutation(table.states)[: int(states * table.states)].tolist():
+        q, n = table.row(state)
+        columns = chance.integers(table.actions, size=7)
+        q[columns], n[columns] = chance.normal(size=7), chance.integers(1, 1000, size=7)
+    return table, with_values(table, config)
+
+
+@pytest.mark.parametrize(
+    ("divisions", "states"), [(2, 0.0), (2, 0.4), (2, 1.0), (3, 0.01), (3, 0.5), (3, 1.0)]
+)
+def test_its_rows_are_the_tables(divisions: int, states: float) -> None:
+    table, checkpoint = filled(divisions, states)
+    read = opened(to_bytes(checkpoint))
+
+    assert (read.pairs, read.cells) == (table.pairs, table.cells)
+    assert dict(read.meta) == dict(checkpoint.meta)
+    rows = list(read.rows())
+    assert len(rows) == table.states
+    for (state, values, visits), (again, expected, counts) in zip(rows, table.rows(), strict=True):
+        assert state == again
+        assert np.array_equal(values, expected, equal_nan=True)
+        assert np.array_equal(visits, counts, equal_nan=True)
+
+
+def test_reading_the_largest_table_takes_no_memory() -> None:
+    table, checkpoint = filled(8, 0.05)
+    data = to_bytes(checkpoint)
+    rows = opened(data).rows()
+    next(rows)
+    before = psutil.Process().memory_info().rss
+    for _ in range(20_000):
+        next(rows)
+
+    assert table.size > 50_000_000
+    assert psutil.Process().memory_info().rss - before < 5_000_000
+
+
+def changed(**changes: Any) -> bytes:
+    _, checkpoint = filled(2, 0.4)
+    arrays = {**checkpoint.arrays, **{f"agent.{k}": v for k, v in changes.items()}}
+    return to_bytes(Checkpoint(checkpoint.meta, {k: v for k, v in arrays.items() if v is not None}))
+
+
+@pytest.mark.parametrize(
+    ("changes", "error", "message"),
+    [
+        ({"where": None}, TableMismatch, "keeps no Q-table"),
+        ({"q": np.zeros(3)}, TableMismatch, "do not fit together"),
+        ({"q": None}, DamagedFile, "it is not a Q-table"),
+        ({"n": np.zeros((2, 2), np.uint32)}, DamagedFile, "another shape"),
+    ],
+)
+def test_what_is_no_table_is_refused(
+    changes: dict[str, Any], error: type[Exception], message: str
+) -> None:
+    with pytest.raises(error, match=message):
+        opened(changed(**changes))
+
+
+@pytest.mark.parametrize("kept", [0, 10, 100, -30])
+def test_a_file_cut_short_is_refused(kept: int) -> None:
+    with pytest.raises(DamagedFile, match="not a Q-table"):
+        opened(changed()[:kept])
+
+
+def test_values_out_of_order_are_found() -> None:
+    table, checkpoint = filled(3, 1.0)
+    where = np.sort(np.concatenate([table.dump()["where"]])).copy()
+    where[-1] = 0
+    arrays = {**checkpoint.arrays, "agent.where": where}
+
+    with pytest.raises(TableMismatch, match="rising order"):
+        list(opened(to_bytes(Checkpoint(checkpoint.meta, arrays))).rows())
+
+
+def test_another_format_is_refused() -> None:
+    _, checkpoint = filled(2, 0.4)
+    meta = {**json.loads(json.dumps(dict(checkpoint.meta))), "format": 2}
+
+    with pytest.raises(DamagedFile, match="it has format 2"):
+        opened(to_bytes(Checkpoint(meta, checkpoint.arrays)))
