@@ -139,7 +139,7 @@ def kill_one(server: Served, runs: list[Model], chance: random.Random) -> None:
 
 def delete_at_every_moment(address: str, done: threading.Event) -> int:
     """Start runs and ask for their deletion all their life long; how many there were."""
-    count = 0
+    count, chance = 0, random.Random(27)
     with httpx2.Client(base_url=address, timeout=LONG_S, trust_env=False) as client:
         while not done.is_set():
             response = client.post("/api/v1/trainings", json=SHORT)
@@ -153,6 +153,7 @@ def delete_at_every_moment(address: str, done: threading.Event) -> int:
                 assert time.monotonic() < deadline, client.get(path).text
                 if done.is_set():
                     client.post(f"{path}/stop")
+                time.sleep(chance.uniform(0, 0.02))
             assert client.get(path).status_code == 404
             count += 1
     return count
