@@ -80,7 +80,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
     recordings, bus = Recordings(store), Witness()
     show = Stage(store, recordings, bus)
     theatre = Theatre(show, bus, allowed_origins=_further_origins(settings))
-    jobs = Jobs(store, recordings, bus, on_queued=show.offer)
+    jobs = Jobs(store, recordings, bus, on_queued=show.offer, niceness=settings.job_niceness)
     app = FastAPI(
         title="Racing Hexapods",
         version=__version__,

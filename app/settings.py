@@ -25,12 +25,13 @@ PREFIX = "HEXAPODS_"
 MIN_QUOTA_MB = 10
 _CHOICES = {"spectators": get_args(Spectators), "log_level": get_args(LogLevel)}
 _WHOLE_NUMBERS = {
-    "quota_mb": (MIN_QUOTA_MB, " of megabytes"),
-    "starts_per_minute": (1, ""),
-    "max_connections": (1, ""),
-    "max_connections_per_address": (1, ""),
+    "quota_mb": (MIN_QUOTA_MB, None, " of megabytes"),
+    "starts_per_minute": (1, None, ""),
+    "max_connections": (1, None, ""),
+    "max_connections_per_address": (1, None, ""),
+    "job_niceness": (0, 19, ""),
 }
-"""By setting the least, and of what."""
+"""By setting the least, the most if there is one, and of what."""
 MIN_TOKEN_LENGTH, MAX_TOKEN_LENGTH = 16, 200
 _TOKEN = re.compile(rf"[\x21-\x7e]{{{MIN_TOKEN_LENGTH},{MAX_TOKEN_LENGTH}}}")
 _HOST_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9_]([a-z0-9_-]*[a-z0-9_])?(\.[a-z0-9_-]+)*")
@@ -55,6 +56,7 @@ class Settings:
             allows beside the server's own.
         max_connections_per_address: of these, how many one address may have; None for half.
         starts_per_minute: how often one address may start something that costs the machine work.
+        job_niceness: by how much the priority of jobs is lower than the server's own, 0 to 19.
         log_level: below which records are left out of the log.
         quota_mb: how much the data folder may take, in MB; None for as much as the disk has.
     """
@@ -71,6 +73,7 @@ class Settings:
     max_connections: int | None = None
     max_connections_per_address: int | None = None
     starts_per_minute: int = 1200
+    job_niceness: int = 15
     log_level: LogLevel = "info"
 
     def __post_init__(self) -> None:
@@ -102,10 +105,12 @@ class Settings:
             )
 
     def _check_numbers(self) -> None:
-        for name, (least, _) in _WHOLE_NUMBERS.items():
+        for name, (least, most, _) in _WHOLE_NUMBERS.items():
             number = getattr(self, name)
-            if number is not None and number < least:
-                raise InvalidInput(f"{PREFIX}{name.upper()} must be at least {least}, not {number}")
+            if number is None or (number >= least and (most is None or number <= most)):
+                continue
+            limits = f"at least {least}" if most is None else f"from {least} to {most}"
+            raise InvalidInput(f"{PREFIX}{name.upper()} must be {limits}, not {number}")
 
     @property
     def public_host(self) -> str | None:
@@ -153,7 +158,7 @@ def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Se
     given = {name: value for name, value in given.items() if value is not None}
     if isinstance(given.get("port"), str):
         given["port"] = _port(given["port"])
-    for name, (_, what) in _WHOLE_NUMBERS.items():
+    for name, (_, _, what) in _WHOLE_NUMBERS.items():
         if isinstance(given.get(name), str):
             given[name] = _whole_number(name, what, given[name])
     if isinstance(given.get("allowed_hosts"), str):

@@ -55,6 +55,7 @@ def test_an_empty_variable_is_none() -> None:
         ({"SPECTATORS": "none"}, ["public, token"]),
         ({"LOG_LEVEL": "loud"}, ["LOG_LEVEL", "debug, info"]),
         ({"STARTS_PER_MINUTE": "0"}, ["STARTS_PER_MINUTE", "at least 1"]),
+        ({"JOB_NICENESS": "20"}, ["JOB_NICENESS", "from 0 to 19"]),
         ({"STARTS_PER_MINUTE": "many"}, ["STARTS_PER_MINUTE", "whole number"]),
         ({"PUBLIC_URL": "hexapods.example"}, ["https://hexapods.example"]),
         ({"PUBLIC_URL": "https://[x"}, ["https://hexapods.example"]),

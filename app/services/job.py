@@ -76,11 +76,12 @@ class Job:
         bus: EventBus,
         *,
         shutdown: threading.Event,
+        niceness: int,
     ) -> None:
         self.run_id, self.is_race = run.id, run.kind == "race"
         self.paused = self.stopping = self.shared = False
         self.ended, self.gone = threading.Event(), threading.Event()
-        self.process = WorkerProcess(f"{run.kind} {run.id}", order, self._take_patiently)
+        self.process = WorkerProcess(f"{run.kind} {run.id}", order, self._take_patiently, niceness)
         self.last = run
         self._run, self._order, self._shutdown = run, order, shutdown
         self._began_s = time.monotonic()

@@ -54,8 +54,10 @@ class Jobs:
         store: RunStore,
         recordings: Recordings,
         bus: EventBus,
+        *,
         on_queued: Callable[[str], object] | None = None,
         cores: int | None = None,
+        niceness: int = 0,
     ) -> None:
         """Start nothing yet.
 
@@ -65,13 +67,20 @@ class Jobs:
             bus: who wants to know.
             on_queued: called with the id of what someone has asked for.
             cores: how many jobs run at once; the machine's by default.
+            niceness: by how much the priority of a job's process is lower than the server's.
         """
         self._store, self._recordings, self._bus = store, recordings, bus
         self._on_queued = on_queued
         self.new_id = RunIds.of(store)
         self._waiting = WaitingRuns(store, self._publish)
         self._supervisor = Supervisor(
-            store, recordings, bus, self._waiting, publish=self._publish, cores=cores
+            store,
+            recordings,
+            bus,
+            self._waiting,
+            publish=self._publish,
+            cores=cores,
+            niceness=niceness,
         )
         self._changed = self._supervisor.changed
         self._changing = threading.BoundedSemaphore(MAX_CHANGING)

@@ -6,12 +6,11 @@ import signal
 import sys
 from contextlib import suppress
 
-NICENESS = 15
 _PR_SET_PDEATHSIG = 1
 
 
-def be_modest(niceness: int = NICENESS) -> None:
-    """Let the server go first, and end with it: with the thread that started this process."""
+def be_modest(niceness: int) -> None:
+    """Lower this process's priority, ignore SIGINT, and die with the thread that started it."""
     with suppress(OSError):
         os.nice(niceness)
     # Ctrl-C reaches every process of a terminal; the server says what becomes of its own.

@@ -34,13 +34,16 @@ class WorkerProcess:
     when the thread that started it ends.
     """
 
-    def __init__(self, name: str, order: Order, on_message: Callable[[Message], None]) -> None:
+    def __init__(
+        self, name: str, order: Order, on_message: Callable[[Message], None], niceness: int
+    ) -> None:
         """Start nothing yet.
 
         Args:
             name: of the process and its thread, for who looks at them.
             order: what to do.
             on_message: called with each message, one at a time, in a thread of the child's own.
+            niceness: by how much its priority is lower than the server's.
         """
         context = multiprocessing.get_context("spawn")
         self._pipe, self._its_pipe = context.Pipe()
@@ -49,7 +52,7 @@ class WorkerProcess:
         self._to_send.put(order)
         # Not a daemon: multiprocessing ends daemons from atexit, which a killed server never runs.
         self._process = context.Process(
-            target=worker.main, args=(self._its_pipe,), name=name, daemon=False
+            target=worker.main, args=(self._its_pipe, niceness), name=name, daemon=False
         )
         self._on_message = on_message
         self._error: Exception | None = None

@@ -51,7 +51,8 @@ class Supervisor:
         waiting: WaitingRuns,
         *,
         publish: Callable[[Run], None],
-        cores: int | None = None,
+        cores: int | None,
+        niceness: int,
     ) -> None:
         """Start nothing yet.
 
@@ -61,11 +62,13 @@ class Supervisor:
             bus: who wants to know.
             waiting: the queue.
             publish: tells of a run that changed.
-            cores: the machine's by default.
+            cores: how many jobs run at once; None is the machine's.
+            niceness: by how much the priority of a job's process is lower than the server's.
         """
         self._store, self._recordings, self._bus = store, recordings, bus
         self._waiting, self._publish = waiting, publish
         self.cores = cores or os.cpu_count() or 1
+        self._niceness = niceness
         self.changed = threading.Condition()
         self._jobs: dict[str, Job] = {}
         self._unsure: set[str] = set()
@@ -206,7 +209,7 @@ class Supervisor:
     def _job(self, run: Run, order: Order) -> Job:
         kind = ExperimentJob if isinstance(order, ExperimentOrder) else Job
         given = self._store, self._recordings, self._bus
-        return kind(run, order, *given, shutdown=self._shutdown)
+        return kind(run, order, *given, shutdown=self._shutdown, niceness=self._niceness)
 
     def _check_jobs(self) -> None:
         """End processes that answer no more, and set right what a failed write left open."""

@@ -47,9 +47,9 @@ HEARTBEAT_EVERY_S = 1.0
 _logger = logging.getLogger(__name__)
 
 
-def main(pipe: Connection) -> None:
+def main(pipe: Connection, niceness: int) -> None:
     """Work on the order that comes first through the pipe, and end the process."""
-    be_modest()
+    be_modest(niceness)
     logs.install("warning")
     order: Order = pipe.recv()
     words: queue.SimpleQueue[Word] = queue.SimpleQueue()

@@ -21,7 +21,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="package")
 def api(data: Path) -> Iterator[Api]:
     """One server for all tests of this folder that do not mind each other's runs."""
-    settings = Settings(data=data)
+    settings = Settings(data=data, job_niceness=0)
     with open_store(settings) as store:
         app = create_app(settings, store)
         with TestClient(app, base_url=ADDRESS) as client:
@@ -40,7 +40,7 @@ def serve(data: Path) -> Iterator[Callable[..., Api]]:
     clients: list[TestClient] = []
 
     def make(**settings: Any) -> Api:
-        app = create_app(Settings(data=data, **settings))
+        app = create_app(Settings(**{"data": data, "job_niceness": 0, **settings}))
         client = TestClient(app, base_url=ADDRESS, follow_redirects=False)
         clients.append(client)
         return Api(client)

@@ -38,6 +38,8 @@ class Serving:
             [sys.executable, "-m", "app.cli", "serve", "--port", str(port), "--data", str(data)],
             env={
                 **environment,
+                # A busy machine would starve jobs of a lower priority than the tests have.
+                "HEXAPODS_JOB_NICENESS": "0",
                 "HEXAPODS_TOKEN": token,
                 "HEXAPODS_SPECTATORS": spectators,
                 **{f"HEXAPODS_{name.upper()}": str(value) for name, value in settings.items()},

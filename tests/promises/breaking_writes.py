@@ -131,7 +131,7 @@ def finish(store: SqlStore, folder: Path) -> None:
     run = store.get(LEARNING)
     recordings = Recordings(store)
     order, shutdown = TrainingOrder(CONFIG, None), threading.Event()
-    job = Job(run, order, store, recordings, EventBus(), shutdown=shutdown)
+    job = Job(run, order, store, recordings, EventBus(), shutdown=shutdown, niceness=0)
     learner = build_learner(CONFIG)
     rest = learner.walker.simulator.pose(learner.walker.state).astype(np.float32)
     take = job._take

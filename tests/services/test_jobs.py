@@ -197,11 +197,15 @@ def test_closing_leaves_no_process(store: MemoryStore) -> None:
     assert [store.get(run.id).state for run in runs] == ["interrupted"] * 3
 
 
-def test_a_process_is_modest(jobs: Jobs, store: MemoryStore) -> None:
-    run = jobs.train(endless())
-    moving(store, run)
-    assert psutil.Process(pid_of(jobs, run)).nice() == 15
-    jobs.stop(run.id)
+def test_the_server_goes_before_its_jobs(store: MemoryStore) -> None:
+    jobs = Jobs(store, Recordings(), EventBus(), niceness=15)
+    jobs.open()
+    try:
+        run = jobs.train(endless())
+        moving(store, run)
+        assert psutil.Process(pid_of(jobs, run)).nice() == psutil.Process().nice() + 15
+    finally:
+        jobs.close()
 
 
 def test_an_agent_without_rates_has_none_to_change(jobs: Jobs) -> None:
