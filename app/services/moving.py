@@ -10,10 +10,12 @@ from app.services import archives
 from app.services.archived_files import check_files, files_of, is_file_of
 from app.services.archived_run import read_run_json, run_json
 from app.services.archived_trials import TRIALS, read_trials_json, trials_json
-from app.services.errors import Busy
+from app.services.errors import Busy, Damaged
 from app.services.ids import RunIds
+from app.services.json_text import is_finite
 from app.services.memory_budget import MemoryBudget
-from app.services.store import KINDS, Content, IdempotencyKey, Run, RunStore
+from app.services.store import KINDS, Content, DamagedRun, IdempotencyKey, Run, RunStore
+from app.services.views import as_shown
 
 RUN = "run.json"
 _ANYONE = "anyone"
@@ -37,14 +39,21 @@ def export_pieces(
     Raises:
         NotFound: if there is no such run.
         Conflict: if it has not ended.
+        Damaged: if what the database holds of it is damaged.
         DamagedFile: if one of its files is damaged.
         InvalidInput: if it is too large.
         Busy: if the budget does not allow for it now.
     """
-    run = store.get(run_id)
-    texts = {RUN: run_json(run, store.evaluations(run_id))}
+    run = as_shown(store.get(run_id))
+    if isinstance(run, DamagedRun):
+        raise Damaged(run.id, run.damaged)
+    curve, trials = store.evaluations(run_id), store.trials(run_id)
+    if not is_finite([curve, trials]):
+        # JSON would have null there, and no import would take that.
+        raise Damaged(run_id, "its curve or its trials have a number that is none")
+    texts = {RUN: run_json(run, curve)}
     if run.kind == "experiment":
-        texts[TRIALS] = trials_json(store.trials(run_id))
+        texts[TRIALS] = trials_json(trials)
     held = {name: archives.member(text) for name, text in texts.items()}
     pieces = archives.packed(held | files_of(store, run))
     return pieces if budget is None else _HeldPieces(pieces, sum(map(len, texts.values())), budget)

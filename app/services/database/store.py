@@ -109,7 +109,8 @@ class SqlStore:
             if stored:
                 connection.execute(insert(ARTIFACTS), _rows_of(added.id, stored))
             self._keys.note(connection, key, added.id)
-            return added
+            # As it will be read, so that what cannot be is not taken in.
+            return run_of(row_of_run(connection, added.id))
 
         try:
             # Files first: whatever ends this process leaves no row, and the next start sweeps up.
