@@ -15,10 +15,10 @@ from pydantic_core import PydanticCustomError
 
 from app.api.sentences import VALID
 from app.domain.errors import InvalidInput, UnknownName
-from app.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, MIN_SIDE_M
+from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M
 from app.domain.robot import AZIMUTH, MAX_LEGS, MIN_LEGS, MOUNT_RADIUS, PRESETS, RANGES
 from app.runs.config import MAX_STEPS
-from app.services.text import MAX_NAME, check_name
+from app.services.text import MAX_NAME, check_name, invisible_ranges
 
 
 def _name(text: str) -> str:
@@ -26,6 +26,17 @@ def _name(text: str) -> str:
         return check_name(text)
     except InvalidInput as error:
         raise ValueError(str(error)) from error
+
+
+def _describe_name(schema: dict[str, Any]) -> None:
+    """As a pattern, which takes a moment, and only the API's description needs."""
+    ranges = (f"{_in_pattern(first)}-{_in_pattern(last)}" for first, last in invisible_ranges())
+    schema["pattern"] = f"^[^{''.join(ranges)}]*$"
+
+
+def _in_pattern(point: int) -> str:
+    """Beyond 16 bits the languages have no escape in common."""
+    return f"\\u{point:04x}" if point < 0x10000 else chr(point)
 
 
 def number(**limits: Any) -> Any:
@@ -45,7 +56,7 @@ Name = Annotated[
     Field(
         max_length=MAX_NAME,
         description=VALID["name"],
-        json_schema_extra={"pattern": r"^[^\x00-\x1f\x7f-\x9f]*$"},
+        json_schema_extra=_describe_name,
     ),
     AfterValidator(_name),
 ]
@@ -56,7 +67,7 @@ Alpha = Annotated[float, number(gt=0, le=1, description=VALID["alpha"])]
 Gamma = Annotated[float, number(ge=0, lt=1, description=VALID["gamma"])]
 Epsilon = Annotated[float, number(ge=0, le=1, description=VALID["epsilon"])]
 Divisions = Annotated[int, Field(strict=True, ge=MIN_DIVISIONS, le=MAX_DIVISIONS), INTEGRAL]
-Side = Annotated[float, number(ge=MIN_SIDE_M)]
+Side = Annotated[float, number(ge=MIN_SIDE_M, le=MAX_SIDE_M)]
 Pace = Literal["max"] | Annotated[float, number(ge=0.01, le=1000)]
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from app.domain.gait import NAMED_GAITS
-from app.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, MIN_SIDE_M
+from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS
 from app.experiments.config import EXPERIMENTS, MAX_SEEDS
@@ -39,7 +39,8 @@ VALID: Mapping[str, str] = {
     "epsilon_end": "a number from 0 to 1",
     "steps_per_episode": _STEPS,
     "divisions": f"a whole number from {MIN_DIVISIONS} to {MAX_DIVISIONS}",
-    "grid_side_m": f"a number of metres, {MIN_SIDE_M} or more, that every leg can reach",
+    "grid_side_m": f"a number of metres from {MIN_SIDE_M} to {MAX_SIDE_M:g}, that every leg can "
+    "reach",
     "robot": f"{_one_of(PRESETS)}, or an object that says what differs from a preset",
     "simulator": _one_of(SIMULATORS),
     "evaluate_every": f"a whole number from 0 (never) to {MAX_STEPS:,}",

@@ -9,7 +9,7 @@ from app.domain.errors import InvalidInput
 from app.domain.types import FloatArray
 
 MIN_DIVISIONS, MAX_DIVISIONS = 2, 8
-MIN_SIDE_M = 0.005
+MIN_SIDE_M, MAX_SIDE_M = 0.005, 10.0
 
 
 @dataclass(frozen=True)
@@ -33,9 +33,9 @@ class FootGrid:
                 f"divisions must be a whole number from {MIN_DIVISIONS} to {MAX_DIVISIONS}, "
                 f"not {self.divisions}"
             )
-        if not (np.isfinite(self.side_m) and self.side_m >= MIN_SIDE_M):
+        if not MIN_SIDE_M <= self.side_m <= MAX_SIDE_M:
             raise InvalidInput(
-                f"grid_side_m must be at least {MIN_SIDE_M} m and finite, not {self.side_m}"
+                f"grid_side_m must be from {MIN_SIDE_M} to {MAX_SIDE_M:g} m, not {self.side_m}"
             )
 
     @property

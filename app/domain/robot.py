@@ -159,6 +159,9 @@ def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
     if isinstance(value, str):
         return _preset(value)
     given = dict(value)
+    for name in ("n_legs", "mount_radius_m", "legs"):
+        if name in given and given[name] is None:
+            raise InvalidInput(f"robot.{name} must not be null; leave it out for the preset's")
     base = _preset(given.pop("preset", "stiff"))
     legs = _legs(given, base)
     numbers = {f.name for f in fields(Robot)} - {"name", "legs"}

@@ -6,7 +6,7 @@ from typing import Any
 from app import __version__
 from app.agents.registry import learns
 from app.domain.gait import NAMED_GAITS, resolve
-from app.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, MIN_SIDE_M
+from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M
 from app.domain.robot import PRESETS, Robot, as_mapping
 from app.runs.config import (
     MAX_LANES,
@@ -171,7 +171,7 @@ def _limits() -> dict[str, list[float | None]]:
         "evaluate_every": [0, MAX_STEPS],
         "pace": [0.01, 1000],
         "divisions": [MIN_DIVISIONS, MAX_DIVISIONS],
-        "grid_side_m": [MIN_SIDE_M, None],
+        "grid_side_m": [MIN_SIDE_M, MAX_SIDE_M],
         "lanes": [1, MAX_LANES],
         "name": [0, 100],
     }

@@ -1,6 +1,8 @@
 """Text that people see: which characters a name may have, and what stands for the others."""
 
+import sys
 import unicodedata
+from functools import cache
 
 from app.domain.errors import InvalidInput
 
@@ -30,6 +32,21 @@ def check_name(name: str) -> str:
     if hidden is not None:
         raise InvalidInput(f"a name must be {NAMES}; it has U+{ord(hidden):04X}")
     return name.strip()
+
+
+@cache
+def invisible_ranges() -> tuple[tuple[int, int], ...]:
+    """First and last code points of the characters that a name may not have, in order.
+
+    Halves of surrogate pairs are left out: no UTF-8 has them.
+    """
+    found: list[tuple[int, int]] = []
+    for point in range(sys.maxunicode + 1):
+        if not _is_invisible(chr(point)) or 0xD800 <= point <= 0xDFFF:
+            continue
+        is_next = bool(found) and found[-1][1] == point - 1
+        found.append((found.pop()[0] if is_next else point, point))
+    return tuple(found)
 
 
 def visible(text: str) -> str:

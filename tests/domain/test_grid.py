@@ -107,7 +107,7 @@ def test_divisions_out_of_range_name_the_range(divisions: int) -> None:
         FootGrid(divisions=divisions)
 
 
-@pytest.mark.parametrize("side_m", [0, 0.0049, -1, math.nan, math.inf])
+@pytest.mark.parametrize("side_m", [0, 0.0049, -1, 10.1, 1e308, math.nan, math.inf])
 def test_a_side_out_of_range_names_the_least(side_m: float) -> None:
-    with pytest.raises(InvalidInput, match=r"grid_side_m must be at least 0\.005 m"):
+    with pytest.raises(InvalidInput, match=r"grid_side_m must be from 0\.005 to 10 m"):
         FootGrid(side_m=side_m)

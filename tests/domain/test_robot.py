@@ -135,6 +135,8 @@ def test_a_preset_is_written_as_its_name_alone() -> None:
         ({"n_legs": 14}, "even number of legs, 4 to 12"),
         ({"n_legs": 6.5}, "robot.n_legs must be a whole number"),
         ({"n_legs": True}, "robot.n_legs must be a whole number"),
+        ({"n_legs": None}, "robot.n_legs must not be null"),
+        ({"mount_radius_m": None}, "robot.mount_radius_m must not be null"),
         ({"mount_radius_m": -0.1}, "robot.mount_radius_m must be from 0 to 2"),
         ({"legs": 6}, "robot.legs must be a list of {azimuth_deg, radius_m}"),
         ({"legs": "six"}, "robot.legs must be a list"),

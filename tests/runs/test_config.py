@@ -45,7 +45,7 @@ def test_the_defaults_are_the_papers() -> None:
         ({"simulator": "gazebo"}, "unknown simulator 'gazebo'; choose one of: mujoco, kinematic"),
         ({"observation": "guessed"}, "unknown observation"),
         ({"divisions": 1}, "divisions must be a whole number from 2 to 8"),
-        ({"grid_side_m": 0.001}, "grid_side_m must be at least"),
+        ({"grid_side_m": 0.001}, "grid_side_m must be from"),
         ({"steps": 0}, r"steps must be from 1 to 10,000,000, not 0"),
         ({"steps": -1}, "steps must be from 1"),
         ({"steps": 10**12}, "steps must be from 1"),

@@ -7,7 +7,7 @@ import { options } from "../store.js";
 
 const LIMITS = {
   steps: [1, 1e7], alpha: [0, 1], gamma: [0, 1], epsilon_start: [0, 1], epsilon_end: [0, 1],
-  seed: [0, null], divisions: [2, 8], grid_side_m: [0.005, null], evaluate_every: [0, 1e7],
+  seed: [0, null], divisions: [2, 8], grid_side_m: [0.005, 10], evaluate_every: [0, 1e7],
   steps_per_episode: [1, 1e7], race_steps: [1, 1e7],
 };
 const WHOLE = new Set([
