@@ -143,7 +143,7 @@ def test_strangers_cost_no_run(launch: Callable[..., Served], tmp_path: Path) ->
         server = launch(log=log, before=before, HEXAPODS_TOKEN=TOKEN)
         server.client.headers.update(OPERATOR)
         lasting = server.start(ENDLESS)
-        learned = server.start({**BODY, "steps": 500, "divisions": 4})
+        learned = server.start({**BODY, "steps": 500, "divisions": 8})
         server.in_state(learned, "finished")
         table = f"/api/v1/trainings/{learned['id']}/q-table"
         paths = [table, "/api/v1/events", "/viewer/", "/api/v1/trainings?limit=100"]
