@@ -31,6 +31,7 @@ from app.api import (
 )
 from app.api.auth import TokenGuard
 from app.api.deps import Services
+from app.api.disconnects import Disconnects
 from app.api.files import connection_table, raise_file_limit
 from app.api.held import HeldBodies
 from app.api.http_protocol import KEEP_ALIVE_S, limited_http
@@ -61,6 +62,8 @@ from app.viewer.routes import viewer_routes
 from app.viewer.theatre import Theatre
 
 GRACE_S = 3
+SWITCH_S = 0.001
+"""A thread that computes an answer lets the event loop go on after this long, not after 5 ms."""
 _TICKS_PER_S = 10
 """Of uvicorn's main loop."""
 _DESCRIPTION = (
@@ -108,6 +111,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
     problems.install(app)
     contract.install(app, app.state.services.agents, settings)
     # The last is the first to see a request.
+    app.add_middleware(Disconnects)
     app.add_middleware(BodyLimit)
     app.add_middleware(Turns)
     app.add_middleware(HeldBodies)
@@ -175,6 +179,7 @@ def serve(settings: Settings) -> None:
         OwnershipLost: if another server took the database over while this one served.
     """
     settings.prepare_data()
+    sys.setswitchinterval(SWITCH_S)
     table = connection_table(settings, raise_file_limit())
     listener = listen(settings, table)
     logs.install(settings.log_level)

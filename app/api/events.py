@@ -4,6 +4,7 @@ from collections.abc import AsyncIterator
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Header, Query
+from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app import __version__
@@ -35,11 +36,16 @@ async def get_events(
     """A `snapshot` first, then changes; with `run_id` those of one run only."""
     # Listening before looking: what happens in between comes twice rather than never.
     subscription = services.bus.subscribe(run_id, _event_id(last_event_id))
-    snapshot_id = str(services.bus.last_id)
-    data = json_text(_snapshot(services, role, run_id))
-    yield ServerSentEvent(event="snapshot", id=snapshot_id, raw_data=data, retry=RETRY_MS)
-    async for event in subscription:
-        yield ServerSentEvent(event=event.event, id=str(event.id), raw_data=event.data)
+    try:
+        snapshot_id = str(services.bus.last_id)
+        # In a thread: it asks the database, for which the event loop must not wait.
+        data = json_text(await run_in_threadpool(_snapshot, services, role, run_id))
+        yield ServerSentEvent(event="snapshot", id=snapshot_id, raw_data=data, retry=RETRY_MS)
+        async for event in subscription:
+            yield ServerSentEvent(event=event.event, id=str(event.id), raw_data=event.data)
+    finally:
+        # A client may leave before the first event.
+        services.bus.remove(subscription)
 
 
 def _snapshot(services: Services, role: str, run_id: str | None) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.api.addresses import caller
 from app.api.auth import Role
 
-TURNS: dict[Role, int] = {"operator": 16, "spectator": 3}
+TURNS: dict[Role, int] = {"operator": 16, "spectator": 2}
 """Python threads share one interpreter: each that computes delays all the others."""
 _STREAM = "text/event-stream"
 T = TypeVar("T")
@@ -123,10 +123,15 @@ class _Turn:
         return without_turn
 
     def sending(self, send: Send) -> Send:
-        """The same without a turn; for good where a stream begins that works on nothing."""
+        """The same without a turn; for good once a stream of events has begun to wait for them."""
+        is_stream = False
 
         async def without_turn(message: Message) -> None:
-            if message["type"] == "http.response.start" and _is_stream(message):
+            nonlocal is_stream
+            if message["type"] == "http.response.start":
+                is_stream = _is_stream(message)
+            elif is_stream:
+                # Its first words, the snapshot, were work.
                 self.give_up()
             await self._without(lambda: send(message))
 

@@ -73,11 +73,12 @@ def test_who_does_not_read_and_who_streams_has_no_turn() -> None:
             await send({"type": "http.response.start", "status": 200, "headers": headers})
             answered += 1
             if scope["client"][0] == "stream":
+                await send({"type": "http.response.body", "body": b"x", "more_body": True})
                 await asyncio.Event().wait()
             await send({"type": "http.response.body", "body": b"x"})
 
         async def stall(message: Message) -> None:
-            if message["type"] == "http.response.body":
+            if message["type"] == "http.response.body" and not message.get("more_body"):
                 await asyncio.Event().wait()
 
         async def never() -> Message:

@@ -15,7 +15,7 @@ import sys
 import time
 from collections.abc import Sequence
 
-COMES_BACK_PER_S = 100
+COMES_BACK_PER_S = 50
 TRICKLE_S = 2.0
 _RECEIVE_BYTES = 2048
 _KINDS = 4

@@ -1,0 +1,47 @@
+"""Strangers who read: `python -m tests.promises.readers PORT COUNT PATH…`.
+
+So many at once ask for the paths in turn, and read all of each answer; each address has one of
+them. Says how many answers were whole once standard input ends. In a process of its own, so that
+it is the server and not the test that is kept busy.
+"""
+
+import http.client
+import json
+import sys
+import threading
+from collections import Counter
+from collections.abc import Sequence
+
+
+def main(port: int, count: int, paths: Sequence[str]) -> None:
+    """Read until standard input ends."""
+    statuses: Counter[str] = Counter()
+    over = threading.Event()
+
+    def read(number: int) -> None:
+        source = (f"127.0.0.{2 + number}", 0)
+        while not over.wait(0.02):
+            connection = http.client.HTTPConnection("127.0.0.1", port, 10, source)
+            try:
+                connection.request("GET", paths[number % len(paths)])
+                answer = connection.getresponse()
+                while answer.read(1 << 16) and not over.is_set():
+                    pass
+                statuses[str(answer.status)] += 1
+            except (OSError, http.client.HTTPException) as error:
+                statuses[type(error).__name__] += 1
+            finally:
+                connection.close()
+
+    threads = [threading.Thread(target=read, args=(number,)) for number in range(count)]
+    for thread in threads:
+        thread.start()
+    sys.stdin.read()
+    over.set()
+    for thread in threads:
+        thread.join()
+    sys.stdout.write(json.dumps(statuses) + "\n")
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), int(sys.argv[2]), sys.argv[3:])
