@@ -29,6 +29,7 @@ _WHOLE_NUMBERS = {
     "starts_per_minute": (1, ""),
     "max_connections": (1, ""),
     "max_connections_per_address": (1, ""),
+    "max_viewers": (1, ""),
 }
 """By setting the least, and of what."""
 MIN_TOKEN_LENGTH, MAX_TOKEN_LENGTH = 16, 200
@@ -57,6 +58,7 @@ class Settings:
         starts_per_minute: how often one address may start something that costs the machine work.
         log_level: below which records are left out of the log.
         quota_mb: how much the data folder may take, in MB; None for as much as the disk has.
+        max_viewers: how many may watch the stage at once, and as many may follow the events.
     """
 
     host: str = "127.0.0.1"
@@ -71,6 +73,7 @@ class Settings:
     max_connections: int | None = None
     max_connections_per_address: int | None = None
     starts_per_minute: int = 1200
+    max_viewers: int = 300
     log_level: LogLevel = "info"
 
     def __post_init__(self) -> None:
@@ -106,6 +109,11 @@ class Settings:
             number = getattr(self, name)
             if number is not None and number < least:
                 raise InvalidInput(f"{PREFIX}{name.upper()} must be at least {least}, not {number}")
+
+    @property
+    def viewers_per_address(self) -> int:
+        """How many of them may be of one address: many, as a class may have one, but not all."""
+        return max(1, self.max_viewers * 4 // 5)
 
     @property
     def public_host(self) -> str | None:
