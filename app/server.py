@@ -29,6 +29,7 @@ from app.api import (
     trainings,
     what_if,
 )
+from app.api.addresses import caller
 from app.api.auth import TokenGuard
 from app.api.deps import Services
 from app.api.disconnects import Disconnects
@@ -48,6 +49,7 @@ from app.services.errors import OwnershipLost
 from app.services.idempotency import Idempotency
 from app.services.jobs import Jobs
 from app.services.memory_store import MemoryStore
+from app.services.places import Places
 from app.services.recordings import Recordings
 from app.services.sessions import Sessions
 from app.services.stage import Stage
@@ -82,7 +84,14 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
     store = MemoryStore() if store is None else store
     recordings, bus = Recordings(store), Witness()
     show = Stage(store, recordings, bus)
-    theatre = Theatre(show, bus, allowed_origins=_further_origins(settings))
+    theatre = Theatre(
+        show,
+        bus,
+        allowed_origins=_further_origins(settings),
+        max_viewers=settings.max_viewers,
+        max_per_address=settings.viewers_per_address,
+        address_of=caller,
+    )
     jobs = Jobs(store, recordings, bus, on_queued=show.offer, niceness=settings.job_niceness)
     app = FastAPI(
         title="Racing Hexapods",
@@ -105,6 +114,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
         ready=lambda: _trouble(jobs, store),
         film=theatre.film,
         what_if=WhatIf(TrialPool()),
+        listeners=Places(settings.max_viewers, settings.viewers_per_address),
     )
     app.state.metrics = metrics.registry_of(app.state.services)
     _add_routes(app, theatre)

@@ -30,6 +30,7 @@ _WHOLE_NUMBERS = {
     "max_connections": (1, None, ""),
     "max_connections_per_address": (1, None, ""),
     "job_niceness": (0, 19, ""),
+    "max_viewers": (1, None, ""),
 }
 """By setting the least, the most if there is one, and of what."""
 MIN_TOKEN_LENGTH, MAX_TOKEN_LENGTH = 16, 200
@@ -59,6 +60,7 @@ class Settings:
         job_niceness: by how much the priority of jobs is lower than the server's own, 0 to 19.
         log_level: below which records are left out of the log.
         quota_mb: how much the data folder may take, in MB; None for as much as the disk has.
+        max_viewers: how many may watch the stage at once, and as many may follow the events.
     """
 
     host: str = "127.0.0.1"
@@ -74,6 +76,7 @@ class Settings:
     max_connections_per_address: int | None = None
     starts_per_minute: int = 1200
     job_niceness: int = 15
+    max_viewers: int = 300
     log_level: LogLevel = "info"
 
     def __post_init__(self) -> None:
@@ -111,6 +114,11 @@ class Settings:
                 continue
             limits = f"at least {least}" if most is None else f"from {least} to {most}"
             raise InvalidInput(f"{PREFIX}{name.upper()} must be {limits}, not {number}")
+
+    @property
+    def viewers_per_address(self) -> int:
+        """How many of them may be of one address: many, as a class may have one, but not all."""
+        return max(1, self.max_viewers * 4 // 5)
 
     @property
     def public_host(self) -> str | None:

@@ -15,6 +15,7 @@ from app.runs.recording import LaneRecording
 from app.services.idempotency import Idempotency, Start
 from app.services.jobs import Jobs
 from app.services.memory_budget import MemoryBudget
+from app.services.places import Places
 from app.services.recordings import Recordings
 from app.services.stage import Stage
 from app.services.store import Run, RunStore
@@ -44,6 +45,7 @@ class Services:
         ready: says what is not ready, or None.
         what_if: tries settings out.
         film: makes a race's recording playable.
+        listeners: places for streams of events.
         exports: counts what exports hold in memory until they are read.
     """
 
@@ -58,7 +60,15 @@ class Services:
     ready: Callable[[], str | None]
     film: Film
     what_if: WhatIf
+    listeners: Places["Listener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
+
+
+class Listener:
+    """Someone who follows the events; `close` ends the stream, once there is one."""
+
+    def __init__(self) -> None:
+        self.close: Callable[[], None] = lambda: None
 
 
 class Asked(NamedTuple):

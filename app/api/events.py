@@ -3,17 +3,25 @@
 from collections.abc import AsyncIterator
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Header, Query
+from fastapi import APIRouter, Depends, Header, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app import __version__
-from app.api.deps import Given, Services, Who
+from app.api.addresses import caller
+from app.api.deps import Given, Listener, Services, Who
 from app.api.sentences import VALID
+from app.services.errors import Busy
 from app.services.json_text import json_text
+from app.services.places import NoPlace, Refusal
 
 NEWEST_RUNS = 50
 RETRY_MS = 1000
+RETRY_AFTER_S = 10
+_REFUSALS: dict[Refusal, str] = {
+    "full": "As many follow the events as can; there is room when someone leaves.",
+    "address full": "As many follow the events from this address as may from one.",
+}
 
 router = APIRouter(prefix="/events", tags=["events"])
 
@@ -26,16 +34,37 @@ def _known_run(
     return None if run_id is None else services.store.find(run_id).id
 
 
+async def _place(request: Request, services: Given, role: Who) -> AsyncIterator[Listener]:
+    """A place among those who listen, until the stream ends.
+
+    Raises:
+        Busy: if there is none.
+    """
+    listener = Listener()
+    try:
+        loser = services.listeners.take(listener, caller(request.scope), role == "operator")
+    except NoPlace as error:
+        raise Busy(_REFUSALS[error.reason], RETRY_AFTER_S) from error
+    if loser is not None:
+        loser.close()
+    try:
+        yield listener
+    finally:
+        services.listeners.leave(listener)
+
+
 @router.get("", summary="What happens, as it happens", response_class=EventSourceResponse)
 async def get_events(
     services: Given,
     role: Who,
     run_id: Annotated[str | None, Depends(_known_run)],
+    listener: Annotated[Listener, Depends(_place)],
     last_event_id: Annotated[str | None, Header()] = None,
 ) -> AsyncIterator[ServerSentEvent]:
     """A `snapshot` first, then changes; with `run_id` those of one run only."""
     # Listening before looking: what happens in between comes twice rather than never.
     subscription = services.bus.subscribe(run_id, _event_id(last_event_id))
+    listener.close = subscription.close
     try:
         snapshot_id = str(services.bus.last_id)
         # In a thread: it asks the database, for which the event loop must not wait.

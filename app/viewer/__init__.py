@@ -1,1 +1,1 @@
-"""The viewer: viser's stage on loopback, and the hub that shows it to every browser, read-only."""
+"""The viewer: viser, which listens nowhere, and the hub that shows it to all, read-only."""

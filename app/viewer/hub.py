@@ -12,8 +12,10 @@ from collections.abc import AsyncGenerator, Callable, Collection
 from types import TracebackType
 from typing import Self
 
+from starlette.types import Scope
 from starlette.websockets import WebSocket
 
+from app.services.places import NoPlace, Places
 from app.viewer import follow, wire
 from app.viewer.session import Counters, Session
 from app.viewer.snapshot import UNWANTED, Snapshot
@@ -45,6 +47,8 @@ class Hub:
         follow_position: follow.FollowPosition | None = None,
         follow_frame: str = "/world",
         max_viewers: int = 300,
+        max_per_address: int | None = None,
+        address_of: Callable[[Scope], str] | None = None,
         allowed_origins: Collection[str] = (),
         on_viewers_changed: Callable[[int], None] | None = None,
     ) -> None:
@@ -55,7 +59,9 @@ class Hub:
                 when viser does; None while there is no viser.
             follow_position: Where the robots are that can be followed; without it, none can.
             follow_frame: The scene node that everything is drawn under.
-            max_viewers: Further ones are asked to try again later.
+            max_viewers: Further ones are asked to try again later; see `Places` for who is.
+            max_per_address: So many spectators of one address; without it, as many as there are.
+            address_of: Groups connections by where they are from; without it, by the client's host.
             allowed_origins: Origins beside the one that a request's own Host names, for a proxy
                 that changes the Host.
             on_viewers_changed: Called with how many watch when that changes.
@@ -65,7 +71,9 @@ class Hub:
         self.counters = Counters()
         self._follow_position = follow_position
         self._follow_frame = follow_frame
-        self._max_viewers = max_viewers
+        share = max_viewers + 1 if max_per_address is None else max_per_address
+        self._places = Places[Session](max_viewers, share)
+        self._address_of = address_of or _client_host
         self._allowed_origins = frozenset(allowed_origins)
         self._on_viewers_changed = on_viewers_changed
         self._sessions: set[Session] = set()
@@ -125,13 +133,23 @@ class Hub:
             return
         view = follow.valid_view(websocket.query_params.get("view")) or follow.FREE
         session = Session(websocket, view, self.counters, self._missed_by)
-        # Counted before the first await, or a crowd at the door would all find it open.
+        is_operator = websocket.scope.get("state", {}).get("role") == "operator"
+        try:
+            # Before the first await, or a crowd at the door would all find it open.
+            loser = self._places.take(session, self._address_of(websocket.scope), is_operator)
+        except NoPlace as error:
+            await websocket.accept(subprotocol=wire.SUBPROTOCOL)
+            await websocket.close(_TRY_AGAIN_LATER, error.reason)
+            return
+        if loser is not None:
+            loser.close(_TRY_AGAIN_LATER, "place taken")
         self._sessions.add(session)
         self._count_viewers()
         try:
             await websocket.accept(subprotocol=wire.SUBPROTOCOL)
             await session.run(self._show_view)
         finally:
+            self._places.leave(session)
             self._sessions.discard(session)
             self._count_viewers()
 
@@ -140,8 +158,6 @@ class Hub:
             return _PROTOCOL_ERROR, "reload"
         if self._relaying is None:
             return _GOING_AWAY, "the server stops"
-        if len(self._sessions) >= self._max_viewers:
-            return _TRY_AGAIN_LATER, "full"
         return None
 
     def _is_same_origin(self, websocket: WebSocket) -> bool:
@@ -231,3 +247,7 @@ class Hub:
         if self._snapshot.removals > _REMOVALS_KEPT:
             versions = [one.version for one in self._sessions if one.version is not None]
             self._snapshot.forget_removals(min(versions, default=self._snapshot.version))
+
+
+def _client_host(scope: Scope) -> str:
+    return scope["client"][0] if scope.get("client") else ""

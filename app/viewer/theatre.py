@@ -2,10 +2,12 @@
 
 import asyncio
 import threading
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from contextlib import ExitStack
 from types import TracebackType
 from typing import Self
+
+from starlette.types import Scope
 
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
@@ -23,13 +25,25 @@ from app.viewer.stage_loop import StageLoop
 class Theatre:
     """`async with theatre:` lets the show go on; viser listens nowhere."""
 
-    def __init__(self, stage: Stage, bus: EventBus, allowed_origins: Collection[str] = ()) -> None:
+    def __init__(
+        self,
+        stage: Stage,
+        bus: EventBus,
+        allowed_origins: Collection[str] = (),
+        *,
+        max_viewers: int = 300,
+        max_per_address: int | None = None,
+        address_of: Callable[[Scope], str] | None = None,
+    ) -> None:
         """Start nothing yet.
 
         Args:
             stage: says what is shown.
             bus: is told what is shown, and how many watch.
-            allowed_origins: see `Hub`.
+            allowed_origins: see `Hub`, as for all below.
+            max_viewers: at once.
+            max_per_address: of them, of one address.
+            address_of: a connection.
         """
         self._stage, self._bus = stage, bus
         self._scene: StageScene | None = None
@@ -38,6 +52,9 @@ class Theatre:
         self.hub = Hub(
             follow_position=self._follow_position,
             allowed_origins=allowed_origins,
+            max_viewers=max_viewers,
+            max_per_address=max_per_address,
+            address_of=address_of,
             on_viewers_changed=lambda count: bus.publish("viewers", {"count": count}),
         )
 

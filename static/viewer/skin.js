@@ -1,7 +1,7 @@
 // Runs before viser's client on the page /viewer/, and makes it a part of the dashboard around it.
 //
 //   from the parent   {type: "hexapods:show", view?: "leader" | "1" … "8" | "free", theme?: "light" | "dark"}
-//   to the parent     {type: "hexapods:status", status: "connected" | "reconnecting" | "full"}
+//   to the parent     {type: "hexapods:status", status: "connected" | "reconnecting" | "full" | "address full" | "place taken"}
 //                     {type: "hexapods:key", key, code, shiftKey}
 (() => {
   "use strict";
@@ -10,6 +10,8 @@
   const query = new URLSearchParams(location.search);
   let view = query.get("view") ?? "leader";
   let socketWorker = null;
+  // The hub's reasons for letting nobody in, or out; viser's client goes on asking.
+  const REFUSALS = ["full", "address full", "place taken"];
 
   const tellParent = (message) => {
     if (parent !== window) parent.postMessage(message, location.origin);
@@ -51,7 +53,7 @@
       tellParent({ type: "hexapods:status", status: "connected" });
     } else if (data.type === "closed") {
       if (data.versionMismatch) reloadOnce();
-      const status = data.closeReason === "full" ? "full" : "reconnecting";
+      const status = REFUSALS.includes(data.closeReason) ? data.closeReason : "reconnecting";
       tellParent({ type: "hexapods:status", status });
     }
   };

@@ -226,12 +226,16 @@ def test_a_page_of_another_version_reloads_once(
     assert len(loads) == 2
 
 
-def test_a_full_house_is_told_to_the_dashboard(page: Page, stage: InProcessViser) -> None:
+@pytest.mark.parametrize(("places", "share", "told"), [(0, None, "full"), (5, 0, "address full")])
+def test_a_full_house_is_told_to_the_dashboard(
+    page: Page, stage: InProcessViser, places: int, share: int | None, told: str
+) -> None:
     root = Route("/", lambda _: HTMLResponse(DASHBOARD))
-    with serving(Hub(stage.frames, max_viewers=0), more_routes=[root]) as address:
+    hub = Hub(stage.frames, max_viewers=places, max_per_address=share)
+    with serving(hub, more_routes=[root]) as address:
         page.goto(f"http://{address.host}/")
 
-        page.wait_for_function("heard.some((message) => message.status === 'full')")
+        page.wait_for_function(f"heard.some((message) => message.status === '{told}')")
 
 
 def test_other_pages_cannot_have_it_in_them(address: Address, browser: Browser) -> None:

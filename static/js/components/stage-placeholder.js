@@ -12,7 +12,16 @@ const Robot = ({ x, color }) => html`
   </g>
 `;
 
-export const StagePlaceholder = ({ isFull }) => html`
+const REFUSALS = {
+  "full": "Many are watching already. The picture comes when there is room; numbers and charts go on.",
+  "address full": "Many are watching from this network already. The picture comes when there is room; numbers and charts go on.",
+  "place taken": "Someone else was given this place. The picture comes back when there is room; numbers and charts go on.",
+};
+
+/** Whether the viewer said that it has no place. */
+export const isRefused = (status) => status in REFUSALS;
+
+export const StagePlaceholder = ({ status }) => html`
   <div class="placeholder">
     <svg viewBox="-320 -130 640 260" aria-hidden="true">
       <path class="track" d="M-300 110-90-110M-100 110-30-110M100 110 30-110M300 110 90-110" />
@@ -20,6 +29,6 @@ export const StagePlaceholder = ({ isFull }) => html`
       <path class="finish" d="M-118-80H118" /><path class="start" d="M-270 78H270" />
       <g transform="translate(0 38)">${ROBOTS.map(([x, color]) => html`<${Robot} x=${x} color=${color} />`)}</g>
     </svg>
-    <p>${isFull ? "Many are watching already. The picture comes when there is room; numbers and charts go on." : "The robots walk to the start line…"}</p>
+    <p>${REFUSALS[status] ?? "The robots walk to the start line…"}</p>
   </div>
 `;

@@ -5,7 +5,7 @@ import { view } from "../page.js";
 import { connection } from "../store.js";
 import { shownTheme } from "../theme.js";
 import { StageLabels } from "./stage-labels.js";
-import { StagePlaceholder } from "./stage-placeholder.js";
+import { isRefused, StagePlaceholder } from "./stage-placeholder.js";
 import { Transport } from "./transport.js";
 
 /** A viewer that says nothing for so long is shown as it is. */
@@ -42,7 +42,7 @@ export function Stage() {
     <section class=${`stage ${isAway ? "away" : ""}`} aria-label="Stage" data-status=${status}>
       <div class="picture">
         <iframe ref=${frame} src=${address} title="The robots on the track, in 3D"></iframe>
-        ${(status === "loading" || status === "full") && html`<${StagePlaceholder} isFull=${status === "full"} />`}
+        ${(status === "loading" || isRefused(status)) && html`<${StagePlaceholder} status=${status} />`}
         <${StageLabels} />
         ${isAway && html`
           <p class="away-note" role="status">
