@@ -318,7 +318,7 @@ def test_a_damaged_run_is_named_everywhere_and_can_be_deleted(
         ("state", "'lost'"),
         ("result", "'[]'"),
         ("greedy_distance_m", "'NaN'"),
-        ("eta_s", "'-Infinity'"),
+        ("total", "-1"),
         ("created_at", "'infinity'"),
         ("ended_at", "'-infinity'"),
         ("created_at", "'4713-01-01 BC'"),
