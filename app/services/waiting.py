@@ -56,11 +56,12 @@ class WaitingRuns:
         new = [entry.run for entry in entries if not entry.goes_on]
         try:
             self._store.create(*new, key=key)
-        except StorageFailed:
+            for entry in (entry for entry in entries if entry.goes_on):
+                entry.run = self._queue_again(entry.run)
+        except HexapodError:
+            # Some may read `queued` now, with nothing that will start them.
             self._unsure |= {entry.run.id for entry in entries}
             raise
-        for entry in (entry for entry in entries if entry.goes_on):
-            entry.run = self._queue_again(entry.run)
         self._entries += entries
         for entry in entries:
             self._tell(entry.run)

@@ -17,8 +17,9 @@ from app.services.errors import Busy, Conflict, StorageFailed
 from app.services.jobs import Jobs
 from app.services.memory_store import MemoryStore
 from app.services.recordings import Recordings
-from app.services.store import Run
-from app.services.waiting import MAX_QUEUED
+from app.services.resuming import resumed_entries
+from app.services.store import QUEUED, Run
+from app.services.waiting import MAX_QUEUED, WaitingRuns
 from tests.services.waiting import ended, moving, until
 
 WALK = Walk(gait="left-right-origin", simulator="kinematic")
@@ -217,12 +218,37 @@ class ShakyStore(MemoryStore):
     """A store that cannot be used for a while."""
 
     failures = 0
+    fail_after: int | None = None
+    """So many changes are made before one fails."""
 
     def change(self, *args: Any, **fields: Any) -> Run:
+        if self.fail_after == 0:
+            self.fail_after = None
+            raise StorageFailed("another program holds the database")
+        if self.fail_after is not None:
+            self.fail_after -= 1
         if self.failures:
             self.failures -= 1
             raise StorageFailed("another program holds the database")
         return super().change(*args, **fields)
+
+
+def test_a_start_that_fails_halfway_leaves_no_run_in_the_queue() -> None:
+    """A race that goes on after its practice: the practice is queued, then the store fails."""
+    store = ShakyStore()
+    ids = ["a", "b"]
+    config = TrainingConfig(**vars(WALK), steps=10)
+    for run_id in ids:
+        store.create(Run(id=run_id, kind="training", name=run_id, config=config, total=10))
+        store.change(run_id, QUEUED, "interrupted")
+    queue = WaitingRuns(store, lambda run: None)
+    entries = [entry for run_id in ids for entry in resumed_entries(store.get(run_id), store)]
+    store.fail_after = 1
+    with pytest.raises(StorageFailed):
+        queue.add(entries, 1)
+    assert [store.get(run_id).state for run_id in ids] == ["queued", "interrupted"]
+    queue.reconcile()
+    assert [store.get(run_id).state for run_id in ids] == ["interrupted", "interrupted"]
 
 
 def test_a_store_that_cannot_be_used_for_a_while_costs_no_run() -> None:
