@@ -162,7 +162,20 @@ def test_a_race_begins_anew(store: MemoryStore, open_jobs: Callable[[], Jobs]) -
     assert ended(store, run).state == "finished"
 
 
-@pytest.mark.parametrize("state", ["failed", None])
+def test_a_race_goes_on_with_a_practice_that_failed(
+    store: MemoryStore, open_jobs: Callable[[], Jobs]
+) -> None:
+    practice = TrainingConfig(gait="left-right-origin", simulator="kinematic", steps=20)
+    store.create(training("t", state="failed", config=practice, total=20))
+    config = RaceConfig(**vars(WALK), lanes=(LaneConfig(agent="q-learning"),))
+    run = Run(id="r", kind="race", name="r", config=config, total=50, lane_training_ids=("t",))
+    store.create(replace(run, state="failed", error="Its training t failed."))
+    open_jobs().resume("r")
+    assert ended(store, run).state == "finished"
+    assert store.get("t").state == "finished"
+
+
+@pytest.mark.parametrize("state", ["stopped", None])
 def test_a_race_whose_practice_is_lost_cannot_go_on(
     state: str | None, store: MemoryStore, open_jobs: Callable[[], Jobs]
 ) -> None:
