@@ -2,7 +2,7 @@
 app's own, or other users cannot reach it; and no connection ever leaves the machine.
 
 A training, a race and an experiment run while a hostile viewer sends every message type that viser
-has, `ShareUrlRequest` among them. All sockets are looked at every few milliseconds, and an audit
+has, `ShareUrlRequest` among them. All sockets are looked at twice a second, and an audit
 hook in every process of the tree writes down what is connected to, looked up and started, so that
 no short connection is missed. The gate's short form watches one round, `make soak` ten.
 """
@@ -103,7 +103,7 @@ def watched(server: Served) -> Iterator[Sockets]:
     sockets, over = Sockets(server.process.pid), threading.Event()
 
     def watch() -> None:
-        while not over.wait(0.02):
+        while not over.wait(0.5):
             sockets.look()
 
     thread = threading.Thread(target=watch)
@@ -130,6 +130,17 @@ def attack(server: Served) -> None:
             viewer.socket.send(message)
         viewer.socket.ping().wait(10)
         assert viewer.frame().raw
+
+
+def wait_for_trials(server: Served, run: dict[str, Any]) -> None:
+    """All of an experiment's trials; its report, which comes then, opens nothing.
+
+    Its processes are at nice 15: beside others that keep all cores busy it takes minutes.
+    """
+    deadline = time.monotonic() + 600
+    while server.look(run)["progress"]["done"] < run["progress"]["total"]:
+        assert time.monotonic() < deadline
+        time.sleep(0.2)
 
 
 @pytest.fixture
@@ -164,12 +175,13 @@ def test_nothing_listens_but_the_app_and_nothing_leaves(server: Served, audit: P
                 server.start(EXPERIMENT, "/experiments"),
             ]
             attack(server)
-            for run in runs:
+            for run in runs[:2]:
                 assert server.in_state(run, "finished", "failed")["state"] == "finished"
+            wait_for_trials(server, runs[2])
             server.client.get(f"/api/v1/races/{runs[1]['id']}/recording?format=viser")
             time.sleep(0.2)
 
-    assert sockets.looks > 20
+    assert sockets.looks > 5
     others = {address: sockets.guarded[address] for address in sockets.listening}
     assert others.pop(("127.0.0.1", own)).startswith("to plain HTTP")
     assert others, "an experiment's cluster was not seen: this test looks at nothing"
