@@ -162,7 +162,7 @@ def test_a_race_begins_anew(store: MemoryStore, open_jobs: Callable[[], Jobs]) -
     assert ended(store, run).state == "finished"
 
 
-@pytest.mark.parametrize("state", ["failed", None])
+@pytest.mark.parametrize("state", ["stopped", None])
 def test_a_race_whose_practice_is_lost_cannot_go_on(
     state: str | None, store: MemoryStore, open_jobs: Callable[[], Jobs]
 ) -> None:
