@@ -63,7 +63,7 @@ def schemathesis(server: Served, folder: Path, *options: str) -> int:
     command = [sys.executable, "-m", "schemathesis.cli", "--config-file", str(config), "run"]
     common = ["--seed", "1", "--continue-on-failure", "--exclude-path", ENDLESS, "--no-color"]
     # A what-if takes as long as the machine is busy.
-    common += ["--request-timeout", "120"]
+    common += ["--request-timeout", "120", "--max-response-time", "120"]
     began_s = time.monotonic()
     paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     done = subprocess.run(

@@ -97,7 +97,7 @@ def test_whatever_ends_it_nothing_is_repeated_and_nothing_else_comes_out(
     assert stored(store, run.id) == tried(config)
     times = {row["key"]: row["compute_s"] for row in store.trials(run.id)}
     assert all(times[row["key"]] == row["compute_s"] for row in kept), "some were repeated"
-    with pytest.raises(Conflict, match="paused or failed or interrupted or stopped"):
+    with pytest.raises(Conflict, match="failed or interrupted or paused or stopped"):
         jobs.resume(run.id)
     until(lambda: family() == before)
     check_summary(store, run, config)
