@@ -71,11 +71,11 @@ class Stranger:
 
 
 def main(port: int, count: int, addresses: int, paths: Sequence[str]) -> None:
-    """Be a crowd from 127.0.0.2 on until standard input ends."""
+    """Be a crowd from 127.0.0.1 on until standard input ends."""
     _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
     crowd = [
-        Stranger(number, port, f"127.0.0.{2 + number % addresses}", paths)
+        Stranger(number, port, f"127.0.0.{1 + number % addresses}", paths)
         for number in range(count)
     ]
     for one in crowd:

@@ -2,9 +2,10 @@
 the heaviest reads, against a server with 1,024 files and 1 GB: no run fails, an operator's 95th
 percentile is under 500 ms, the log under 1 MB.
 
-In full by `make soak`, for two minutes; the gate's shorter form has 1,600 connections for 12 s. The
-strangers come from eight addresses, one of which is the operator's own, and come back when they
-are closed. Every other request of the operator's comes on a connection of its own.
+In full by `make soak`, for two minutes. The gate's shorter form has 1,600 connections for 12 s, and
+since the machine may do other things as well it allows 5 s: without limits nobody is answered at
+all. The strangers come from eight addresses, one of which is the operator's own, and come back when
+they are closed. Every other request of the operator's comes on a connection of its own.
 """
 
 import json
@@ -35,7 +36,7 @@ MEMORY_BYTES = 1 << 30
 LOG_BYTES = 1_000_000
 ELSEWHERE = ("nice", "-n", "15")
 """Strangers compute on machines of their own, not on the server's."""
-MOST_P95_S = at_length(2.0, 0.5)
+MOST_P95_S = at_length(5.0, 0.5)
 TOKEN = "a-token-for-tests"
 OPERATOR = {"Authorization": f"Bearer {TOKEN}"}
 
