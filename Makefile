@@ -12,7 +12,6 @@ DEV_STAMP := $(VENV)/.installed-dev
 DQN_STAMP := $(VENV)/.installed-dqn
 # The tools that check the page. Node and npm come with the tools of the tests, from the Python registry.
 PAGE_STAMP := node_modules/.installed
-lock test-page $(PAGE_STAMP): export PATH := $(CURDIR)/$(BIN):$(PATH)
 TORCH := torch==2.13.0
 
 # Python compiles what it imports by itself; most of what is installed is never imported.
@@ -45,10 +44,10 @@ test: $(DQN_STAMP) $(PAGE_STAMP) ## Run every check; this is the gate
 
 .PHONY: test-page
 test-page: $(PAGE_STAMP) ## Check the page's JavaScript: linter, types, unit tests
-	node node_modules/eslint/bin/eslint.js .
-	node node_modules/typescript/bin/tsc --project tsconfig.json
-	node node_modules/typescript/bin/tsc --project tsconfig.logic.json
-	node --import ./tests/page/browser.js --test --test-reporter=dot "tests/page/test-*.js"
+	$(BIN)/node node_modules/eslint/bin/eslint.js .
+	$(BIN)/node node_modules/typescript/bin/tsc --project tsconfig.json
+	$(BIN)/node node_modules/typescript/bin/tsc --project tsconfig.logic.json
+	$(BIN)/node --import ./tests/page/browser.js --test --test-reporter=dot "tests/page/test-*.js"
 
 .PHONY: soak
 soak: $(DEV_STAMP) ## Show what is promised at its full length; it takes hours
@@ -73,8 +72,8 @@ lock: $(DEV_STAMP) ## Pin the newest versions that pyproject.toml allows
 		$(subst --universal,--python-platform windows,$(COMPILE)) --upgrade - \
 		--constraint requirements-dev.lock --no-emit-package torch \
 		--output-file requirements-dqn.lock
-	npm install --package-lock-only --ignore-scripts
-	node tests/page/strip-lock.js
+	$(BIN)/npm install --package-lock-only --ignore-scripts
+	$(BIN)/node tests/page/strip-lock.js
 
 .PHONY: clean
 clean: ## Remove the environment and every cache
@@ -109,5 +108,5 @@ $(DQN_STAMP): requirements-dqn.lock $(DEV_STAMP)
 # Packages run no scripts when they are installed: none of these needs one.
 $(PAGE_STAMP): package.json package-lock.json $(DEV_STAMP)
 	@echo "Installing what the checks of the page need into node_modules"
-	@npm ci --ignore-scripts --loglevel=error
+	@$(BIN)/npm ci --ignore-scripts --loglevel=error
 	@touch $@
