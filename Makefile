@@ -10,6 +10,8 @@ RUN_STAMP := $(VENV)/.installed-run
 DEV_STAMP := $(VENV)/.installed-dev
 # A third for the example with a deep network.
 DQN_STAMP := $(VENV)/.installed-dqn
+# The tools that check the page. Node and npm come with the tools of the tests, from the Python registry.
+PAGE_STAMP := node_modules/.installed
 TORCH := torch==2.13.0
 
 # Python compiles what it imports by itself; most of what is installed is never imported.
@@ -28,16 +30,24 @@ run: $(RUN_STAMP) ## Serve the dashboard; options by ARGS="--port 9000 --share"
 	$(BIN)/hexapods serve $(ARGS)
 
 .PHONY: venv
-venv: $(DQN_STAMP) ## Make or update .venv with everything a developer needs
+venv: $(DQN_STAMP) $(PAGE_STAMP) ## Make or update .venv with everything a developer needs
 
 .PHONY: test
-test: $(DQN_STAMP) ## Run every check; this is the gate
+test: $(DQN_STAMP) $(PAGE_STAMP) ## Run every check; this is the gate
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
+	@$(MAKE) --no-print-directory test-page
 	$(BIN)/python tests/install_browser.py
 	$(BIN)/python -m pytest
+
+.PHONY: test-page
+test-page: $(PAGE_STAMP) ## Check the page's JavaScript: linter, types, unit tests
+	$(BIN)/node node_modules/eslint/bin/eslint.js .
+	$(BIN)/node node_modules/typescript/bin/tsc --project tsconfig.json
+	$(BIN)/node node_modules/typescript/bin/tsc --project tsconfig.logic.json
+	$(BIN)/node --import ./tests/page/browser.js --test --test-reporter=dot "tests/page/test-*.js"
 
 .PHONY: soak
 soak: $(DEV_STAMP) ## Show what is promised at its full length; it takes hours
@@ -62,10 +72,12 @@ lock: $(DEV_STAMP) ## Pin the newest versions that pyproject.toml allows
 		$(subst --universal,--python-platform windows,$(COMPILE)) --upgrade - \
 		--constraint requirements-dev.lock --no-emit-package torch \
 		--output-file requirements-dqn.lock
+	$(BIN)/npm install --package-lock-only --ignore-scripts
+	$(BIN)/node tests/page/strip-lock.js
 
 .PHONY: clean
 clean: ## Remove the environment and every cache
-	rm -rf $(VENV) build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf $(VENV) node_modules build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	find app tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(RUN_STAMP): requirements.lock pyproject.toml .ci/find-python
@@ -91,4 +103,10 @@ $(DQN_STAMP): requirements-dqn.lock $(DEV_STAMP)
 	@echo "Installing what the example of a deep network needs into $(VENV)"
 	@$(INSTALL) --no-deps --require-hashes --requirement requirements-dqn.lock
 	@$(INSTALL) $(TORCH)
+	@touch $@
+
+# Packages run no scripts when they are installed: none of these needs one.
+$(PAGE_STAMP): package.json package-lock.json $(DEV_STAMP)
+	@echo "Installing what the checks of the page need into node_modules"
+	@$(BIN)/npm ci --ignore-scripts --loglevel=error
 	@touch $@

@@ -1,5 +1,6 @@
 """The lock files pin everything, fit pyproject.toml, and say nothing about who made them."""
 
+import json
 import re
 import tomllib
 from pathlib import Path
@@ -11,6 +12,7 @@ CHECKOUT = Path(__file__).parent.parent
 RUN_LOCK = CHECKOUT / "requirements.lock"
 DEV_LOCK = CHECKOUT / "requirements-dev.lock"
 DQN_LOCK = CHECKOUT / "requirements-dqn.lock"
+PAGE_LOCK = CHECKOUT / "package-lock.json"
 
 
 def pinned_versions(lock: Path) -> dict[str, str]:
@@ -64,3 +66,16 @@ def test_pytorch_is_pinned_by_the_makefile_alone_and_brings_no_cuda() -> None:
     assert torch
     for requirement in map(Requirement, extra):
         assert requirement.specifier.contains({**pinned, "torch": torch[1]}[requirement.name])
+
+
+def test_the_tools_of_the_page_are_pinned_by_hash_and_name_no_place() -> None:
+    text = PAGE_LOCK.read_text()
+    root, *packages = json.loads(text)["packages"].values()
+
+    assert "://" not in text
+    assert packages
+    assert all(package["integrity"].startswith("sha512-") for package in packages)
+    assert (
+        root["devDependencies"]
+        == json.loads((CHECKOUT / "package.json").read_text())["devDependencies"]
+    )

@@ -17,6 +17,8 @@ from app.runs.config import (
 )
 from app.services.experiment_catalogue import HELP, experiment_limits, experiments
 from app.services.palette import lane_colors
+from app.services.what_if import MAX_STEPS as MAX_WHAT_IF_STEPS
+from app.services.what_if import SEEDS as WHAT_IF_SEEDS
 
 _GAITS = {
     "left-right-origin": (
@@ -104,7 +106,11 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
         "observations": _described(_OBSERVATIONS),
         "clocks": _described(_CLOCKS),
         "experiments": experiments(),
-        "defaults": {"training": _training_defaults(), "race": _race_defaults()},
+        "defaults": {
+            "training": _training_defaults(),
+            "race": _race_defaults(),
+            "what_if": {"seeds": WHAT_IF_SEEDS},
+        },
         "limits": _limits() | experiment_limits(),
         "help": _HELP | HELP,
     }
@@ -161,6 +167,7 @@ def _limits() -> dict[str, list[float | None]]:
     return {
         "steps": steps,
         "race_steps": [1, 10_000],
+        "what_if_steps": [1, MAX_WHAT_IF_STEPS],
         "seed": [0, None],
         "alpha": unit,
         "gamma": unit,

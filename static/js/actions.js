@@ -1,152 +1,179 @@
-// What one can do. Each keeps its own error, so that it is shown beside the control that caused it.
+// The user's actions. Each keeps its own error, which is shown beside the control that caused it.
 import { computed, signal } from "@preact/signals";
 import * as api from "./api.js";
-import { form, link, mistakes, raceBody, set, trainingBody } from "./form.js";
+import { form, link, mistakes, raceBody, setField, trainingBody } from "./form.js";
 import { count, whole } from "./format.js";
 import {
-  claim, isActive, isOperator, learns, liveTraining, myWork, raceIsRun, shownRun, tableInHand, work,
+  isActive, isOperator, isRaceRun, learns, liveTraining, markAsMine, matchingTable, myWork, presetOf, shownRun, work,
 } from "./selectors.js";
-import { dropRun, keepRun, rates, runs, scene, stage } from "./store.js";
+import { forgetRun, options, rates, runs, scene, setEntry, stage, upsertRun } from "./store.js";
 
-/** Place → what went wrong there: "start", "work", "stage", "tune", or a run's id. */
-export const problems = signal({});
-/** Places that wait for an answer. */
+/** @import { Signal } from "@preact/signals" */
+/** @import { RequestError } from "./api.js" */
+/** @import { DamagedRun, Rates, Run, Stage, Verb } from "./types.js" */
+
+/** A button of the page. @typedef {{ label: string, run: () => unknown }} Action */
+
+/** Place → its last error; places are "start", "work", "stage", "tune", "experiment" and run ids. */
+export const problems = /** @type {Signal<Record<string, RequestError | null>>} */ (signal({}));
+/** Places that wait for an answer. @type {Signal<Record<string, boolean>>} */
 export const pending = signal({});
-/** Fields that the server refused. */
-export const refusedFields = computed(() => problems.value.start?.fields ?? []);
-/** Fields that the server refused at a place. */
-export const refusals = (place) => problems.value[place]?.fields ?? [];
-/** A passing remark: {text} or null. */
-export const remark = signal(null);
+/** Fields that the server refused at a place. @type {(place: string) => string[]} */
+export const refusedFields = (place) => problems.value[place]?.fields ?? [];
+/** The message that is shown for a few seconds. @type {Signal<string | null>} */
+export const toastMessage = signal(null);
 
-const mark = (map, place, value) => (map.value = { ...map.value, [place]: value });
-
-/** Do something once at a time, and keep what goes wrong. */
-export async function attempt(place, act) {
+/**
+ * Perform an action unless the place is pending, and keep its error there.
+ * @template Result
+ * @param {string} place
+ * @param {() => Promise<Result>} action
+ */
+export async function attempt(place, action) {
   if (pending.value[place]) return null;
-  mark(pending, place, true);
-  mark(problems, place, null);
+  setEntry(pending, place, true);
+  setEntry(problems, place, null);
   try {
-    return await act();
+    return await action();
   } catch (error) {
-    mark(problems, place, error);
+    setEntry(problems, place, /** @type {RequestError} */ (error));
     return null;
   } finally {
-    mark(pending, place, false);
+    setEntry(pending, place, false);
   }
 }
 
-export const forget = (place) => mark(problems, place, null);
+/** @param {string} place */
+export const dismissProblem = (place) => setEntry(problems, place, null);
 
 // ---- starting
 
-const someoneLearns = computed(() => form.value.lanes.some(learns));
+const hasLearner = computed(() => form.value.lanes.some(learns));
 
-/** What the one primary button will do. */
-export const nextDeed = computed(() => {
+/** The action of the primary button. @type {Signal<Action>} */
+export const primaryAction = computed(() => {
   const { steps } = form.value;
-  if (!someoneLearns.value) return { label: "Race", run: () => startRace() };
-  if (raceIsRun.value) {
-    const continueFrom = tableInHand.value.id;
-    return { label: `Practise ${whole(steps)} more, race again`, run: () => startRace({ continueFrom }) };
+  if (!hasLearner.value) return { label: "Race", run: () => startRace() };
+  const table = matchingTable.value;
+  if (isRaceRun.value && table) {
+    return {
+      label: `Practise ${whole(steps)} more, race again`,
+      run: () => startRace({ continueFrom: table.id }),
+    };
   }
   return { label: `Train ${count(steps, "step")}, then race`, run: () => startRace() };
 });
 
-/** What else could be done: [label, deed]. */
-export const otherDeeds = computed(() => {
-  const deeds = [];
-  const table = tableInHand.value;
-  if (someoneLearns.value) {
-    if (raceIsRun.value) deeds.push(["Start afresh", () => startRace()]);
-    else deeds.push(["Train only", () => startTraining()]);
-    if (table) deeds.push(["Race only", () => startRace({ table: table.id })]);
-  }
-  return deeds;
+/** The other ways to start. @type {Signal<Action[]>} */
+export const secondaryActions = computed(() => {
+  if (!hasLearner.value) return [];
+  /** @type {Action[]} */
+  const actions = [];
+  if (isRaceRun.value) actions.push({ label: "Start afresh", run: () => startRace() });
+  else actions.push({ label: "Train only", run: () => startTraining() });
+  const table = matchingTable.value;
+  if (table) actions.push({ label: "Race only", run: () => startRace({ table: table.id }) });
+  return actions;
 });
 
 export const canStart = computed(
-  () => isOperator.value && !myWork.value && Object.keys(mistakes.value).length === 0,
+  () => isOperator.value && options.value !== null && !myWork.value && Object.keys(mistakes.value).length === 0,
 );
 
-export const doNext = () => (canStart.value ? nextDeed.value.run() : null);
+export const runPrimaryAction = () => (canStart.value ? primaryAction.value.run() : null);
 
-const take = (run) => {
-  keepRun(run);
-  claim(run.id);
+/**
+ * Take in a run that this tab has started.
+ * @param {Run} run
+ */
+const adopt = (run) => {
+  upsertRun(run);
+  markAsMine(run.id);
   return run;
 };
 
+/** @param {Parameters<typeof raceBody>[2]} [how] */
 const startRace = (how) =>
-  attempt("start", async () => take(await api.startRace(raceBody(form.value, learns, how))));
+  attempt("start", async () => adopt(await api.startRace(raceBody(form.value, learns, how))));
 
 const startTraining = () =>
-  attempt("start", async () => take(await api.startTraining(trainingBody(form.value))));
+  attempt("start", async () => adopt(await api.startTraining(trainingBody(form.value))));
 
-/** Practise on from a table that there is, at the rates that the form has now. */
-export const continueWith = (table) =>
-  attempt("start", async () => take(await api.startTraining(trainingBody(form.value, table.id))));
+/**
+ * Continue the training of a table with the form's rates.
+ * @param {Run} table
+ */
+export const continueTraining = (table) =>
+  attempt("start", async () => adopt(await api.startTraining(trainingBody(form.value, table.id))));
 
-// ---- what runs
+// ---- running work
 
-export const pause = () => tellWork("pause");
-export const resume = () => tellWork("resume");
+export const pause = () => commandWork("pause");
+export const resume = () => commandWork("resume");
 
-const tellWork = (verb) =>
+/** @param {Verb} verb */
+const commandWork = (verb) =>
   attempt("work", async () => {
-    const { now } = work.value;
-    const answer = await api.tell(now, verb);
-    if (answer?.id) keepRun(answer);
-    if (stage.value?.run_id === now.id) await api.putStage({ playing: verb === "resume" });
+    const current = work.value?.current;
+    if (!current) return;
+    const answer = await api.command(current, verb);
+    if (answer?.id) upsertRun(answer);
+    if (stage.value?.run_id === current.id) await api.putStage({ playing: verb === "resume" });
   });
 
 export const stop = () =>
   attempt("work", async () => {
-    // A race that waits takes its practice with it.
-    const answer = await api.tell(work.value.asked, "stop");
-    if (answer?.id) keepRun(answer);
+    if (!work.value) return;
+    // A race that waits for its training stops that too.
+    const answer = await api.command(work.value.requested, "stop");
+    if (answer?.id) upsertRun(answer);
     if (stage.value?.playing === false) await api.putStage({ playing: true });
   });
 
-/** Space: pause the work that is on stage, else the picture. */
-export function pauseOrPlay() {
+/** Pause or resume the training on stage, else the playback. */
+export function togglePause() {
   if (!isOperator.value) return;
-  const { now } = work.value ?? {};
-  if (now && now.id === stage.value?.run_id && now.kind === "training") {
-    if (now.state === "paused") resume();
-    else if (now.state === "running") pause();
+  const current = work.value?.current;
+  if (current && current.id === stage.value?.run_id && current.kind === "training") {
+    if (current.state === "paused") resume();
+    else if (current.state === "running") pause();
     return;
   }
   togglePlaying();
 }
 
-// ---- rates of a training that runs
+// ---- rates of a live training
 
 const TUNE_MS = 120;
-let waiting = null;
+/** Changes that are not yet sent. @type {Rates | null} */
+let unsent = null;
 
-/** A rate that is moved while a training runs takes effect at its next step. */
+/**
+ * Change rates of the live training from its next step on; requests are sent at most every 120 ms.
+ * @param {Rates} changes
+ */
 export function tune(changes) {
   const run = liveTraining.value;
   if (!run) return;
-  mark(rates, run.id, { ...rates.value[run.id], ...changes });
-  if (waiting) {
-    Object.assign(waiting, changes);
+  setEntry(rates, run.id, { ...rates.value[run.id], ...changes });
+  if (unsent) {
+    Object.assign(unsent, changes);
     return;
   }
-  waiting = { ...changes };
+  unsent = { ...changes };
   setTimeout(() => {
-    const sent = waiting;
-    waiting = null;
+    const sent = unsent ?? {};
+    unsent = null;
     api.tuneTraining(run.id, sent).then(
-      () => mark(problems, "tune", null),
-      (error) => isActive(runs.value.get(run.id)) && mark(problems, "tune", error),
+      () => setEntry(problems, "tune", null),
+      (error) => isActive(runs.value.get(run.id)) && setEntry(problems, "tune", error),
     );
   }, TUNE_MS);
 }
 
-// ---- the stage, which everyone shares
+// ---- the stage, which all pages share
 
+/** @param {Partial<Stage> & { time_s?: number }} changes */
 export const setStage = (changes) =>
   attempt("stage", async () => {
     const answer = await api.putStage(changes);
@@ -156,61 +183,75 @@ export const setStage = (changes) =>
 export const togglePlaying = () => {
   if (isOperator.value && stage.value?.run_id) setStage({ playing: !stage.value.playing });
 };
-export const skipToEnd = () => setStage({ time_s: scene.value.duration_s, playing: true });
+export const skipToEnd = () => setStage({ time_s: scene.value?.duration_s ?? undefined, playing: true });
+
+/** @param {Run} run */
 export const showOnStage = (run) =>
   attempt(run.id, async () => {
-    const time_s = isActive(run) ? {} : { time_s: 0 };
-    stage.value = (await api.putStage({ run_id: run.id, playing: true, ...time_s })) ?? stage.value;
+    const start = isActive(run) ? {} : { time_s: 0 };
+    stage.value = (await api.putStage({ run_id: run.id, playing: true, ...start })) ?? stage.value;
     location.hash = "";
   });
 
 // ---- runs
 
-/** Let a run that a server left behind go on where its last checkpoint is. */
-export const goOn = (run) =>
+/**
+ * Resume an interrupted or failed run from its last checkpoint.
+ * @param {Run} run
+ */
+export const resumeRun = (run) =>
   attempt(run.id, async () => {
-    const answer = await api.tell(run, "resume");
-    if (answer?.id) take(answer);
+    const answer = await api.command(run, "resume");
+    if (answer?.id) adopt(answer);
   });
 
-export const remove = (run) =>
+/** @param {Run | DamagedRun} run */
+export const deleteRun = (run) =>
   attempt(run.id, async () => {
     await api.deleteRun(run);
-    dropRun(run.id);
+    forgetRun(run.id);
   });
 
-/** The form as that run had it. */
-export function useSettingsOf(run) {
+/**
+ * Copy the settings of a run into the form.
+ * @param {Run} run
+ */
+export function copySettings(run) {
   const { robot, lanes, ...config } = run.config;
   const known = Object.keys(form.value);
   for (const [field, value] of Object.entries(config)) {
-    if (known.includes(field) && field !== "name") set(field, value);
+    if (known.includes(field) && field !== "name") setField(field, value);
   }
-  set("robot", robot?.preset ?? robot ?? form.value.robot);
+  setField("robot", presetOf(robot) ?? robot ?? form.value.robot);
   if (lanes) {
-    set("race_steps", config.steps);
-    set("lanes", lanes.map(({ agent }) => agent));
+    setField("race_steps", config.steps);
+    setField("lanes", lanes.map(({ agent }) => agent));
   }
 }
 
+/** @param {Run} run */
+export const isShown = (run) => shownRun.value?.id === run.id;
+
 // ---- the page
 
-let remarkTimer = 0;
-export function say(text) {
-  remark.value = { text };
-  clearTimeout(remarkTimer);
-  remarkTimer = setTimeout(() => (remark.value = null), 4000);
+const TOAST_MS = 4000;
+/** @type {ReturnType<typeof setTimeout> | undefined} */
+let toastTimer;
+
+/** @param {string} message */
+export function toast(message) {
+  toastMessage.value = message;
+  clearTimeout(toastTimer);
+  toastTimer = setTimeout(() => (toastMessage.value = null), TOAST_MS);
 }
 
 export async function share() {
   try {
     await navigator.clipboard.writeText(link());
-    say("Link copied. It carries every setting of the form.");
+    toast("Link copied. It contains every setting of the form.");
   } catch {
-    // No clipboard outside of https and loopback: the address bar has the same.
+    // There is no clipboard outside of https and loopback.
     history.replaceState(history.state, "", link());
-    say("The address bar has the link: copy it from there.");
+    toast("The address bar has the link: copy it from there.");
   }
 }
-
-export const isShown = (run) => shownRun.value?.id === run.id;

@@ -1,45 +1,54 @@
-// The REST interface: one function a thing one can ask for, problem documents as errors.
+// Client of the REST API: one function per request; refusals become errors fit to be shown.
 
-const BASE = new URL("api/v1/", document.baseURI);
+/** @import { Curve, FormValues, Kind, Options, Page, Rates, Run, Stage, Summary, Timeline } from "./types.js" */
+/** @import { Verb, WhatIfAnswer } from "./types.js" */
 
-/** A refusal. `message` is fit to be shown; `fields` says which of the form's fields it is about. */
-class ApiError extends Error {
-  constructor(status, problem) {
-    super(problem.detail || problem.title || `The server answered ${status}.`);
+const base = () => new URL("api/v1/", document.baseURI);
+
+/** A run, or enough of one to address it. @typedef {{ kind: Kind | null, id: string }} RunKey */
+/** An entry of a problem document. @typedef {{ field?: string, loc?: string[], pointer?: string }} FieldError */
+/** @typedef {{ title?: string, detail?: string, errors?: FieldError[] }} ProblemDocument */
+
+/** A failed request. `message` is fit to be shown; `fields` names the form fields that it is about. */
+export class RequestError extends Error {
+  /**
+   * @param {string} message
+   * @param {number} status HTTP status; 0 where no answer came
+   * @param {string[]} fields
+   */
+  constructor(message, status = 0, fields = []) {
+    super(message);
     this.status = status;
-    this.fields = (problem.errors ?? []).map(fieldOf).filter(Boolean);
+    this.fields = fields;
   }
 }
 
-/** Nobody answered: the server is away, or the network is. */
-class Unreachable extends Error {
+/** No answer came: the server or the network is down. */
+class Unreachable extends RequestError {
   constructor() {
     super("The server does not answer. Nothing was changed; try again once the page says live.");
-    this.status = 0;
-    this.fields = [];
   }
 }
 
+/** @param {FieldError} error */
 const fieldOf = (error) => {
-  const place = error.field ?? error.loc ?? error.pointer ?? "";
-  return String(Array.isArray(place) ? place.at(-1) : place.split(/[./]/).at(-1));
+  const path = error.field ?? error.loc ?? error.pointer ?? "";
+  return String(Array.isArray(path) ? path.at(-1) : path.split(/[./]/).at(-1));
 };
 
-async function call(method, path, body, headers = {}) {
-  const type = body === undefined ? {} : { "Content-Type": "application/json" };
-  const response = await fetch(new URL(path, BASE), {
-    method,
-    // No form of another page can send this header, so that the server knows the request for ours.
-    headers: { "X-Requested-With": "hexapods", ...type, ...headers },
-    body: body === undefined ? undefined : JSON.stringify(body),
-  }).catch(() => {
-    throw new Unreachable();
-  });
-  const text = await response.text();
-  if (!response.ok) throw new ApiError(response.status, parse(text) ?? {});
-  return parse(text);
-}
+/**
+ * The error that a problem document (RFC 9457) describes.
+ * @param {number} status
+ * @param {ProblemDocument} problem
+ */
+export const refusal = (status, problem) =>
+  new RequestError(
+    problem.detail || problem.title || `The server answered ${status}.`,
+    status,
+    (problem.errors ?? []).map(fieldOf).filter(Boolean),
+  );
 
+/** @param {string} text */
 const parse = (text) => {
   try {
     return JSON.parse(text);
@@ -48,65 +57,131 @@ const parse = (text) => {
   }
 };
 
-const collection = (kind) => `${kind}s`;
-/** A damaged run whose kind cannot be read is found under any. */
-const address = ({ kind, id }) => `${collection(kind ?? "training")}/${encodeURIComponent(id)}`;
+/**
+ * @param {string} method
+ * @param {string} path
+ * @param {unknown} [body] sent as JSON
+ * @param {Record<string, string>} [headers]
+ * @returns {Promise<any>} the answer's JSON, null where there is none
+ * @throws {RequestError}
+ */
+async function call(method, path, body, headers = {}) {
+  /** @type {Record<string, string>} */
+  const type = body === undefined ? {} : { "Content-Type": "application/json" };
+  const response = await fetch(new URL(path, base()), {
+    method,
+    // Forms of other sites cannot send this header, so the server can tell their requests from this page's.
+    headers: { "X-Requested-With": "hexapods", ...type, ...headers },
+    body: body === undefined ? undefined : JSON.stringify(body),
+  }).catch(() => {
+    throw new Unreachable();
+  });
+  const text = await response.text();
+  if (!response.ok) throw refusal(response.status, parse(text) ?? {});
+  return parse(text);
+}
 
+/** @param {Kind} kind */
+const collection = (kind) => `${kind}s`;
+/**
+ * A damaged run whose kind cannot be read is found under any.
+ * @param {RunKey} run
+ */
+const pathOf = ({ kind, id }) => `${collection(kind ?? "training")}/${encodeURIComponent(id)}`;
+
+/** @returns {Promise<Options>} */
 export const getOptions = () => call("GET", "options");
-export const getRun = (run) => call("GET", address(run));
+
+/** @type {(run: RunKey) => Promise<Run>} */
+export const getRun = (run) => call("GET", pathOf(run));
+
+/** @type {(kind: Kind, cursor?: string | null) => Promise<Page<Run>>} */
 export const listRuns = (kind, cursor) =>
   call("GET", `${collection(kind)}?limit=50${cursor ? `&cursor=${encodeURIComponent(cursor)}` : ""}`);
 
 const RETRY_MS = 500;
 
-/** One key for one press: where no answer came it is asked for once more, and is one run still. */
+/**
+ * Start a run. Where no answer comes the request is repeated once; its idempotency key makes both one run.
+ * @param {string} path
+ * @param {unknown} body
+ * @returns {Promise<Run>}
+ */
 async function start(path, body) {
-  const key = { "Idempotency-Key": newKey() };
+  const key = { "Idempotency-Key": randomKey() };
   try {
     return await call("POST", path, body, key);
   } catch (error) {
     if (!(error instanceof Unreachable)) throw error;
-    await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
+    await new Promise((resolve) => {
+      setTimeout(resolve, RETRY_MS);
+    });
     return call("POST", path, body, key);
   }
 }
 
 // Not randomUUID, which pages have only over https and on loopback.
-const newKey = () =>
+const randomKey = () =>
   Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join("-");
 
+/** @param {object} body */
 export const startTraining = (body) => start("trainings", body);
+/** @param {object} body */
 export const startRace = (body) => start("races", body);
+/** @param {object} body */
 export const startExperiment = (body) => start("experiments", body);
-export const tuneTraining = (id, changes) => call("PATCH", address({ kind: "training", id }), changes);
 
+/** @type {(id: string, changes: Rates) => Promise<Run>} */
+export const tuneTraining = (id, changes) => call("PATCH", pathOf({ kind: "training", id }), changes);
+
+/** @type {(body: Partial<FormValues>) => Promise<WhatIfAnswer>} */
 export const whatIf = (body) => call("POST", "what-if", body);
 
-/** `verb` is stop, pause or resume. */
-export const tell = (run, verb) => call("POST", `${address(run)}/${verb}`);
-export const deleteRun = (run) => call("DELETE", address(run));
+/** @type {(run: RunKey, verb: Verb) => Promise<Run | null>} */
+export const command = (run, verb) => call("POST", `${pathOf(run)}/${verb}`);
+/** @type {(run: RunKey) => Promise<null>} */
+export const deleteRun = (run) => call("DELETE", pathOf(run));
 
-export const getCurve = (id) => call("GET", `${address({ kind: "training", id })}/curve`);
+/** @type {(id: string) => Promise<Curve>} */
+export const getCurve = (id) => call("GET", `${pathOf({ kind: "training", id })}/curve`);
+/** @type {(id: string, clock: string) => Promise<Omit<Timeline, "id">>} */
 export const getTimeline = (id, clock) =>
-  call("GET", `${address({ kind: "race", id })}/timeline?clock=${clock}`);
+  call("GET", `${pathOf({ kind: "race", id })}/timeline?clock=${clock}`);
+/** @type {(id: string) => Promise<Summary>} */
+export const getSummary = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/summary`);
 
-export const getSummary = (id) => call("GET", `${address({ kind: "experiment", id })}/summary`);
-
+/** @type {(changes: Partial<Stage> & { time_s?: number }) => Promise<Stage | null>} */
 export const putStage = (changes) => call("PUT", "stage", changes);
 
-/** What of a run can be taken away: [label, address]. */
+/** @type {(run: RunKey, rest: string) => string} */
+const addressOf = (run, rest) => new URL(`${pathOf(run)}/${rest}`, base()).href;
+
+/**
+ * The files of a run that can be downloaded: [label, address].
+ * @param {RunKey} run
+ * @returns {[string, string][]}
+ */
 export function downloads(run) {
-  const at = (rest) => new URL(`${address(run)}/${rest}`, BASE).href;
-  if (run.kind === "experiment") return [["Every trial (CSV)", at("trials?format=csv")], ["Summary (JSON)", at("summary")]];
-  if (run.kind === "race") return [["Recording", at("recording")]];
+  if (run.kind === "experiment") {
+    return [
+      ["Every trial (CSV)", addressOf(run, "trials?format=csv")],
+      ["Summary (JSON)", addressOf(run, "summary")],
+    ];
+  }
+  if (run.kind === "race") return [["Recording", addressOf(run, "recording")]];
   return [
-    ["Curve (CSV)", at("curve?format=csv")],
-    ["Q-table (CSV)", at("q-table?format=csv")],
-    ["Q-table (npz)", at("q-table?format=npz")],
+    ["Curve (CSV)", addressOf(run, "curve?format=csv")],
+    ["Q-table (CSV)", addressOf(run, "q-table?format=csv")],
+    ["Q-table (npz)", addressOf(run, "q-table?format=npz")],
   ];
 }
 
-/** The report that one can hand out, of an experiment that has ended. */
-export const reportAddress = (run) => new URL(`${address(run)}/report`, BASE).href;
+/**
+ * The printable report of an experiment that has ended.
+ * @param {RunKey} run
+ */
+export const reportAddress = (run) => addressOf(run, "report");
+
+/** @type {(run: RunKey, name: string) => string} */
 export const fileAddress = (run, name) =>
-  new URL(`${address(run)}/files/${name.split("/").map(encodeURIComponent).join("/")}`, BASE).href;
+  addressOf(run, `files/${name.split("/").map(encodeURIComponent).join("/")}`);

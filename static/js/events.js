@@ -1,4 +1,4 @@
-// The one stream of server-sent events: a snapshot first, then changes, for as long as the page is open.
+// The stream of server-sent events: a snapshot, then changes; reopened after every break.
 
 const NAMES = [
   "snapshot", "run", "run-deleted", "evaluation", "reference", "rates", "stage", "viewers", "scene",
@@ -8,21 +8,24 @@ const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 8000;
 
 /**
- * Keep a stream open; after a break, open a new one.
- * @param onEvent called with (name, data)
- * @param onState called with "connecting", "live" or "reconnecting"
+ * Open the stream, and open it again after every break with exponential back-off.
+ * @param {(name: string, data: any) => void} onEvent
+ * @param {(state: "connecting" | "live" | "reconnecting") => void} onState
  */
 export function openEvents(onEvent, onState) {
+  /** @type {EventSource | null} */
   let source = null;
   let wait = FIRST_WAIT_MS;
-  let timer = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
 
   const open = () => {
     clearTimeout(timer);
     source?.close();
-    source = new EventSource(new URL("api/v1/events", document.baseURI));
+    const opened = new EventSource(new URL("api/v1/events", document.baseURI));
+    source = opened;
     for (const name of NAMES) {
-      source.addEventListener(name, ({ data }) => {
+      opened.addEventListener(name, ({ data }) => {
         if (name === "snapshot") {
           wait = FIRST_WAIT_MS;
           onState("live");
@@ -30,9 +33,9 @@ export function openEvents(onEvent, onState) {
         onEvent(name, JSON.parse(data));
       });
     }
-    source.onerror = () => {
-      // The browser's own retry gives up on some answers; this one never does.
-      source.close();
+    opened.onerror = () => {
+      // The browser's own retry gives up on some answers.
+      opened.close();
       onState("reconnecting");
       timer = setTimeout(open, wait);
       wait = Math.min(2 * wait, LONGEST_WAIT_MS);
@@ -43,7 +46,9 @@ export function openEvents(onEvent, onState) {
     if (source?.readyState === EventSource.CLOSED) open();
   };
   addEventListener("online", openNow);
-  document.addEventListener("visibilitychange", () => document.hidden || openNow());
+  document.addEventListener("visibilitychange", () => {
+    if (!document.hidden) openNow();
+  });
   onState("connecting");
   open();
 }

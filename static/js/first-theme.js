@@ -1,7 +1,7 @@
-// Runs before anything is painted, so that a chosen theme never flashes the other one first.
+// Sets the chosen theme before the first paint, so that the other one never flashes.
 try {
   const theme = localStorage.getItem("hexapods:theme");
   if (theme === "light" || theme === "dark") document.documentElement.dataset.theme = theme;
 } catch {
-  // Storage is forbidden: the system's theme it is.
+  // Storage is forbidden: the system's theme applies.
 }

@@ -1,117 +1,169 @@
-// What the form asks for, and the same as an address: a link carries everything.
+// The form's values, their query string, and the request bodies that they make.
 import { computed, signal } from "@preact/signals";
 
-const text = { read: (word) => word, write: (value) => value };
+/** @import { Signal } from "@preact/signals" */
+/** @import { FormValues, Options } from "./types.js" */
+
+/**
+ * How a field is read from the query string; undefined for text that is no value of it.
+ * @typedef {{ read: (text: string) => any, write: (value: any) => string }} FieldType
+ */
+
+/** @type {FieldType} */
+const text = { read: (given) => given, write: (value) => value };
+/** @type {FieldType} */
 const number = {
-  read: (word) => (word.trim() === "" || !Number.isFinite(Number(word)) ? undefined : Number(word)),
+  read: (given) => (given.trim() === "" || !Number.isFinite(Number(given)) ? undefined : Number(given)),
   write: String,
 };
-const pace = {
-  read: (word) => (word === "max" ? "max" : number.read(word)),
-  write: String,
-};
-const names = {
-  read: (word) => word.split(",").filter(Boolean),
-  write: (list) => list.join(","),
-};
+/** @type {FieldType} */
+const integer = { ...number };
+/** @type {FieldType} */
+const pace = { read: (given) => (given === "max" ? "max" : number.read(given)), write: String };
+/** @type {FieldType} */
+const names = { read: (given) => given.split(",").filter(Boolean), write: (list) => list.join(",") };
 
-/** Every field, in the order of the address. */
-const FIELDS = {
-  gait: text, steps: number, seed: number, observation: text,
+/** Every field, in the order of the query string. @satisfies {Record<keyof FormValues, FieldType>} */
+const FIELD_TYPES = {
+  gait: text, steps: integer, seed: integer, observation: text,
   alpha: number, gamma: number, epsilon_start: number, epsilon_end: number,
-  steps_per_episode: number, evaluate_every: number, pace,
-  robot: text, simulator: text, divisions: number, grid_side_m: number,
-  race_steps: number, lanes: names, name: text,
+  steps_per_episode: integer, evaluate_every: integer, pace,
+  robot: text, simulator: text, divisions: integer, grid_side_m: number,
+  race_steps: integer, lanes: names, name: text,
 };
+const FIELDS = /** @type {(keyof FormValues)[]} */ (Object.keys(FIELD_TYPES));
 
-/** The defaults of the paper, until the server says its own. */
-let defaults = {
-  gait: "left-right-origin", steps: 500, seed: 0, observation: "measured",
-  alpha: 0.3, gamma: 0.9, epsilon_start: 1, epsilon_end: 0,
-  steps_per_episode: 50, evaluate_every: 50, pace: "max",
-  robot: "stiff", simulator: "mujoco", divisions: 2, grid_side_m: 0.04,
-  race_steps: 50, lanes: ["q-learning", "greedy", "two-step"], name: "",
-};
+/** @param {string} field */
+export const isInteger = (field) => /** @type {Record<string, FieldType>} */ (FIELD_TYPES)[field] === integer;
 
-export const form = signal(defaults);
-/** Fields whose number is no number yet, with what is wrong: they hold the button back. */
+/** Empty until the server's options have come; no component shows the form before. */
+const UNKNOWN = /** @type {FormValues} */ ({});
+let defaults = UNKNOWN;
+
+/** @type {Signal<FormValues>} */
+export const form = signal(UNKNOWN);
+/** Field → why its text is not a valid number; any entry disables the start. @type {Signal<Record<string, string>>} */
 export const mistakes = signal({});
 
-export const set = (field, value) => {
+/**
+ * Change one field, and the address with it.
+ * @param {string} field
+ * @param {unknown} value
+ */
+export const setField = (field, value) => {
   form.value = { ...form.value, [field]: value };
   writeAddress();
 };
 
-export const setMistake = (field, message) => {
-  const { [field]: _, ...others } = mistakes.value;
-  mistakes.value = message ? { ...others, [field]: message } : others;
-};
+/**
+ * A record with a message for a field, or without one.
+ * @param {Record<string, string>} messages
+ * @param {string} field
+ * @param {string | null} message
+ */
+export function withMistake(messages, field, message) {
+  const { [field]: _, ...others } = messages;
+  return message ? { ...others, [field]: message } : others;
+}
 
-const isTouched = computed(() =>
-  Object.keys(FIELDS).some((field) => written(form.value, field) !== written(defaults, field)),
-);
+/** @type {(field: string, message: string | null) => void} */
+export const setMistake = (field, message) => (mistakes.value = withMistake(mistakes.value, field, message));
 
-const written = (values, field) => FIELDS[field].write(values[field]);
+/** @type {(values: FormValues, field: keyof FormValues) => string} */
+const written = (values, field) => FIELD_TYPES[field].write(values[field]);
 
-/** Begin with the server's defaults. */
-export function useDefaults({ defaults: served = {}, gaits = [] }) {
-  const { training = {}, race = {} } = served;
-  const robot = training.robot?.preset ?? training.robot ?? defaults.robot;
-  const own = Object.fromEntries(
-    Object.keys(FIELDS).filter((f) => training[f] !== undefined).map((f) => [f, training[f]]),
-  );
-  const lanes = race.lanes?.map((lane) => lane.agent);
-  defaults = {
-    ...defaults, ...own, robot, name: "",
-    gait: training.gait ?? gaits[0]?.name ?? defaults.gait,
-    race_steps: race.steps ?? defaults.race_steps,
-    lanes: lanes?.length ? lanes : defaults.lanes,
-  };
+const isChanged = computed(() => FIELDS.some((field) => written(form.value, field) !== written(defaults, field)));
+
+/**
+ * Reset the form to the server's defaults.
+ * @param {Pick<Options, "defaults">} served
+ */
+export function applyDefaults({ defaults: { training, race } }) {
+  const values = { ...training, race_steps: race.steps, lanes: race.lanes.map(({ agent }) => agent), name: "" };
+  const { agent: _, ...fields } = values;
+  defaults = fields;
   form.value = defaults;
 }
 
-/** The whole form as a query. */
-const query = () =>
-  new URLSearchParams(Object.keys(FIELDS).filter((f) => written(form.value, f) !== "")
-    .map((field) => [field, written(form.value, field)]));
+/**
+ * The whole form as a query string; empty texts are left out.
+ * @param {FormValues} values
+ */
+export const toQuery = (values) =>
+  new URLSearchParams(
+    FIELDS.map((field) => [field, written(values, field)]).filter(([, value]) => value !== ""),
+  );
 
-/** Take over what the address says; what it does not say, or says badly, stays as it is. */
-export function readAddress() {
-  const given = new URLSearchParams(location.search);
-  const read = {};
-  for (const [field, { read: parse }] of Object.entries(FIELDS)) {
-    const value = given.has(field) ? parse(given.get(field)) : undefined;
-    if (value !== undefined) read[field] = value;
+/**
+ * The fields that a query string sets; unreadable values are skipped.
+ * @param {URLSearchParams} query
+ * @returns {Partial<FormValues>}
+ */
+export function fromQuery(query) {
+  /** @type {Record<string, unknown>} */
+  const found = {};
+  for (const field of FIELDS) {
+    const given = query.get(field);
+    const value = given === null ? undefined : FIELD_TYPES[field].read(given);
+    if (value !== undefined) found[field] = value;
   }
-  form.value = { ...form.value, ...read };
+  return found;
 }
 
-/** The address follows the form; a form as it came keeps a clean one. */
+/** Set the fields that the page's address contains. */
+export function readAddress() {
+  form.value = { ...form.value, ...fromQuery(new URLSearchParams(location.search)) };
+}
+
+/** Write the form to the page's address; an unchanged form keeps it clean. */
 export function writeAddress() {
-  const search = isTouched.value ? `?${query()}` : "";
+  const search = isChanged.value ? `?${toQuery(form.value)}` : "";
   history.replaceState(history.state, "", `${location.pathname}${search}${location.hash}`);
 }
 
-export const link = () => `${location.origin}${location.pathname}?${query()}${location.hash}`;
+/** A link to the page with every field of the form. */
+export const link = () =>
+  form.value === UNKNOWN
+    ? location.href
+    : `${location.origin}${location.pathname}?${toQuery(form.value)}${location.hash}`;
 
-const walk = ({ gait, robot, simulator, divisions, grid_side_m, name }) => ({
+/** @param {FormValues} values */
+const walkBody = ({ gait, robot, simulator, divisions, grid_side_m, name }) => ({
   gait, robot, simulator, divisions, grid_side_m, ...(name.trim() ? { name: name.trim() } : {}),
 });
 
-/** What is learned, and how; a training that goes on keeps its seed. */
-function practice(values, continueFrom) {
-  const { steps, seed, observation, alpha, gamma, pace } = values;
+/**
+ * @typedef {Omit<FormValues, "gait" | "seed" | "robot" | "simulator" | "divisions" | "grid_side_m" | "race_steps" |
+ *   "lanes" | "name"> & { seed?: number, continue_from?: string }} PracticeBody
+ */
+
+/**
+ * A continued training has no seed of its own: it goes on with its generator.
+ * @param {FormValues} values
+ * @param {string | null} continueFrom
+ * @returns {PracticeBody}
+ */
+function practiceBody(values, continueFrom) {
+  const { steps, seed, observation, alpha, gamma } = values;
   const { epsilon_start, epsilon_end, steps_per_episode, evaluate_every } = values;
   return {
     steps, observation, alpha, gamma, epsilon_start, epsilon_end, steps_per_episode,
-    evaluate_every, pace, ...(continueFrom ? { continue_from: continueFrom } : { seed }),
+    evaluate_every, pace: values.pace, ...(continueFrom ? { continue_from: continueFrom } : { seed }),
   };
 }
 
+/**
+ * Request body of a training.
+ * @param {FormValues} values
+ * @param {string | null} continueFrom id of the training whose table it starts with
+ */
 export const trainingBody = (values, continueFrom = null) =>
-  ({ ...walk(values), ...practice(values, continueFrom) });
+  ({ ...walkBody(values), ...practiceBody(values, continueFrom) });
 
-/** What ideal robots are to try: the practice, without what only this one run has. */
+/**
+ * Request body of a what-if: the settings of the practice, without seed, pace and simulator.
+ * @param {FormValues} values
+ */
 export function whatIfBody(values) {
   const { gait, robot, divisions, grid_side_m, steps, observation, alpha, gamma } = values;
   const { epsilon_start, epsilon_end, steps_per_episode } = values;
@@ -122,16 +174,18 @@ export function whatIfBody(values) {
 }
 
 /**
- * A race in which whoever learns practises first, goes on from `continueFrom`, or uses `table`.
- * @param learns tells whether an agent does
+ * Request body of a race. Its learners practise first, continue from a table, or use it as it is.
+ * @param {FormValues} values
+ * @param {(agent: string) => boolean} learns
+ * @param {{ continueFrom?: string | null, table?: string | null }} how ids of trainings
  */
 export const raceBody = (values, learns, { continueFrom = null, table = null } = {}) => ({
-  ...walk(values),
+  ...walkBody(values),
   steps: values.race_steps,
   seed: values.seed,
   lanes: values.lanes.map((agent) => {
     if (!learns(agent)) return { agent };
     if (table) return { agent, training_id: table };
-    return { agent, training: practice(values, continueFrom) };
+    return { agent, training: practiceBody(values, continueFrom) };
   }),
 });

@@ -1,31 +1,55 @@
-// Numbers and words as people read them.
+// Formats numbers, times and lists for people.
 
 const MINUS = "\u2212";
-const NARROW = "\u202f";
 const NO_BREAK = "\u00a0";
+/** Thin, and never broken: between groups of digits, and between a number and its sign. */
+export const THIN_SPACE = "\u202f";
+const MISSING = "–";
+/** Below, digits are not grouped. */
+const SMALLEST_GROUPED = 10_000;
 
-/** Metres to the centimetre: "0.38 m". */
+/** @typedef {number | null | undefined} Optional a number that may not be known */
+
+/**
+ * @param {Optional} value
+ * @returns {value is number}
+ */
+const isNumber = (value) => typeof value === "number" && !Number.isNaN(value);
+
+/**
+ * Metres to the centimetre: "0.38 m".
+ * @param {Optional} value
+ */
 export function metres(value) {
-  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  if (!isNumber(value)) return MISSING;
   const rounded = Math.round(value * 100) / 100;
   return `${rounded < 0 ? MINUS : ""}${Math.abs(rounded).toFixed(2)}${NO_BREAK}m`;
 }
 
-/** Whole millimetres without the unit, which the heading has: "52". */
+/**
+ * Metres as whole millimetres without the unit: "52".
+ * @param {number} value
+ */
 export function millimetres(value) {
   const rounded = Math.round(value * 1000);
   return `${rounded < 0 ? MINUS : ""}${Math.abs(rounded)}`;
 }
 
-/** The time of one decision: "<1 ms", "12 ms", "1.4 s". */
+/**
+ * The duration of one decision: "<1 ms", "12 ms", "1.4 s".
+ * @param {Optional} seconds
+ */
 export function decision(seconds) {
-  if (seconds === null || seconds === undefined) return "–";
+  if (!isNumber(seconds)) return MISSING;
   const ms = seconds * 1000;
   if (ms < 1) return "<1 ms";
   return ms < 1000 ? `${Math.round(ms)} ms` : `${(ms / 1000).toFixed(1)} s`;
 }
 
-/** A time that is left or has passed: "4 s", "2 min", "1 h 5 min". */
+/**
+ * A duration: "4 s", "2 min", "1 h 5 min".
+ * @param {number} seconds
+ */
 export function duration(seconds) {
   if (seconds < 1) return "under 1 s";
   if (seconds < 90) return `${Math.round(seconds)} s`;
@@ -34,25 +58,48 @@ export function duration(seconds) {
   return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
 
-/** A place in a race: "1:05". */
+/**
+ * A position on the time bar: "1:05".
+ * @param {number} seconds
+ */
 export function clockTime(seconds) {
-  const whole = Math.max(0, Math.floor(seconds));
-  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
+  const rounded = Math.max(0, Math.floor(seconds));
+  return `${Math.floor(rounded / 60)}:${String(rounded % 60).padStart(2, "0")}`;
 }
 
-/** "7 800", with a space that never breaks. */
-export const whole = (value) =>
-  value === null || value === undefined
-    ? "–"
-    : String(Math.round(value)).replace(/\B(?=(\d{3})+$)/g, NARROW);
+/**
+ * A whole number, its digits grouped from five on: "7800", "12 500".
+ * @param {Optional} value
+ */
+export function whole(value) {
+  if (!isNumber(value)) return MISSING;
+  const digits = String(Math.round(value));
+  return Math.abs(value) < SMALLEST_GROUPED ? digits : digits.replace(/\B(?=(\d{3})+$)/g, THIN_SPACE);
+}
 
-/** "500 steps", "1 step". */
+/**
+ * A share from 0 to 1: "42 %".
+ * @param {number} share
+ */
+export const percentage = (share) => `${Math.round(100 * share)} %`;
+
+/**
+ * A number with its noun: "500 steps", "1 step".
+ * @param {number} number
+ * @param {string} noun
+ */
 export const count = (number, noun) => `${whole(number)} ${noun}${number === 1 ? "" : "s"}`;
 
-/** "×2", "×0.25". */
+/**
+ * A factor: "×2", "×0.25".
+ * @param {number} factor
+ */
 export const times = (factor) => `×${Number(factor.toPrecision(2))}`;
 
-/** "two minutes ago", in the reader's own day when it is older. */
+/**
+ * How long ago a moment was: "2 min ago"; from an hour on, the local time and day.
+ * @param {string} iso
+ */
 export function ago(iso, now = Date.now()) {
   const then = Date.parse(iso);
   const seconds = (now - then) / 1000;
@@ -64,8 +111,15 @@ export function ago(iso, now = Date.now()) {
   return `${day.toLocaleDateString([], { day: "numeric", month: "short" })}, ${time}`;
 }
 
+/**
+ * Text with a capital first letter.
+ * @param {string} text
+ */
 export const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
-/** "a", "a and b", "a, b and c". */
+/**
+ * Items as a list in words: "a", "a and b", "a, b and c".
+ * @param {string[]} items
+ */
 export const listed = (items) =>
   items.length < 2 ? items.join("") : `${items.slice(0, -1).join(", ")} and ${items.at(-1)}`;

@@ -1,4 +1,4 @@
-// Components are written as tagged templates, so that no build step is needed.
+// The `html` template tag in which components are written, so that no build step is needed.
 import htm from "htm";
 import { h } from "preact";
 

@@ -1,7 +1,7 @@
-// Starts the page: what can be chosen, what happens, and what is drawn of it.
+// Entry point: loads the options, opens the event stream, renders the page.
 import { effect } from "@preact/signals";
 import { render } from "preact";
-import { getOptions } from "./api.js";
+import { getOptions, RequestError } from "./api.js";
 import { App } from "./components/app.js";
 import { followCurves } from "./curves.js";
 import { openEvents } from "./events.js";
@@ -9,7 +9,7 @@ import { announceExperiments } from "./experiments/announce.js";
 import { followAddress } from "./experiments/address.js";
 import { followExperiments } from "./experiments/selection.js";
 import { followSummary } from "./experiments/summaries.js";
-import { readAddress, useDefaults, writeAddress } from "./form.js";
+import { applyDefaults, readAddress, writeAddress } from "./form.js";
 import { html } from "./html.js";
 import { listenForKeys } from "./keys.js";
 import { announceOutcomes } from "./outcome.js";
@@ -18,23 +18,30 @@ import { followTheme } from "./theme.js";
 import { followTimeline } from "./timeline.js";
 import { followWhatIf } from "./what-if.js";
 
+const FIRST_RETRY_MS = 500;
+const LONGEST_RETRY_MS = 8000;
+
+/** Ask for the options until they come; the forms work from then on. */
 async function loadOptions(attempt = 0) {
   try {
-    options.value = await getOptions();
+    const served = await getOptions();
+    applyDefaults(served);
     isLockedOut.value = false;
+    options.value = served;
   } catch (error) {
-    isLockedOut.value = error.status === 401 || error.status === 403;
-    setTimeout(loadOptions, Math.min(500 * 2 ** attempt, 8000), attempt + 1);
+    isLockedOut.value = error instanceof RequestError && (error.status === 401 || error.status === 403);
+    setTimeout(loadOptions, Math.min(FIRST_RETRY_MS * 2 ** attempt, LONGEST_RETRY_MS), attempt + 1);
     return;
   }
-  useDefaults(options.value);
   readAddress();
   writeAddress();
+  followAddress();
   followWhatIf();
 }
 
-/** A server of another version came back under this page, whose scripts may no longer fit. */
+/** Reload when the server comes back in another version, which these scripts may not fit. */
 function reloadAfterUpgrade() {
+  /** @type {string | null} */
   let first = null;
   effect(() => {
     first ??= version.value;
@@ -46,7 +53,6 @@ followTheme();
 reloadAfterUpgrade();
 followCurves();
 followTimeline();
-followAddress();
 followExperiments();
 followSummary();
 announceOutcomes();
@@ -55,6 +61,6 @@ listenForKeys();
 openEvents(applyEvent, (state) => (connection.value = state));
 loadOptions();
 
-const root = document.getElementById("app");
+const root = /** @type {HTMLElement} */ (document.getElementById("app"));
 root.replaceChildren();
 render(html`<${App} />`, root);

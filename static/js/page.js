@@ -1,22 +1,23 @@
-// What this page alone knows: which view is open, whom the camera follows, what is unfolded.
+// State of this page alone: the open view, the camera, the help dialog, the layout.
 import { signal } from "@preact/signals";
 
-/** "leader", "free", or a lane from "1" to "8". */
+/** What the camera follows: "leader", "free", or a lane from "1" to "8". */
 export const view = signal("leader");
 export const helpIsOpen = signal(false);
-/** Single keys can be in the way of speech input: they can be turned off. */
-export const shortcuts = signal(recall());
+/** Whether single keys act; they can interfere with speech input. */
+export const shortcuts = signal(readShortcuts());
 
-export const setShortcuts = (on) => {
-  shortcuts.value = on;
+/** @param {boolean} isOn */
+export const setShortcuts = (isOn) => {
+  shortcuts.value = isOn;
   try {
-    localStorage.setItem("hexapods:shortcuts", on ? "on" : "off");
+    localStorage.setItem("hexapods:shortcuts", isOn ? "on" : "off");
   } catch {
-    // Storage is forbidden: it lasts as long as the page.
+    // Storage is forbidden: kept until the page is closed.
   }
 };
 
-function recall() {
+function readShortcuts() {
   try {
     return localStorage.getItem("hexapods:shortcuts") !== "off";
   } catch {
@@ -25,13 +26,18 @@ function recall() {
 }
 
 const VIEWS = ["experiments", "runs"];
-const viewOf = (hash) => VIEWS.find((name) => hash.slice(1).split("?")[0] === name) ?? "race";
 
-/** "race", "experiments" or "runs", as the address has it. */
+/**
+ * The view that a hash names: "race", "experiments" or "runs".
+ * @param {string} hash
+ */
+export const viewOf = (hash) => VIEWS.find((name) => hash.slice(1).split("?")[0] === name) ?? "race";
+
+/** The open view. */
 export const place = signal(viewOf(location.hash));
 addEventListener("hashchange", () => (place.value = viewOf(location.hash)));
 
 const narrowScreen = matchMedia("(max-width: 1080px)");
-/** Whether the page is one column. */
+/** Whether the page has one column. */
 export const isNarrow = signal(narrowScreen.matches);
 narrowScreen.addEventListener("change", ({ matches }) => (isNarrow.value = matches));

@@ -1,24 +1,45 @@
-// Places on an axis: from a number to a share of the width, and round numbers to write beside it.
+// Maps numbers to positions on an axis, picks round tick values, thins and spreads points.
 
-/** A value's place between `low` and `high`, from 0 to 1. */
+/**
+ * The position of a value between `low` and `high`, from 0 to 1.
+ * @param {number} value
+ * @param {number} low
+ * @param {number} high
+ */
 export const shareOf = (value, low, high) =>
   high > low ? Math.min(Math.max((value - low) / (high - low), 0), 1) : 0;
 
+/**
+ * A share as a CSS length.
+ * @param {number} share
+ */
 export const percent = (share) => `${(100 * share).toFixed(2)}%`;
 
-/** Round numbers from 0 up to `high`, about `count` of them. */
+/**
+ * Round numbers from 0 up to `high`, about `count` of them.
+ * @param {number} high
+ */
 export function ticks(high, count = 5) {
   if (!(high > 0)) return [0];
   const rough = high / count;
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 2.5, 5, 10].map((n) => n * power).find((one) => one >= rough);
+  const step = [1, 2, 2.5, 5].map((n) => n * power).find((one) => one >= rough) ?? 10 * power;
   return Array.from({ length: Math.floor(high / step + 1e-9) + 1 }, (_, n) => n * step);
 }
 
-/** The largest, and no less than `least`; lists may be longer than a call may have arguments. */
-export const largest = (values, least = 0) => values.reduce((top, value) => (value > top ? value : top), least);
+/**
+ * The largest value, at least `least`. Lists may be longer than a call may have arguments.
+ * @param {number[]} values
+ */
+export const largest = (values, least = 0) =>
+  values.reduce((top, value) => (value > top ? value : top), least);
 
-/** At most so many, evenly out of all in their order, and the first and the last. */
+/**
+ * At most `most` items, evenly spaced in their order, with the first and the last.
+ * @template Item
+ * @param {Item[]} list
+ * @param {number} most
+ */
 export function thinned(list, most) {
   if (list.length <= most) return list;
   return Array.from({ length: most }, (_, n) => list[Math.round((n * (list.length - 1)) / (most - 1))]);
@@ -27,11 +48,12 @@ export function thinned(list, most) {
 const BINS = 64;
 
 /**
- * Where dots lie beside each other instead of on each other.
- * @param shares places from 0 to 1
- * @returns for each how many dots it is away from the middle: 0, 1, −1, 2, −2…
+ * Offsets at which dots lie beside each other instead of on each other.
+ * @param {number[]} shares positions from 0 to 1
+ * @returns for each dot its distance from the middle in dots: 0, 1, −1, 2, −2…
  */
 export function swarm(shares) {
+  /** @type {Map<number, number>} */
   const taken = new Map();
   return shares.map((share) => {
     const bin = Math.round(share * BINS);
@@ -39,4 +61,22 @@ export function swarm(shares) {
     taken.set(bin, before + 1);
     return before % 2 ? (before + 1) / 2 : -before / 2;
   });
+}
+
+/**
+ * Positions at least `gap` apart, moved as little as possible, within `low` and `high`.
+ * @param {number[]} positions in ascending order
+ * @param {number} gap
+ * @param {number} low
+ * @param {number} high
+ */
+export function spread(positions, gap, low, high) {
+  const moved = [...positions];
+  for (let n = 1; n < moved.length; n += 1) moved[n] = Math.max(moved[n], moved[n - 1] + gap);
+  const over = Math.max(0, (moved.at(-1) ?? low) - high);
+  if (over > 0) {
+    moved[moved.length - 1] -= over;
+    for (let n = moved.length - 2; n >= 0; n -= 1) moved[n] = Math.min(moved[n], moved[n + 1] - gap);
+  }
+  return moved;
 }

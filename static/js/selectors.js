@@ -1,156 +1,189 @@
-// What follows from the store: who may do what, and which runs the panels speak about.
+// Values derived from the store: rights, and the runs that the panels are about.
 import { computed, signal } from "@preact/signals";
 import { form } from "./form.js";
 import { options, role, runs, scene, stage } from "./store.js";
 
-const ACTIVE = new Set(["queued", "running", "paused"]);
-const TABLE_STATES = new Set(["finished", "stopped"]);
+/** @import { Signal } from "@preact/signals" */
+/** @import { Agent, FormValues, RobotConfig, Run, State } from "./types.js" */
 
-export const isActive = (run) => run !== null && run !== undefined && ACTIVE.has(run.state);
-export const hasTable = (run) => run?.kind === "training" && TABLE_STATES.has(run.state);
+/** @type {Set<State>} */
+const ACTIVE = new Set(["queued", "running", "paused"]);
+/** @type {Set<State>} */
+const WITH_TABLE = new Set(["finished", "stopped"]);
+const MOST_OWN_RUNS = 50;
+
+/** @type {<T>(value: T | null | undefined) => value is T} */
+const isKnown = (value) => value !== null && value !== undefined;
+
+/** @type {(run: Run | null | undefined) => boolean} */
+export const isActive = (run) => isKnown(run) && ACTIVE.has(run.state);
+/** @type {(run: Run | null | undefined) => boolean} */
+export const hasTable = (run) => run?.kind === "training" && WITH_TABLE.has(run.state);
 
 export const isOperator = computed(() => role.value === "operator");
 
-/** Every run that there is. */
+/** Every known run, newest first. */
 export const everyRun = computed(() =>
   [...runs.value.values()].sort((a, b) => b.created_at.localeCompare(a.created_at)),
 );
 
-/** Trainings and races, which can be on stage; experiments cannot. */
-const newestFirst = computed(() => everyRun.value.filter(({ kind }) => kind !== "experiment"));
+/** Trainings and races: the runs that can be on stage. */
+const stageableRuns = computed(() => everyRun.value.filter(({ kind }) => kind !== "experiment"));
 
-/** Runs that this tab started, newest first. */
-const mine = signal(recall());
-export const claim = (id) => {
-  mine.value = [id, ...mine.value].slice(0, 50);
+/** Ids of the runs that this tab started, newest first. @type {Signal<string[]>} */
+const ownRuns = signal(readOwnRuns());
+
+/** @param {string} id */
+export const markAsMine = (id) => {
+  ownRuns.value = [id, ...ownRuns.value].slice(0, MOST_OWN_RUNS);
   try {
-    sessionStorage.setItem("hexapods:mine", JSON.stringify(mine.value));
+    sessionStorage.setItem("hexapods:mine", JSON.stringify(ownRuns.value));
   } catch {
-    // Storage is forbidden: known as long as the page lives.
+    // Storage is forbidden: known until the page is closed.
   }
 };
 
-function recall() {
+function readOwnRuns() {
   try {
-    return JSON.parse(sessionStorage.getItem("hexapods:mine")) ?? [];
+    return JSON.parse(sessionStorage.getItem("hexapods:mine") ?? "[]");
   } catch {
     return [];
   }
 }
 
-export const agentOf = (name) =>
-  options.value?.agents?.find((agent) => agent.name === name) ?? {
-    name, title: name, color: "#888888", learns: false,
-  };
+/** For an agent that a run names and the server no longer has. */
+const REMOVED_AGENT = { description: "", color: "#888888", learns: false };
 
+/** @type {(name: string) => Agent} */
+export const agentOf = (name) =>
+  options.value?.agents.find((agent) => agent.name === name) ?? { name, title: name, ...REMOVED_AGENT };
+
+/** @param {string} name */
 export const learns = (name) => agentOf(name).learns;
 
+/** The clock under which the stage times the race. */
 export const clock = computed(() => stage.value?.clock ?? scene.value?.clock ?? "paper");
 
-/** The ids of the trainings that a race's learners bring. */
+/**
+ * Ids of the trainings whose tables a race uses.
+ * @param {Run | null} race
+ */
 const trainingIds = (race) => [
-  ...new Set([
-    ...(race?.config?.lanes ?? []).map((lane) => lane.training_id),
-    ...(race?.waiting_for ?? []),
-  ].filter(Boolean)),
+  ...new Set(
+    [...(race?.config.lanes ?? []).map((lane) => lane.training_id), ...(race?.waiting_for ?? [])].filter(isKnown),
+  ),
 ];
 
-const get = (id) => runs.value.get(id) ?? null;
+/** @type {(id: string | null | undefined) => Run | null} */
+const get = (id) => (isKnown(id) ? runs.value.get(id) ?? null : null);
 
-/** The run on stage, if any. */
+/** The run on stage. */
 export const shownRun = computed(() => get(stage.value?.run_id));
 
-/** The race that the scoreboard and the race's chart are about. */
+/** The race of the scoreboard and the race chart. @type {Signal<Run | null>} */
 export const raceInView = computed(() => {
   const shown = shownRun.value;
   if (shown?.kind === "race") return shown;
-  const races = newestFirst.value.filter((run) => run.kind === "race");
+  const races = stageableRuns.value.filter((run) => run.kind === "race");
   if (shown?.kind === "training") {
-    const next = get(stage.value.next_run_id);
+    const next = get(stage.value?.next_run_id);
     return next ?? races.find((race) => isActive(race) && trainingIds(race).includes(shown.id)) ?? null;
   }
   return races.find((race) => race.state === "finished") ?? null;
 });
 
-/** The training that the learning curve is about. */
+/** The training of the learning curve. */
 export const trainingInView = computed(() => {
   if (shownRun.value?.kind === "training") return shownRun.value;
   const [id] = trainingIds(raceInView.value);
   if (id) return get(id);
   if (raceInView.value) return null;
-  return newestFirst.value.find((run) => run.kind === "training") ?? null;
+  return stageableRuns.value.find((run) => run.kind === "training") ?? null;
 });
 
-/** A run and what it waits for: what computes right now, and the run that was asked for. */
-const working = (run) => {
-  const waits = run.kind === "race" ? trainingIds(run).map(get).find(isActive) : null;
-  return { asked: run, now: waits ?? run };
+/**
+ * A run that was requested, and the run that computes now: its training, as long as it waits for one.
+ * @param {Run} requested
+ * @returns {{ requested: Run, current: Run }}
+ */
+const workOf = (requested) => {
+  const training = requested.kind === "race" ? trainingIds(requested).map(get).find(isActive) : null;
+  return { requested, current: training ?? requested };
 };
 
-/** My own work that is not done. */
+/** This tab's newest run that is not done. */
 export const myWork = computed(() => {
-  const run = mine.value.map(get).find(isActive);
-  return run ? working(run) : null;
+  const run = ownRuns.value.map(get).find(isActive);
+  return run ? workOf(run) : null;
 });
 
-/** The work that Pause and Stop are about: mine, else what is on stage, else anyone's. */
+/** The work that Pause and Stop act on: this tab's, else the one on stage, else any. */
 export const work = computed(() => {
   if (myWork.value) return myWork.value;
-  if (isActive(shownRun.value)) {
-    return working(isActive(raceInView.value) ? raceInView.value : shownRun.value);
-  }
-  const any = newestFirst.value.find(isActive);
-  return any ? working(any) : null;
+  const candidates = isActive(shownRun.value) ? [raceInView.value, shownRun.value] : stageableRuns.value;
+  const run = candidates.find(isActive);
+  return run ? workOf(run) : null;
 });
 
-/** A run that could go on: what is on stage, or the newest as long as nothing came after it. */
+/** An interrupted run that can be resumed: the one on stage, or the newest. */
 export const interruptedRun = computed(() =>
   work.value
     ? null
-    : [shownRun.value, newestFirst.value[0]].find((run) => run?.state === "interrupted") ?? null,
+    : [shownRun.value, stageableRuns.value[0]].find((run) => run?.state === "interrupted") ?? null,
 );
 
-/** The training whose rates can be moved right now. */
+/** The training whose rates can be changed now. */
 export const liveTraining = computed(() => {
-  const run = work.value?.now;
+  const run = work.value?.current;
   return run?.kind === "training" && (run.state === "running" || run.state === "paused") ? run : null;
 });
 
-/** My run, when another live run holds the stage. */
+/** This tab's run, while another live run is on stage. */
 export const offStage = computed(() => {
-  const { asked, now } = myWork.value ?? {};
-  const held = stage.value?.run_id;
-  if (!asked || !held || !isActive(shownRun.value)) return null;
-  return [asked.id, now.id, ...trainingIds(asked)].includes(held) ? null : now;
+  const { requested, current } = myWork.value ?? {};
+  const onStage = stage.value?.run_id;
+  if (!requested || !current || !onStage || !isActive(shownRun.value)) return null;
+  return [requested.id, current.id, ...trainingIds(requested)].includes(onStage) ? null : current;
 });
 
-const WALK = ["divisions", "grid_side_m", "observation", "simulator"];
-const presetOf = (robot) => (typeof robot === "string" ? robot : robot?.preset);
+/** @satisfies {(keyof FormValues)[]} */
+const WALK_FIELDS = /** @type {const} */ (["divisions", "grid_side_m", "observation", "simulator"]);
 
+/** @param {RobotConfig | undefined} robot */
+export const presetOf = (robot) => (typeof robot === "string" ? robot : robot?.preset);
+
+/**
+ * Whether a training's table can be used with the form's settings.
+ * @param {Run} training
+ * @param {FormValues} values
+ */
 const fits = (training, values) =>
   hasTable(training) &&
   training.config.gait === values.gait &&
   presetOf(training.config.robot) === values.robot &&
-  WALK.every((field) => training.config[field] === undefined || training.config[field] === values[field]);
+  WALK_FIELDS.every((field) => [undefined, values[field]].includes(training.config[field]));
 
-/** The newest table that fits the form, of what is on stage or what I started. */
-export const tableInHand = computed(() => {
-  const known = [raceInView.value, shownRun.value, ...mine.value.map(get)];
-  const trainings = known.flatMap((run) =>
-    run?.kind === "race" ? trainingIds(run).map(get) : [run],
-  );
+/** The newest training whose table fits the form, on stage or among this tab's runs. */
+export const matchingTable = computed(() => {
+  const known = [raceInView.value, shownRun.value, ...ownRuns.value.map(get)];
+  const trainings = known.flatMap((run) => (run?.kind === "race" ? trainingIds(run).map(get) : [run]));
   return trainings.find((run) => run && fits(run, form.value)) ?? null;
 });
 
-/** Whether the race in view has been run, so that "again" means something. */
-export const raceIsRun = computed(() => {
+/** Whether the race in view was run with that table, so that it can be run "again". */
+export const isRaceRun = computed(() => {
   const race = raceInView.value;
-  return race?.state === "finished" && trainingIds(race).includes(tableInHand.value?.id);
+  const table = matchingTable.value;
+  return race?.state === "finished" && table !== null && trainingIds(race).includes(table.id);
 });
 
-/** How many transitions a look-ahead agent simulates for a decision. */
-export function futures(depth, { gait, divisions }) {
-  const pairs = options.value?.gaits?.find(({ name }) => name === gait)?.pairs.length ?? 3;
+/**
+ * How many transitions a look-ahead agent simulates for one decision.
+ * @param {number} depth in steps
+ * @param {{ gait: string, divisions: number }} walk
+ */
+export function simulatedPerDecision(depth, { gait, divisions }) {
+  const pairs = options.value?.gaits.find(({ name }) => name === gait)?.pairs.length ?? 3;
   const cells = divisions ** 2 + (divisions % 2 === 0 ? 1 : 0);
   const moves = pairs * (cells - 1);
   let total = 0;

@@ -1,77 +1,111 @@
-// What the page knows of the server, as signals. Only `applyEvent`, `keepRun` and `dropRun` write to it.
+// The server's state as signals. Written by `applyEvent` and `upsertRun`, and by answers to requests.
 import { batch, signal } from "@preact/signals";
 
-/** "connecting", "live" or "reconnecting". */
-export const connection = signal("connecting");
-export const version = signal(null);
-/** Whether this server shows itself only to those who have its link. */
-export const isLockedOut = signal(false);
-/** Null until the snapshot says; then "operator" or "spectator". */
-export const role = signal(null);
-export const viewers = signal(null);
-export const options = signal(null);
-/** Every run that was heard of, by id. */
-export const runs = signal(new Map());
-/** By id the runs that the server cannot read; they are listed, can be deleted, and nothing else. */
-export const damagedRuns = signal(new Map());
-/** What everyone is shown, as GET /stage has it. */
-export const stage = signal(null);
-/** What everyone sees right now, about five times a second. */
-export const scene = signal(null);
-/** Evaluations that came in while the page was open: run id → [{step, distance_m, epsilon}]. */
-export const evaluations = signal({});
-/** Run id → how far greedy gets on the same robot [m]. */
-export const references = signal({});
-/** Run id → the newest rates and pace that someone set while it ran. */
-export const rates = signal({});
+/** @import { Signal } from "@preact/signals" */
+/** @import { DamagedRun, Evaluation, Options, Rates, Run, Scene, Stage } from "./types.js" */
 
-/** Run id → how many trials the newest summary of that experiment is of. */
+/** @type {Signal<"connecting" | "live" | "reconnecting">} */
+export const connection = signal("connecting");
+/** The server's version. @type {Signal<string | null>} */
+export const version = signal(null);
+/** Whether the server refuses this page because it lacks the link's token. */
+export const isLockedOut = signal(false);
+/** Null until the first snapshot. @type {Signal<"operator" | "spectator" | null>} */
+export const role = signal(null);
+/** How many pages watch the stage. @type {Signal<number | null>} */
+export const viewers = signal(null);
+/** Null until the server has answered. @type {Signal<Options | null>} */
+export const options = signal(null);
+/** The options, for code that runs only once they are known: components, and what they call. */
+export const served = () => /** @type {Options} */ (options.value);
+/** Every known run by id. @type {Signal<Map<string, Run>>} */
+export const runs = signal(new Map());
+/** Runs that the server cannot read, by id: listed, and can be deleted. @type {Signal<Map<string, DamagedRun>>} */
+export const damagedRuns = signal(new Map());
+/** The stage as GET /stage has it. @type {Signal<Stage | null>} */
+export const stage = signal(null);
+/** The moment that is shown, updated about five times a second. @type {Signal<Scene | null>} */
+export const scene = signal(null);
+/** Run id → evaluations received while the page was open. @type {Signal<Record<string, Evaluation[]>>} */
+export const evaluations = signal({});
+/** Run id → greedy's distance on the same robot [m]. @type {Signal<Record<string, number>>} */
+export const references = signal({});
+/** Run id → the rates and pace that were changed while it ran. @type {Signal<Record<string, Rates>>} */
+export const rates = signal({});
+/** Run id → number of trials in that experiment's newest summary. @type {Signal<Record<string, number>>} */
 export const summarised = signal({});
 
-const put = (map, key, value) => (map.value = { ...map.value, [key]: value });
+/**
+ * Set one entry of a record in a signal.
+ * @template Value
+ * @param {Signal<Record<string, Value>>} record
+ * @param {string} key
+ * @param {Value} value
+ */
+export const setEntry = (record, key, value) => {
+  record.value = { ...record.value, [key]: value };
+};
 
+/** @type {Record<string, (data: any) => void>} */
 const handlers = {
   snapshot(data) {
     version.value = data.version ?? null;
     role.value = data.role ?? "operator";
     viewers.value = data.viewers ?? null;
-    const byId = (some) => new Map(some.map((run) => [run.id, run]));
-    runs.value = byId((data.runs ?? []).filter((run) => !run.damaged));
-    damagedRuns.value = byId((data.runs ?? []).filter((run) => run.damaged));
+    runs.value = new Map();
+    damagedRuns.value = new Map();
+    (data.runs ?? []).forEach(upsertRun);
     stage.value = data.stage ?? null;
     scene.value = data.scene ?? null;
   },
-  run: (data) => keepRun(data),
-  "run-deleted": ({ id }) => dropRun(id),
+  run: (data) => upsertRun(data),
+  "run-deleted": ({ id }) => forgetRun(id),
   evaluation({ run_id, ...evaluation }) {
-    put(evaluations, run_id, [...(evaluations.value[run_id] ?? []), evaluation]);
+    setEntry(evaluations, run_id, [...(evaluations.value[run_id] ?? []), evaluation]);
   },
-  reference: ({ run_id, greedy_distance_m }) => put(references, run_id, greedy_distance_m),
-  rates: ({ run_id, ...changed }) =>
-    put(rates, run_id, { ...rates.value[run_id], ...changed }),
+  reference: ({ run_id, greedy_distance_m }) => setEntry(references, run_id, greedy_distance_m),
+  rates: ({ run_id, ...changed }) => setEntry(rates, run_id, { ...rates.value[run_id], ...changed }),
   stage: (data) => (stage.value = data),
-  summary: ({ run_id, done }) => put(summarised, run_id, done),
-  viewers: ({ count }) => (viewers.value = count),
+  summary: ({ run_id, done }) => setEntry(summarised, run_id, done),
+  viewers: (data) => (viewers.value = data.count),
   scene: (data) => (scene.value = data),
 };
 
+/**
+ * Apply a server-sent event. Unknown names are ignored.
+ * @param {string} name
+ * @param {any} data
+ */
 export const applyEvent = (name, data) => batch(() => handlers[name]?.(data));
 
-/** Take in a run as an answer or an event has it. */
-export function keepRun(run) {
-  const [its, other] = run.damaged ? [damagedRuns, runs] : [runs, damagedRuns];
-  its.value = new Map(its.value).set(run.id, run);
-  if (other.value.has(run.id)) other.value = without(other.value, run.id);
-}
-
-export const dropRun = (id) =>
+/**
+ * Insert a run, or replace the version that is known.
+ * @param {Run | DamagedRun} run
+ */
+export const upsertRun = (run) =>
   batch(() => {
-    runs.value = without(runs.value, id);
-    damagedRuns.value = without(damagedRuns.value, id);
+    forgetRun(run.id);
+    if ("damaged" in run) damagedRuns.value = new Map(damagedRuns.value).set(run.id, run);
+    else runs.value = new Map(runs.value).set(run.id, run);
   });
 
-function without(map, id) {
+/**
+ * Remove a run that was deleted.
+ * @param {string} id
+ */
+export const forgetRun = (id) =>
+  batch(() => {
+    if (runs.value.has(id)) runs.value = without(runs.value, id);
+    if (damagedRuns.value.has(id)) damagedRuns.value = without(damagedRuns.value, id);
+  });
+
+/**
+ * @template Value
+ * @param {Map<string, Value>} map
+ * @param {string} key
+ */
+function without(map, key) {
   const left = new Map(map);
-  left.delete(id);
+  left.delete(key);
   return left;
 }

@@ -1,14 +1,14 @@
-// Light, dark, or as the system has it. The stage follows.
+// The colour theme: light, dark, or the system's. The stage follows it.
 import { computed, effect, signal } from "@preact/signals";
 
 const KEY = "hexapods:theme";
 const systemDark = matchMedia("(prefers-color-scheme: dark)");
 const systemIsDark = signal(systemDark.matches);
 
-/** "auto", "light" or "dark". */
+/** The choice: "auto", "light" or "dark". */
 export const theme = signal(document.documentElement.dataset.theme ?? "auto");
 
-/** What it comes to: "light" or "dark". */
+/** The theme that is shown: "light" or "dark". */
 export const shownTheme = computed(() =>
   theme.value === "auto" ? (systemIsDark.value ? "dark" : "light") : theme.value,
 );
@@ -23,14 +23,15 @@ export function followTheme() {
   effect(() => {
     if (theme.value === "auto") delete document.documentElement.dataset.theme;
     else document.documentElement.dataset.theme = theme.value;
-    remember(theme.value);
+    store(theme.value);
   });
 }
 
-function remember(value) {
+/** @param {string} value */
+function store(value) {
   try {
     localStorage.setItem(KEY, value);
   } catch {
-    // Storage is forbidden: it lasts as long as the page.
+    // Storage is forbidden: kept until the page is closed.
   }
 }

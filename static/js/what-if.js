@@ -1,65 +1,75 @@
-// What if one practised like this? Thirty ideal robots try the form's settings, thirty the defaults.
+// What-if: kinematic trials of the form's settings, beside trials of the defaults.
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "./api.js";
 import { form, mistakes, whatIfBody } from "./form.js";
+import { limitsOf } from "./limits.js";
 import { isOperator } from "./selectors.js";
+import { options } from "./store.js";
 
-/** More practice than this takes longer than one would wait. */
-export const MOST_STEPS = 2000;
-/** So long after the last change a slider counts as released. */
+/** @import { Signal } from "@preact/signals" */
+/** @import { RequestError } from "./api.js" */
+/** @import { WhatIfAnswer } from "./types.js" */
+
+/** A slider that has not moved for so long counts as released. */
 const QUIET_MS = 300;
 
-/** Whether the panel is unfolded: nothing is computed for one that nobody sees. */
-export const isWatched = signal(false);
-/** What is known: {settings, seeds, greedy_m, chosen, default} or null. */
+/** Whether the panel is open; a closed one computes nothing. */
+export const isPanelOpen = signal(false);
+/** The newest answer, and the settings that it is for. @type {Signal<(WhatIfAnswer & { settings: string }) | null>} */
 export const answer = signal(null);
+/** @type {Signal<RequestError | null>} */
 export const error = signal(null);
-/** Whether thirty robots practise right now. */
-export const isTrying = signal(false);
+/** Whether a request is under way. */
+export const isComputing = signal(false);
 
 const settings = computed(() => JSON.stringify(whatIfBody(form.value)));
-export const isTooLong = computed(() => form.value.steps > MOST_STEPS);
-/** Whether what is shown is of the form as it is. */
+/** The most steps of practice that the server tries; null without a limit. */
+export const mostSteps = computed(() => limitsOf("what_if_steps")[1]);
+export const isTooLong = computed(() => mostSteps.value !== null && form.value.steps > mostSteps.value);
+/** How many seeds an answer is of. */
+export const seeds = computed(() => options.value?.defaults.what_if.seeds ?? 0);
+/** Whether the answer is for the form's settings as they are. */
 export const isCurrent = computed(() => answer.value?.settings === settings.value);
 
-const mayAsk = () =>
-  isOperator.value && isWatched.value && !isTooLong.value && Object.keys(mistakes.value).length === 0;
+const canAsk = () =>
+  isOperator.value && isPanelOpen.value && !isTooLong.value && Object.keys(mistakes.value).length === 0;
 
-let missed = false;
+let hasMissed = false;
 
-/** Try the form as it is; one at a time, and what was moved meanwhile comes next. */
-export async function tryOut() {
-  if (isTrying.peek()) {
-    missed = true;
+/** Request an answer for the form's settings; one request at a time, the newest settings next. */
+export async function evaluateSettings() {
+  if (isComputing.peek()) {
+    hasMissed = true;
     return;
   }
-  isTrying.value = true;
-  missed = false;
+  isComputing.value = true;
+  hasMissed = false;
   const asked = settings.peek();
   try {
     const found = await api.whatIf(JSON.parse(asked));
     answer.value = { ...found, settings: asked };
     error.value = null;
   } catch (problem) {
-    error.value = asked === settings.peek() ? problem : null;
+    error.value = asked === settings.peek() ? /** @type {RequestError} */ (problem) : null;
   } finally {
-    isTrying.value = false;
+    isComputing.value = false;
   }
-  if (missed && mayAsk() && !isCurrent.peek()) tryOut();
+  if (hasMissed && canAsk() && !isCurrent.peek()) evaluateSettings();
 }
 
-/** From now on, try out what the form says each time it comes to rest. */
+/** Request an answer each time the form has come to rest with other settings. */
 export function followWhatIf() {
   let known = settings.peek();
-  let timer = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
   effect(() => {
     const now = settings.value;
-    const may = mayAsk();
+    const isAllowed = canAsk();
     clearTimeout(timer);
-    if (now === known || !may) return;
+    if (now === known || !isAllowed) return;
     timer = setTimeout(() => {
       known = now;
-      if (!isCurrent.peek()) tryOut();
+      if (!isCurrent.peek()) evaluateSettings();
     }, QUIET_MS);
   });
 }

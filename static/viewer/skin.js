@@ -1,7 +1,8 @@
 // Runs before viser's client on the page /viewer/, and makes it a part of the dashboard around it.
 //
 //   from the parent   {type: "hexapods:show", view?: "leader" | "1" … "8" | "free", theme?: "light" | "dark"}
-//   to the parent     {type: "hexapods:status", status: "connected" | "reconnecting" | "full" | "address full" | "place taken"}
+//   to the parent     {type: "hexapods:status", status: "connected" | "reconnecting" | "full" | "address full" |
+//                      "place taken"}
 //                     {type: "hexapods:key", key, code, shiftKey}
 (() => {
   "use strict";

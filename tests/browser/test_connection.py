@@ -22,7 +22,7 @@ def test_the_last_picture_stays_until_it_is_back(dashboard: Dashboard, tmp_path:
     expect(page.locator(".live")).to_have_text("reconnecting")
     expect(page.frame_locator(".picture iframe").locator("canvas").first).to_be_visible()
     dashboard.primary.click()
-    problem = page.locator(".deeds").get_by_role("alert").filter(has_text="does not answer")
+    problem = page.locator(".actions").get_by_role("alert").filter(has_text="does not answer")
     expect(problem).to_be_visible()
     # Nobody answered: the browser says so by itself, and cannot be kept from it.
     dashboard.complaints.clear()

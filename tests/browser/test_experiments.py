@@ -46,7 +46,7 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
     dashboard.button("Run Table 1: 9 trials").click()
     expect(head(dashboard).locator(".state")).to_have_text("finished")
 
-    table = page.get_by_role("table", name="Finished and total distance")
+    table = page.get_by_role("table", name="Distance at time-out and total distance")
     strips = table.get_by_role("img", name=re.compile("^3 seeds from .*; the paper 0.25 m$"))
     expect(strips).to_have_count(2)
     expect(table).to_contain_text("paper: unfinished")
@@ -60,7 +60,7 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
     expect(page.locator(".claim .verdict").first).to_have_text(
         re.compile(r"Holds|Does not hold|Not established")
     )
-    expect(page.get_by_role("heading", name="Under the wall clock")).to_be_visible()
+    expect(page.get_by_role("heading", name="Under the real clock")).to_be_visible()
     assert dashboard.violations() == []
     page.set_viewport_size(PHONE)
     assert dashboard.scroll_width() == PHONE["width"]
@@ -90,7 +90,7 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
     page = dashboard.page
     with serving(tmp_path) as server:
         visit(dashboard, server, **ENDLESS)
-        dashboard.button("Run Sweep: 5\u202f001 trials").click()
+        dashboard.button("Run Sweep: 5001 trials").click()
         expect(head(dashboard)).to_contain_text("a second")
         expect(page.get_by_role("img", name=re.compile(r"^\d+ seeds, typically"))).to_be_visible()
         page.goto("about:blank")
@@ -109,7 +109,7 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
         dashboard.button("Resume").click()
         expect(head(dashboard).locator(".state")).to_have_text("running")
         dashboard.button("Stop").click()
-        expect(head(dashboard)).to_contain_text("What is shown is of the trials that were done.")
+        expect(head(dashboard)).to_contain_text("The report is of the trials that were done.")
         expect(head(dashboard).get_by_role("link", name="Open the report")).to_be_visible()
 
 
@@ -127,7 +127,7 @@ def test_links_carry_the_form_and_mistakes_hold_it_back(
     page.get_by_role("radio", name="Sweep").check(force=True)
     alpha = page.get_by_label("α", exact=True)
     alpha.fill("0.1, 0.3, oops")
-    expect(page.get_by_role("alert").filter(has_text="with commas")).to_be_visible()
+    expect(page.get_by_role("alert").filter(has_text="separated by commas")).to_be_visible()
     button = page.get_by_role("button", name=re.compile("^Run Sweep"))
     expect(button).to_have_attribute("aria-disabled", "true")
     alpha.fill("0.1, 0.3, 0.6")
@@ -201,5 +201,5 @@ def test_spectators_see_the_report_without_controls(
 
         expect(head(dashboard).get_by_role("link", name="Open the report")).to_be_visible()
         expect(page.get_by_role("heading", name="How it was made")).to_be_visible()
-        for deed in ("Run", "Pause", "Resume", "Stop", "Delete"):
-            expect(page.get_by_role("button", name=re.compile(f"^{deed}"))).to_have_count(0)
+        for action in ("Run", "Pause", "Resume", "Stop", "Delete"):
+            expect(page.get_by_role("button", name=re.compile(f"^{action}"))).to_have_count(0)

@@ -23,7 +23,7 @@ def test_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
     expect(page.get_by_role("radio")).to_have_count(4)
     assert page.url == server.address
     page.get_by_role("link", name="Runs").click()
-    expect(page.get_by_text("Nothing has run.")).to_be_visible()
+    expect(page.get_by_text("No runs yet.")).to_be_visible()
 
 
 def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> None:
@@ -31,7 +31,7 @@ def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> N
     dashboard.open(shared_server.address)
     page.get_by_role("radio", name="Front-back, mirrored").check(force=True)
     page.get_by_role("spinbutton", name="Practice, as a number").fill("750")
-    page.get_by_role("slider", name="Looking ahead γ").fill("0.5")
+    page.get_by_role("slider", name="Discount γ").fill("0.5")
     page.get_by_text("More settings").click()
     page.get_by_label("Robot").select_option("slippery")
     page.get_by_role("checkbox", name="Two-step").uncheck()
@@ -41,7 +41,7 @@ def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> N
     dashboard.open(link)
     expect(dashboard.primary).to_have_text(re.compile("^Train 750 steps"))
     expect(page.get_by_role("radio", name="Front-back, mirrored")).to_be_checked()
-    expect(page.get_by_role("slider", name="Looking ahead γ")).to_have_value("0.5")
+    expect(page.get_by_role("slider", name="Discount γ")).to_have_value("0.5")
     page.get_by_text("More settings").click()
     expect(page.get_by_label("Robot")).to_have_value("slippery")
     expect(page.get_by_role("checkbox", name="Two-step")).not_to_be_checked()
@@ -154,7 +154,7 @@ def test_spectators_get_no_controls(dashboard: Dashboard, tmp_path: Path) -> Non
 def test_a_guarded_page_says_what_it_needs(dashboard: Dashboard, tmp_path: Path) -> None:
     with serving(tmp_path, token="for-the-operator", spectators="token") as guarded:
         dashboard.page.goto(guarded.address)
-        expect(dashboard.page.get_by_role("heading", name="This show needs a link")).to_be_visible()
+        expect(dashboard.page.get_by_role("heading", name="This page needs a link")).to_be_visible()
         expect(dashboard.primary).to_have_count(0)
         assert {complaint.split()[0] for complaint in dashboard.complaints} == {"401"}
         dashboard.page.goto("about:blank")

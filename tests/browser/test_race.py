@@ -29,8 +29,8 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     dashboard.eventually(lambda: dashboard.picture() != before, "the robots move in the canvas")
     dashboard.eventually(dashboard.has_figures, "the scoreboard fills")
     headline = page.locator(".headline")
-    expect(headline).to_have_text(re.compile(r"at the finish with −?0\.\d\d\sm$"))
-    expect(page.get_by_role("status").filter(has_text="at the finish")).to_be_attached()
+    expect(headline).to_have_text(re.compile(r"at time-out with −?0\.\d\d\sm$"))
+    expect(page.get_by_role("status").filter(has_text="at time-out")).to_be_attached()
     expect(
         page.get_by_role("img", name=re.compile("^Learning curve: .*greedy gets"))
     ).to_be_visible()
@@ -54,7 +54,7 @@ def test_the_values_of_the_state_are_a_table(dashboard: Dashboard, server: Servi
     expect(values.locator("tbody tr")).to_have_count(3)
     expect(values.locator("td.here")).to_have_count(3)
     expect(values.locator("td.next")).to_have_count(1)
-    expect(dashboard.page.locator(".say")).to_have_text(
+    expect(dashboard.page.locator(".next-move")).to_have_text(
         re.compile(r"^Q-learning will move legs \d and \d to (home|front|back)")
     )
 
@@ -68,7 +68,7 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
     ).to_be_visible()
 
     page.get_by_role("slider", name="Learning rate α").fill("0.5")
-    page.get_by_role("slider", name="Exploring now ε").fill("0.25")
+    page.get_by_role("slider", name="Exploration now ε").fill("0.25")
 
     def changes() -> dict[str, float]:
         [training] = dashboard.get("/api/v1/trainings")["items"]
@@ -93,7 +93,9 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
 def test_a_refusal_stands_beside_the_button(dashboard: Dashboard, server: Serving) -> None:
     dashboard.open(f"{server.address}?{urlencode({'grid_side_m': 0.9})}")
     dashboard.primary.click()
-    problem = dashboard.page.locator(".deeds").get_by_role("alert").filter(has_text="cannot reach")
+    problem = (
+        dashboard.page.locator(".actions").get_by_role("alert").filter(has_text="cannot reach")
+    )
     expect(problem).to_contain_text("grid_side_m")
     assert [c.split()[0] for c in dashboard.complaints] == ["422"]
     dashboard.complaints.clear()

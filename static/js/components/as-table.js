@@ -1,4 +1,4 @@
-// The numbers behind a picture.
+// The numbers of a chart as a table, folded.
 import { useState } from "preact/hooks";
 import { html } from "../html.js";
 import { thinned } from "../scale.js";
@@ -15,12 +15,14 @@ export function AsTable({ caption, columns, rows }) {
           <table>
             <caption class="sr-only">${caption}</caption>
             <thead><tr>${columns.map((title) => html`<th scope="col">${title}</th>`)}</tr></thead>
-            <tbody>
-              ${thinned(rows, MOST_ROWS).map(([first, ...others]) => html`<tr><th scope="row">${first}</th>${others.map((one) => html`<td>${one}</td>`)}</tr>`)}
-            </tbody>
+            <tbody>${thinned(rows, MOST_ROWS).map((cells) => html`<${Row} cells=${cells} />`)}</tbody>
           </table>
         </div>
       `}
     </details>
   `;
 }
+
+const Row = ({ cells: [first, ...others] }) => html`
+  <tr><th scope="row">${first}</th>${others.map((one) => html`<td>${one}</td>`)}</tr>
+`;

@@ -1,7 +1,7 @@
-// What one can do next: one primary button, and what runs already.
+// The controls: settings, the primary button, the running work, and what failed.
 import { useState } from "preact/hooks";
 import {
-  canStart, doNext, goOn, nextDeed, otherDeeds, pause, pending, resume, showOnStage, stop,
+  canStart, pause, pending, primaryAction, resume, resumeRun, runPrimaryAction, secondaryActions, showOnStage, stop,
 } from "../actions.js";
 import { form } from "../form.js";
 import { count, whole } from "../format.js";
@@ -9,53 +9,54 @@ import { html } from "../html.js";
 import { isNarrow } from "../page.js";
 import { progress } from "../progress.js";
 import { agentOf, interruptedRun, isOperator, myWork, offStage, shownRun, work } from "../selectors.js";
-import { options, scene } from "../store.js";
+import { scene } from "../store.js";
+import { gaitTitle } from "../titles.js";
 import { Icon } from "./icon.js";
 import { Problem } from "./problem.js";
 import { ProgressBar } from "./progress-bar.js";
 import { Settings } from "./settings.js";
 
 export function Controls() {
-  if (!isOperator.value) return html`<${WatchOnly} />`;
-  // On a phone the button comes first. Keys, so that turning it loses nothing that is unfolded.
-  const deeds = html`<${Deeds} key="deeds" />`;
+  if (!isOperator.value) return html`<${Spectator} />`;
+  // On a phone the button comes first. Keys keep what is unfolded when the phone is turned.
+  const actions = html`<${Actions} key="actions" />`;
   const settings = html`<${FoldedSettings} key="settings" />`;
   return html`
     <section class="panel controls" aria-label="Train and race">
-      ${isNarrow.value ? [deeds, settings] : [settings, deeds]}
+      ${isNarrow.value ? [actions, settings] : [settings, actions]}
     </section>
   `;
 }
 
-/** On a phone the settings are one line, until they are asked for. */
+/** The settings; on a phone one line until they are opened. */
 function FoldedSettings() {
   const [isOpen, setOpen] = useState(false);
   const { gait, steps, alpha, gamma } = form.value;
-  const chosen = options.value?.gaits?.find(({ name }) => name === gait);
   const onToggle = ({ target }) => isNarrow.value && setOpen(target.open);
   return html`
     <details class="folded" open=${isOpen || !isNarrow.value} onToggle=${onToggle}>
       <summary hidden=${!isNarrow.value}>
         <span>Settings</span>
-        <span class="dim">${chosen?.title ?? gait}, ${count(steps, "step")}, α ${alpha}, γ ${gamma}</span>
+        <span class="dim">${gaitTitle(gait)}, ${count(steps, "step")}, α ${alpha}, γ ${gamma}</span>
       </summary>
       <${Settings} />
     </details>
   `;
 }
 
-function Deeds() {
+function Actions() {
   const isBusy = Boolean(myWork.value) || pending.value.start;
-  const label = isBusy ? busyLabel() : nextDeed.value.label;
+  const label = isBusy ? busyLabel() : primaryAction.value.label;
+  const isDisabled = isBusy || !canStart.value;
   return html`
-    <div class="deeds">
-      <button class="primary" aria-disabled=${canStart.value && !isBusy ? undefined : "true"} onClick=${doNext}>
+    <div class="actions">
+      <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${runPrimaryAction}>
         ${!isBusy && html`<${Icon} name="play" />`}${label}
       </button>
       <${Problem} at="start" />
-      ${!myWork.value && html`<${Others} />`}
+      ${!myWork.value && html`<${SecondaryActions} />`}
       <${Progress} />
-      ${work.value && html`<${Running} />`}
+      ${work.value && html`<${WorkActions} />`}
       <${Problem} at="work" />
       <${Problem} at="tune" />
       <${OffStage} />
@@ -66,27 +67,27 @@ function Deeds() {
 }
 
 const busyLabel = () => {
-  const { asked, now } = myWork.value ?? {};
-  if (!now) return "Starting…";
-  if (now.state === "paused") return "Paused";
-  if (now.kind === "training" || scene.value?.kind === "training") return asked.kind === "training" ? "Practising…" : "Practising, then racing…";
-  return "Racing…";
+  const { requested, current } = myWork.value ?? {};
+  if (!requested || !current) return "Starting…";
+  if (current.state === "paused") return "Paused";
+  if (current.kind !== "training" && scene.value?.kind !== "training") return "Racing…";
+  return requested.kind === "training" ? "Practising…" : "Practising, then racing…";
 };
 
-const Others = () => html`
+const SecondaryActions = () => html`
   <div class="row">
-    ${otherDeeds.value.map(([label, deed]) => html`
-      <button class="secondary" onClick=${deed} aria-disabled=${canStart.value ? undefined : "true"}>${label}</button>
+    ${secondaryActions.value.map(({ label, run }) => html`
+      <button class="secondary" onClick=${run} aria-disabled=${canStart.value ? undefined : "true"}>${label}</button>
     `)}
   </div>
 `;
 
-function Running() {
-  const { now } = work.value;
-  const isPaused = now.state === "paused";
+function WorkActions() {
+  const state = work.value?.current.state;
+  const isPaused = state === "paused";
   return html`
     <div class="row">
-      <button class="secondary" onClick=${isPaused ? resume : pause} disabled=${now.state === "queued"}>
+      <button class="secondary" onClick=${isPaused ? resume : pause} disabled=${state === "queued"}>
         <${Icon} name=${isPaused ? "play" : "pause"} />${isPaused ? "Resume" : "Pause"}
       </button>
       <button class="secondary" onClick=${stop}><${Icon} name="stop" />Stop</button>
@@ -110,12 +111,17 @@ function OffStage() {
   if (!run) return null;
   return html`
     <div class="notice">
-      <p>Another run is live on the stage, so yours goes on without a picture.</p>
+      <p>Another run is live on the stage, so yours continues without a picture.</p>
       <button class="secondary" onClick=${() => showOnStage(run)}>Show on stage</button>
       <${Problem} at=${run.id} />
     </div>
   `;
 }
+
+const ResumeButton = ({ run }) => html`
+  <button class="secondary" disabled=${pending.value[run.id]} onClick=${() => resumeRun(run)}>Resume</button>
+  <${Problem} at=${run.id} />
+`;
 
 function Failure() {
   const run = shownRun.value;
@@ -123,11 +129,8 @@ function Failure() {
   return html`
     <div class="notice bad">
       <p><b>The ${run.kind} failed.</b> ${run.error}</p>
-      <p>Change what it names, or let it go on from what it has kept; everything else runs.</p>
-      ${run.can_resume && html`
-        <button class="secondary" disabled=${pending.value[run.id]} onClick=${() => goOn(run)}>Go on</button>
-        <${Problem} at=${run.id} />
-      `}
+      <p>Change what it names, or resume it from its last checkpoint. Other runs are not affected.</p>
+      ${run.can_resume && html`<${ResumeButton} run=${run} />`}
     </div>
   `;
 }
@@ -140,21 +143,22 @@ function Interrupted() {
   return html`
     <div class="notice">
       <p><b>The ${run.kind} was interrupted${where}.</b> ${run.error}</p>
-      <button class="secondary" disabled=${pending.value[run.id]} onClick=${() => goOn(run)}>Go on</button>
-      <${Problem} at=${run.id} />
+      <${ResumeButton} run=${run} />
     </div>
   `;
 }
 
-/** What a spectator has in place of the controls. */
-function WatchOnly() {
-  const shown = progress.value;
+/** Shown to spectators in place of the controls. */
+function Spectator() {
   const names = (shownRun.value?.config?.lanes ?? []).map(({ agent }) => agentOf(agent).title);
   return html`
-    <section class="panel" aria-label="What is happening">
+    <section class="panel" aria-label="What is shown">
       <h2>You are watching</h2>
-      <p class="dim">${names.length ? `${names.join(", ")} race. ` : ""}The camera is yours; whoever has the operator’s link runs the show.</p>
-      ${shown && html`<${Progress} />`}
+      <p class="dim">
+        ${names.length ? `${names.join(", ")} race. ` : ""}You control your camera;
+        runs are started with the operator’s link.
+      </p>
+      ${progress.value && html`<${Progress} />`}
     </section>
   `;
 }

@@ -1,20 +1,25 @@
-// Every seed as a dot on one axis, with what is typical of them and what they are held against.
+// Every seed as a dot on one axis, with the interquartile mean and reference values.
 import { html } from "../html.js";
 import { largest, percent, shareOf, swarm, thinned } from "../scale.js";
 
 const DOT_PX = 3;
 const APART_PX = 5;
-/** More are no more to be told apart: then they stand for all, evenly from the least to the most. */
+/** More cannot be told apart; an even selection stands for all. */
 const MOST_DOTS = 600;
-/** Below the dots, where what is typical of them hides none. */
+/** Height below the dots for the mean and its interval, where they hide none. */
 const LANE_PX = 12;
 
 /**
- * @param label the same in words
- * @param points one number a seed
- * @param high where the axis ends; it begins at `low`
- * @param typical {iqm, low, high}: the interquartile mean and, if known, its interval
- * @param marks [{value, kind}]; kinds: "greedy" and "half" are lines, "published" a hollow diamond
+ * @param {object} props
+ * @param {string} props.label the same in words
+ * @param {number[]} props.points one per seed
+ * @param {number} [props.low] where the axis begins
+ * @param {number} props.high where the axis ends
+ * @param {{ iqm: number, low?: number | null, high?: number | null } | null} [props.typical] interquartile
+ *   mean and, if known, its interval
+ * @param {{ value: number, kind: "greedy" | "half" | "published" }[]} [props.marks] lines; published is a diamond
+ * @param {string} [props.color]
+ * @param {number} [props.height]
  */
 export function DotStrip({ label, points, low = 0, high, typical = null, marks = [], color, height = 36 }) {
   const at = (value) => percent(shareOf(value, low, high));
@@ -23,8 +28,9 @@ export function DotStrip({ label, points, low = 0, high, typical = null, marks =
   const tallest = largest(rows.map(Math.abs), 1);
   const middle = (height - LANE_PX) / 2;
   const apart = Math.min(APART_PX, (middle - DOT_PX) / tallest);
+  const style = color && { "--agent": color };
   return html`
-    <svg class="dots" width="100%" height=${height} role="img" aria-label=${label} style=${color && { "--agent": color }}>
+    <svg class="dots" width="100%" height=${height} role="img" aria-label=${label} style=${style}>
       <line class="axis" x1="0" x2="100%" y1=${middle} y2=${middle} />
       ${marks.filter(({ kind }) => kind !== "published").map(({ value, kind }) => html`
         <line class=${`mark ${kind}`} x1=${at(value)} x2=${at(value)} y1="0" y2=${height} />

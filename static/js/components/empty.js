@@ -1,4 +1,4 @@
-// A panel that waits for its first number: the shape of what will come, and when it does.
+// The placeholder of a chart or table without data: a sketch, and a sentence on what will fill it.
 import { html } from "../html.js";
 
 const CURVE = html`

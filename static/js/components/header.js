@@ -1,4 +1,4 @@
-// Who we are, where one can go, whether it is live, and the page's own switches.
+// The header: navigation, connection state, sharing, theme and help.
 import { share } from "../actions.js";
 import { html } from "../html.js";
 import { helpIsOpen, place } from "../page.js";
@@ -16,13 +16,13 @@ export const Header = () => html`
         <a href=${href} aria-current=${place.value === name ? "page" : undefined}>${title}</a>
       `)}
     </nav>
-    <${Live} />
+    <${Connection} />
     <div class="switches">
-      <button class="quiet" onClick=${share} title="Copy a link that carries every setting">
+      <button class="quiet" onClick=${share} title="Copy a link that contains every setting">
         <${Icon} name="link" /><span class="wide-only">Share</span>
         <span class="sr-only narrow-only">Share</span>
       </button>
-      <button class="quiet square" onClick=${nextTheme} title="Light, dark, or as the system has it"
+      <button class="quiet square" onClick=${nextTheme} title="Light, dark, or the system's theme"
         aria-label=${`Theme: ${theme.value}. Change it`}>
         <${Icon} name=${theme.value} />
       </button>
@@ -32,15 +32,13 @@ export const Header = () => html`
   </header>
 `;
 
-const STATES = { connecting: "connecting", reconnecting: "reconnecting" };
-
-function Live() {
+function Connection() {
   const state = connection.value;
   const watching = viewers.value ? html` · ${viewers.value}<span class="roomy"> watching</span>` : "";
   return html`
     <p class=${`live ${state}`}>
       <span class="dot" aria-hidden="true"></span>
-      <span>${STATES[state] ?? html`live${watching}`}</span>
+      <span>${state === "live" ? html`live${watching}` : state}</span>
     </p>
   `;
 }

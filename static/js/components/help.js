@@ -1,15 +1,15 @@
-// The keys, and what the page is, in a dialog.
+// The help dialog: keys, and what the page shows.
 import { useEffect, useRef } from "preact/hooks";
 import { html } from "../html.js";
 import { KEYS } from "../keys.js";
 import { helpIsOpen, setShortcuts, shortcuts } from "../page.js";
 
 export function HelpDialog() {
-  const dialog = useRef(null);
+  const dialog = useRef(/** @type {HTMLDialogElement | null} */ (null));
   const isOpen = helpIsOpen.value;
   useEffect(() => {
-    if (isOpen && !dialog.current.open) dialog.current.showModal();
-    if (!isOpen && dialog.current.open) dialog.current.close();
+    if (isOpen && !dialog.current?.open) dialog.current?.showModal();
+    if (!isOpen) dialog.current?.close();
   }, [isOpen]);
   const close = () => (helpIsOpen.value = false);
   const onBackdrop = (event) => event.target === dialog.current && close();
@@ -22,14 +22,14 @@ export function HelpDialog() {
         </dl>
         <label class="check">
           <input type="checkbox" checked=${shortcuts.value} onChange=${(e) => setShortcuts(e.target.checked)} />
-          Listen to single keys
+          Use single keys
         </label>
         <h2>What you see</h2>
         <p>
-          A hexapod learns by trying: it moves two legs at a time, feels how far that took it, and keeps in a
-          table what each move is worth. Then it races against two robots that simulate their moves before they
-          make one: greedy looks one move ahead, two-step looks two. Whoever is furthest when the first robot has used its
-          steps, wins; thinking costs time.
+          A hexapod learns by trial and error: it moves two legs at a time, measures how far that took it, and
+          keeps in a table what each move is worth. Then it races against two robots that simulate their moves
+          before they make one: greedy looks one step ahead, two-step looks two. The race ends at time-out, when
+          the first robot has used its steps; the robot that is furthest then wins. Thinking costs time.
         </p>
         <form method="dialog"><button class="secondary" autofocus>Close</button></form>
       </div>

@@ -1,10 +1,10 @@
-// A hexapod from above, forward up; legs that move together have one colour and a thread between them.
+// A hexapod from above, forward up. Legs that move together share a colour and are joined by a line.
 import { html } from "../html.js";
 
 const HIP = 7.5;
 const FOOT = 24;
 
-/** A place at a distance from the centre, in the direction of a leg; azimuths turn anticlockwise. */
+/** The point at a distance from the centre in the direction of a leg; azimuths turn anticlockwise. */
 function at(azimuth_deg, radius) {
   const angle = (azimuth_deg * Math.PI) / 180;
   return [-radius * Math.sin(angle), -radius * Math.cos(angle)].map((c) => c.toFixed(1));

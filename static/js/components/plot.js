@@ -1,4 +1,4 @@
-// A chart by uPlot that follows its place, the theme and its data; a table says the same in numbers.
+// A uPlot chart that is redrawn when its size, the theme or its data change.
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import uPlot from "uplot";
 import { html } from "../html.js";
@@ -9,15 +9,20 @@ const HEIGHT = 216;
 const FONT = "12px system-ui, sans-serif";
 
 /**
- * @param label what the picture shows, in a sentence
- * @param series [{color, dash?, width?, points?}] as many as `data` has lines
- * @param data as uPlot has it: [xs, ys…]
- * @param x, y {min, max}, x with its unit in words
- * @param room for the labels, on the right [px]
- * @param labels [{text, color, x, y}] written at the ends of lines
+ * @param {object} props
+ * @param {string} props.label what the chart shows, in a sentence
+ * @param {uPlot.AlignedData} props.data [xs, ys…]
+ * @param {{ color: string, dash?: number[], width?: number, points?: boolean }[]} props.series one per line
+ * @param {{ min?: number, max: number, unit: string }} props.x
+ * @param {{ min?: number, max: number }} props.y
+ * @param {{ text: string, color: string, x: number, y: number }[]} props.labels at the ends of lines
+ * @param {object[]} [props.marks] straight lines, as `lineLabels` takes them
+ * @param {number} [props.room] for the labels, on the right [px]
  */
 export function Plot(props) {
+  /** @type {{ current: any }} */
   const host = useRef(null);
+  /** @type {{ current: any }} */
   const plot = useRef(null);
   const newest = useRef(props);
   newest.current = props;
@@ -40,6 +45,7 @@ export function Plot(props) {
   return html`<div class="plot" role="img" aria-label=${props.label} ref=${host}></div>`;
 }
 
+/** @returns {any} uPlot's options; its types want more than it does */
 function optionsOf(host, newest) {
   const colour = coloursOf(host);
   const axis = (more) => ({
@@ -79,7 +85,7 @@ function optionsOf(host, newest) {
   };
 }
 
-/** A colour as the canvas wants it: custom properties are not resolved there. */
+/** A function that resolves custom properties, which a canvas does not. */
 function coloursOf(host) {
   const probe = document.createElement("span");
   return (name) => {

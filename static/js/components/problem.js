@@ -1,5 +1,5 @@
-// What went wrong, beside the control that caused it.
-import { forget, problems } from "../actions.js";
+// An error, beside the control that caused it.
+import { dismissProblem, problems } from "../actions.js";
 import { html } from "../html.js";
 
 export function Problem({ at }) {
@@ -9,7 +9,7 @@ export function Problem({ at }) {
       ${error && html`
         <p class="problem">
           <span>${error.message}</span>
-          <button class="quiet square small" aria-label="Dismiss" onClick=${() => forget(at)}>✕</button>
+          <button class="quiet square small" aria-label="Dismiss" onClick=${() => dismissProblem(at)}>✕</button>
         </p>
       `}
     </div>

@@ -1,4 +1,4 @@
-// What happens, who is winning and why, and what one can do next.
+// The race view: stage, controls, scoreboard and charts.
 import { html } from "../html.js";
 import { isNarrow } from "../page.js";
 import { isOperator } from "../selectors.js";
@@ -11,7 +11,7 @@ import { Stage } from "./stage.js";
 import { SharedChoices } from "./transport.js";
 import { WhatIf } from "./what-if.js";
 
-/** Hidden rather than gone while another view is open, so that the stage goes on. */
+/** Hidden, not removed, while another view is open, so that the stage does not load again. */
 export const RaceView = ({ isHidden }) => html`
   <div class="race-view" hidden=${isHidden}>
     <${Stage} />

@@ -1,24 +1,29 @@
-// Every run that there is: filter, show, take away, delete.
+// The list of all runs with its filters.
 import { useState } from "preact/hooks";
 import { listRuns } from "../api.js";
 import { html } from "../html.js";
 import { everyRun } from "../selectors.js";
-import { damagedRuns, keepRun } from "../store.js";
+import { damagedRuns, upsertRun } from "../store.js";
 import { DamagedRunRow } from "./damaged-run-row.js";
 import { ExperimentRunRow } from "./experiments/experiment-run-row.js";
 import { RunRow } from "./run-row.js";
 import { Segments } from "./segments.js";
 
+/** @import { RequestError } from "../api.js" */
+/** @import { Kind } from "../types.js" */
+
 const KINDS = [["all", "All"], ["training", "Trainings"], ["race", "Races"], ["experiment", "Experiments"]];
-const STATES = ["any state", "running", "paused", "queued", "finished", "stopped", "failed", "interrupted"];
+const ANY_STATE = "any state";
+const STATES = [ANY_STATE, "running", "paused", "queued", "finished", "stopped", "failed", "interrupted"];
+/** The snapshot has so many; more are requested. */
+const SNAPSHOT_RUNS = 50;
 
 export function Runs() {
   const [kind, setKind] = useState("all");
-  const [state, setState] = useState("any state");
+  const [state, setState] = useState(ANY_STATE);
   const all = [...damagedRuns.value.values(), ...everyRun.value];
   const shown = all.filter(
-    (run) =>
-      (kind === "all" || (run.kind ?? kind) === kind) && (state === "any state" || run.state === state),
+    (run) => ["all", run.kind ?? kind].includes(kind) && (state === ANY_STATE || run.state === state),
   );
   return html`
     <section class="panel runs" aria-labelledby="runs-title">
@@ -40,34 +45,50 @@ export function Runs() {
   `;
 }
 
-const rowOf = (run) => (run.damaged ? DamagedRunRow : run.kind === "experiment" ? ExperimentRunRow : RunRow);
+function rowOf(run) {
+  if ("damaged" in run) return DamagedRunRow;
+  return run.kind === "experiment" ? ExperimentRunRow : RunRow;
+}
 
 const NoRuns = ({ isFiltered }) => html`
-  <div class="no-runs">
-    ${isFiltered
-      ? html`<p>No run is of this kind and state.</p>`
-      : html`<p><b>Nothing has run.</b></p><p>Every training, race and experiment is kept here, with its curve, its table, its recording or its report. <a href="#">Start the first one</a>.</p>`}
-  </div>
+  <div class="no-runs">${isFiltered ? html`<p>No run is of this kind and state.</p>` : html`<${FirstVisit} />`}</div>
 `;
 
-/** The snapshot has the newest fifty; the rest comes when asked for. */
+const FirstVisit = () => html`
+  <p><b>No runs yet.</b></p>
+  <p>
+    Every training, race and experiment is kept here, with its curve, its table, its recording or its report.
+    <a href="#">Start the first one</a>.
+  </p>
+`;
+
+/** @type {Kind[]} */
+const LISTED_KINDS = ["training", "race", "experiment"];
+
 function Older({ count }) {
-  const [cursors, setCursors] = useState({ training: "", race: "", experiment: "" });
+  /** Where each kind continues; null after its last page. */
+  const [cursors, setCursors] = useState(/** @type {Record<Kind, string | null>} */ (
+    { training: "", race: "", experiment: "" }
+  ));
   const [note, setNote] = useState("");
-  if (count < 50 || Object.values(cursors).every((cursor) => cursor === null)) return null;
+  if (count < SNAPSHOT_RUNS || Object.values(cursors).every((cursor) => cursor === null)) return null;
   const load = async () => {
     setNote("");
     try {
       const next = { ...cursors };
-      for (const kind of Object.keys(cursors).filter((one) => cursors[one] !== null)) {
+      for (const kind of LISTED_KINDS.filter((one) => cursors[one] !== null)) {
         const { items, next_cursor } = await listRuns(kind, cursors[kind]);
-        items.forEach(keepRun);
+        items.forEach(upsertRun);
         next[kind] = next_cursor ?? null;
       }
       setCursors(next);
     } catch (error) {
-      setNote(error.message);
+      setNote(/** @type {RequestError} */ (error).message);
     }
   };
-  return html`<div class="older"><button class="secondary" onClick=${load}>Show older runs</button><p role="alert">${note}</p></div>`;
+  return html`
+    <div class="older">
+      <button class="secondary" onClick=${load}>Show older runs</button><p role="alert">${note}</p>
+    </div>
+  `;
 }

@@ -1,14 +1,16 @@
-// Who is winning: ranks, distances, and what thinking costs.
+// The scoreboard: ranks, distances, decision times and simulated transitions.
 import { form } from "../form.js";
 import { count, decision, duration, metres, whole } from "../format.js";
 import { html } from "../html.js";
 import { headline } from "../outcome.js";
-import { practised } from "../curves.js";
-import { agentOf, clock, futures, isActive, learns, raceInView } from "../selectors.js";
-import { isDecided, raceScene, standings } from "../standings.js";
-import { options, runs } from "../store.js";
+import { practisedSteps } from "../curves.js";
+import { agentOf, clock, isActive, learns, raceInView, simulatedPerDecision } from "../selectors.js";
+import { isTimedOut, raceScene, standings } from "../standings.js";
+import { runs } from "../store.js";
+import { clockTitle } from "../titles.js";
 import { Icon } from "./icon.js";
 
+/** How many steps the look-ahead agents simulate. */
 const DEPTHS = { greedy: 1, "two-step": 2 };
 
 export function Scoreboard() {
@@ -27,15 +29,15 @@ function Board({ rows }) {
   const longest = Math.max(...rows.map((row) => row.elapsed_s ?? 0), 1e-9);
   return html`
     <table class="board">
-      <caption class="sr-only">Standings under the ${clock.value} clock</caption>
+      <caption class="sr-only">Standings under the ${clockTitle(clock.value)}</caption>
       <thead>
         <tr>
           <th scope="col"><span class="sr-only">Rank</span></th>
           <th scope="col"><span class="sr-only">Agent</span></th>
-          <th scope="col" title="Where each was when the first robot had used its steps">
-            ${isDecided.value ? "At finish" : "Now"}
+          <th scope="col" title="Distance at time-out: when the first lane has used its steps">
+            ${isTimedOut.value ? html`<span class="sr-only">Distance </span>At time-out` : "Now"}
           </th>
-          <th scope="col" title="After all of its own steps">Total</th>
+          <th scope="col" title="Distance after all of its own steps">Total</th>
           <th scope="col" class="aside" title="Measured time of one decision, on average">Decision</th>
           <th scope="col" class="aside" title="Transitions simulated in order to decide">Simulated</th>
         </tr>
@@ -45,90 +47,97 @@ function Board({ rows }) {
   `;
 }
 
-function Lane({ row, longest }) {
+const Lane = ({ row, longest }) => html`
+  <tbody class=${row.isThinking ? "thinking" : ""} style=${{ "--agent": row.color }}>
+    <tr>
+      <td class="rank">${row.rank}</td>
+      <th scope="row" class="agent"><span class="swatch"></span>${row.title}</th>
+      <td class="big">${metres(row.finished_m ?? row.distance_m)}</td>
+      <td class=${row.isDone ? "" : "dim"}>${isTimedOut.value ? metres(row.total_m ?? row.distance_m) : "–"}</td>
+      <td class="aside">${decision(row.decision_s)}</td>
+      <td class="aside">${whole(row.simulated)}</td>
+    </tr>
+    <tr class="under">
+      <td></td>
+      <td colspan="5">
+        <${TimeStrip} spent=${row.spent} longest=${longest} />
+        <p class="dim">
+          <span>${row.isDone && html`<${Icon} name="flag" />`}${activityOf(row)}</span>
+          <span class="facts">${factsOf(row)}</span>
+        </p>
+        ${row.isMarching && html`<p class="marching"><b>Marching on the spot:</b> ${reasonForMarching(row)}</p>`}
+      </td>
+    </tr>
+  </tbody>
+`;
+
+function TimeStrip({ spent: { walked, thought }, longest }) {
   const width = (seconds) => ({ width: `${(100 * seconds) / longest}%` });
+  const label = `Walking ${duration(walked)}, thinking ${duration(thought)}`;
   return html`
-    <tbody class=${row.isThinking ? "thinking" : ""} style=${{ "--agent": row.color }}>
-      <tr>
-        <td class="rank">${row.rank}</td>
-        <th scope="row" class="agent"><span class="swatch"></span>${row.title}</th>
-        <td class="big">${metres(row.finished_m ?? row.distance_m)}</td>
-        <td class=${row.isDone ? "" : "dim"}>${isDecided.value ? metres(row.total_m ?? row.distance_m) : "–"}</td>
-        <td class="aside">${decision(row.decision_s)}</td>
-        <td class="aside">${whole(row.simulated)}</td>
-      </tr>
-      <tr class="under">
-        <td></td>
-        <td colspan="5">
-          <div class="strip" role="img" aria-label=${`Walking ${duration(row.spent.walked)}, thinking ${duration(row.spent.thought)}`}>
-            <i class="walked" style=${width(row.spent.walked)}></i>
-            <i class="thought" style=${width(row.spent.thought)}></i>
-          </div>
-          <p class="dim">
-            <span>${row.isDone && html`<${Icon} name="flag" />`}${doing(row)}</span>
-            <span class="facts">${factsOf(row)}</span>
-          </p>
-          ${row.isMarching && html`<p class="marching"><b>Marching on the spot:</b> ${whyMarching(row)}</p>`}
-        </td>
-      </tr>
-    </tbody>
+    <div class="strip" role="img" aria-label=${label}>
+      <i class="walked" style=${width(walked)}></i>
+      <i class="thought" style=${width(thought)}></i>
+    </div>
   `;
 }
 
-/** What has no column of its own on a narrow screen. */
+/** The values of the columns that a narrow screen has no room for. */
 const factsOf = ({ decision_s, simulated }) =>
   [decision_s !== null && `${decision(decision_s)} a decision`, simulated !== null && `${whole(simulated)} simulated`]
     .filter(Boolean).join(", ");
 
-function doing(row) {
-  if (row.failure) return `Went no further: ${row.failure}`;
+function activityOf(row) {
+  if (row.failure) return `Stopped: ${row.failure}`;
   if (row.isDone) {
-    const line = row.hasCrossed ? ", past the red line" : "";
-    return row.elapsed_s ? `${count(row.steps, "step")} in ${duration(row.elapsed_s)}${line}` : count(row.steps, "step");
+    const crossed = row.hasCrossed ? ", crossed the finish line" : "";
+    const steps = count(row.steps, "step");
+    return row.elapsed_s ? `${steps} in ${duration(row.elapsed_s)}${crossed}` : steps;
   }
   const step = `Step ${row.step} of ${row.steps}`;
-  if (row.isThinking) return `${step}, thinking: ${whole(row.futures)} of ${whole(row.futuresTotal)} futures`;
-  return row.step ? step : about(row.agent, row.training_id);
+  if (row.isThinking) return `${step}, thinking: ${whole(row.futures)} of ${whole(row.futuresTotal)} simulated`;
+  return row.step ? step : agentSummary(row.agent, row.training_id);
 }
 
-const whyMarching = ({ agent }) =>
+const reasonForMarching = ({ agent }) =>
   learns(agent)
-    ? "under 1 cm in ten steps, since moves that undo each other still look best to it; practice changes that."
-    : "under 1 cm in ten steps, since no move within its sight gains ground on this robot.";
+    ? "under 1 cm in ten steps: moves that undo each other still have the highest values. More practice changes that."
+    : "under 1 cm in ten steps: no move that it simulates gains distance on this robot.";
 
-/** What an agent brings to the race. */
-function about(agent, trainingId) {
+/** How an agent decides, in a few words. */
+function agentSummary(agent, trainingId) {
   if (learns(agent)) {
     const training = runs.value.get(trainingId);
-    return training ? `${count(practised(training), "step")} of practice, then looks up` : "Practises, then looks up";
+    return training
+      ? `${count(practisedSteps(training), "step")} of practice, then looks up its table`
+      : "Practises, then looks up its table";
   }
   const depth = DEPTHS[agent];
-  if (!depth) return options.value?.agents?.find(({ name }) => name === agent)?.description ?? "";
-  return `Simulates ${whole(futures(depth, raceInView.value?.config ?? form.value))} moves before each step`;
+  if (!depth) return agentOf(agent).description;
+  const simulated = simulatedPerDecision(depth, raceInView.value?.config ?? form.value);
+  return `Simulates ${whole(simulated)} moves before each step`;
 }
 
-function startWords(race) {
-  if (!race) return "These will race. Nothing is decided.";
+function startSentence(race) {
+  if (!race) return "The lanes of the next race.";
   return isActive(race) || race.state === "finished"
-    ? "They race as soon as practice is over."
+    ? "The race starts when practice is over."
     : `The race ${race.state === "stopped" ? "was stopped" : race.state} before it began.`;
 }
 
-/** Before a race: who will race. */
+/** The lanes before the race. */
 function StartList() {
   const race = raceInView.value;
-  const lanes = race?.config?.lanes ?? form.value.lanes.map((agent) => ({ agent }));
+  const lanes = race?.config?.lanes ?? form.value.lanes.map((agent) => ({ agent, training_id: null }));
   return html`
-    <p class="dim">${startWords(race)}</p>
+    <p class="dim">${startSentence(race)}</p>
     <ul class="start-list">
-      ${lanes.map(({ agent, training_id }) => {
-        const { title, color } = agentOf(agent);
-        return html`
-          <li style=${{ "--agent": color }}>
-            <span class="swatch"></span><b>${title}</b><span class="dim">${about(agent, training_id)}</span>
-          </li>
-        `;
-      })}
+      ${lanes.map(({ agent, training_id }) => html`
+        <li style=${{ "--agent": agentOf(agent).color }}>
+          <span class="swatch"></span><b>${agentOf(agent).title}</b>
+          <span class="dim">${agentSummary(agent, training_id)}</span>
+        </li>
+      `)}
     </ul>
     ${raceScene.value && html`<p class="dim">On the start line.</p>`}
   `;

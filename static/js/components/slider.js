@@ -1,23 +1,24 @@
-// A number to slide and to type.
+// A number as a slider and a text field.
 import { html } from "../html.js";
+import { shareOf } from "../scale.js";
 import { NumberField } from "./number-field.js";
 import { Description, showHelp } from "./setting-help.js";
 
-/** `field` names it in the form, `about` the sentence of help where that is another. */
-export function Slider({ field, about = field, label, symbol, unit, value, onValue, min, max, step, isDisabled }) {
-  const share = ((Math.min(Math.max(value, min), max) - min) / (max - min)) * 100;
-  const help = showHelp(about);
+/** `min` and `max` are the slider's ends; the text field accepts what the server does. */
+export function Slider({ field, label, symbol, unit, value, onValue, min, max, step }) {
+  const reached = Math.min(Math.max(value, min), max);
+  const help = showHelp(field);
   return html`
     <div class="slider" onFocusIn=${help} onPointerEnter=${help}>
       <label for=${`slide-${field}`}>${label} ${symbol && html`<b>${symbol}</b>`}</label>
       <input type="range" id=${`slide-${field}`} min=${min} max=${max} step=${step}
-        value=${Math.min(Math.max(value, min), max)} style=${{ "--share": `${share}%` }}
-        disabled=${isDisabled} aria-describedby=${`help-${field}`}
+        value=${reached} style=${{ "--share": `${100 * shareOf(value, min, max)}%` }}
+        aria-describedby=${`help-${field}`}
         onInput=${({ target }) => onValue(Number(target.value))} />
       <${NumberField} field=${field} value=${value} onValue=${onValue} step=${step}
-        label=${`${label}, as a number`} isDisabled=${isDisabled} />
+        label=${`${label}, as a number`} />
       <span class="unit">${unit}</span>
-      <${Description} field=${about} id=${field} />
+      <${Description} field=${field} />
     </div>
   `;
 }

@@ -1,8 +1,22 @@
-// What stands where the stage will be: the robots on the start line, drawn.
+// A drawing of the robots on the start line, shown until the stage has a picture.
+import { form } from "../form.js";
 import { html } from "../html.js";
+import { agentOf } from "../selectors.js";
 
-const ROBOTS = [[-150, "var(--q-learning)"], [0, "var(--greedy)"], [150, "var(--two-step)"]];
+const LANES_X = [-150, 0, 150];
 const LEGS = ["M-16 0-44-14-56 18", "M-10 6-34 0-42 34", "M-6 8-16 12-20 42"];
+
+const LOADING = "The robots walk to the start line…";
+const LATER = "The picture comes when there is room; numbers and charts are live.";
+/** Status of the frame that has no place → the reason. */
+const REFUSALS = {
+  "full": `Many are watching already. ${LATER}`,
+  "address full": `Many are watching from this network already. ${LATER}`,
+  "place taken": `Someone else was given this place. ${LATER}`,
+};
+
+/** Whether a status of the frame says that it has no place. */
+export const isRefused = (status) => status in REFUSALS;
 
 const Robot = ({ x, color }) => html`
   <g transform=${`translate(${x} 0)`} style=${{ color }}>
@@ -12,23 +26,19 @@ const Robot = ({ x, color }) => html`
   </g>
 `;
 
-const REFUSALS = {
-  "full": "Many are watching already. The picture comes when there is room; numbers and charts go on.",
-  "address full": "Many are watching from this network already. The picture comes when there is room; numbers and charts go on.",
-  "place taken": "Someone else was given this place. The picture comes back when there is room; numbers and charts go on.",
-};
-
-/** Whether the viewer said that it has no place. */
-export const isRefused = (status) => status in REFUSALS;
-
-export const StagePlaceholder = ({ status }) => html`
-  <div class="placeholder">
-    <svg viewBox="-320 -130 640 260" aria-hidden="true">
-      <path class="track" d="M-300 110-90-110M-100 110-30-110M100 110 30-110M300 110 90-110" />
-      <path class="track" d="M-270 78H270M-212 18H212M-158-38H158M-118-80H118" />
-      <path class="finish" d="M-118-80H118" /><path class="start" d="M-270 78H270" />
-      <g transform="translate(0 38)">${ROBOTS.map(([x, color]) => html`<${Robot} x=${x} color=${color} />`)}</g>
-    </svg>
-    <p>${REFUSALS[status] ?? "The robots walk to the start line…"}</p>
-  </div>
-`;
+export function StagePlaceholder({ status }) {
+  const robots = form.value.lanes.slice(0, LANES_X.length);
+  return html`
+    <div class="placeholder">
+      <svg viewBox="-320 -130 640 260" aria-hidden="true">
+        <path class="track" d="M-300 110-90-110M-100 110-30-110M100 110 30-110M300 110 90-110" />
+        <path class="track" d="M-270 78H270M-212 18H212M-158-38H158M-118-80H118" />
+        <path class="finish" d="M-118-80H118" /><path class="start" d="M-270 78H270" />
+        <g transform="translate(0 38)">
+          ${robots.map((agent, lane) => html`<${Robot} x=${LANES_X[lane]} color=${agentOf(agent).color} />`)}
+        </g>
+      </svg>
+      <p>${REFUSALS[status] ?? LOADING}</p>
+    </div>
+  `;
+}

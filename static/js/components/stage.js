@@ -1,4 +1,4 @@
-// The picture: the 3D stage in a frame, what stands over it, and how it is shown.
+// The 3D stage in its frame, with labels over it and the transport below.
 import { useEffect, useRef, useState } from "preact/hooks";
 import { html } from "../html.js";
 import { view } from "../page.js";
@@ -8,13 +8,13 @@ import { StageLabels } from "./stage-labels.js";
 import { isRefused, StagePlaceholder } from "./stage-placeholder.js";
 import { Transport } from "./transport.js";
 
-/** A viewer that says nothing for so long is shown as it is. */
-const PATIENCE_MS = 12_000;
+/** A frame that has not reported its status for so long is shown as it is. */
+const STATUS_TIMEOUT_MS = 12_000;
 
 export function Stage() {
-  const frame = useRef(null);
+  const frame = useRef(/** @type {HTMLIFrameElement | null} */ (null));
   const [status, setStatus] = useState("loading");
-  // The first address has both; later changes are told to the frame, which must not load again.
+  // The first address has both; later changes are sent to the frame, which must not load again.
   const [address] = useState(() => `viewer/?view=${view.peek()}&theme=${shownTheme.peek()}`);
 
   useEffect(() => {
@@ -23,18 +23,18 @@ export function Stage() {
       if (data?.type === "hexapods:status") setStatus(data.status);
     };
     addEventListener("message", onMessage);
-    const patience = setTimeout(
-      () => setStatus((now) => (now === "loading" ? "connected" : now)), PATIENCE_MS,
+    const timer = setTimeout(
+      () => setStatus((now) => (now === "loading" ? "connected" : now)), STATUS_TIMEOUT_MS,
     );
     return () => {
       removeEventListener("message", onMessage);
-      clearTimeout(patience);
+      clearTimeout(timer);
     };
   }, []);
 
   useEffect(() => {
-    const wish = { type: "hexapods:show", view: view.value, theme: shownTheme.value };
-    frame.current?.contentWindow?.postMessage(wish, location.origin);
+    const message = { type: "hexapods:show", view: view.value, theme: shownTheme.value };
+    frame.current?.contentWindow?.postMessage(message, location.origin);
   }, [view.value, shownTheme.value, status]);
 
   const isAway = connection.value === "reconnecting" || status === "reconnecting";

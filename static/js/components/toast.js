@@ -1,7 +1,7 @@
-// A passing remark.
-import { remark } from "../actions.js";
+// A message that disappears by itself.
+import { toastMessage } from "../actions.js";
 import { html } from "../html.js";
 
 export const Toast = () => html`
-  <div class="toast" role="status">${remark.value && html`<p>${remark.value.text}</p>`}</div>
+  <div class="toast" role="status">${toastMessage.value && html`<p>${toastMessage.value}</p>`}</div>
 `;

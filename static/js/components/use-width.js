@@ -1,8 +1,9 @@
-// How wide a place is, for what is drawn in it.
+// The width of an element, for drawings that fill it.
 import { useLayoutEffect, useRef, useState } from "preact/hooks";
 
-/** [ref, width in px], 0 until it is known. */
+/** [ref, width in px], 0 until it is measured. @returns {[{ current: any }, number]} */
 export function useWidth() {
+  /** @type {{ current: any }} */
   const host = useRef(null);
   const [width, setWidth] = useState(0);
   useLayoutEffect(() => {

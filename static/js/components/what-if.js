@@ -1,71 +1,82 @@
-// Beside the settings: what thirty robots make of them, against thirty at the defaults.
+// What-if: distances of kinematic robots that practise with these settings, and with the defaults.
 import { useEffect, useState } from "preact/hooks";
-import { canStart, continueWith } from "../actions.js";
+import { canStart, continueTraining } from "../actions.js";
 import { form } from "../form.js";
 import { count, metres, whole } from "../format.js";
 import { html } from "../html.js";
 import { isNarrow } from "../page.js";
-import { agentOf, isOperator, learns, tableInHand, work } from "../selectors.js";
+import { agentOf, isOperator, learns, matchingTable, work } from "../selectors.js";
+import { served } from "../store.js";
 import {
-  answer, error, isCurrent, isTooLong, isTrying, isWatched, MOST_STEPS, tryOut,
+  answer, error, evaluateSettings, isComputing, isCurrent, isPanelOpen, isTooLong, mostSteps, seeds,
 } from "../what-if.js";
 import { DotStrip } from "./dot-strip.js";
 
-const SEEDS = 30;
+const HEADROOM = 1.06;
 
-/** Folded by itself on a phone, and while something runs, whose place this is then. */
+/** Folded on a phone, and while a run needs the room, unless it was opened. */
 export function WhatIf() {
-  const [wish, setWish] = useState(null);
-  const isOpen = wish ?? (!isNarrow.value && !work.value);
+  const [choice, setChoice] = useState(/** @type {boolean | null} */ (null));
+  const isOpen = choice ?? (!isNarrow.value && !work.value);
   useEffect(() => {
-    isWatched.value = isOpen && isOperator.value;
+    isPanelOpen.value = isOpen && isOperator.value;
   }, [isOpen, isOperator.value]);
   if (!isOperator.value || !form.value.lanes.some(learns)) return null;
   const onClick = (event) => {
     event.preventDefault();
-    setWish(!isOpen);
+    setChoice(!isOpen);
   };
   return html`
     <section class="panel what-if" aria-labelledby="what-if-title">
       <details open=${isOpen}>
         <summary onClick=${onClick}><h2 id="what-if-title">What if?</h2><span class="dim">${teaser()}</span></summary>
-        ${isOpen && html`<${Trial} onGoOn=${() => setWish(true)} />`}
+        ${isOpen && html`<${Comparison} onContinue=${() => setChoice(true)} />`}
       </details>
     </section>
   `;
 }
 
-const teaser = () => `${SEEDS} ideal robots practise ${count(form.value.steps, "step")}`;
+const teaser = () => `${seeds.value} ideal robots practise ${count(form.value.steps, "step")}`;
 
-function Trial({ onGoOn }) {
+function Comparison({ onContinue }) {
   const known = answer.value;
-  const isOld = isTrying.value || isTooLong.value || (known && !isCurrent.value);
-  const far = known && 1.06 * Math.max(known.greedy_m, ...known.chosen.distances_m, ...known.default.distances_m);
+  const isOld = isComputing.value || isTooLong.value || (known && !isCurrent.value);
+  const far = known && HEADROOM * Math.max(known.greedy_m, ...known.chosen.distances_m, ...known.default.distances_m);
   return html`
-    <div class=${`trial ${isOld ? "old" : ""}`} aria-busy=${isTrying.value ? "true" : "false"}>
-      <${Strip} title="These settings" tried=${known?.chosen} known=${known} far=${far} />
-      <${Strip} title="The defaults" tried=${known?.default} known=${known} far=${far} />
+    <div class=${`trial ${isOld ? "old" : ""}`} aria-busy=${isComputing.value ? "true" : "false"}>
+      <${Half} title="These settings" half=${known?.chosen} known=${known} far=${far} />
+      <${Half} title="The defaults" half=${known?.default} known=${known} far=${far} />
       ${known && html`<${Axis} known=${known} far=${far} />`}
     </div>
-    <${Words} known=${known} />
-    <${Continue} onGoOn=${onGoOn} />
+    <${Status} known=${known} />
+    <${Continue} onContinue=${onContinue} />
   `;
 }
 
-function Strip({ title, tried, known, far }) {
-  if (!tried) return html`<div class="tried"><p><span>${title}</span></p><div class="no-dots" aria-hidden="true"></div></div>`;
-  const walkers = Math.round(tried.walkers * known.seeds);
-  const low = Math.min(...tried.distances_m);
-  const high = Math.max(...tried.distances_m);
-  const label = `${title}: ${walkers} of ${known.seeds} walk. They get from ${metres(low)} to ${metres(high)}, typically ${metres(tried.iqm_m)}; greedy gets ${metres(known.greedy_m)}.`;
+function Half({ title, half, known, far }) {
+  if (!half) {
+    return html`<div class="tried"><p><span>${title}</span></p><div class="no-dots" aria-hidden="true"></div></div>`;
+  }
+  const walkers = Math.round(half.walkers * known.seeds);
   const marks = [{ value: known.greedy_m, kind: "greedy" }, { value: known.greedy_m / 2, kind: "half" }];
+  const typically = `typically ${metres(half.iqm_m)}`;
   return html`
     <div class="tried">
-      <p><span>${title}</span><span class="num"><b>${walkers} of ${known.seeds}</b> walk · typically ${metres(tried.iqm_m)}</span></p>
-      <${DotStrip} label=${label} points=${tried.distances_m} high=${far} typical=${{ iqm: tried.iqm_m }}
-        marks=${marks} color=${agentOf("q-learning").color} />
+      <p>
+        <span>${title}</span><span class="num"><b>${walkers} of ${known.seeds}</b> walk · ${typically}</span>
+      </p>
+      <${DotStrip} label=${captionOf(title, half, known)} points=${half.distances_m} high=${far}
+        typical=${{ iqm: half.iqm_m }} marks=${marks} color=${agentOf(served().defaults.training.agent).color} />
     </div>
   `;
+}
+
+function captionOf(title, { distances_m, iqm_m, walkers }, { seeds: tried, greedy_m }) {
+  const [low, high] = [Math.min(...distances_m), Math.max(...distances_m)];
+  return [
+    `${title}: ${Math.round(walkers * tried)} of ${tried} walk.`,
+    `They get from ${metres(low)} to ${metres(high)}, typically ${metres(iqm_m)}; greedy gets ${metres(greedy_m)}.`,
+  ].join(" ");
 }
 
 const Axis = ({ known, far }) => html`
@@ -76,41 +87,51 @@ const Axis = ({ known, far }) => html`
   </p>
 `;
 
-/** What one sees, what is being done, or why nothing is: always the same two lines of room. */
-function Words({ known }) {
-  if (isTooLong.value) return html`<p class="what-if-words" role="status">${whole(MOST_STEPS)} steps at most: more would keep you waiting.</p>`;
-  if (error.value && !isTrying.value) {
+/** How to read the answer, that one is computed, or why there is none; always two lines high. */
+function Status({ known }) {
+  if (isTooLong.value) {
+    const words = `${whole(mostSteps.value)} steps at most: more take too long.`;
+    return html`<p class="what-if-words" role="status">${words}</p>`;
+  }
+  if (error.value && !isComputing.value) {
     return html`
       <p class="what-if-words bad" role="alert">
-        <span>${error.value.message}</span> <button class="link" onClick=${tryOut}>Try again</button>
+        <span>${error.value.message}</span> <button class="link" onClick=${evaluateSettings}>Try again</button>
       </p>
     `;
   }
-  if (isTrying.value) return html`<p class="what-if-words" role="status"><span class="spinner" aria-hidden="true"></span>${SEEDS} robots practise…</p>`;
-  if (!known || !isCurrent.value) {
+  if (isComputing.value) {
     return html`
-      <p class="what-if-words dim">
-        <span>${known ? "The settings have changed." : "Move a slider, and each seed becomes a dot."}</span>
-        <button class="link" onClick=${tryOut}>Try ${known ? "these" : "the settings as they are"}</button>
+      <p class="what-if-words" role="status">
+        <span class="spinner" aria-hidden="true"></span>${seeds.value} robots practise…
       </p>
     `;
   }
-  return html`<p class="what-if-words dim" role="status">Without slip. One walks if it gets at least half as far as greedy.</p>`;
+  if (!known || !isCurrent.value) return html`<${Request} isFirst=${!known} />`;
+  const words = "Ideal (no slip). A robot walks if it gets at least half as far as greedy.";
+  return html`<p class="what-if-words dim" role="status">${words}</p>`;
 }
 
-/** Go on with what has been learned, at the rates that were found here; the panel stays, and the focus. */
-function Continue({ onGoOn }) {
-  const table = tableInHand.value;
+const Request = ({ isFirst }) => html`
+  <p class="what-if-words dim">
+    <span>${isFirst ? "Move a slider: each seed becomes a dot." : "The settings have changed."}</span>
+    <button class="link" onClick=${evaluateSettings}>Try ${isFirst ? "the settings as they are" : "these"}</button>
+  </p>
+`;
+
+/** Continue the training of the matching table with these rates; the panel stays open and keeps the focus. */
+function Continue({ onContinue }) {
+  const table = matchingTable.value;
   if (!table) return null;
-  const goOn = () => {
+  const onClick = () => {
     if (!canStart.value) return;
-    onGoOn();
-    continueWith(table);
+    onContinue();
+    continueTraining(table);
   };
   return html`
     <div class="row">
-      <button class="secondary" aria-disabled=${canStart.value ? undefined : "true"} onClick=${goOn}
-        title=${`Practises ${count(form.value.steps, "step")} more from the table in hand`}>
+      <button class="secondary" aria-disabled=${canStart.value ? undefined : "true"} onClick=${onClick}
+        title=${`Practises ${count(form.value.steps, "step")} more from the newest table that fits`}>
         Continue with these settings
       </button>
     </div>

@@ -1,20 +1,22 @@
 // The experiments' part of the address: `#experiments?experiment=sweep&alpha=0.1,0.3&run=…`.
 import { effect, signal } from "@preact/signals";
 import { place } from "../page.js";
-import { read, written } from "./form.js";
+import { readQuery, toQuery } from "./form.js";
 
-/** The experiment that was asked for by its id; null: the newest. */
+/** @import { Signal } from "@preact/signals" */
+
+/** The id of the requested experiment; null for the newest. @type {Signal<string | null>} */
 export const wantedRun = signal(null);
 
 const query = () => {
-  const run = wantedRun.value ? { run: wantedRun.value } : {};
-  return new URLSearchParams({ ...written(), ...run }).toString().replaceAll("%2C", ",");
+  const search = new URLSearchParams(toQuery());
+  if (wantedRun.value) search.set("run", wantedRun.value);
+  return search.toString().replaceAll("%2C", ",");
 };
 
-/** The hash that leads back here. */
-const experimentsHash = () => (query() ? `#experiments?${query()}` : "#experiments");
+const currentHash = () => (query() ? `#experiments?${query()}` : "#experiments");
 
-/** The hash as it was last written or read here. */
+/** The hash that was last written or read here. */
 let known = "";
 
 function readHash() {
@@ -24,11 +26,11 @@ function readHash() {
   const search = new URLSearchParams(hash.split("?")[1] ?? "");
   // The bare link of the navigation leaves the form as it was.
   if (search.size === 0) return;
-  read(search);
+  readQuery(search);
   wantedRun.value = search.get("run");
 }
 
-/** The address follows the form, and the form an address that is opened. */
+/** Keep the form and the address the same. Call it once the options are known. */
 export function followAddress() {
   readHash();
   addEventListener("hashchange", readHash);
@@ -36,7 +38,7 @@ export function followAddress() {
     if (place.value !== "experiments") return;
     // A link that was followed is read before the form is written over it.
     readHash();
-    known = experimentsHash();
+    known = currentHash();
     if (location.hash === known) return;
     history.replaceState(history.state, "", `${location.pathname}${location.search}${known}`);
   });

@@ -1,76 +1,92 @@
-// What an experiment is asked to try. Only what one has said oneself is kept, sent and linked to.
+// The form of a new experiment. Only values that differ from the experiment's defaults are kept and sent.
 import { computed, signal } from "@preact/signals";
-import { futureRuns } from "./trials.js";
-import { experimentOf, experiments, GRID } from "./catalogue.js";
+import { withMistake } from "../form.js";
+import { countTrials } from "./trials.js";
+import { experimentOf, experiments } from "./catalogue.js";
 
-const numbers = (word) => word.split(",").filter((part) => part.trim() !== "").map(Number);
-const names = (word) => word.split(",").filter(Boolean);
-const whole = (word) => (/^\d+$/.test(word) ? Number(word) : undefined);
-const list = (parse) => (word) => {
-  const found = parse(word);
-  return found.length && !found.some(Number.isNaN) ? found : undefined;
-};
+/** @import { Signal } from "@preact/signals" */
+/** @import { ExperimentValue, ExperimentValues } from "../types.js" */
 
-const READERS = {
-  seeds: whole, seed: whole, gaits: list(names), observations: list(names), robots: list(names),
-  simulator: (word) => word, agents: list(names), name: (word) => word,
-  ...Object.fromEntries(GRID.map((field) => [field, list(numbers)])),
-};
-
-const chosenName = signal("table1");
-/** Field → value, of those that differ from the experiment's own. */
-export const given = signal({});
-/** Field → what is wrong with it. */
+/** Empty: the first one that the server offers. */
+const chosenName = signal("");
+/** Field → value that differs from the default. @type {Signal<Record<string, ExperimentValue>>} */
+export const overrides = signal({});
+/** Field → why its text is not valid. @type {Signal<Record<string, string>>} */
 export const mistakes = signal({});
 
-export const chosenKind = computed(() => experimentOf(chosenName.value));
-export const maySay = (field) => field === "name" || chosenKind.value.fields.includes(field);
+export const chosenExperiment = computed(() => experimentOf(chosenName.value));
 
-/** What will be tried, with the experiment's own values where nothing is said. */
+/** @param {string} field */
+export const takesField = (field) => field === "name" || chosenExperiment.value.fields.includes(field);
+
+/** The values that the experiment would be started with. */
 export const values = computed(() => {
-  const said = Object.entries(given.value).filter(([field]) => maySay(field));
-  return { name: "", ...chosenKind.value.defaults, ...Object.fromEntries(said) };
+  const own = Object.entries(overrides.value).filter(([field]) => takesField(field));
+  return /** @type {ExperimentValues} */ ({ ...chosenExperiment.value.defaults, ...Object.fromEntries(own) });
 });
 
-/** How many trials that comes to. */
-export const trials = computed(() => futureRuns(chosenKind.value.name, values.value));
+/** The number of trials that it would have. */
+export const trials = computed(() => countTrials(chosenExperiment.value.name, values.value));
 
-export function choose(name) {
+/** @param {string} name */
+export function chooseExperiment(name) {
   chosenName.value = name;
   mistakes.value = {};
 }
 
-export function say(field, value) {
-  const { [field]: _, ...others } = given.value;
-  const own = chosenKind.value.defaults[field] ?? "";
-  given.value = String(value) === String(own) ? others : { ...others, [field]: value };
+/**
+ * @param {string} field
+ * @param {ExperimentValue} value
+ */
+export function setField(field, value) {
+  const { [field]: _, ...others } = overrides.value;
+  const isDefault = String(value) === String(chosenExperiment.value.defaults[field] ?? "");
+  overrides.value = isDefault ? others : { ...others, [field]: value };
 }
 
-export function setMistake(field, message) {
-  const { [field]: _, ...others } = mistakes.value;
-  mistakes.value = message ? { ...others, [field]: message } : others;
-}
+/** @type {(field: string, message: string | null) => void} */
+export const setMistake = (field, message) => (mistakes.value = withMistake(mistakes.value, field, message));
 
 /** The request's body. */
-export function body() {
-  const said = Object.entries(given.value).filter(([field, value]) => maySay(field) && value !== "");
-  return { experiment: chosenKind.value.name, ...Object.fromEntries(said) };
+export function requestBody() {
+  const own = Object.entries(overrides.value).filter(([field, value]) => takesField(field) && value !== "");
+  return { experiment: chosenExperiment.value.name, ...Object.fromEntries(own) };
 }
 
-/** As it stands in an address. */
-export const written = () => ({
-  ...(chosenName.value === "table1" ? {} : { experiment: chosenName.value }),
-  ...Object.fromEntries(Object.entries(given.value).map(([field, value]) => [field, String(value)])),
-});
+/** The form as parameters of an address: [name, value]. */
+export const toQuery = () => [
+  ...(chosenExperiment.value === experiments.value[0] ? [] : [["experiment", chosenExperiment.value.name]]),
+  ...Object.entries(overrides.value).map(([field, value]) => [field, String(value)]),
+];
 
-/** Take over what an address says; what it says badly is left as it is. */
-export function read(query) {
-  const name = query.get("experiment") ?? "table1";
-  chosenName.value = experiments.value.some((one) => one.name === name) ? name : "table1";
+/**
+ * Set the form from the parameters of an address; unreadable values are skipped.
+ * @param {URLSearchParams} query
+ */
+export function readQuery(query) {
+  chosenName.value = query.get("experiment") ?? "";
+  /** @type {Record<string, ExperimentValue>} */
   const found = {};
-  for (const [field, parse] of Object.entries(READERS)) {
-    const value = query.has(field) ? parse(query.get(field)) : undefined;
-    if (value !== undefined) found[field] = value;
+  for (const { fields, defaults } of experiments.value) {
+    for (const field of ["name", ...fields]) {
+      const given = query.get(field);
+      const value = given === null ? undefined : parse(given, defaults[field]);
+      if (value !== undefined) found[field] = value;
+    }
   }
-  given.value = found;
+  overrides.value = found;
+}
+
+/**
+ * A text as a value of the type that the default has; undefined for text that is no such value.
+ * @param {string} text
+ * @param {ExperimentValue} standard
+ * @returns {ExperimentValue | undefined}
+ */
+export function parse(text, standard) {
+  if (typeof standard === "string") return text;
+  if (typeof standard === "number") return /^\d+$/.test(text) ? Number(text) : undefined;
+  const parts = text.split(",").filter((part) => part.trim() !== "");
+  const list = typeof standard[0] === "number" ? parts.map(Number) : parts;
+  return list.length && !list.some(Number.isNaN) ? list : undefined;
 }

@@ -1,54 +1,59 @@
-// What the chosen experiment has shown so far: fetched again as its trials end.
+// The summary of the chosen experiment, requested again as its trials end.
 import { computed, effect, signal } from "@preact/signals";
 import { getSummary } from "../api.js";
 import { place } from "../page.js";
-import { connection, summarised } from "../store.js";
+import { connection, setEntry, summarised } from "../store.js";
 import { chosenRun } from "./selection.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { RequestError } from "../api.js" */
+/** @import { Summary } from "../types.js" */
 
 const PAUSE_MS = 2000;
 
-/** Run id → its newest summary. */
-const fetched = signal({});
-/** Run id → why there is none. */
-const refused = signal({});
+/** Run id → its newest summary. @type {Signal<Record<string, Summary>>} */
+const summaries = signal({});
+/** Run id → the error of its last request. @type {Signal<Record<string, RequestError | null>>} */
+const errors = signal({});
 
-export const summary = computed(() => fetched.value[chosenRun.value?.id] ?? null);
-export const summaryError = computed(() => refused.value[chosenRun.value?.id] ?? null);
+export const summary = computed(() => summaries.value[chosenRun.value?.id ?? ""] ?? null);
+export const summaryError = computed(() => errors.value[chosenRun.value?.id ?? ""] ?? null);
 
+/** @param {string} id */
 async function load(id) {
   try {
-    fetched.value = { ...fetched.value, [id]: await getSummary(id) };
-    refused.value = { ...refused.value, [id]: null };
+    setEntry(summaries, id, await getSummary(id));
+    setEntry(errors, id, null);
   } catch (error) {
-    refused.value = { ...refused.value, [id]: error };
+    setEntry(errors, id, /** @type {RequestError} */ (error));
   }
 }
 
-/** At most one request each two seconds, and one more for what came meanwhile. */
+/** Request at most one summary every two seconds, and one more for changes in between. */
 export function followSummary() {
   const wanted = computed(() => {
     const run = chosenRun.value;
     if (!run || place.value !== "experiments" || connection.value !== "live") return "";
     return [run.id, run.state, summarised.value[run.id] ?? ""].join(" ");
   });
-  let busy = false;
-  let missed = false;
+  let isBusy = false;
+  let hasMissed = false;
   let last = "";
 
   const next = async () => {
     const [id] = wanted.peek().split(" ");
     if (!id) return;
-    if (busy && id === last) {
-      missed = true;
+    if (isBusy && id === last) {
+      hasMissed = true;
       return;
     }
-    busy = true;
-    missed = false;
+    isBusy = true;
+    hasMissed = false;
     last = id;
     await load(id);
     setTimeout(() => {
-      busy = false;
-      if (missed) next();
+      isBusy = false;
+      if (hasMissed) next();
     }, PAUSE_MS);
   };
   effect(() => {

@@ -1,41 +1,46 @@
-// What things of an experiment are called.
-import { agentOf } from "../selectors.js";
-import { options } from "../store.js";
-import { count, sentence } from "../format.js";
+// Display names in experiments: fields, values of settings, runs.
+import { agentOf, presetOf } from "../selectors.js";
+import { count } from "../format.js";
+import { gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
 import { experimentOf } from "./catalogue.js";
 
-export const gaitTitle = (gait) => options.value?.gaits?.find(({ name }) => name === gait)?.title ?? gait;
+/** @import { Run } from "../types.js" */
+
+/** @param {string} name */
 export const agentTitle = (name) => agentOf(name).title;
-export const robotTitle = (name) => sentence(String(name));
 
-export const OBSERVATIONS = {
-  measured: ["Measured", "the robot feels where its feet are"],
-  commanded: ["Commanded", "it trusts where it sent them"],
-};
-export const observationTitle = (name) => OBSERVATIONS[name]?.[0] ?? sentence(name);
-
+/** @type {Record<string, string>} */
 export const FIELD_TITLES = {
-  gait: "Gait", observation: "Observation", robot: "Robot", agent: "Agent", steps: "Steps", alpha: "α", gamma: "γ",
-  epsilon_start: "ε at first", epsilon_end: "ε at last", steps_per_episode: "Steps an episode",
-  divisions: "Divisions", grid_side_m: "Grid side, m",
+  gait: "Gait", observation: "Observation", robot: "Robot", agent: "Agent", steps: "Steps of practice",
+  alpha: "α", gamma: "γ", epsilon_start: "ε, first episode", epsilon_end: "ε, last episode",
+  steps_per_episode: "Steps per episode", divisions: "Divisions", grid_side_m: "Grid side, m",
 };
 
-/** A value of a setting's field, in words. */
+/** @type {Record<string, (name: string) => string>} */
+const TITLES_OF = { gait: gaitTitle, agent: agentTitle, observation: observationTitle, robot: robotTitle };
+
+/**
+ * A value of a setting's field in words.
+ * @param {string} field
+ * @param {any} value
+ */
 export function valueTitle(field, value) {
   if (value === null || value === undefined) return "–";
-  if (field === "gait") return gaitTitle(value);
-  if (field === "agent") return agentTitle(value);
-  if (field === "observation") return observationTitle(value);
-  return field === "robot" ? robotTitle(value) : String(value);
+  return (TITLES_OF[field] ?? String)(value);
 }
 
-export const runTitle = (run) => run.name || experimentOf(run.config.experiment).title;
+/** @param {Run} run */
+export const runTitle = (run) => run.name || experimentOf(run.config.experiment)?.title || run.config.experiment;
 
-/** What was asked for, in a line. */
-export const aboutRun = ({ config }) =>
-  [
-    count(config.seeds, "seed"), `from seed ${config.seed}`, listOf(config.observations), listOf((config.robots ?? []).map((one) => one.preset ?? one.name ?? "own robot")),
-    config.simulator === "mujoco" ? "physics" : "ideal, without slip",
+/**
+ * An experiment's seeds and places in one line.
+ * @param {Run} run
+ */
+export const describeRun = ({ config }) => {
+  const robots = (config.robots ?? []).map((one) => presetOf(one) ?? one.name ?? "own robot");
+  const observations = (config.observations ?? []).map(observationTitle);
+  return [
+    count(config.seeds, "seed"), `from seed ${config.seed}`, observations.join(" and "), robots.join(" and "),
+    simulatorTitle(config.simulator),
   ].filter(Boolean).join(" · ");
-
-const listOf = (items = []) => items.join(" and ");
+};

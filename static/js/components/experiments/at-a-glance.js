@@ -1,26 +1,26 @@
-// All gaits together: how near learners come to greedy, how many walk, how often they win.
+// All gaits together: how near learners come to greedy, how many walk, how often they beat it at time-out.
 import { useMemo } from "preact/hooks";
-import { whole } from "../../format.js";
+import { percentage, whole } from "../../format.js";
 import { html } from "../../html.js";
 import { agentOf } from "../../selectors.js";
+import { gridFields } from "../../experiments/catalogue.js";
 import { greedyTotals, placeOf } from "../../experiments/places.js";
-import { FIELD_TITLES, observationTitle, robotTitle, valueTitle } from "../../experiments/titles.js";
-import { GRID } from "../../experiments/catalogue.js";
+import { agentTitle, FIELD_TITLES } from "../../experiments/titles.js";
 import { largest } from "../../scale.js";
+import { observationTitle, robotTitle } from "../../titles.js";
 import { DotStrip } from "../dot-strip.js";
 
-const RACED = "Beat it at the finish";
+const BEATS_GREEDY = "Beats it at time-out";
 const COLUMNS = [
-  { title: "What" },
+  { title: "Setting" },
   { title: "Share of greedy’s distance", kind: "wide-cell" },
   { title: "Typical", words: "Interquartile mean, with its 95 % interval" },
-  { title: "Walk", words: "Come at least half as far as greedy" },
-  { title: "Reach greedy", words: "Come at least 95 % as far" },
-  { title: RACED, words: "Under the paper’s clock" },
+  { title: "Walk", words: "Get at least half as far as greedy" },
+  { title: "Reach greedy", words: "Get at least 95 % as far" },
+  { title: BEATS_GREEDY, words: "Under the paper clock" },
 ];
 const MARKS = [{ value: 1, kind: "greedy" }, { value: 0.5, kind: "half" }];
-const ALIKE = ["agent", ...GRID];
-const RATES = GRID.filter((field) => field !== "steps");
+const VERDICTS = { yes: "more often than not", no: "less often than not", "not established": "not established" };
 
 export function AtAGlance({ known }) {
   const pooled = (known.pooled ?? []).filter(({ relative }) => relative);
@@ -31,15 +31,19 @@ export function AtAGlance({ known }) {
   return html`
     <section class="panel glance" aria-labelledby="glance">
       <h2 id="glance">All gaits together</h2>
-      <p class="dim">Total distance as a share of greedy’s in the same place; who gets half as far walks.</p>
+      <p class="dim">Total distance as a share of greedy’s in the same place; a robot that gets half as far walks.</p>
       <div class="scroller tall" tabindex="0" role="region" aria-label="Table of all gaits together">
         <table class="facts-table stacking" role="table">
           <thead role="rowgroup"><tr role="row">
-            ${COLUMNS.filter(({ title }) => isRaced || title !== RACED).map(({ title, words, kind }) => html`
+            ${COLUMNS.filter(({ title }) => isRaced || title !== BEATS_GREEDY).map(({ title, words, kind }) => html`
               <th role="columnheader" scope="col" class=${kind} title=${words}>${title}</th>
             `)}
           </tr></thead>
-          <tbody role="rowgroup">${pooled.map((one, n) => html`<${Row} key=${n} one=${one} all=${pooled} points=${points[n]} high=${high} isRaced=${isRaced} />`)}</tbody>
+          <tbody role="rowgroup">
+            ${pooled.map((one, n) => html`
+              <${Row} key=${n} one=${one} all=${pooled} points=${points[n]} high=${high} isRaced=${isRaced} />
+            `)}
+          </tbody>
         </table>
       </div>
     </section>
@@ -47,9 +51,9 @@ export function AtAGlance({ known }) {
 }
 
 function Row({ one, all, points, high, isRaced }) {
-  const share = (value) => `${Math.round(100 * value)} %`;
   const { iqm, low } = one.relative;
-  const label = `${points.length} seeds, typically ${share(iqm)} of greedy’s distance`;
+  const interval = low === null ? null : `${Math.round(100 * low)} – ${percentage(one.relative.high)}`;
+  const label = `${points.length} seeds, typically ${percentage(iqm)} of greedy’s distance`;
   return html`
     <tr role="row">
       <th role="rowheader" scope="row">${nameOf(one, all)}</th>
@@ -58,31 +62,42 @@ function Row({ one, all, points, high, isRaced }) {
           color=${agentOf(one.agent).color} height=${44} />
       </td>
       <td role="cell" data-label="Typical" class="num">
-        <b>${share(iqm)}</b>${low !== null && html`<br /><span class="dim">${Math.round(100 * low)} – ${share(one.relative.high)}</span>`}
+        <b>${percentage(iqm)}</b>${interval && html`<br /><span class="dim">${interval}</span>`}
       </td>
-      <td role="cell" data-label="Walk" class="num">${share(one.walkers.share)}</td>
-      <td role="cell" data-label="Reach greedy" class="num">${share(one.reaches_greedy.share)}</td>
-      ${isRaced && html`<td role="cell" data-label=${RACED} class="num">${one.beats_greedy ? html`${share(one.beats_greedy.share)}<br /><span class="dim">${WORDS[one.beats_greedy.verdict]}</span>` : "–"}</td>`}
+      <td role="cell" data-label="Walk" class="num">${percentage(one.walkers.share)}</td>
+      <td role="cell" data-label="Reach greedy" class="num">${percentage(one.reaches_greedy.share)}</td>
+      ${isRaced && html`
+        <td role="cell" data-label=${BEATS_GREEDY} class="num"><${Beats} beats=${one.beats_greedy} /></td>
+      `}
     </tr>
   `;
 }
 
-const WORDS = { yes: "more often than not", no: "less often than not", "not established": "not established" };
+const Beats = ({ beats }) =>
+  beats ? html`${percentage(beats.share)}<br /><span class="dim">${VERDICTS[beats.verdict]}</span>` : "–";
 
-/** What tells it from the others. */
+/** The fields in which a row differs from the others. */
 function nameOf(one, all) {
   const differs = (field) => new Set(all.map((other) => other[field])).size > 1;
-  const where = [observationTitle(one.observation), differs("robot") && robotTitle(one.robot).toLowerCase()];
-  const who = [differs("agent") && valueTitle("agent", one.agent), one.blocks === 1 && differs("steps") && `${whole(one.steps)} steps`];
-  const rates = RATES.filter(differs).map((field) => `${FIELD_TITLES[field]}\u00a0${one[field]}`);
-  if (rates.length && !differs("observation")) where.shift();
-  return [...who, ...where, ...rates].filter(Boolean).join(", ");
+  const agent = [
+    differs("agent") && agentTitle(one.agent),
+    one.blocks === 1 && differs("steps") && `${whole(one.steps)} steps`,
+  ];
+  const place = [observationTitle(one.observation), differs("robot") && robotTitle(one.robot).toLowerCase()];
+  const rates = gridFields.value.filter((field) => field !== "steps" && differs(field))
+    .map((field) => `${FIELD_TITLES[field]}\u00a0${one[field]}`);
+  if (rates.length && !differs("observation")) place.shift();
+  return [...agent, ...place, ...rates].filter(Boolean).join(", ");
 }
 
-/** Every seed of the gaits that were put together, in shares of greedy. */
+/** Every seed of the gaits that were pooled, as shares of greedy's distance. */
 function pointsOf(settings, one) {
   const greedy = greedyTotals(settings);
-  return settings
-    .filter((setting) => setting.role === "learner" && placeOf(setting) === placeOf(one) && ALIKE.every((field) => setting[field] === one[field]))
-    .flatMap((setting) => (greedy(setting) ? (setting.total?.points_m ?? []).map((metres) => metres / greedy(setting)) : []));
+  const isPooled = (setting) =>
+    setting.role === "learner" && placeOf(setting) === placeOf(one) &&
+    ["agent", ...gridFields.value].every((field) => setting[field] === one[field]);
+  return settings.filter(isPooled).flatMap((setting) => {
+    const greedy_m = greedy(setting);
+    return greedy_m ? (setting.total?.points_m ?? []).map((metres) => metres / greedy_m) : [];
+  });
 }

@@ -1,14 +1,15 @@
-// Several out of a few; the last one stays.
+// A choice of several out of a few; at least one stays chosen.
 import { html } from "../../html.js";
-import { say, values } from "../../experiments/form.js";
+import { setField, values } from "../../experiments/form.js";
 import { help } from "./experiment-help.js";
 
 /** `choices`: [value, title]. */
 export function CheckList({ field, label, choices }) {
-  const chosen = values.value[field];
+  const chosen = /** @type {string[]} */ (values.value[field]);
   const toggle = (event, name) => {
-    const next = choices.map(([one]) => one).filter((one) => (one === name ? !chosen.includes(one) : chosen.includes(one)));
-    if (next.length) say(field, next);
+    const isChosen = (one) => (one === name ? !chosen.includes(one) : chosen.includes(one));
+    const next = choices.map(([one]) => one).filter(isChosen);
+    if (next.length) setField(field, next);
     else event.target.checked = true;
   };
   return html`

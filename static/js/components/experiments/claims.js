@@ -1,4 +1,4 @@
-// What the paper says, and whether it holds over all seeds: in each case that was tried.
+// The paper's claims with verdicts over all seeds, in each case that was tried.
 import { html } from "../../html.js";
 
 const VERDICTS = {
@@ -10,13 +10,14 @@ const VERDICTS = {
 
 export const Claims = ({ claims, isComplete }) => claims.length > 0 && html`
   <section class="panel claims" aria-labelledby="claims">
-    <h2 id="claims">What the paper says, and what these seeds say</h2>
+    <h2 id="claims">The paper’s claims over all seeds</h2>
     ${!isComplete && html`<p class="dim">So far: a verdict may change until the last trial has ended.</p>`}
     <ul>${claims.map((one) => html`<${Claim} key=${one.id} ...${one} />`)}</ul>
   </section>
 `;
 
 function Claim({ claim, criterion, verdict, evidence, where }) {
+  const hasCases = where.length > 1;
   return html`
     <li class="claim">
       <${Verdict} verdict=${verdict} />
@@ -24,9 +25,11 @@ function Claim({ claim, criterion, verdict, evidence, where }) {
         <p><b>${claim}</b></p>
         <p class="dim">${evidence}</p>
         <details>
-          <summary>${where.length > 1 ? `All ${where.length} cases` : "What we take it to mean"}</summary>
-          <p class="dim">Taken to mean: ${criterion}</p>
-          ${where.length > 1 && html`<ul class="cases">${where.map((one) => html`<${Case} key=${one.label} ...${one} />`)}</ul>`}
+          <summary>${hasCases ? `All ${where.length} cases` : "Criterion"}</summary>
+          <p class="dim">Criterion: ${criterion}</p>
+          ${hasCases && html`
+            <ul class="cases">${where.map((one) => html`<${Case} key=${one.label} ...${one} />`)}</ul>
+          `}
         </details>
       </div>
     </li>

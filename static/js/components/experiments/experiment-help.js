@@ -1,10 +1,10 @@
-// One sentence about the field of the form that is touched.
+// The help sentence of the field in use.
 import { signal } from "@preact/signals";
 import { html } from "../../html.js";
-import { sentenceFor } from "../setting-help.js";
+import { helpFor } from "../setting-help.js";
 
-const touched = signal("seeds");
+const helpField = signal("seeds");
 
-export const help = (field) => () => (touched.value = field);
+export const help = (field) => () => (helpField.value = field);
 
-export const Help = () => html`<p class="setting-help" aria-hidden="true">${sentenceFor(touched.value)}</p>`;
+export const Help = () => html`<p class="setting-help" aria-hidden="true">${helpFor(helpField.value)}</p>`;

@@ -1,4 +1,4 @@
-// The paper's experiments, many times over: ask for one, watch its report fill, take it away.
+// The experiments view: form and list on one side, the report on the other.
 import { html } from "../../html.js";
 import { isOperator } from "../../selectors.js";
 import { connection } from "../../store.js";
@@ -10,16 +10,23 @@ import { Report } from "./report.js";
 
 export function Experiments() {
   const run = chosenRun.value;
+  const isOffline = connection.value === "reconnecting";
   return html`
-    <div class=${`experiments ${connection.value === "reconnecting" ? "cut-off" : ""}`}>
+    <div class=${`experiments ${isOffline ? "cut-off" : ""}`}>
       <div class="ask">
         ${isOperator.value && html`<${ExperimentForm} isFirst=${!run} />`}
         <${ExperimentList} />
       </div>
       <div class="answer">
-        ${connection.value === "reconnecting" && html`<p class="cut-off-note" role="status"><span class="spinner" aria-hidden="true"></span>Reconnecting. This is what was known.</p>`}
+        ${isOffline && html`<${OfflineNote} />`}
         ${run ? html`<${Report} key=${run.id} run=${run} />` : isListed.value && html`<${Invitation} />`}
       </div>
     </div>
   `;
 }
+
+const OfflineNote = () => html`
+  <p class="cut-off-note" role="status">
+    <span class="spinner" aria-hidden="true"></span>Reconnecting. This is the last known state.
+  </p>
+`;

@@ -1,26 +1,32 @@
-// Which robot, and what it goes by; nothing to choose where there is one.
+// The choice of a place: observation, robot and foot grid. Hidden where there is only one.
 import { html } from "../../html.js";
-import { OBSERVATIONS, observationTitle, robotTitle } from "../../experiments/titles.js";
+import { sentence } from "../../format.js";
 import { options } from "../../store.js";
+import { observationTitle, robotTitle } from "../../titles.js";
 import { Segments } from "../segments.js";
 
 const titleOf = (place, places) => {
   const differs = (field) => new Set(places.map((one) => one[field])).size > 1;
-  return [
+  const parts = [
     observationTitle(place.observation),
     differs("robot") && robotTitle(place.robot).toLowerCase(),
     differs("divisions") && `${place.divisions} × ${place.divisions}`,
     differs("grid_side_m") && `${place.grid_side_m} m`,
-  ].filter(Boolean).join(", ");
+  ];
+  return sentence(parts.filter(Boolean).join(", "));
 };
 
-const robotWords = (robot) => options.value?.robots?.find(({ name }) => name === robot)?.description;
+const descriptionOf = (list, name) => list?.find((one) => one.name === name)?.description ?? "";
 
-/** What the reading of the state that is shown means. */
-export const PlaceWords = ({ place }) => html`
-  <p class="dim">${[`${observationTitle(place.observation)}: ${OBSERVATIONS[place.observation]?.[1]}.`, robotWords(place.robot)].filter(Boolean).join(" ")}</p>
-`;
+/** The observation and the robot of a place, explained. */
+export function PlaceWords({ place: { observation, robot } }) {
+  const about = descriptionOf(options.value?.observations, observation);
+  const words = [`${sentence(observationTitle(observation))}:`, about, descriptionOf(options.value?.robots, robot)];
+  return html`<p class="dim">${words.filter(Boolean).join(" ")}</p>`;
+}
 
-export const PlaceSwitch = ({ places, value, onValue }) => places.length > 1 && html`
-  <${Segments} label="Where it was tried" choices=${places.map((one) => [one.key, titleOf(one, places)])} value=${value} onValue=${onValue} />
-`;
+export function PlaceSwitch({ places, value, onValue }) {
+  if (places.length < 2) return null;
+  const choices = places.map((one) => [one.key, titleOf(one, places)]);
+  return html`<${Segments} label="Place" choices=${choices} value=${value} onValue=${onValue} />`;
+}

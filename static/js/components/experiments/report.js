@@ -1,4 +1,4 @@
-// One experiment: what is known of it already, filling while its trials end.
+// The report of one experiment. It fills while trials end.
 import { useMemo } from "preact/hooks";
 import { html } from "../../html.js";
 import { summary, summaryError } from "../../experiments/summaries.js";
@@ -14,11 +14,11 @@ import { SweepTable } from "./sweep-table.js";
 import { TableOne } from "./table-one.js";
 import { Versus } from "./versus.js";
 
-const PICTURES = { table1: TableOne, figure4: FigureFour, sweep: SweepTable };
+const FIGURES = { table1: TableOne, figure4: FigureFour, sweep: SweepTable };
 
 export function Report({ run }) {
   const known = summary.value;
-  // A run changes several times a second, what its trials show does not.
+  // Progress changes several times a second, the summary seldom.
   const findings = useMemo(() => html`<${Findings} known=${known} />`, [known]);
   const hasSeeds = known?.settings?.some(({ n }) => n > 0);
   return html`
@@ -29,10 +29,10 @@ export function Report({ run }) {
 }
 
 function Findings({ known }) {
-  const Picture = PICTURES[known.experiment];
+  const Figure = FIGURES[known.experiment];
   return html`
     <${LeftOut} trials=${known.trials} />
-    ${Picture && html`<${Picture} known=${known} />`}
+    ${Figure && html`<${Figure} known=${known} />`}
     <${AtAGlance} known=${known} />
     <${Versus} known=${known} />
     <${Claims} claims=${known.claims ?? []} isComplete=${known.trials.done >= known.trials.total} />
@@ -43,15 +43,15 @@ function Findings({ known }) {
 }
 
 const WORDS = {
-  queued: "It starts as soon as what runs before it has ended.",
-  running: "The first trials are on their way. The agents that look ahead come first, then seed by seed.",
-  paused: "It was paused before its first trial ended.",
+  queued: "Waiting in the queue.",
+  running: "Waiting for the first trials. Agents that look ahead come first, then one seed after the other.",
+  paused: "Paused before the first trial ended.",
   failed: "No trial was completed.",
 };
 
 const Waiting = ({ run }) => html`
   <section class="panel waiting" aria-label="Report">
     <div class="no-rows" aria-hidden="true">${[0, 1, 2, 3].map(() => html`<i></i>`)}</div>
-    <p class="dim">${WORDS[run.state] ?? "No trial was completed before it ended."}</p>
+    <p class="dim">${WORDS[run.state] ?? "No trial was completed before the experiment ended."}</p>
   </section>
 `;

@@ -1,9 +1,10 @@
-// Every setting of a grid with its seeds: what it varies, how far it gets, how many walk.
+// The settings of a sweep with every seed: the fields that vary, distances, share that walks.
 import { useState } from "preact/hooks";
+import { count, percentage } from "../../format.js";
 import { html } from "../../html.js";
 import { agentOf } from "../../selectors.js";
 import { greedyTotals } from "../../experiments/places.js";
-import { GRID } from "../../experiments/catalogue.js";
+import { gridFields } from "../../experiments/catalogue.js";
 import { FIELD_TITLES, valueTitle } from "../../experiments/titles.js";
 import { bare, factorOf, inUnit, shown } from "../../experiments/units.js";
 import { largest } from "../../scale.js";
@@ -12,7 +13,6 @@ import { Segments } from "../segments.js";
 import { StripKey } from "./strip-key.js";
 import { UnitSwitch } from "./unit-switch.js";
 
-const FIELDS = ["gait", "observation", "robot", "agent", ...GRID];
 const ORDERS = [["grid", "In the grid’s order"], ["best", "Furthest first"]];
 const MOST_ROWS = 60;
 
@@ -20,10 +20,9 @@ export function SweepTable({ known }) {
   const [order, setOrder] = useState("grid");
   const [isWhole, setWhole] = useState(false);
   const greedy = greedyTotals(known.settings);
-  const rows = shownOf(known.settings).map((setting) => measured(setting, greedy(setting)));
-  const varied = FIELDS.filter((field) => new Set(rows.map(({ setting }) => setting[field]).filter((one) => one !== null)).size > 1);
-  const columns = varied.length ? varied : ["gait"];
-  const sorted = order === "best" ? [...rows].sort((a, b) => (b.typical?.iqm ?? -1) - (a.typical?.iqm ?? -1)) : rows;
+  const rows = shownSettings(known.settings).map((setting) => measured(setting, greedy(setting)));
+  const columns = variedFields(rows);
+  const sorted = order === "best" ? [...rows].sort(byDistance) : rows;
   const high = 1.03 * largest(rows.flatMap(({ points, line }) => [line ?? 0, ...points]), 1e-9);
   const color = rows[0] && agentOf(rows[0].setting.agent).color;
   return html`
@@ -36,27 +35,37 @@ export function SweepTable({ known }) {
       <${StripKey} signs=${["seed", "typical", "greedy"]} color=${color} />
       <div class="scroller tall" tabindex="0" role="region" aria-label="Every setting">
         <table class="facts-table stacking" role="table">
-          <thead role="rowgroup"><tr role="row">${columns.map((field) => html`<th role="columnheader" scope="col">${FIELD_TITLES[field]}</th>`)}
-            <th role="columnheader" scope="col" class="wide-cell">Total distance, 50 steps</th>
-            <th role="columnheader" scope="col" title="Interquartile mean, with its 95 % interval">Typical</th>
-            <th role="columnheader" scope="col" title="Come at least half as far as greedy">Walk</th>
-          </tr></thead>
+          <${Head} columns=${columns} />
           <tbody role="rowgroup">
             ${(isWhole ? sorted : sorted.slice(0, MOST_ROWS)).map((row) => html`
-              <${Row} key=${row.setting.key} row=${row} varied=${columns} high=${high} />
+              <${Row} key=${row.setting.key} row=${row} columns=${columns} high=${high} />
             `)}
           </tbody>
         </table>
       </div>
-      ${!isWhole && sorted.length > MOST_ROWS && html`<div class="older"><button class="secondary" onClick=${() => setWhole(true)}>Show all ${sorted.length} settings</button></div>`}
+      ${!isWhole && sorted.length > MOST_ROWS && html`
+        <div class="older">
+          <button class="secondary" onClick=${() => setWhole(true)}>Show all ${count(sorted.length, "setting")}</button>
+        </div>
+      `}
     </section>
   `;
 }
 
-/** Who learns, and who looks ahead; greedy is the line that all have, unless there is nobody else. */
-function shownOf(settings) {
-  const shown = settings.filter(({ role, agent }) => role === "learner" || agent !== "greedy");
-  return shown.length ? shown : settings;
+const byDistance = (a, b) => (b.typical?.iqm ?? -1) - (a.typical?.iqm ?? -1);
+
+/** The fields in which the settings differ; the gait where they do not. */
+function variedFields(rows) {
+  const valuesOf = (field) => new Set(rows.map(({ setting }) => setting[field]).filter((one) => one !== null));
+  const fields = ["gait", "observation", "robot", "agent", ...gridFields.value];
+  const varied = fields.filter((field) => valuesOf(field).size > 1);
+  return varied.length ? varied : ["gait"];
+}
+
+/** Without greedy, which is a line in every row, unless there is nothing else. */
+function shownSettings(settings) {
+  const found = settings.filter(({ role, agent }) => role === "learner" || agent !== "greedy");
+  return found.length ? found : settings;
 }
 
 /** A setting with its distances in the chosen unit. */
@@ -72,15 +81,47 @@ function measured(setting, greedy_m) {
   };
 }
 
-function Row({ row: { setting, points, typical, line }, varied, high }) {
-  const label = typical ? `${points.length} seeds, typically ${shown(typical.iqm)}, greedy ${shown(line)}` : "no seed yet";
-  const [first, ...others] = varied.map((field) => [FIELD_TITLES[field], valueTitle(field, setting[field])]);
+const Head = ({ columns }) => html`
+  <thead role="rowgroup">
+    <tr role="row">
+      ${columns.map((field) => html`<th role="columnheader" scope="col">${FIELD_TITLES[field]}</th>`)}
+      <th role="columnheader" scope="col" class="wide-cell">Total distance, 50 steps</th>
+      <th role="columnheader" scope="col" title="Interquartile mean, with its 95 % interval">Typical</th>
+      <th role="columnheader" scope="col" title="Get at least half as far as greedy">Walk</th>
+    </tr>
+  </thead>
+`;
+
+function Row({ row: { setting, points, typical, line }, columns, high }) {
+  const [first, ...others] = columns;
   return html`
     <tr role="row">
-      <th role="rowheader" scope="row">${first[1]}</th>${others.map(([title, one]) => html`<td role="cell" data-label=${title} class="num">${one}</td>`)}
-      <td role="cell" class="wide-cell">${typical ? html`<${DotStrip} label=${label} points=${points} high=${high} typical=${typical} marks=${line === null ? [] : [{ value: line, kind: "greedy" }]} color=${agentOf(setting.agent).color} />` : html`<span class="dim">waits for its first seed</span>`}</td>
-      <td role="cell" data-label="Typical" class="num"><b>${shown(typical?.iqm)}</b>${typical && typical.low !== null && html`<br /><span class="dim">${bare(typical.low)} – ${bare(typical.high)}</span>`}</td>
-      <td role="cell" data-label="Walk" class="num">${setting.walkers ? `${Math.round(100 * setting.walkers.share)} %` : "–"}</td>
+      <th role="rowheader" scope="row">${valueTitle(first, setting[first])}</th>
+      ${others.map((field) => html`
+        <td role="cell" data-label=${FIELD_TITLES[field]} class="num">${valueTitle(field, setting[field])}</td>
+      `)}
+      <td role="cell" class="wide-cell">
+        ${typical
+          ? html`<${Strip} agent=${setting.agent} points=${points} typical=${typical} line=${line} high=${high} />`
+          : html`<span class="dim">waiting for its first seed</span>`}
+      </td>
+      <td role="cell" data-label="Typical" class="num"><${Typical} typical=${typical} /></td>
+      <td role="cell" data-label="Walk" class="num">${setting.walkers ? percentage(setting.walkers.share) : "–"}</td>
     </tr>
   `;
 }
+
+function Strip({ agent, points, typical, line, high }) {
+  const label = `${count(points.length, "seed")}, typically ${shown(typical.iqm)}, greedy ${shown(line)}`;
+  const marks = line === null ? [] : [{ value: line, kind: "greedy" }];
+  return html`
+    <${DotStrip} label=${label} points=${points} high=${high} typical=${typical} marks=${marks}
+      color=${agentOf(agent).color} />
+  `;
+}
+
+const Typical = ({ typical }) => html`
+  <b>${shown(typical?.iqm)}</b>${typical && typical.low !== null && html`
+    <br /><span class="dim">${bare(typical.low)} – ${bare(typical.high)}</span>
+  `}
+`;

@@ -1,23 +1,22 @@
-// Numbers one types: a count, or a list with commas. What is wrong holds the button back, and is said.
+// Text fields of the experiment form: a whole number, or numbers with commas. A mistake disables the start.
 import { useState } from "preact/hooks";
-import { refusals } from "../../actions.js";
+import { refusedFields } from "../../actions.js";
+import { isInteger } from "../../form.js";
 import { html } from "../../html.js";
-import { options } from "../../store.js";
-import { sentenceFor } from "../setting-help.js";
+import { limitsOf, mistakeIn, parseNumbers } from "../../limits.js";
+import { helpFor } from "../setting-help.js";
 import { help } from "./experiment-help.js";
-import { mistakes, say, setMistake, values } from "../../experiments/form.js";
+import { mistakes, setField, setMistake, values } from "../../experiments/form.js";
 
-const WHOLE = new Set(["steps", "steps_per_episode", "divisions"]);
-
-function Typed({ field, label, text, parse, inputmode = "decimal" }) {
+function TypedField({ field, label, text, parse, inputmode = "decimal" }) {
   const [draft, setDraft] = useState(null);
   const mistake = mistakes.value[field];
-  const isRefused = refusals("experiment").includes(field);
+  const isRefused = refusedFields("experiment").includes(field);
   const onInput = ({ target }) => {
     setDraft(target.value);
-    const { value, wrong } = parse(target.value);
-    setMistake(field, wrong ?? null);
-    if (!wrong) say(field, value);
+    const parsed = parse(target.value);
+    setMistake(field, parsed.mistake ?? null);
+    if (!parsed.mistake) setField(field, parsed.value);
   };
   const onBlur = () => {
     setDraft(null);
@@ -32,31 +31,25 @@ function Typed({ field, label, text, parse, inputmode = "decimal" }) {
           aria-describedby=${mistake ? `wrong-${field}` : `about-${field}`} onInput=${onInput} onBlur=${onBlur} />
         ${mistake && html`<span class="mistake" role="alert" id=${`wrong-${field}`}>${mistake}</span>`}
       </span>
-      <span class="sr-only" id=${`about-${field}`}>${sentenceFor(field)}</span>
+      <span class="sr-only" id=${`about-${field}`}>${helpFor(field)}</span>
     </div>
   `;
 }
 
-/** A whole number. */
-export function CountField({ field, label, low, high = Infinity }) {
+/** One whole number. */
+export function CountField({ field, label }) {
   const parse = (typed) => {
     const value = /^\d+$/.test(typed.trim()) ? Number(typed) : NaN;
-    const range = high === Infinity ? `at least ${low}` : `from ${low} to ${high.toLocaleString("en")}`;
-    return value >= low && value <= high ? { value } : { wrong: `A whole number, ${range}` };
+    const mistake = mistakeIn(value, limitsOf(field), true);
+    return mistake ? { mistake } : { value };
   };
-  return html`<${Typed} field=${field} label=${label} text=${String(values.value[field])} parse=${parse} inputmode="numeric" />`;
+  const text = String(values.value[field]);
+  return html`<${TypedField} field=${field} label=${label} text=${text} parse=${parse} inputmode="numeric" />`;
 }
 
 /** One number, or several with commas between. */
 export function NumbersField({ field, label }) {
-  const [low, high] = options.value?.limits?.[field] ?? [null, null];
-  const parse = (typed) => {
-    const found = typed.split(",").map((part) => (part.trim() === "" ? NaN : Number(part)));
-    if (found.some((one) => !Number.isFinite(one))) return { wrong: "Numbers with commas between" };
-    if (WHOLE.has(field) && !found.every(Number.isInteger)) return { wrong: "Whole numbers" };
-    if (found.some((one) => (low !== null && one < low) || (high !== null && one > high))) return { wrong: `Each ${high === null ? `at least ${low}` : `from ${low} to ${high}`}` };
-    if (new Set(found).size < found.length) return { wrong: "Each number once" };
-    return { value: found };
-  };
-  return html`<${Typed} field=${field} label=${label} text=${values.value[field].join(", ")} parse=${parse} />`;
+  const parse = (typed) => parseNumbers(typed, limitsOf(field), isInteger(field));
+  const text = /** @type {number[]} */ (values.value[field]).join(", ");
+  return html`<${TypedField} field=${field} label=${label} text=${text} parse=${parse} />`;
 }

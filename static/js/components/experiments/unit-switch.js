@@ -1,4 +1,4 @@
-// In which unit distances are shown.
+// The choice of a unit for distances.
 import { html } from "../../html.js";
 import { unit, UNITS } from "../../experiments/units.js";
 import { Segments } from "../segments.js";

@@ -1,0 +1,364 @@
+/** The objects of the REST API and of the event stream, as far as the page reads them. */
+
+export type Kind = "training" | "race" | "experiment";
+export type State = "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
+export type Verb = "stop" | "pause" | "resume";
+export type Clock = string;
+/** [lowest, highest]; null where the server sets no bound. */
+export type Limits = [number | null, number | null];
+
+// ---- GET /options
+
+export interface Described {
+  name: string;
+  title?: string;
+  description: string;
+}
+
+export interface Gait extends Described {
+  title: string;
+  forward_deg: number;
+  azimuths_deg: number[];
+  /** Legs that move together, numbered from 1. */
+  pairs: [number, number][];
+}
+
+export interface Agent extends Described {
+  title: string;
+  color: string;
+  learns: boolean;
+}
+
+export interface Robot extends Described {
+  robot: RobotConfig;
+}
+
+export interface ExperimentKind extends Described {
+  title: string;
+  /** The fields that a request may contain. */
+  fields: string[];
+  /** Of those, the ones that take several values, each combination being one setting. */
+  grid: string[];
+  defaults: ExperimentValues;
+}
+
+export interface Options {
+  version: string;
+  gaits: Gait[];
+  robots: Robot[];
+  agents: Agent[];
+  simulators: Described[];
+  observations: Described[];
+  clocks: Described[];
+  experiments: ExperimentKind[];
+  defaults: {
+    training: Omit<FormValues, "race_steps" | "lanes" | "name"> & { agent: string };
+    race: { steps: number; lanes: { agent: string }[] };
+    what_if: { seeds: number };
+  };
+  limits: Record<string, Limits>;
+  help: Record<string, string>;
+}
+
+// ---- the forms
+
+export interface FormValues {
+  gait: string;
+  steps: number;
+  seed: number;
+  observation: string;
+  alpha: number;
+  gamma: number;
+  epsilon_start: number;
+  epsilon_end: number;
+  steps_per_episode: number;
+  evaluate_every: number;
+  /** "max", or a multiple of real time. */
+  pace: number | "max";
+  robot: string;
+  simulator: string;
+  divisions: number;
+  grid_side_m: number;
+  race_steps: number;
+  lanes: string[];
+  name: string;
+}
+
+export type ExperimentValue = string | number | string[] | number[];
+
+export interface ExperimentValues {
+  name: string;
+  seeds: number;
+  seed: number;
+  gaits: string[];
+  observations: string[];
+  robots: string[];
+  simulator: string;
+  agents: string[];
+  steps: number[];
+  alpha: number[];
+  gamma: number[];
+  epsilon_start: number[];
+  epsilon_end: number[];
+  steps_per_episode: number[];
+  divisions: number[];
+  grid_side_m: number[];
+  [field: string]: ExperimentValue;
+}
+
+// ---- runs
+
+export type RobotConfig = string | { preset?: string; name?: string };
+
+export interface LaneConfig {
+  agent: string;
+  training_id?: string | null;
+}
+
+/** Trainings, races and experiments have different fields; those of all three stand here. */
+export interface RunConfig {
+  agent?: string;
+  gait: string;
+  robot: RobotConfig;
+  simulator: string;
+  observation: string;
+  divisions: number;
+  grid_side_m: number;
+  steps: number;
+  seed: number;
+  alpha: number;
+  gamma: number;
+  epsilon_start: number;
+  epsilon_end: number;
+  steps_per_episode: number;
+  evaluate_every: number;
+  pace: number | "max";
+  continue_from?: string | null;
+  lanes: LaneConfig[];
+  experiment: string;
+  seeds: number;
+  gaits: string[];
+  observations: string[];
+  robots: Exclude<RobotConfig, string>[];
+}
+
+export interface ClockResult {
+  rank: number;
+  finished_distance_m: number;
+  crossed_s: number | null;
+}
+
+export interface LaneResult {
+  agent: string;
+  steps: number;
+  total_distance_m: number;
+  decision_s: number;
+  simulated_transitions: number;
+  failure?: string | null;
+  clocks: Record<Clock, ClockResult>;
+}
+
+/** Of a training the distances, of a race the lanes, of an experiment the files. */
+export interface RunResult {
+  distance_m: number;
+  greedy_distance_m: number;
+  lanes: LaneResult[];
+  files?: string[];
+}
+
+export interface Run {
+  id: string;
+  kind: Kind;
+  name: string | null;
+  state: State;
+  config: RunConfig;
+  queue_position?: number | null;
+  progress: { done: number; total: number };
+  eta_s?: number | null;
+  result?: RunResult | null;
+  error?: string | null;
+  can_resume: boolean;
+  created_at: string;
+  /** The trainings that a race waits for. */
+  waiting_for?: string[];
+  greedy_distance_m?: number | null;
+}
+
+/** A run that the server cannot read. It can be deleted. */
+export interface DamagedRun {
+  id: string;
+  kind: Kind | null;
+  name: string | null;
+  state?: State;
+  created_at: string | null;
+  /** Why it cannot be read. */
+  damaged: string;
+}
+
+export interface Evaluation {
+  step: number;
+  distance_m: number;
+  epsilon: number;
+}
+
+export interface Page<Item> {
+  items: Item[];
+  next_cursor: string | null;
+}
+
+export interface Curve {
+  evaluations: Evaluation[];
+  greedy_distance_m: number | null;
+}
+
+/** A point of a lane's path: race time [s], distance [m]. */
+export type TimelinePoint = [number, number];
+
+export interface TimelineLane {
+  agent: string;
+  points: TimelinePoint[];
+  /** Intervals [from, to] of the race time [s]. */
+  thinking: [number, number][];
+  /** Simulated transitions before each step. */
+  futures: number[];
+  total_s: number;
+}
+
+export interface Timeline {
+  id: string;
+  clock: Clock;
+  lanes: TimelineLane[];
+  /** When the first lane has used its steps [s]: the time-out. */
+  first_finish_s: number | null;
+  finish_line_m: number;
+}
+
+export interface WhatIfHalf {
+  distances_m: number[];
+  iqm_m: number;
+  /** Share that covers at least half of greedy's distance. */
+  walkers: number;
+}
+
+export interface WhatIfAnswer {
+  seeds: number;
+  greedy_m: number;
+  chosen: WhatIfHalf;
+  default: WhatIfHalf;
+}
+
+// ---- the stage and its scene
+
+export interface Stage {
+  run_id: string | null;
+  next_run_id: string | null;
+  playing: boolean;
+  speed: number | "time-lapse";
+  clock: Clock;
+}
+
+export interface SceneLane {
+  lane: number;
+  name: string;
+  color: string;
+  rank: number;
+  distance_m: number;
+  step: number;
+  steps: number;
+  done: boolean;
+  thinking: boolean;
+  futures: number;
+  futures_total: number;
+  crossed: boolean;
+  marching: boolean;
+  failure?: string | null;
+}
+
+/** The learner's action values in its current state. */
+export interface Knowledge {
+  agent: string;
+  lane: number;
+  pairs: [number, number][];
+  cell_names: string[];
+  cells_m: [number, number][];
+  /** [pair][cell]; null where the foot already stands. */
+  values_m: (number | null)[][];
+  visits: (number | null)[][] | null;
+  /** The cell of each pair. */
+  current: number[];
+  next: { pair: number; cell: number } | null;
+  low: number;
+  high: number;
+}
+
+export interface Scene {
+  run_id: string | null;
+  kind: "idle" | "training" | "race";
+  label: string;
+  phase: string;
+  clock: Clock;
+  time_s: number;
+  duration_s: number | null;
+  shown_speed: number;
+  replay: boolean;
+  lanes: SceneLane[];
+  knowledge: Knowledge | null;
+}
+
+export interface Rates {
+  alpha?: number;
+  gamma?: number;
+  epsilon?: number;
+  pace?: number | "max";
+}
+
+// ---- GET /experiments/{id}/summary
+
+export interface Interval {
+  share: number;
+  verdict: string;
+}
+
+export interface Distances {
+  points_m: number[];
+  mean_m: number;
+  iqm_m: number;
+  low_m: number | null;
+  high_m: number | null;
+}
+
+/** One setting of an experiment with the distances of its seeds. */
+export interface Setting {
+  [field: string]: any;
+  key: string;
+  role: "learner" | "reference";
+  n: number;
+  agent: string;
+  gait: string;
+  observation: string;
+  robot: string;
+  divisions: number;
+  grid_side_m: number;
+  half_side_m: number;
+  steps: number;
+  total: Distances | null;
+  finished: Distances | null;
+  walkers: { share: number } | null;
+  published: Record<string, number | null> | null;
+}
+
+/** Robot, observation and grid, within which agents are compared. */
+export interface Place {
+  key: string;
+  observation: string;
+  robot: string;
+  divisions: number;
+  grid_side_m: number;
+  half_side_m: number;
+}
+
+export interface Summary {
+  [part: string]: any;
+  experiment: string;
+  settings: Setting[];
+}

@@ -1,0 +1,66 @@
+// A small answer of GET /options, and runs to put into the store.
+
+/** @import { Options, Run } from "../../static/js/types.js" */
+
+/** @type {(name: string, title?: string) => { name: string, title: string, description: string }} */
+const described = (name, title = name) => ({ name, title, description: `About ${name}.` });
+
+const TRAINING = {
+  agent: "learner", gait: "tripod", steps: 500, seed: 0, observation: "measured", alpha: 0.3, gamma: 0.9,
+  epsilon_start: 1, epsilon_end: 0, steps_per_episode: 50, evaluate_every: 50, robot: "stiff", simulator: "mujoco",
+  divisions: 2, grid_side_m: 0.04,
+};
+
+const GRID = ["steps", "alpha"];
+const EXPERIMENT = {
+  name: "", seeds: 30, seed: 0, gaits: ["tripod", "wave"], observations: ["measured"], robots: ["stiff"],
+  simulator: "mujoco", agents: ["learner"], steps: [500], alpha: [0.3], gamma: [0.9], epsilon_start: [1],
+  epsilon_end: [0], steps_per_episode: [50], divisions: [2], grid_side_m: [0.04],
+};
+const COMMON = ["seeds", "seed", "gaits", "observations", "robots", "simulator"];
+
+/** @type {Options} */
+export const OPTIONS = {
+  version: "1",
+  gaits: ["tripod", "wave"].map((name) => ({
+    ...described(name, `The ${name}`), forward_deg: 0, azimuths_deg: [0, 60, 120, 180, 240, 300],
+    pairs: [[1, 4], [2, 5], [3, 6]],
+  })),
+  robots: [{ ...described("stiff", "Stiff"), robot: { preset: "stiff" } }],
+  agents: [
+    { ...described("learner", "Learner"), color: "#111111", learns: true },
+    { ...described("greedy", "Greedy"), color: "#222222", learns: false },
+    { ...described("planner", "Planner"), color: "#333333", learns: false },
+  ],
+  simulators: [{ name: "mujoco", description: "" }, { name: "kinematic", description: "" }],
+  observations: [{ name: "measured", description: "" }, { name: "commanded", description: "" }],
+  clocks: [{ name: "paper", description: "" }, { name: "wall", description: "" }, { name: "free", description: "" }],
+  experiments: [
+    { ...described("table1", "Table 1"), fields: COMMON, grid: [], defaults: { ...EXPERIMENT, steps: [500, 1000] } },
+    { ...described("sweep", "Sweep"), fields: [...COMMON, "agents", ...GRID], grid: GRID, defaults: EXPERIMENT },
+  ],
+  defaults: {
+    training: { ...TRAINING, pace: "max" },
+    race: { steps: 50, lanes: [{ agent: "learner" }, { agent: "greedy" }] },
+    what_if: { seeds: 30 },
+  },
+  limits: { steps: [1, 10_000_000], alpha: [0, 1], seed: [0, null], what_if_steps: [1, 2000] },
+  help: { alpha: "Learning rate." },
+};
+
+let number = 0;
+
+/**
+ * A run as the API shows it; each is newer than the one before.
+ * @param {object} changes
+ * @returns {Run}
+ */
+export function makeRun(changes) {
+  number += 1;
+  return /** @type {Run} */ ({
+    id: `run-${number}`, kind: "training", name: null, state: "finished", config: { ...TRAINING, pace: "max" },
+    progress: { done: 0, total: 500 }, can_resume: false,
+    created_at: new Date(Date.UTC(2030, 0, 1) + 1000 * number).toISOString(),
+    ...changes,
+  });
+}

@@ -1,0 +1,120 @@
+// The race at the moment that is shown: timeline, standings, headline, learning curve.
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+import { curve, practisedSteps } from "../../static/js/curves.js";
+import { headline } from "../../static/js/outcome.js";
+import { isTimedOut, standings } from "../../static/js/standings.js";
+import { applyEvent, options } from "../../static/js/store.js";
+import { clipped, distanceAt, shownTime, timeSpent } from "../../static/js/timeline.js";
+import { makeRun, OPTIONS } from "./options.js";
+
+/** @import { TimelinePoint } from "../../static/js/types.js" */
+
+/** Thinks for a second, walks for two, thinks for one. @type {TimelinePoint[]} */
+const PATH = [[0, 0], [1, 0], [3, 0.4], [4, 0.4]];
+
+const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
+
+const laneResult = (/** @type {string} */ agent, rank = 1, finished_distance_m = 0.3) => ({
+  agent, steps: 50, total_distance_m: 0.5, decision_s: 5, simulated_transitions: 600,
+  clocks: { paper: { rank, finished_distance_m, crossed_s: null } },
+});
+
+const RACE = makeRun({
+  kind: "race", progress: { done: 100, total: 100 },
+  config: { steps: 50, lanes: [{ agent: "learner" }, { agent: "greedy" }] },
+  result: { lanes: [laneResult("learner", 2, 0.2), laneResult("greedy", 1, 0.3)] },
+});
+
+const sceneLane = (/** @type {object} */ changes) => ({
+  lane: 0, name: "Learner", color: "#111", rank: 1, distance_m: 0, step: 0, steps: 50, done: false, thinking: false,
+  futures: 0, futures_total: 0, crossed: false, marching: false, ...changes,
+});
+
+/** @param {{ phase: string, time_s: number, lanes: object[] }} scene */
+const showScene = (scene) => {
+  applyEvent("stage", { ...STAGE, run_id: RACE.id });
+  applyEvent("scene", { run_id: RACE.id, kind: "race", clock: "paper", duration_s: 9, knowledge: null, ...scene });
+};
+
+beforeEach(() => {
+  options.value = OPTIONS;
+  applyEvent("snapshot", { runs: [RACE], stage: STAGE, scene: null });
+});
+
+test("distances are interpolated between the points of a path", () => {
+  assert.equal(distanceAt(PATH, 0.5), 0);
+  assert.equal(distanceAt(PATH, 2), 0.2);
+  assert.equal(distanceAt(PATH, 99), 0.4);
+  assert.equal(distanceAt([], 1), 0);
+  assert.equal(distanceAt([[0, 0], [1, 0.1], [1, 0.2]], 1), 0.1);
+});
+
+test("a path is cut at the moment that is shown", () => {
+  assert.deepEqual(clipped(PATH, 2), [[0, 0], [1, 0], [2, 0.2]]);
+  assert.deepEqual(clipped(PATH, 10), PATH);
+  assert.deepEqual(clipped(PATH, -1), [[0, 0]]);
+});
+
+test("time is spent thinking or walking", () => {
+  const lane = { thinking: /** @type {[number, number][]} */ ([[0, 1], [3, 4]]), total_s: 4 };
+  assert.deepEqual(timeSpent(lane, 2), { thought: 1, walked: 1 });
+  assert.deepEqual(timeSpent(lane, 3.5), { thought: 1.5, walked: 2 });
+  assert.deepEqual(timeSpent(lane, Infinity), { thought: 2, walked: 2 });
+});
+
+test("after its show a race has its result, ranked", () => {
+  assert.equal(shownTime.value, Infinity);
+  assert.ok(isTimedOut.value);
+  const [first, second] = standings.value ?? [];
+  assert.deepEqual([first.title, first.rank, first.finished_m], ["Greedy", 1, 0.3]);
+  assert.deepEqual([second.title, second.total_m, second.decision_s, second.simulated], ["Learner", 0.5, 0.1, 600]);
+  assert.equal(headline.value, "Greedy leads at time-out with 0.30\u00a0m");
+});
+
+test("during its show nothing later than the scene is told", () => {
+  showScene({
+    phase: "race", time_s: 1,
+    lanes: [sceneLane({ distance_m: 0.1, step: 5 }), sceneLane({ lane: 1, name: "Greedy", rank: 2 })],
+  });
+  assert.ok(!isTimedOut.value);
+  const [first] = standings.value ?? [];
+  assert.deepEqual([first.agent, first.finished_m, first.total_m, first.simulated], ["learner", null, null, null]);
+  assert.equal(headline.value, "Learner leads with 0.10\u00a0m");
+});
+
+test("before the first step everyone is on the start line, and equal ranks are level", () => {
+  showScene({ phase: "race", time_s: 0, lanes: [sceneLane({}), sceneLane({ lane: 1 })] });
+  assert.equal(headline.value, "On the start line");
+  showScene({
+    phase: "race", time_s: 1, lanes: [sceneLane({ distance_m: 0.1 }), sceneLane({ lane: 1, distance_m: 0.1 })],
+  });
+  assert.equal(headline.value, "Level");
+});
+
+test("only long decisions are shown as thinking", () => {
+  const thinking = { thinking: true, futures: 3 };
+  showScene({
+    phase: "race", time_s: 1,
+    lanes: [sceneLane({ ...thinking, futures_total: 12 }), sceneLane({ ...thinking, lane: 1, futures_total: 156 })],
+  });
+  assert.deepEqual((standings.value ?? []).map(({ isThinking }) => isThinking), [false, true]);
+});
+
+test("the learning curve joins the trainings that continue each other, up to the step on stage", () => {
+  const first = makeRun({ progress: { done: 100, total: 100 }, greedy_distance_m: 0.5 });
+  const second = makeRun({
+    state: "running", progress: { done: 40, total: 100 },
+    config: { ...first.config, steps: 100, continue_from: first.id },
+  });
+  applyEvent("snapshot", { runs: [first, second], stage: { ...STAGE, run_id: second.id }, scene: null });
+  const evaluate = (/** @type {string} */ run_id, /** @type {number} */ step) =>
+    applyEvent("evaluation", { run_id, step, distance_m: step / 1000, epsilon: 1 });
+  evaluate(first.id, 50);
+  evaluate(second.id, 20);
+  evaluate(second.id, 40);
+  applyEvent("scene", { run_id: second.id, kind: "training", phase: "practice", lanes: [{ step: 30 }] });
+  assert.deepEqual(curve.value?.points.map(({ step }) => step), [0, 50, 120]);
+  assert.deepEqual([curve.value?.blocks, curve.value?.to, curve.value?.greedy_m], [[100], 200, 0.5]);
+  assert.equal(practisedSteps(second), 140);
+});

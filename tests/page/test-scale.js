@@ -1,0 +1,46 @@
+// Positions on an axis, ticks, thinning, and points that make room for each other.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { largest, percent, shareOf, spread, swarm, thinned, ticks } from "../../static/js/scale.js";
+import { valueColours } from "../../static/js/colormap.js";
+
+test("positions stay on the axis, also where it has no length", () => {
+  assert.deepEqual([-1, 0, 1, 3, 9].map((value) => shareOf(value, 0, 4)), [0, 0, 0.25, 0.75, 1]);
+  assert.equal(shareOf(5, 5, 5), 0);
+  assert.equal(percent(1 / 3), "33.33%");
+});
+
+test("ticks are round and end at or before the end of the axis", () => {
+  assert.deepEqual(ticks(2000, 4), [0, 500, 1000, 1500, 2000]);
+  assert.deepEqual(ticks(0.9, 4).map((tick) => tick.toFixed(2)), ["0.00", "0.25", "0.50", "0.75"]);
+  assert.deepEqual(ticks(0), [0]);
+  for (const high of [0.013, 0.7, 3, 99, 1e6]) assert.ok(ticks(high).length >= 2 && ticks(high).length <= 6);
+});
+
+test("a thinned list keeps its order, its ends and at most so many", () => {
+  const list = Array.from({ length: 1001 }, (_, n) => n);
+  assert.deepEqual(thinned(list, 5), [0, 250, 500, 750, 1000]);
+  assert.equal(thinned(list, 2000), list);
+});
+
+test("the largest value of a list that is longer than a call's arguments", () => {
+  assert.equal(largest(new Array(500_000).fill(0.5)), 0.5);
+  assert.equal(largest([-3, -2], -Infinity), -2);
+  assert.equal(largest([], 1), 1);
+});
+
+test("dots at one place lie alternately on both sides", () => {
+  assert.deepEqual(swarm([0.5, 0.5, 0.5, 0.5, 0.9]).map((row) => row + 0), [0, 1, -1, 2, 0]);
+});
+
+test("labels are moved apart and stay in the frame", () => {
+  assert.deepEqual(spread([10, 11, 50], 16, 0, 100), [10, 26, 50]);
+  assert.deepEqual(spread([90, 95], 16, 0, 100), [84, 100]);
+  assert.deepEqual(spread([], 16, 0, 100), []);
+});
+
+test("values are dark to light, with text that can be read on them", () => {
+  assert.deepEqual(valueColours(0, 0, 1), { background: "rgb(68 1 84)", color: "#fff" });
+  assert.deepEqual(valueColours(7, 0, 1), { background: "rgb(253 231 37)", color: "#10141a" });
+  assert.equal(valueColours(3, 3, 3).background, "rgb(68 1 84)");
+});

@@ -1,0 +1,128 @@
+// Server-sent events change the store, and the selectors follow.
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+import { applyDefaults, form, setField } from "../../static/js/form.js";
+import {
+  everyRun, hasTable, interruptedRun, isRaceRun, learns, liveTraining, markAsMine, matchingTable, myWork, offStage,
+  raceInView, simulatedPerDecision, trainingInView, work,
+} from "../../static/js/selectors.js";
+import { applyEvent, damagedRuns, evaluations, options, rates, role, runs } from "../../static/js/store.js";
+import { makeRun, OPTIONS } from "./options.js";
+
+const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
+
+/** @param {{ runs?: object[], stage?: object }} parts */
+const show = (parts) => applyEvent("snapshot", { runs: [], stage: STAGE, scene: null, role: "operator", ...parts });
+
+const raceOf = (/** @type {{ id: string }} */ training, changes = {}) =>
+  makeRun({
+    kind: "race",
+    config: { lanes: [{ agent: "learner", training_id: training.id }, { agent: "greedy" }], steps: 50 },
+    ...changes,
+  });
+
+beforeEach(() => {
+  options.value = OPTIONS;
+  applyDefaults(OPTIONS);
+  show({});
+});
+
+test("a snapshot replaces what was known", () => {
+  applyEvent("run", makeRun({}));
+  const [first, second] = [makeRun({}), makeRun({})];
+  show({ runs: [first, second] });
+  assert.deepEqual(everyRun.value.map(({ id }) => id), [second.id, first.id]);
+  assert.equal(role.value, "operator");
+});
+
+test("events add, change and delete", () => {
+  const run = makeRun({ state: "queued" });
+  applyEvent("run", run);
+  applyEvent("run", { ...run, state: "running" });
+  assert.equal(runs.value.get(run.id)?.state, "running");
+  applyEvent("evaluation", { run_id: run.id, step: 50, distance_m: 0.1, epsilon: 0.9 });
+  applyEvent("evaluation", { run_id: run.id, step: 100, distance_m: 0.2, epsilon: 0.8 });
+  assert.deepEqual(evaluations.value[run.id].map(({ step }) => step), [50, 100]);
+  applyEvent("rates", { run_id: run.id, alpha: 0.5 });
+  applyEvent("rates", { run_id: run.id, epsilon: 0.1 });
+  assert.deepEqual(rates.value[run.id], { alpha: 0.5, epsilon: 0.1 });
+  applyEvent("run-deleted", { id: run.id });
+  assert.equal(runs.value.size, 0);
+  applyEvent("an event of a later version", {});
+});
+
+test("a damaged run is kept apart, until it can be read or is deleted", () => {
+  const run = makeRun({});
+  const damaged = { id: run.id, kind: null, name: null, created_at: null, damaged: "its config cannot be read" };
+  show({ runs: [damaged] });
+  assert.deepEqual([runs.value.size, damagedRuns.value.size], [0, 1]);
+  applyEvent("run", run);
+  assert.deepEqual([runs.value.size, damagedRuns.value.size], [1, 0]);
+  applyEvent("run", damaged);
+  assert.deepEqual([runs.value.size, damagedRuns.value.size], [0, 1]);
+  applyEvent("run-deleted", { id: run.id });
+  assert.equal(damagedRuns.value.size, 0);
+});
+
+test("agents that the server no longer has are known by their name and do not learn", () => {
+  assert.ok(learns("learner"));
+  assert.ok(!learns("removed"));
+});
+
+test("a race that waits works on its training, which Stop asks of the race", () => {
+  const training = makeRun({ state: "running" });
+  const race = raceOf(training, { state: "queued" });
+  show({ runs: [training, race], stage: { ...STAGE, run_id: training.id } });
+  assert.equal(work.value?.requested.id, race.id);
+  assert.equal(work.value?.current.id, training.id);
+  assert.equal(liveTraining.value?.id, training.id);
+  assert.equal(raceInView.value?.id, race.id);
+  assert.equal(trainingInView.value?.id, training.id);
+});
+
+test("my run is off stage while another live run is shown", () => {
+  const [mine, other] = [makeRun({ state: "running" }), makeRun({ state: "running" })];
+  show({ runs: [mine, other], stage: { ...STAGE, run_id: other.id } });
+  const offStageId = () => offStage.value?.id;
+  assert.equal(offStageId(), undefined);
+  markAsMine(mine.id);
+  assert.equal(myWork.value?.requested.id, mine.id);
+  assert.equal(offStageId(), mine.id);
+  show({ runs: [mine, other], stage: { ...STAGE, run_id: mine.id } });
+  assert.equal(offStageId(), undefined);
+});
+
+test("a table matches the form by gait, robot, grid, observation and simulator", () => {
+  const training = makeRun({});
+  const race = raceOf(training);
+  show({ runs: [training, race], stage: { ...STAGE, run_id: race.id } });
+  assert.equal(matchingTable.value?.id, training.id);
+  assert.ok(isRaceRun.value);
+  setField("alpha", 0.9);
+  assert.equal(matchingTable.value?.id, training.id);
+  setField("divisions", 3);
+  assert.equal(matchingTable.value, null);
+  assert.ok(!isRaceRun.value);
+});
+
+test("only trainings that ended have a table", () => {
+  assert.ok(hasTable(makeRun({ state: "stopped" })));
+  assert.ok(!hasTable(makeRun({ state: "running" })));
+  assert.ok(!hasTable(raceOf(makeRun({}))));
+  assert.ok(!hasTable(null));
+});
+
+test("an interrupted run is offered while nothing works", () => {
+  const run = makeRun({ state: "interrupted" });
+  show({ runs: [run] });
+  assert.equal(interruptedRun.value?.id, run.id);
+  show({ runs: [run, makeRun({ state: "running" })] });
+  assert.equal(interruptedRun.value, null);
+});
+
+test("simulated transitions grow with the depth and the grid", () => {
+  // Three pairs of legs, and on a grid of two divisions five places, of which each pair is at one.
+  assert.equal(simulatedPerDecision(1, form.value), 12);
+  assert.equal(simulatedPerDecision(2, form.value), 12 + 144);
+  assert.equal(simulatedPerDecision(1, { ...form.value, divisions: 3 }), 24);
+});
