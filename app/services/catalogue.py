@@ -68,6 +68,7 @@ _HELP = {
     "gait": "Which way is forward, and which two legs move together.",
     "steps": "How many steps it practises; the paper uses 500 and 1,000.",
     "race_steps": "How many steps each robot has in the race.",
+    "what_if_steps": "How many steps of practice a what-if may have.",
     "seed": "Everything that is random follows from this number: the same seed, the same run.",
     "observation": "How the robot knows where its feet are.",
     "alpha": "Learning rate: how much one experience counts against all before.",
