@@ -445,10 +445,11 @@ class ExperimentOption(Described):
 
 
 class DefaultsView(Answer):
-    """The bodies of a training and of a race as they are by default."""
+    """The bodies of a training and of a race as they are by default, and a what-if's seeds."""
 
     training: dict[str, Any]
     race: dict[str, Any]
+    what_if: dict[str, int]
 
 
 class OptionsView(Answer):

@@ -4,7 +4,7 @@ import sqlite3
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -14,6 +14,7 @@ from sqlalchemy.exc import DBAPIError, IntegrityError, InterfaceError, Operation
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 
 from app.domain.errors import DamagedFile, HexapodError
+from app.services.database.fair_semaphore import FairSemaphore
 from app.services.database.schema import ABOUT
 from app.services.errors import OwnershipLost, StorageFailed, StorageFull
 
@@ -73,8 +74,10 @@ class Database:
         self.engine, self.on_full = engine, on_full
         self.owner: int | None = None
         self.is_answering: Callable[[], bool] = lambda: True
-        # SQLite lets those who wait poll, and so starve; a lock is fair among our own threads.
-        self._turn = threading.Lock() if engine.dialect.name == "sqlite" else None
+        # SQLite lets those who wait poll, and its pool lets others overtake them, so they starve.
+        is_sqlite = engine.dialect.name == "sqlite"
+        self._writers = FairSemaphore(1) if is_sqlite else None
+        self._connections = FairSemaphore(SQLITE_CONNECTIONS) if is_sqlite else None
 
     def read(self, work: Callable[[Connection], T]) -> T:
         """Do what only reads; it sees one state of the database throughout.
@@ -84,7 +87,11 @@ class Database:
         """
 
         def attempt() -> T:
-            with in_plain_words(), self.engine.connect() as connection:
+            with (
+                _turn(self._connections),
+                in_plain_words(),
+                self.engine.connect() as connection,
+            ):
                 return work(connection.execution_options(**{_ONLY_READS: True}))
 
         return self._retry(attempt)
@@ -127,15 +134,14 @@ class Database:
             pause_s = min(2 * pause_s, _LAST_RETRY_S)
 
     def _write(self, work: Callable[[Connection], T]) -> T:
-        if self._turn is not None and not self._turn.acquire(timeout=BUSY_S):
-            raise _held()
-        try:
-            with in_plain_words(), self.engine.begin() as connection:
-                self._check_owner(connection)
-                return work(connection)
-        finally:
-            if self._turn is not None:
-                self._turn.release()
+        with (
+            _turn(self._writers),
+            _turn(self._connections),
+            in_plain_words(),
+            self.engine.begin() as connection,
+        ):
+            self._check_owner(connection)
+            return work(connection)
 
     def _check_owner(self, connection: Connection) -> None:
         """Fence: refuse to write once another server has raised the owner's number."""
@@ -160,6 +166,10 @@ class Database:
     def close(self) -> None:
         """Let go of all connections."""
         self.engine.dispose()
+
+
+def _turn(semaphore: FairSemaphore | None) -> AbstractContextManager[None]:
+    return nullcontext() if semaphore is None else semaphore.taken(BUSY_S, _held)
 
 
 def sqlite_engine(path: Path) -> Engine:

@@ -7,10 +7,13 @@ from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 
+import pytest
 from sqlalchemy import text
 
 from app.services.database.engine import SQLITE_FILES, Database, sqlite_engine
+from app.services.database.fair_semaphore import FairSemaphore
 from tests.promises.files import database_files
+from tests.services.waiting import until
 
 THREADS = 40
 """As many as answer requests at once."""
@@ -34,6 +37,26 @@ def reading(database: Database) -> Iterator[None]:
         over.set()
         for thread in threads:
             thread.join()
+
+
+def test_places_are_handed_over_in_the_order_in_which_threads_came() -> None:
+    semaphore, order = FairSemaphore(1), []
+
+    def take(number: int) -> None:
+        with semaphore.taken(60.0, AssertionError):
+            order.append(number)
+
+    with semaphore.taken(1.0, AssertionError):
+        threads = []
+        for number in range(5):
+            threads.append(threading.Thread(target=take, args=(number,)))
+            threads[-1].start()
+            until(lambda: semaphore.waiting == len(threads))
+        with pytest.raises(TimeoutError), semaphore.taken(0.01, TimeoutError):
+            pass
+    for thread in threads:
+        thread.join()
+    assert order == [*range(5)]
 
 
 def test_many_threads_open_no_more_files_than_are_stated(tmp_path: Path) -> None:
