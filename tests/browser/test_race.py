@@ -4,7 +4,7 @@ import re
 from urllib.parse import urlencode
 
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Route, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving
@@ -88,6 +88,29 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
     expect(dashboard.primary).to_have_text(re.compile("^Train "))
     page.get_by_role("link", name="Runs").click()
     expect(page.locator(".state.stopped")).to_have_count(2)
+
+
+def test_no_click_is_lost_while_a_command_is_answered(
+    dashboard: Dashboard, server: Serving
+) -> None:
+    """The event of the pause comes before its answer; the button waits for that."""
+    page = dashboard.page
+
+    def late(route: Route) -> None:
+        page.wait_for_timeout(1500)
+        route.continue_()
+
+    dashboard.open(f"{server.address}?{LONG}")
+    dashboard.primary.click()
+    expect(page.get_by_text(re.compile(r"^Practising, \S+ of"))).to_be_visible()
+    page.route("**/api/v1/stage", late)
+    dashboard.button("Pause").click()
+    expect(page.get_by_text(re.compile("^Paused at "))).to_be_visible()
+    dashboard.button("Resume").click()
+    expect(page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
+    page.unroute("**/api/v1/stage")
+    dashboard.button("Stop").click()
+    expect(dashboard.primary).to_have_text(re.compile("^Train "))
 
 
 def test_a_refusal_stands_beside_the_button(dashboard: Dashboard, server: Serving) -> None:

@@ -85,12 +85,18 @@ const SecondaryActions = () => html`
 function WorkActions() {
   const state = work.value?.current.state;
   const isPaused = state === "paused";
+  // Events tell of a new state before the command is answered; a click in between would be lost.
+  // Not `disabled`, by which the button would lose the keyboard's focus.
+  const isHeld = pending.value.work ? "true" : undefined;
   return html`
     <div class="row">
-      <button class="secondary" onClick=${isPaused ? resume : pause} disabled=${state === "queued"}>
+      <button class="secondary" onClick=${isPaused ? resume : pause} aria-disabled=${isHeld}
+        disabled=${state === "queued"}>
         <${Icon} name=${isPaused ? "play" : "pause"} />${isPaused ? "Resume" : "Pause"}
       </button>
-      <button class="secondary" onClick=${stop}><${Icon} name="stop" />Stop</button>
+      <button class="secondary" onClick=${stop} aria-disabled=${isHeld}>
+        <${Icon} name="stop" />Stop
+      </button>
     </div>
   `;
 }
