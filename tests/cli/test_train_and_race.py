@@ -96,7 +96,7 @@ def test_robots_and_gaits_of_ones_own(tmp_path: Path) -> None:
         ((*GAIT, "--seed", "-1"), "at least 0"),
         ((*GAIT, "--divisions", "9"), "from 2 to 8"),
         ((*GAIT, "--grid-side-m", "0.2"), "leg 2 cannot reach cell 1 (front left)"),
-        ((*GAIT, "--grid-side-m", "0.001"), "at least 0.005"),
+        ((*GAIT, "--grid-side-m", "0.001"), "from 0.005 to 10"),
         ((*GAIT, "--robot", "sloth"), "stiff, compliant, slippery"),
         ((*GAIT, "--robot", '{"wings": 2}'), "femur_m"),
         ((*GAIT, "--robot", '{"femur_m": -1}'), "robot.femur_m must be from"),
