@@ -6,7 +6,7 @@ import { count, whole } from "./format.js";
 import {
   isActive, isOperator, isRaceRun, learns, liveTraining, markAsMine, matchingTable, myWork, presetOf, shownRun, work,
 } from "./selectors.js";
-import { forgetRun, options, rates, runs, scene, setEntry, stage, upsertRun } from "./store.js";
+import { forgetRun, options, rates, requestRun, requestStage, runs, scene, setEntry, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
@@ -83,28 +83,28 @@ export const canStart = computed(
 export const runPrimaryAction = () => (canStart.value ? primaryAction.value.run() : null);
 
 /**
- * Take in a run that this tab has started.
- * @param {Run} run
+ * Take in a run that this tab starts.
+ * @param {() => Promise<Run | null>} send
  */
-const adopt = (run) => {
-  upsertRun(run);
-  markAsMine(run.id);
+const adopt = async (send) => {
+  const run = await requestRun(send);
+  if (run?.id) markAsMine(run.id);
   return run;
 };
 
 /** @param {Parameters<typeof raceBody>[2]} [how] */
 const startRace = (how) =>
-  attempt("start", async () => adopt(await api.startRace(raceBody(form.value, learns, how))));
+  attempt("start", () => adopt(() => api.startRace(raceBody(form.value, learns, how))));
 
 const startTraining = () =>
-  attempt("start", async () => adopt(await api.startTraining(trainingBody(form.value))));
+  attempt("start", () => adopt(() => api.startTraining(trainingBody(form.value))));
 
 /**
  * Continue the training of a table with the form's rates.
  * @param {Run} table
  */
 export const continueTraining = (table) =>
-  attempt("start", async () => adopt(await api.startTraining(trainingBody(form.value, table.id))));
+  attempt("start", () => adopt(() => api.startTraining(trainingBody(form.value, table.id))));
 
 // ---- running work
 
@@ -116,17 +116,16 @@ const commandWork = (verb) =>
   attempt("work", async () => {
     const current = work.value?.current;
     if (!current) return;
-    const answer = await api.command(current, verb);
-    if (answer?.id) upsertRun(answer);
+    await requestRun(() => api.command(current, verb));
     if (stage.value?.run_id === current.id) await api.putStage({ playing: verb === "resume" });
   });
 
 export const stop = () =>
   attempt("work", async () => {
-    if (!work.value) return;
+    const requested = work.value?.requested;
+    if (!requested) return;
     // A race that waits for its training stops that too.
-    const answer = await api.command(work.value.requested, "stop");
-    if (answer?.id) upsertRun(answer);
+    await requestRun(() => api.command(requested, "stop"));
     if (stage.value?.playing === false) await api.putStage({ playing: true });
   });
 
@@ -175,10 +174,7 @@ export function tune(changes) {
 
 /** @param {Partial<Stage> & { time_s?: number }} changes */
 export const setStage = (changes) =>
-  attempt("stage", async () => {
-    const answer = await api.putStage(changes);
-    if (answer) stage.value = answer;
-  });
+  attempt("stage", () => requestStage(() => api.putStage(changes)));
 
 export const togglePlaying = () => {
   if (isOperator.value && stage.value?.run_id) setStage({ playing: !stage.value.playing });
@@ -189,7 +185,7 @@ export const skipToEnd = () => setStage({ time_s: scene.value?.duration_s ?? und
 export const showOnStage = (run) =>
   attempt(run.id, async () => {
     const start = isActive(run) ? {} : { time_s: 0 };
-    stage.value = (await api.putStage({ run_id: run.id, playing: true, ...start })) ?? stage.value;
+    await requestStage(() => api.putStage({ run_id: run.id, playing: true, ...start }));
     location.hash = "";
   });
 
@@ -200,10 +196,7 @@ export const showOnStage = (run) =>
  * @param {Run} run
  */
 export const resumeRun = (run) =>
-  attempt(run.id, async () => {
-    const answer = await api.command(run, "resume");
-    if (answer?.id) adopt(answer);
-  });
+  attempt(run.id, () => adopt(() => api.command(run, "resume")));
 
 /** @param {Run | DamagedRun} run */
 export const deleteRun = (run) =>

@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getCurve, getRun } from "./api.js";
 import { trainingInView } from "./selectors.js";
-import { connection, evaluations, references, runs, scene, setEntry, upsertRun } from "./store.js";
+import { connection, evaluations, references, requestRun, runs, scene, setEntry } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Evaluation, Run } from "./types.js" */
@@ -104,6 +104,7 @@ export function followCurves() {
     return id && !runs.value.has(id) ? id : null;
   });
   effect(() => {
-    if (unknown.value) getRun({ kind: "training", id: unknown.value }).then(upsertRun, () => {});
+    const id = unknown.value;
+    if (id) requestRun(() => getRun({ kind: "training", id })).catch(() => {});
   });
 }

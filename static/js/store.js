@@ -1,4 +1,4 @@
-// The server's state as signals. Written by `applyEvent` and `upsertRun`, and by answers to requests.
+// The server's state as signals. Written by events, and by answers to requests that no event has overtaken.
 import { batch, signal } from "@preact/signals";
 
 /** @import { Signal } from "@preact/signals" */
@@ -46,6 +46,11 @@ export const setEntry = (record, key, value) => {
   record.value = { ...record.value, [key]: value };
 };
 
+/** How many events came. */
+let eventCount = 0;
+/** Run id, or "stage" → the number of its newest event. @type {Map<string, number>} */
+const newestEvents = new Map();
+
 /** @type {Record<string, (data: any) => void>} */
 const handlers = {
   snapshot(data) {
@@ -58,14 +63,23 @@ const handlers = {
     stage.value = data.stage ?? null;
     scene.value = data.scene ?? null;
   },
-  run: (data) => upsertRun(data),
-  "run-deleted": ({ id }) => forgetRun(id),
+  run(data) {
+    newestEvents.set(data.id, eventCount);
+    upsertRun(data);
+  },
+  "run-deleted"({ id }) {
+    newestEvents.set(id, eventCount);
+    forgetRun(id);
+  },
   evaluation({ run_id, ...evaluation }) {
     setEntry(evaluations, run_id, [...(evaluations.value[run_id] ?? []), evaluation]);
   },
   reference: ({ run_id, greedy_distance_m }) => setEntry(references, run_id, greedy_distance_m),
   rates: ({ run_id, ...changed }) => setEntry(rates, run_id, { ...rates.value[run_id], ...changed }),
-  stage: (data) => (stage.value = data),
+  stage(data) {
+    newestEvents.set("stage", eventCount);
+    stage.value = data;
+  },
   summary: ({ run_id, done }) => setEntry(summarised, run_id, done),
   viewers: (data) => (viewers.value = data.count),
   scene: (data) => (scene.value = data),
@@ -76,13 +90,61 @@ const handlers = {
  * @param {string} name
  * @param {any} data
  */
-export const applyEvent = (name, data) => batch(() => handlers[name]?.(data));
+export const applyEvent = (name, data) =>
+  batch(() => {
+    eventCount += 1;
+    handlers[name]?.(data);
+  });
+
+/**
+ * Perform a request, and tell what of its answer is still news: an answer can arrive after the events of
+ * what happened since it was written, and must not undo them.
+ * @template Answer
+ * @param {() => Promise<Answer>} send
+ * @returns {Promise<{ answer: Answer, isNews: (key: string) => boolean }>}
+ */
+async function perform(send) {
+  const sent = eventCount;
+  const answer = await send();
+  return { answer, isNews: (key) => (newestEvents.get(key) ?? 0) <= sent };
+}
+
+/**
+ * Take in the run that a request answers with, if any, unless an event has told of it since.
+ * @template {Run | DamagedRun | null} Answer
+ * @param {() => Promise<Answer>} send
+ */
+export async function requestRun(send) {
+  const { answer, isNews } = await perform(send);
+  if (answer?.id && isNews(answer.id)) upsertRun(answer);
+  return answer;
+}
+
+/**
+ * Take in the runs of a page of a list, except those that an event has told of since.
+ * @template {{ items: (Run | DamagedRun)[] }} Answer
+ * @param {() => Promise<Answer>} send
+ */
+export async function requestRuns(send) {
+  const { answer, isNews } = await perform(send);
+  batch(() => answer.items.filter(({ id }) => isNews(id)).forEach(upsertRun));
+  return answer;
+}
+
+/**
+ * Take in the stage that a request answers with, unless an event has told of it since.
+ * @param {() => Promise<Stage | null>} send
+ */
+export async function requestStage(send) {
+  const { answer, isNews } = await perform(send);
+  if (answer && isNews("stage")) stage.value = answer;
+}
 
 /**
  * Insert a run, or replace the version that is known.
  * @param {Run | DamagedRun} run
  */
-export const upsertRun = (run) =>
+const upsertRun = (run) =>
   batch(() => {
     forgetRun(run.id);
     if ("damaged" in run) damagedRuns.value = new Map(damagedRuns.value).set(run.id, run);

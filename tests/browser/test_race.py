@@ -108,7 +108,7 @@ def test_no_click_is_lost_while_a_command_is_answered(
     expect(page.get_by_text(re.compile("^Paused at "))).to_be_visible()
     dashboard.button("Resume").click()
     expect(page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
-    page.unroute("**/api/v1/stage")
+    page.unroute_all(behavior="wait")
     dashboard.button("Stop").click()
     expect(dashboard.primary).to_have_text(re.compile("^Train "))
 

@@ -6,7 +6,9 @@ import {
   everyRun, hasTable, interruptedRun, isRaceRun, learns, liveTraining, markAsMine, matchingTable, myWork, offStage,
   raceInView, simulatedPerDecision, trainingInView, work,
 } from "../../static/js/selectors.js";
-import { applyEvent, damagedRuns, evaluations, options, rates, role, runs } from "../../static/js/store.js";
+import {
+  applyEvent, damagedRuns, evaluations, options, rates, requestRun, requestRuns, requestStage, role, runs, stage,
+} from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
@@ -49,6 +51,37 @@ test("events add, change and delete", () => {
   applyEvent("run-deleted", { id: run.id });
   assert.equal(runs.value.size, 0);
   applyEvent("an event of a later version", {});
+});
+
+/** An answer that comes after the events of `meanwhile`. */
+const answerAfter = (/** @type {() => void} */ meanwhile, /** @type {any} */ answer) => () => {
+  meanwhile();
+  return Promise.resolve(answer);
+};
+
+test("an answer does not undo the events that overtook it", async () => {
+  const [run, deleted] = [makeRun({ state: "queued" }), makeRun({})];
+  const meanwhile = () => {
+    applyEvent("run", { ...run, state: "finished" });
+    applyEvent("run-deleted", { id: deleted.id });
+    applyEvent("stage", { ...STAGE, run_id: run.id });
+  };
+  assert.equal((await requestRun(answerAfter(meanwhile, run))).state, "queued");
+  assert.equal(runs.value.get(run.id)?.state, "finished");
+  await requestRuns(answerAfter(meanwhile, { items: [run, deleted] }));
+  assert.deepEqual([...runs.value.values()].map(({ state }) => state), ["finished"]);
+  await requestStage(answerAfter(meanwhile, STAGE));
+  assert.equal(stage.value?.run_id, run.id);
+});
+
+test("an answer that no event has overtaken is taken in", async () => {
+  const run = makeRun({ state: "running" });
+  applyEvent("run", run);
+  const other = () => applyEvent("run", makeRun({}));
+  await requestRun(answerAfter(other, { ...run, state: "paused" }));
+  assert.equal(runs.value.get(run.id)?.state, "paused");
+  await requestStage(answerAfter(other, { ...STAGE, playing: false }));
+  assert.equal(stage.value?.playing, false);
 });
 
 test("a damaged run is kept apart, until it can be read or is deleted", () => {

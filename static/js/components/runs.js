@@ -3,7 +3,7 @@ import { useState } from "preact/hooks";
 import { listRuns } from "../api.js";
 import { html } from "../html.js";
 import { everyRun } from "../selectors.js";
-import { damagedRuns, upsertRun } from "../store.js";
+import { damagedRuns, requestRuns } from "../store.js";
 import { DamagedRunRow } from "./damaged-run-row.js";
 import { ExperimentRunRow } from "./experiments/experiment-run-row.js";
 import { RunRow } from "./run-row.js";
@@ -77,8 +77,7 @@ function Older({ count }) {
     try {
       const next = { ...cursors };
       for (const kind of LISTED_KINDS.filter((one) => cursors[one] !== null)) {
-        const { items, next_cursor } = await listRuns(kind, cursors[kind]);
-        items.forEach(upsertRun);
+        const { next_cursor } = await requestRuns(() => listRuns(kind, cursors[kind]));
         next[kind] = next_cursor ?? null;
       }
       setCursors(next);

@@ -3,7 +3,7 @@ import * as api from "../api.js";
 import { attempt, deleteRun } from "../actions.js";
 import { count } from "../format.js";
 import { isOperator } from "../selectors.js";
-import { upsertRun } from "../store.js";
+import { requestRun } from "../store.js";
 import { wantedRun } from "./address.js";
 import { chosenExperiment, mistakes, requestBody, trials } from "./form.js";
 
@@ -16,16 +16,14 @@ export const canStart = () =>
 
 export const start = () =>
   attempt("experiment", async () => {
-    const run = await api.startExperiment(requestBody());
-    upsertRun(run);
+    const run = await requestRun(() => api.startExperiment(requestBody()));
     wantedRun.value = run.id;
   });
 
 /** @type {(run: Run, verb: Verb) => Promise<void | null>} */
 export const command = (run, verb) =>
   attempt(run.id, async () => {
-    const answer = await api.command(run, verb);
-    if (answer?.id) upsertRun(answer);
+    await requestRun(() => api.command(run, verb));
   });
 
 /** @param {Run} run */

@@ -3,7 +3,7 @@ import { computed, effect, signal } from "@preact/signals";
 import { getRun, listRuns } from "../api.js";
 import { place } from "../page.js";
 import { everyRun, isActive } from "../selectors.js";
-import { connection, runs, upsertRun } from "../store.js";
+import { connection, requestRun, requestRuns, runs } from "../store.js";
 import { wantedRun } from "./address.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -25,9 +25,8 @@ export const hasOlder = computed(() => cursor.value !== null);
 
 /** @param {string | null} [from] */
 async function load(from) {
-  const answer = await listRuns("experiment", from).catch(() => null);
+  const answer = await requestRuns(() => listRuns("experiment", from)).catch(() => null);
   if (!answer) return;
-  answer.items.forEach(upsertRun);
   cursor.value = answer.next_cursor ?? null;
   isListed.value = true;
 }
@@ -45,7 +44,8 @@ export function followExperiments() {
     return isOpen.value && id && !runs.value.has(id) ? id : null;
   });
   effect(() => {
-    if (!unknown.value) return;
-    getRun({ kind: "experiment", id: unknown.value }).then(upsertRun, () => (wantedRun.value = null));
+    const id = unknown.value;
+    if (!id) return;
+    requestRun(() => getRun({ kind: "experiment", id })).catch(() => (wantedRun.value = null));
   });
 }
