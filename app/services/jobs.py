@@ -189,16 +189,25 @@ class Jobs:
         self._await_process(run_id)
         with self._changed:
             run = self._store.get(run_id)
-            resumable = RESUMABLE[run.kind]
-            if run.state in resumable:
+            if run.state in RESUMABLE[run.kind]:
                 return self._enqueue(resumed_entries(run, self._store))
-            choices = " or ".join(sorted((*PAUSED, *resumable)))
-            job = self._live(run_id, PAUSED, "resumed", choices)
-            run = self._change(run_id, PAUSED, "running")
-            job.resume()
-            self._supervisor.mark_shared()
-        self._publish(run)
-        return run
+            try:
+                resumed = self._resume_paused(run)
+            except Conflict as conflict:
+                if conflict.state not in RESUMABLE[run.kind]:
+                    raise
+                resumed = None
+        # A process can die between the look and the change: then the run is one to queue again.
+        return resumed or self.resume(run_id)
+
+    def _resume_paused(self, run: Run) -> Run:
+        choices = " or ".join(sorted(PAUSED | RESUMABLE[run.kind]))
+        job = self._live(run.id, PAUSED, "resumed", choices)
+        resumed = self._change(run.id, PAUSED, "running")
+        job.resume()
+        self._supervisor.mark_shared()
+        self._publish(resumed)
+        return resumed
 
     def stop(self, run_id: str) -> Run:
         """End a run with what has come of it, and wait until it has ended.

@@ -267,3 +267,31 @@ def test_a_store_that_cannot_be_used_for_a_while_costs_no_run() -> None:
         assert ended(store, jobs.train(training())).state == "finished"
     finally:
         jobs.close()
+
+
+class DyingStore(MemoryStore):
+    """Kills a run's process, and sees it fail, just before the run is marked as running."""
+
+    pid: int | None = None
+
+    def change(self, run_id: str, *args: Any, **fields: Any) -> Run:
+        if self.pid is not None and args[1] == "running":
+            pid, self.pid = self.pid, None
+            os.kill(pid, signal.SIGKILL)
+            until(lambda: self.get(run_id).state == "failed")
+        return super().change(run_id, *args, **fields)
+
+
+def test_one_that_dies_as_it_is_resumed_is_queued_again() -> None:
+    store = DyingStore()
+    jobs = Jobs(store, Recordings(), EventBus(), cores=1)
+    jobs.open()
+    try:
+        run = jobs.train(endless())
+        moving(store, run)
+        jobs.pause(run.id)
+        store.pid = pid_of(jobs, run)
+        assert jobs.resume(run.id).state == "queued"
+        until(lambda: store.get(run.id).state == "running")
+    finally:
+        jobs.close()
