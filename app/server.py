@@ -20,48 +20,47 @@ from app.api import (
     experiments,
     health,
     metrics,
-    moving,
     options,
     pages,
     problems,
     races,
     stage,
     trainings,
+    transfer,
     what_if,
 )
-from app.api.addresses import caller
 from app.api.auth import TokenGuard
+from app.api.body_limit import BodyLimit, SecurityHeaders
+from app.api.concurrency_limit import Turns
 from app.api.deps import Services
 from app.api.disconnects import Disconnects
-from app.api.files import connection_table, raise_file_limit
-from app.api.held import HeldBodies
-from app.api.http_protocol import KEEP_ALIVE_S, limited_http
-from app.api.limits import BodyLimit, SecurityHeaders
-from app.api.listener import ACCEPTS_AT_ONCE, WAITING, Listener, listen
-from app.api.origins import HostGuard
-from app.api.rates import RateLimit
-from app.api.turns import Turns
+from app.api.host_check import HostGuard
+from app.api.memory_limit import HeldBodies
+from app.api.rate_limit import RateLimit
 from app.api.wellformed import WellFormed
 from app.domain.errors import HexapodError
-from app.services import logs
-from app.services.database.opening import open_store
-from app.services.errors import OwnershipLost
-from app.services.idempotency import Idempotency
-from app.services.jobs import Jobs
-from app.services.memory_store import MemoryStore
-from app.services.places import Places
-from app.services.recordings import Recordings
-from app.services.sessions import Sessions
-from app.services.stage import Stage
-from app.services.store import RunStore
-from app.services.trial_pool import TrialPool
-from app.services.what_if import WhatIf
-from app.services.whereabouts import note_address
-from app.services.witness import Witness
+from app.events import logs
+from app.events.run_metrics import Witness
+from app.jobs.jobs import Jobs
+from app.limits.addresses import caller
+from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
+from app.limits.listener import ACCEPTS_AT_ONCE, WAITING, Listener, listen
+from app.limits.open_files import connection_table, raise_file_limit
+from app.limits.places import Places
 from app.settings import Settings
+from app.stage.stage import Stage
+from app.storage.address_file import note_address
+from app.storage.database.opening import open_store
+from app.storage.errors import OwnershipLost
+from app.storage.idempotency import Idempotency
+from app.storage.memory_store import MemoryStore
+from app.storage.recordings import Recordings
+from app.storage.sessions import Sessions
+from app.storage.store import RunStore
 from app.viewer.protocol import websocket_options
-from app.viewer.routes import viewer_routes
-from app.viewer.theatre import Theatre
+from app.viewer.service import Theatre, viewer_routes
+from app.what_if.trial_pool import TrialPool
+from app.what_if.what_if import WhatIf
 
 GRACE_S = 3
 SWITCH_S = 0.001
@@ -137,7 +136,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
 def _add_routes(app: FastAPI, theatre: Theatre) -> None:
     versioned = APIRouter(prefix="/api/v1")
     # First: `import` is no run's id.
-    for module in (moving, trainings, races, experiments, stage, events, what_if, options):
+    for module in (transfer, trainings, races, experiments, stage, events, what_if, options):
         versioned.include_router(module.router)
     app.include_router(versioned)
     app.include_router(health.router)

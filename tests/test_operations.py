@@ -7,10 +7,10 @@ from dataclasses import fields
 from pathlib import Path
 
 from app.cli import COMMANDS
-from app.services.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
-from app.services.store import TABLE
 from app.settings import PREFIX, Settings
-from tests.services.stores import opened, training
+from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
+from app.storage.store import TABLE
+from tests.storage.stores import opened, training
 
 TEXT = (Path(__file__).parent.parent / "docs" / "operations.md").read_text("utf-8")
 

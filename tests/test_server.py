@@ -52,7 +52,7 @@ def test_a_stream_begins_with_a_snapshot_and_goes_on_with_what_happens(
 def test_what_only_experiments_need_is_not_in_the_server() -> None:
     """A part of SciPy is there in any case: viser's meshes want it."""
     look = (
-        "import sys, app.server, app.services.worker\n"
+        "import sys, app.server, app.jobs.worker\n"
         "print([m for m in ('distributed', 'matplotlib', 'scipy.stats') if m in sys.modules])"
     )
     done = subprocess.run(

@@ -9,15 +9,15 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.addresses import caller
-from app.api.connections import Connection
 from app.api.cookies import SessionCookie
 from app.api.problems import problem
-from app.api.rates import too_many
+from app.api.rate_limit import too_many
 from app.domain.errors import HexapodError
-from app.services.buckets import Buckets
-from app.services.sessions import Sessions
+from app.limits.addresses import caller
+from app.limits.connections import Connection
+from app.limits.token_bucket import Buckets
 from app.settings import Settings
+from app.storage.sessions import Sessions
 
 Role = Literal["operator", "spectator"]
 

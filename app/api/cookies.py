@@ -3,7 +3,7 @@
 from starlette.datastructures import Headers
 from starlette.requests import cookie_parser
 
-from app.services.sessions import SESSION_S
+from app.storage.sessions import SESSION_S
 
 NAME = "hexapods_operator"
 

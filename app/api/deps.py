@@ -8,19 +8,19 @@ from fastapi import Depends, Header, HTTPException, Request
 from starlette.requests import ClientDisconnect
 
 from app.api.auth import Role
-from app.api.sentences import VALID
+from app.api.descriptions import VALID
+from app.events.run_metrics import Witness
+from app.jobs.jobs import Jobs
+from app.limits.memory_budget import MemoryBudget
+from app.limits.places import Places
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
-from app.services.idempotency import Idempotency, Start
-from app.services.jobs import Jobs
-from app.services.memory_budget import MemoryBudget
-from app.services.places import Places
-from app.services.recordings import Recordings
-from app.services.stage import Stage
-from app.services.store import Run, RunStore
-from app.services.what_if import WhatIf
-from app.services.witness import Witness
+from app.stage.stage import Stage
+from app.storage.idempotency import Idempotency, Start
+from app.storage.recordings import Recordings
+from app.storage.store import Run, RunStore
+from app.what_if.what_if import WhatIf
 
 Film = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock], bytes]
 """From a race, its name and a clock to a file that viser's client plays."""

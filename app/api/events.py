@@ -8,12 +8,12 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app import __version__
-from app.api.addresses import caller
 from app.api.deps import Given, Listener, Services, Who
-from app.api.sentences import VALID
-from app.services.errors import Busy
-from app.services.json_text import json_text
-from app.services.places import NoPlace, Refusal
+from app.api.descriptions import VALID
+from app.limits.addresses import caller
+from app.limits.places import NoPlace, Refusal
+from app.storage.errors import Busy
+from app.storage.json_text import json_text
 
 NEWEST_RUNS = 50
 RETRY_MS = 1000

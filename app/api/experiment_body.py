@@ -7,6 +7,7 @@ from pydantic import BeforeValidator, Field, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
+from app.api.descriptions import VALID
 from app.api.fields import (
     INTEGRAL,
     Alpha,
@@ -21,7 +22,6 @@ from app.api.fields import (
     Steps,
 )
 from app.api.schemas import Gait, GaitBody, check_agent
-from app.api.sentences import VALID
 from app.domain.observation import Observation
 from app.domain.robot import robot
 from app.experiments.config import (
@@ -31,8 +31,8 @@ from app.experiments.config import (
     ExperimentName,
     experiment_config,
 )
+from app.jobs.submissions import MAX_WORKERS, ExperimentStart
 from app.runs.config import SimulatorName
-from app.services.experiment_entry import MAX_WORKERS, ExperimentStart
 
 MAX_VALUES = 100
 

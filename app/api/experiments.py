@@ -13,12 +13,12 @@ from app.api.experiment_body import ExperimentBody
 from app.api.formats import attachment, chosen, file_response
 from app.api.runs import RunPath, accepted, find, run_routes
 from app.experiments.config import ExperimentConfig
-from app.services.artifact_file import ArtifactFile
-from app.services.configs import config_as_json
-from app.services.errors import Conflict, NotFound
-from app.services.json_text import finite
-from app.services.store import REPORT, SUMMARY, UNENDED, Run
-from app.services.stored_trials import trials_as_csv
+from app.storage.artifact_file import ArtifactFile
+from app.storage.configs import config_as_json
+from app.storage.errors import Conflict, NotFound
+from app.storage.json_text import finite
+from app.storage.store import REPORT, SUMMARY, UNENDED, Run
+from app.storage.stored_trials import trials_as_csv
 
 REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "

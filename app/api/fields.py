@@ -13,12 +13,12 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from app.api.sentences import VALID
+from app.api.descriptions import VALID
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M
 from app.domain.robot import AZIMUTH, MAX_LEGS, MIN_LEGS, MOUNT_RADIUS, PRESETS, RANGES
+from app.domain.text import MAX_NAME, check_name, invisible_ranges
 from app.runs.config import MAX_STEPS
-from app.services.text import MAX_NAME, check_name, invisible_ranges
 
 
 def _name(text: str) -> str:

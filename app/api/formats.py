@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
-from app.services.artifact_file import ArtifactFile, pieces
+from app.storage.artifact_file import ArtifactFile, pieces
 
 _TYPES = {
     "application/json": "json",

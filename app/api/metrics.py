@@ -22,8 +22,8 @@ from starlette.responses import Response
 from app import __version__
 from app.api.contract import TEXT, answers
 from app.api.deps import Services
-from app.services.damage import DamageCount
-from app.services.store import STATES
+from app.events.damage import DamageCount
+from app.storage.store import STATES
 
 router = APIRouter(tags=["health"])
 

@@ -14,9 +14,9 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import compile_path
 
-from app.api.sentences import in_sentences
+from app.api.descriptions import in_sentences
 from app.domain.errors import HexapodError, InvalidInput
-from app.services.errors import (
+from app.storage.errors import (
     Busy,
     Conflict,
     Gone,

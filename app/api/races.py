@@ -14,12 +14,12 @@ from app.api.schemas import RaceBody
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
-from app.services import replays
-from app.services.artifact_file import ArtifactFile, BytesFile
-from app.services.errors import Conflict
-from app.services.store import UNENDED, Run
-from app.services.stored_recordings import RACE
-from app.services.timeline import timeline
+from app.stage import recording_export
+from app.stage.timeline import timeline
+from app.storage.artifact_file import ArtifactFile, BytesFile
+from app.storage.errors import Conflict
+from app.storage.store import UNENDED, Run
+from app.storage.stored_recordings import RACE
 
 router = run_routes("race")
 
@@ -59,7 +59,9 @@ def get_recording(
         return attachment(film, "application/octet-stream", f"race-{run_id}.viser")
     if kind == "npz":
         return attachment(_arrays(services, run), "application/x-npz", f"race-{run_id}.npz")
-    chunks = replays.as_json(lambda: _lanes(services, run), run.lane_training_ids, config.steps)
+    chunks = recording_export.as_json(
+        lambda: _lanes(services, run), run.lane_training_ids, config.steps
+    )
     return StreamingResponse(chunks, media_type="application/json")
 
 

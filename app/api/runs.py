@@ -17,10 +17,10 @@ from app.api.answers import (
     TrainingView,
 )
 from app.api.deps import Given, Services
-from app.api.sentences import MAX_PAGE, VALID
-from app.services.errors import Damaged, NotFound
-from app.services.jobs import Jobs
-from app.services.store import AnyRun, DamagedRun, Kind, Run, State
+from app.api.descriptions import MAX_PAGE, VALID
+from app.jobs.jobs import Jobs
+from app.storage.errors import Damaged, NotFound
+from app.storage.store import AnyRun, DamagedRun, Kind, Run, State
 
 RunPath = Annotated[str, Path(description="of the run")]
 

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
+from app.api.descriptions import VALID
 from app.api.fields import (
     INTEGRAL,
     Alpha,
@@ -22,11 +23,11 @@ from app.api.fields import (
     Steps,
     number,
 )
-from app.api.sentences import VALID
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import NAMED_GAITS, GaitSpec, Symmetry
 from app.domain.observation import Observation
 from app.domain.robot import MAX_LEGS, robot
+from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
 from app.runs.clocks import Clock
 from app.runs.config import (
     MAX_LANES,
@@ -36,7 +37,6 @@ from app.runs.config import (
     TrainingConfig,
     Walk,
 )
-from app.services.entries import LaneStart, RaceStart, TrainingStart
 
 Leg = Annotated[
     # Which legs there are depends on the robot, so the domain checks them.

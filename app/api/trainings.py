@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from fastapi import Query, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
+from app.api import curves
 from app.api.answers import CurveView, QTableView, TrainingView
 from app.api.contract import BINARY, LOCATION, TEXT, answers, takes_file
 from app.api.deps import Given, StartRequest
@@ -12,13 +13,13 @@ from app.api.fields import Name
 from app.api.formats import attachment, chosen
 from app.api.runs import RunPath, accepted, find, run_routes
 from app.api.schemas import ChangeBody, TrainingBody
+from app.archive import table_import
 from app.domain.errors import InvalidInput
+from app.jobs.submissions import open_table, read_rows
 from app.runs import tables
-from app.services import curves, imports
-from app.services.artifact_file import closing_after
-from app.services.entries import open_table, read_rows
-from app.services.errors import Conflict
-from app.services.json_text import finite
+from app.storage.artifact_file import closing_after
+from app.storage.errors import Conflict
+from app.storage.json_text import finite
 
 # Before the routes that all runs have: `import` is no run's id.
 router = run_routes("training")
@@ -58,7 +59,7 @@ def import_training(
     if not asked.body:
         raise InvalidInput("send the .npz file of a Q-table as the request's body")
     jobs, agents = services.jobs, services.agents
-    run = asked.start(services, lambda key: imports.adopt(jobs, asked.body, agents, name, key))
+    run = asked.start(services, lambda key: table_import.adopt(jobs, asked.body, agents, name, key))
     location = request.url_for("get_training", run_id=run.id).path
     return JSONResponse(jobs.view(run), 201, {"Location": location})
 

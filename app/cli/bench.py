@@ -4,7 +4,7 @@ import argparse
 import json
 from collections.abc import Callable
 
-from app.cli import measures
+from app.cli import benchmarks
 from app.cli.terminal import progress, show_table
 
 LIMITS = {
@@ -27,9 +27,9 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
 def run(options: argparse.Namespace) -> int:
     """Measure everything once; takes about a minute."""
     steps: tuple[Callable[[], dict[str, float]], ...] = (
-        measures.training,
-        measures.look_ahead,
-        measures.racing,
+        benchmarks.training,
+        benchmarks.look_ahead,
+        benchmarks.racing,
         _stage,
     )
     figures: dict[str, float] = {}
@@ -48,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _stage() -> dict[str, float]:
     # Its imports take a second that the other commands need not.
-    from app.viewer.measure import measure_stage_update  # noqa: PLC0415
+    from app.viewer.update_cost import measure_stage_update  # noqa: PLC0415
 
     milliseconds, size = measure_stage_update(updates=200)
     return {"stage_update_ms": milliseconds, "stage_update_bytes": size}

@@ -3,9 +3,9 @@
 import argparse
 import json
 
+from app.archive.transfer import export_run
 from app.cli.files import check_writable, write_whole
 from app.cli.runs import add_data, found, looking
-from app.services.moving import export_run
 from app.settings import read_settings
 
 

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from app.agents.registry import registered
-from app.cli.asking import ask_server
+from app.archive.archive import MAX_BYTES
 from app.cli.runs import add_data
+from app.cli.server_client import ask_server
 from app.domain.errors import InvalidInput
-from app.services.archives import MAX_BYTES
 from app.settings import Settings, read_settings
 
 
@@ -50,11 +50,11 @@ def _read(path: str) -> bytes:
 
 def _import(settings: Settings, data: bytes, said: str) -> dict[str, Any]:
     # Databases take a moment to import, which other commands need not.
-    from app.services.database.folder_lock import FolderInUse  # noqa: PLC0415
-    from app.services.database.opening import open_store  # noqa: PLC0415
-    from app.services.ids import RunIds  # noqa: PLC0415
-    from app.services.moving import import_run  # noqa: PLC0415
-    from app.services.views import run_view  # noqa: PLC0415
+    from app.archive.transfer import import_run  # noqa: PLC0415
+    from app.events.run_view import run_view  # noqa: PLC0415
+    from app.storage.database.folder_lock import FolderInUse  # noqa: PLC0415
+    from app.storage.database.opening import open_store  # noqa: PLC0415
+    from app.storage.run_ids import RunIds  # noqa: PLC0415
 
     try:
         with open_store(settings) as store:

@@ -11,16 +11,16 @@ from contextlib import AbstractContextManager
 from datetime import datetime
 from urllib.parse import quote
 
-from app.cli.asking import ask_server
 from app.cli.options import whole
 from app.cli.race import show_lanes
+from app.cli.server_client import ask_server
 from app.cli.terminal import show_table
 from app.domain.errors import InvalidInput
-from app.services.errors import NotFound
-from app.services.json_text import json_text
-from app.services.store import KINDS, STATES, AnyRun, DamagedRun, Run, RunStore
-from app.services.views import as_shown, run_view
+from app.events.run_view import as_shown, run_view
 from app.settings import Settings, read_settings
+from app.storage.errors import NotFound
+from app.storage.json_text import json_text
+from app.storage.store import KINDS, STATES, AnyRun, DamagedRun, Run, RunStore
 
 _LIMIT = 50
 _HEAD = ("run", "kind", "state", "steps", "result", "began", "name")
@@ -64,7 +64,7 @@ def found(store: RunStore, run_id: str) -> AnyRun:
 def looking(settings: Settings) -> AbstractContextManager[RunStore]:
     """The store of a data folder, for who only reads."""
     # Databases take a moment to import, which other commands need not.
-    from app.services.database.reading import look_into_store  # noqa: PLC0415
+    from app.storage.database.read_only import look_into_store  # noqa: PLC0415
 
     return look_into_store(settings)
 
@@ -150,8 +150,8 @@ def _show(options: argparse.Namespace) -> int:
 
 
 def _delete(options: argparse.Namespace) -> int:
-    from app.services.database.folder_lock import FolderInUse  # noqa: PLC0415
-    from app.services.database.opening import open_store  # noqa: PLC0415
+    from app.storage.database.folder_lock import FolderInUse  # noqa: PLC0415
+    from app.storage.database.opening import open_store  # noqa: PLC0415
 
     settings = read_settings(data=options.data)
     # First, so that a wrong id is no reason to ask anyone for anything.

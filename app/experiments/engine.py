@@ -11,7 +11,7 @@ from app.experiments.cluster import ClusterLost, Where, connect
 from app.experiments.plan import Trial
 from app.experiments.trial import TrialResult
 from app.experiments.versions import versions
-from app.experiments.work import Done, OtherResults, work
+from app.experiments.worker import Done, OtherResults, work
 
 if TYPE_CHECKING:
     from distributed import Client, Future

@@ -8,15 +8,15 @@ from importlib.metadata import version
 from itertools import combinations
 from typing import Any
 
+from app.experiments.claims import CLAIMS_OF
 from app.experiments.claims.judging import judge
-from app.experiments.claims.of_experiment import CLAIMS_OF
 from app.experiments.config import ExperimentConfig, as_json
 from app.experiments.measures import Yardstick, beside, curve, distances, measures
+from app.experiments.narrative.narrative import tell
 from app.experiments.plan import Plan
 from app.experiments.published import published
-from app.experiments.seen import Seen, named, sorted_out, stratum, yardsticks_of
+from app.experiments.setting_results import Seen, named, sorted_out, stratum, yardsticks_of
 from app.experiments.statistics import decided, improvement
-from app.experiments.story.telling import tell
 from app.experiments.trial import TrialResult
 
 FORMAT = 1

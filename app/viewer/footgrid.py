@@ -7,8 +7,7 @@ import viser
 from numpy.typing import NDArray
 
 from app.domain.types import FloatArray, IntArray
-from app.services.attitude import yaw_rad
-from app.services.frames import Cast, KnowledgeView, LaneView
+from app.stage.stage_frame import Cast, KnowledgeView, LaneView, yaw_rad
 from app.viewer.colormap import Rgb, batched, rgb, value_colors
 from app.viewer.shapes import Shape
 

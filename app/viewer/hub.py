@@ -15,7 +15,7 @@ from typing import Self
 from starlette.types import Scope
 from starlette.websockets import WebSocket
 
-from app.services.places import NoPlace, Places
+from app.limits.places import NoPlace, Places
 from app.viewer import follow, wire
 from app.viewer.session import Counters, Session
 from app.viewer.snapshot import UNWANTED, Snapshot

@@ -7,7 +7,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.services.frames import Cast, StageFrame
+from app.stage.stage_frame import Cast, StageFrame
 from app.viewer.colormap import Rgb, batched, mixed, rgb
 from app.viewer.robot_mesh import RobotMesh
 

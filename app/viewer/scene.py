@@ -4,10 +4,10 @@ import math
 
 import viser
 
-from app.services.frames import Cast, StageFrame
-from app.viewer.extras import Ghosts, PhotoFinish
+from app.stage.stage_frame import Cast, StageFrame
 from app.viewer.footgrid import FootGridDrawing
-from app.viewer.plates import Plate
+from app.viewer.ghosts import Ghosts, PhotoFinish
+from app.viewer.name_labels import Plate
 from app.viewer.robot_mesh import RobotMesh
 from app.viewer.robots import Robots
 from app.viewer.track import LAMP, SQUARE_M, WORLD, draw_ground, draw_lanes

@@ -4,8 +4,8 @@ import logging
 import threading
 import time
 
-from app.services.bus import EventBus
-from app.services.stage import Stage
+from app.events.bus import EventBus
+from app.stage.stage import Stage
 from app.viewer.scene import StageScene
 
 FRAMES_PER_S, IDLE_FRAMES_PER_S, SCENES_PER_S = 30.0, 10.0, 5.0

@@ -8,8 +8,8 @@ import pytest
 from starlette.testclient import TestClient
 
 from app.server import create_app
-from app.services.database.opening import open_store
 from app.settings import Settings
+from app.storage.database.opening import open_store
 from tests.api.calls import ADDRESS, Api
 
 

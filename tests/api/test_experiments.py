@@ -10,7 +10,7 @@ import pytest
 
 from app.experiments.config import experiment_config
 from tests.api.calls import Api, refused
-from tests.services.experiments import tried
+from tests.jobs.experiments import tried
 
 Serve = Callable[..., Api]
 SMALL = {

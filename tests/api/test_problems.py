@@ -8,7 +8,7 @@ from starlette.requests import Request
 
 from app.api.problems import _hexapod_error
 from app.domain.errors import DamagedFile, HexapodError, InvalidInput
-from app.services.errors import Busy, Conflict, JobFailed, NotFound, StorageFailed, StorageFull
+from app.storage.errors import Busy, Conflict, JobFailed, NotFound, StorageFailed, StorageFull
 
 
 @pytest.mark.parametrize(

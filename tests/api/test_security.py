@@ -10,8 +10,8 @@ from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from app.api.auth import WRONG_TOKENS
+from app.api.body_limit import IMPORT_PATH, MAX_BODY_BYTES
 from app.api.cookies import NAME
-from app.api.limits import IMPORT_PATH, MAX_BODY_BYTES
 from tests.api.calls import Api, refused
 
 TOKEN = "a-token-for-tests"

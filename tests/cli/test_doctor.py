@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from app.services.database.folder_lock import lock_folder
-from app.services.database.opening import DATABASE_FILE
-from app.services.whereabouts import note_address
+from app.storage.address_file import note_address
+from app.storage.database.folder_lock import lock_folder
+from app.storage.database.opening import DATABASE_FILE
 from tests.cli.running import hexapods
 from tests.postgresql import PostgresServer
-from tests.services.stores import database_url, opened
+from tests.storage.stores import database_url, opened
 
 ANY_PORT = {"HEXAPODS_PORT": "0"}
 

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from app.services.database.store import SqlStore
-from app.services.store import TABLE
+from app.storage.database.store import SqlStore
+from app.storage.store import TABLE
 from tests.cli.running import ROOT, hexapods, output, refusal
-from tests.services.ended import ended_experiment, ended_race, ended_training
-from tests.services.stores import opened, training
+from tests.storage.ended import ended_experiment, ended_race, ended_training
+from tests.storage.stores import opened, training
 
 TRAINING, RACED = "00000000000t1", "00000000000r1"
 

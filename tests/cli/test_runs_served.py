@@ -9,8 +9,8 @@ import pytest
 
 from tests.cli.running import hexapods, output, refusal
 from tests.served import Served
-from tests.services.ended import ended_race, ended_training
-from tests.services.stores import opened, training
+from tests.storage.ended import ended_race, ended_training
+from tests.storage.stores import opened, training
 
 TRAINING, RACED, TOKEN = "00000000000t1", "00000000000r1", "a-token-for-tests"
 

@@ -23,26 +23,26 @@ import numpy as np
 from sqlalchemy import Connection, Engine, event, select
 
 from app.agents.registry import OURS
+from app.archive.table_import import adopt
+from app.archive.transfer import export_run, import_run
 from app.assembly import build_learner, finish_training
+from app.events.bus import EventBus
+from app.jobs.job import Job
+from app.jobs.jobs import Jobs
+from app.jobs.messages import Batch, Began, Checkpointed, Ended, Saved, TrainingOrder
+from app.jobs.submissions import LaneStart, RaceStart, TrainingStart, load_table
 from app.runs.config import TrainingConfig, Walk
 from app.runs.records import Evaluated, StepTaken
 from app.runs.tables import snapshot, to_bytes
 from app.runs.training import train
-from app.services.bus import EventBus
-from app.services.database.schema import ARTIFACTS
-from app.services.database.store import SqlStore
-from app.services.entries import LaneStart, RaceStart, TrainingStart, load_table
-from app.services.errors import Conflict, StorageFailed, StorageFull
-from app.services.ids import RunIds
-from app.services.imports import adopt
-from app.services.job import Job
-from app.services.jobs import Jobs
-from app.services.moving import export_run, import_run
-from app.services.orders import Batch, Began, Checkpointed, Ended, Saved, TrainingOrder
-from app.services.recordings import Recordings
-from app.services.store import TABLE, IdempotencyKey, Run
-from tests.services.ended import GAIT, ended_experiment, ended_training
-from tests.services.stores import opened, training
+from app.storage.database.schema import ARTIFACTS
+from app.storage.database.store import SqlStore
+from app.storage.errors import Conflict, StorageFailed, StorageFull
+from app.storage.recordings import Recordings
+from app.storage.run_ids import RunIds
+from app.storage.store import TABLE, IdempotencyKey, Run
+from tests.storage.ended import GAIT, ended_experiment, ended_training
+from tests.storage.stores import opened, training
 
 KEPT, MOVED, TRIED, LEARNING = "00000000000k1", "00000000000m1", "00000000000e1", "00000000000g1"
 KEY = IdempotencyKey("key", "0" * 64)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from app.services.database.opening import DATABASE_FILE
+from app.storage.database.opening import DATABASE_FILE
 
 
 def open_files(pid: int) -> list[str]:

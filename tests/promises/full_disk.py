@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from app.services.database.store import SqlStore
-from app.services.errors import StorageFull
-from app.services.store import LIVE, TABLE
-from tests.services.stores import opened, training
+from app.storage.database.store import SqlStore
+from app.storage.errors import StorageFull
+from app.storage.store import LIVE, TABLE
+from tests.storage.stores import opened, training
 
 MB = 1_000_000
 LIMIT_BYTES = 1 * MB

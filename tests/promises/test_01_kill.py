@@ -13,13 +13,13 @@ from pathlib import Path
 
 import pytest
 
-from app.services.database.opening import DATABASE_FILE
-from app.services.database.store import SqlStore
+from app.storage.database.opening import DATABASE_FILE
+from app.storage.database.store import SqlStore
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.promises.processes import start_script
 from tests.promises.writer import CHECKPOINT, checkpoint
-from tests.services.stores import database_url, opened
+from tests.storage.stores import database_url, opened
 
 KILLS = {"sqlite": at_length(6, 50), "postgresql": at_length(3, 50)}
 

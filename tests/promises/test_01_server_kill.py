@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 from app.runs.tables import from_bytes
-from app.services.store import CHECKPOINT
+from app.storage.store import CHECKPOINT
 from tests.promises.length import at_length
 from tests.served import BODY, Served
-from tests.services.stores import opened
+from tests.storage.stores import opened
 
 KILLS = at_length(2, 50)
 LOST_S = 5.0

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from app.services.database.opening import DATABASE_FILE
-from app.services.errors import Conflict
-from app.services.store import QUEUED
+from app.storage.database.opening import DATABASE_FILE
+from app.storage.errors import Conflict
+from app.storage.store import QUEUED
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.promises.processes import start_script
-from tests.services.stores import BACKENDS, database_url, opened, training
+from tests.storage.stores import BACKENDS, database_url, opened, training
 
 HELD_S = at_length(2.0, 5.0)
 THREADS, WRITES = 8, 25
@@ -49,7 +49,7 @@ def test_a_locked_database_loses_nothing(
                 raise
 
         holder = start_script(
-            "tests.promises.holder", url or str(tmp_path / DATABASE_FILE), str(HELD_S)
+            "tests.promises.database_holder", url or str(tmp_path / DATABASE_FILE), str(HELD_S)
         )
         assert holder.stdout is not None
         assert holder.stdout.readline() == "held\n"

@@ -11,12 +11,12 @@ import pytest
 
 from app.assembly import build_learner
 from app.domain.errors import DamagedFile
+from app.jobs.submissions import load_table
 from app.runs.config import TrainingConfig
 from app.runs.tables import from_bytes, snapshot, to_bytes
 from app.runs.training import train
-from app.services.entries import load_table
-from app.services.store import TABLE
-from tests.services.stores import opened, training
+from app.storage.store import TABLE
+from tests.storage.stores import opened, training
 
 DAMAGES = 1000
 

@@ -15,10 +15,10 @@ from app.assembly import build_learner
 from app.runs.config import TrainingConfig
 from app.runs.tables import snapshot, to_bytes
 from app.runs.training import train
-from app.services.store import CHECKPOINT
+from app.storage.store import CHECKPOINT
 from tests.promises.length import at_length
 from tests.served import Served
-from tests.services.stores import opened, training
+from tests.storage.stores import opened, training
 
 CONFIG = TrainingConfig(gait="left-right-origin", steps=500, evaluate_every=1)
 STEP = 3

@@ -13,8 +13,8 @@ from collections.abc import Callable
 import psutil
 import pytest
 
+from tests.jobs.experiments import sweep, tried
 from tests.served import BODY, ENDLESS, Served
-from tests.services.experiments import sweep, tried
 
 
 def test_a_killed_job_is_failed_within_five_seconds(launch: Callable[..., Served]) -> None:

@@ -12,14 +12,14 @@ from pathlib import Path
 
 import pytest
 
+from app.events.bus import EventBus
+from app.jobs.jobs import Jobs
+from app.jobs.submissions import TrainingStart
 from app.runs.config import TrainingConfig
-from app.services.bus import EventBus
-from app.services.database.store import SqlStore
-from app.services.entries import TrainingStart
-from app.services.jobs import Jobs
-from app.services.recordings import Recordings
-from app.services.store import Run
-from tests.services.stores import opened, training
+from app.storage.database.store import SqlStore
+from app.storage.recordings import Recordings
+from app.storage.store import Run
+from tests.storage.stores import opened, training
 
 DAY = timedelta(days=1)
 both_ways = pytest.mark.parametrize("jump", [DAY, -DAY], ids=["forward", "back"])

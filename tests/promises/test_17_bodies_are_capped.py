@@ -8,7 +8,7 @@ import http.client
 from collections.abc import Iterator
 from urllib.parse import urlsplit
 
-from app.api.limits import MAX_BODY_BYTES
+from app.api.body_limit import MAX_BODY_BYTES
 from app.server import create_app
 from app.settings import Settings
 from tests.browser.serving import Serving

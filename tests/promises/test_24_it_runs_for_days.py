@@ -14,7 +14,7 @@ import httpx2
 import psutil
 import pytest
 
-from app.services.database.engine import SQLITE_FILES
+from app.storage.database.engine import SQLITE_FILES
 from tests.browser.serving import Serving
 from tests.promises.files import database_files
 from tests.promises.length import at_length

@@ -12,19 +12,19 @@ from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, Engine, text
 
-from app.services.database import migrating
-from app.services.database.engine import Database, postgresql_engine, sqlite_engine
-from app.services.database.migrating import migrate, newest_revision
-from app.services.database.opening import DATABASE_FILE
-from app.services.database.schema import METADATA
-from app.services.database.store import SqlStore
-from app.services.store import TABLE
+from app.storage.database import migration
+from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
+from app.storage.database.migration import migrate, newest_revision
+from app.storage.database.opening import DATABASE_FILE
+from app.storage.database.schema import METADATA
+from app.storage.database.store import SqlStore
+from app.storage.store import TABLE
 from tests.postgresql import PostgresServer
 from tests.promises.released import sample
-from tests.services.stores import BACKENDS, TRIALS, database_url, opened, training
+from tests.storage.stores import BACKENDS, TRIALS, database_url, opened, training
 
 FOLDER = Path(sample.__file__).parent
-SCRIPTS = ScriptDirectory(str(Path(migrating.__file__).with_name("migrations")))
+SCRIPTS = ScriptDirectory(str(Path(migration.__file__).with_name("migrations")))
 REVISIONS = [script.revision for script in SCRIPTS.walk_revisions()]
 
 on_both = pytest.mark.parametrize("backend", BACKENDS)
@@ -111,7 +111,7 @@ def test_a_migration_that_fails_changes_nothing(
 ) -> None:
     """A further schema, made up here, that gives up halfway."""
     broken = tmp_path / "migrations"
-    shutil.copytree(Path(migrating.__file__).with_name("migrations"), broken)
+    shutil.copytree(Path(migration.__file__).with_name("migrations"), broken)
     (broken / "versions" / "schema_9999.py").write_text(
         "from alembic import op\n"
         f"revision, down_revision = '9999', '{newest_revision()}'\n"
@@ -120,13 +120,13 @@ def test_a_migration_that_fails_changes_nothing(
         "    op.execute('UPDATE runs SET half = 1')\n"
         "    raise RuntimeError('halfway')\n"
     )
-    made = migrating._config()
+    made = migration._config()
     made.set_main_option("script_location", str(broken))
     with database_url(backend, postgresql) as url:
         with opened(tmp_path, url) as store:
             sample.put(store)
         with monkeypatch.context() as patch:
-            patch.setattr(migrating, "_config", lambda: made)
+            patch.setattr(migration, "_config", lambda: made)
             with pytest.raises(RuntimeError, match="halfway"), opened(tmp_path, url):
                 pass
         with opened(tmp_path, url) as store:

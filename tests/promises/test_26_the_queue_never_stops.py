@@ -23,7 +23,7 @@ import httpx2
 import psutil
 import pytest
 
-from app.services.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
+from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
 from tests.promises.length import at_length
 from tests.served import BODY, ENDLESS, LONG_S, Served
 

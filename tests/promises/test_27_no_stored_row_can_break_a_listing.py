@@ -21,18 +21,18 @@ import pytest
 from playwright.sync_api import Page, expect
 from sqlalchemy import text
 
+from app.archive import archive
+from app.archive.archived_trials import TRIALS
+from app.archive.transfer import RUN, export_run
+from app.events.run_view import run_view
 from app.runs import tables
 from app.runs.tables import from_bytes
-from app.services import archives
-from app.services.archived_trials import TRIALS
-from app.services.database.engine import Database, postgresql_engine
-from app.services.database.opening import DATABASE_FILE
-from app.services.database.schema import METADATA
-from app.services.database.store import SqlStore
-from app.services.errors import Damaged
-from app.services.moving import RUN, export_run
-from app.services.store import TABLE, DamagedRun
-from app.services.views import run_view
+from app.storage.database.engine import Database, postgresql_engine
+from app.storage.database.opening import DATABASE_FILE
+from app.storage.database.schema import METADATA
+from app.storage.database.store import SqlStore
+from app.storage.errors import Damaged
+from app.storage.store import TABLE, DamagedRun
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import serving
 from tests.cli.running import hexapods, output
@@ -40,8 +40,8 @@ from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.promises.worst_values import BROKEN_TEXT, IMPORTED, STORED, places, put
 from tests.served import Served
-from tests.services.ended import ended_experiment, ended_race, ended_training
-from tests.services.stores import opened, training
+from tests.storage.ended import ended_experiment, ended_race, ended_training
+from tests.storage.stores import opened, training
 
 SOUND, TRAINING, RACED, TRIED = "00000000000s1", "00000000000t1", "00000000000r1", "00000000000e1"
 KINDS = {TRAINING: "trainings", RACED: "races", TRIED: "experiments"}
@@ -122,7 +122,7 @@ def mutations(path: str, data: bytes) -> Iterator[Callable[[], bytes]]:
             for value in IMPORTED:
                 yield partial(_table, checkpoint, place, value)
         return
-    members = archives.unpack(data, "run.zip", lambda name: True)
+    members = archive.unpack(data, "run.zip", lambda name: True)
     for name in {RUN, TRIALS} & set(members):
         shown = json.loads(members[name])
         for place in places(shown):
@@ -139,7 +139,7 @@ def _table(checkpoint: tables.Checkpoint, place: tuple[Any, ...], value: Any) ->
 def _archive(members: dict[str, bytes], name: str, place: tuple[Any, ...], value: Any) -> bytes:
     shown = json.loads(members[name])
     put(shown, place, value)
-    return archives.pack({**members, name: json.dumps(shown).encode()})
+    return archive.pack({**members, name: json.dumps(shown).encode()})
 
 
 @pytest.mark.timeout(at_length(300, 7200))

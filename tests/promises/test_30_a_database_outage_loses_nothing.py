@@ -14,16 +14,16 @@ from pathlib import Path
 
 import pytest
 
+from app.events.bus import EventBus
+from app.jobs.jobs import Jobs
+from app.jobs.submissions import TrainingStart
 from app.runs.config import TrainingConfig, Walk
-from app.services.bus import EventBus
-from app.services.entries import TrainingStart
-from app.services.jobs import Jobs
-from app.services.recordings import Recordings
+from app.storage.recordings import Recordings
+from tests.jobs.waiting import ended, moving, until
 from tests.postgresql import PostgresServer, postgres_server
 from tests.promises.length import at_length
 from tests.served import BODY, LONG_S, Served
-from tests.services.stores import opened
-from tests.services.waiting import ended, moving, until
+from tests.storage.stores import opened
 
 MOMENTS = at_length(3, 20)
 LONGEST_S = at_length(1.0, 60.0)
@@ -98,7 +98,7 @@ def test_reads_fail_at_once_while_the_database_hangs(
 def test_after_the_longest_wait_a_job_is_interrupted_and_can_be_resumed(
     own_postgresql: PostgresServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.services.job.MAX_OUTAGE_S", 1.0)
+    monkeypatch.setattr("app.jobs.job.MAX_OUTAGE_S", 1.0)
     walk = Walk(gait="left-right-origin", simulator="kinematic")
     config = TrainingConfig(**vars(walk), steps=300, pace=20, evaluate_every=0)
     with own_postgresql.database() as url, opened(tmp_path, url) as store:

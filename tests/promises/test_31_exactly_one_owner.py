@@ -16,15 +16,15 @@ import psycopg
 import pytest
 
 from app.domain.errors import InvalidInput
-from app.services.database.folder_lock import LOCK_FILE
-from app.services.database.opening import open_store
-from app.services.database.store import SqlStore
-from app.services.errors import OwnershipLost
 from app.settings import Settings
+from app.storage.database.folder_lock import LOCK_FILE
+from app.storage.database.opening import open_store
+from app.storage.database.store import SqlStore
+from app.storage.errors import OwnershipLost
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.served import BODY, LONG_S, NotStartedError, serving_from
-from tests.services.stores import BACKENDS, database_url, training
+from tests.storage.stores import BACKENDS, database_url, training
 
 ROUNDS = at_length(1, 20)
 PACED = {**BODY, "steps": 600, "pace": 20, "evaluate_every": 100, "seed": 31}

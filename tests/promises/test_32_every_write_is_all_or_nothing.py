@@ -18,15 +18,15 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.services.moving import export_run
-from app.services.room import MB
-from app.services.store import TABLE
+from app.archive.transfer import export_run
+from app.storage.disk_space import MB
+from app.storage.store import TABLE
 from tests.promises.breaking_writes import OPERATIONS
 from tests.promises.length import at_length
 from tests.promises.processes import start_script
 from tests.served import Served
-from tests.services.ended import ended_training
-from tests.services.stores import opened
+from tests.storage.ended import ended_training
+from tests.storage.stores import opened
 
 SHARE = at_length(0.125, 1.0)
 KILLS = at_length(2, 30)

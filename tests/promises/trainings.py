@@ -12,8 +12,8 @@ from app.runs.config import TrainingConfig, config_from_json
 from app.runs.records import Evaluated, StepTaken
 from app.runs.tables import from_bytes, snapshot, to_bytes
 from app.runs.training import train
-from app.services.database.opening import DATABASE_FILE
-from app.services.store import CHECKPOINT
+from app.storage.database.opening import DATABASE_FILE
+from app.storage.store import CHECKPOINT
 
 
 def unbroken(

@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from tests.services.stores import opened, training
+from tests.storage.stores import opened, training
 
 CHECKPOINT = "q-table.npz"
 

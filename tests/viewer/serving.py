@@ -21,7 +21,7 @@ from app.viewer import wire
 from app.viewer.hub import Hub
 from app.viewer.in_process import InProcessViser
 from app.viewer.protocol import websocket_options
-from app.viewer.routes import viewer_routes
+from app.viewer.service import viewer_routes
 
 T = TypeVar("T")
 

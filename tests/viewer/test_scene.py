@@ -10,14 +10,14 @@ import pytest
 from app.domain.grid import FootGrid
 from app.domain.robot import Robot, ring
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
-from app.services.casting import idle_cast, race_cast, rest_pose, training_cast
-from app.services.frames import Cast, Ghost, KnowledgeView, LaneView, StageFrame
+from app.stage.scene_spec import idle_cast, race_cast, rest_pose, training_cast
+from app.stage.stage_frame import Cast, Ghost, KnowledgeView, LaneView, StageFrame
 from app.viewer import wire
 from app.viewer.in_process import InProcessViser, in_process_viser
-from app.viewer.measure import measure_stage_update
 from app.viewer.robot_mesh import RobotMesh
 from app.viewer.scene import StageScene
 from app.viewer.snapshot import Snapshot
+from app.viewer.update_cost import measure_stage_update
 from tests.viewer.serving import Reader
 
 GAIT = "left-right-vertical"

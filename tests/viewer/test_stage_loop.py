@@ -8,15 +8,15 @@ from typing import Any
 
 import pytest
 
-from app.services.bus import EventBus
-from app.services.frames import StageFrame
-from app.services.memory_store import MemoryStore
-from app.services.recordings import Recordings
-from app.services.stage import Stage
+from app.events.bus import EventBus
+from app.stage.stage import Stage
+from app.stage.stage_frame import StageFrame
+from app.storage.memory_store import MemoryStore
+from app.storage.recordings import Recordings
 from app.viewer.in_process import in_process_viser
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop
-from tests.services.theatre import Theatre
+from tests.stage.stage_parts import Theatre
 from tests.viewer.serving import eventually
 
 

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from app.domain.types import FloatArray
-from app.experiments.claims.corners import PAPERS_AGENT, Corner
+from app.experiments.claims.cases import PAPERS_AGENT, Corner
 from app.experiments.claims.gaits import ODD, gaits
 from app.experiments.claims.judging import Claim, Finding
+from app.experiments.formatting import gait_name, metres, percent, shares
 from app.experiments.measures import WALKS
 from app.experiments.statistics import Interval, Verdict, at_least, decided, paired_interval
-from app.experiments.words import gait_name, metres, percent, shares
 
 FLAT = 0.25
 """The second thousand steps bring less than this part of the first, where a curve is flat."""

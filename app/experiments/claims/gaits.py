@@ -5,11 +5,11 @@ from functools import partial
 import numpy as np
 
 from app.domain.types import FloatArray
-from app.experiments.claims.corners import Corner
+from app.experiments.claims.cases import Corner
 from app.experiments.claims.judging import Claim, Finding
+from app.experiments.formatting import metres, percent, shares, span
 from app.experiments.published import GAITS
 from app.experiments.statistics import Interval, Points, decided, interval, iqm, iqm_of_all
-from app.experiments.words import metres, percent, shares, span
 
 ODD = "left-right-vertical"
 OTHERS = tuple(gait for gait in GAITS if gait != ODD)

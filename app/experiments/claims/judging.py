@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
-from app.experiments.claims.corners import Corner, corners
+from app.experiments.claims.cases import Corner, corners
+from app.experiments.formatting import listed
 from app.experiments.statistics import Verdict
-from app.experiments.words import listed
 
 Judgement = Literal["holds", "does not hold", "not established", "depends"]
 """`depends`: one thing in one corner, another in another."""

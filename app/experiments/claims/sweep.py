@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from app.experiments.claims.corners import PAPERS_AGENT, Corner
+from app.experiments.claims.cases import PAPERS_AGENT, Corner
 from app.experiments.claims.judging import Claim, Finding
+from app.experiments.formatting import RATES as WORDS
+from app.experiments.formatting import percent, shares
 from app.experiments.statistics import CONFIDENCE, Points, decided, improvement
-from app.experiments.words import RATES as WORDS
-from app.experiments.words import percent, shares
 from app.runs.config import TrainingConfig
 
 RATES = ("alpha", "gamma", "epsilon_start", "epsilon_end", "steps_per_episode")

@@ -5,13 +5,10 @@ from functools import partial
 from statistics import fmean, median
 from typing import Any
 
-from app.experiments.claims.corners import PAPERS_AGENT, Corner
+from app.experiments.claims.cases import PAPERS_AGENT, Corner
 from app.experiments.claims.gaits import gaits
 from app.experiments.claims.judging import Claim, Finding
-from app.experiments.measures import REACHES
-from app.experiments.published import GAITS, published
-from app.experiments.statistics import Interval, Verdict, decided
-from app.experiments.words import (
+from app.experiments.formatting import (
     counted,
     distance,
     gait_name,
@@ -20,6 +17,9 @@ from app.experiments.words import (
     percent,
     shares,
 )
+from app.experiments.measures import REACHES
+from app.experiments.published import GAITS, published
+from app.experiments.statistics import Interval, Verdict, decided
 
 AFTER = (500, 1000)
 

@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from app.experiments.claims.corners import Corner
+from app.experiments.claims.cases import Corner
+from app.experiments.formatting import agent_name, gait_name, metres
 from app.experiments.report.drawing import INK, MUTED, Picture, colours, figure, quiet
-from app.experiments.words import agent_name, gait_name, metres
 
 Curve = Mapping[str, Any]
 PANEL_IN = (3.0, 2.7)

@@ -5,10 +5,10 @@ from typing import Any
 
 from matplotlib.axes import Axes
 
-from app.experiments.claims.corners import Corner
+from app.experiments.claims.cases import Corner
+from app.experiments.formatting import agent_name, percent
+from app.experiments.narrative.sweep import named
 from app.experiments.report.drawing import INK, MUTED, Picture, colours, figure, quiet
-from app.experiments.story.sweep import named
-from app.experiments.words import agent_name, percent
 
 MOST = 40
 """Rows on a figure; of more combinations it shows the best."""

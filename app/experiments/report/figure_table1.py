@@ -7,7 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from app.experiments.claims.corners import Corner
+from app.experiments.claims.cases import Corner
+from app.experiments.formatting import agent_name, gait_name, metres
 from app.experiments.report.drawing import (
     INK,
     MUTED,
@@ -18,7 +19,6 @@ from app.experiments.report.drawing import (
     quiet,
     spread,
 )
-from app.experiments.words import agent_name, gait_name, metres
 
 Setting = Mapping[str, Any]
 PANEL_IN = (4.7, 4.6)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from app.experiments.claims.corners import corners
+from app.experiments.claims.cases import corners
 from app.experiments.report import figure_curves, figure_sweep, figure_table1
 from app.experiments.report.drawing import Picture, look
 

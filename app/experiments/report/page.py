@@ -11,12 +11,12 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from app.experiments.claims.corners import Corner, corners
+from app.experiments.claims.cases import Corner, corners
 from app.experiments.config import GRID, as_json, experiment_config
+from app.experiments.formatting import agent_name, counted, gait_name, listed
 from app.experiments.report import tables
 from app.experiments.report.drawing import Picture, colours, inlined
 from app.experiments.report.figures import panels
-from app.experiments.words import agent_name, counted, gait_name, listed
 
 TITLES: Mapping[str, str] = {
     "table1": "Table 1, many times over",

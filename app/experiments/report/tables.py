@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from app.experiments.claims.corners import Corner
+from app.experiments.claims.cases import Corner
+from app.experiments.formatting import agent_name, gait_name, number, percent, shares
+from app.experiments.narrative.sweep import named
 from app.experiments.published import COLUMNS, DISTANCES, published
 from app.experiments.statistics import CONFIDENCE
-from app.experiments.story.sweep import named
-from app.experiments.words import agent_name, gait_name, number, percent, shares
 
 UNITS: Mapping[str, str] = {
     "m": "metres",

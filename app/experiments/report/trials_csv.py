@@ -5,9 +5,9 @@ from collections.abc import Iterator, Mapping
 from io import StringIO
 from typing import Any
 
+from app.domain.text import text_cell
 from app.experiments.config import GRID, ExperimentConfig
 from app.experiments.plan import Plan, Trial
-from app.experiments.report.csv_cells import text_cell
 from app.experiments.trial import TrialResult
 
 _FIRST = ("trial", "role", "gait", "observation", "robot", "agent")

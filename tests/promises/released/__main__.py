@@ -9,11 +9,11 @@ import tempfile
 from contextlib import closing
 from pathlib import Path
 
-from app.services.database.migrating import newest_revision
-from app.services.database.opening import DATABASE_FILE
+from app.storage.database.migration import newest_revision
+from app.storage.database.opening import DATABASE_FILE
 from tests.postgresql import PostgresServer, postgres_server
 from tests.promises.released import sample
-from tests.services.stores import BACKENDS, database_url, opened
+from tests.storage.stores import BACKENDS, database_url, opened
 
 FOLDER = Path(__file__).parent
 

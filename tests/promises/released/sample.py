@@ -3,9 +3,9 @@
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from app.services.database.store import SqlStore
-from app.services.store import TABLE, Run
-from tests.services.stores import ODD, TRIALS, experiment, race, training
+from app.storage.database.store import SqlStore
+from app.storage.store import TABLE, Run
+from tests.storage.stores import ODD, TRIALS, experiment, race, training
 
 _T = datetime(2026, 2, 28, 23, 59, 59, 123456, tzinfo=UTC)
 RUNS: list[Run] = [

@@ -1,0 +1,98 @@
+"""What is valid in each field, in words: for error messages and for the API's description."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from app.domain.gait import NAMED_GAITS
+from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M
+from app.domain.observation import OBSERVATIONS
+from app.domain.robot import PRESETS
+from app.domain.text import NAMES
+from app.experiments.config import EXPERIMENTS, MAX_SEEDS
+from app.runs.clocks import CLOCKS
+from app.runs.config import MAX_LANES, MAX_STEPS, SIMULATORS
+from app.storage.store import STATES
+
+MAX_PAGE = 100
+
+
+def _one_of(names: Iterable[str]) -> str:
+    return f"one of {', '.join(names)}"
+
+
+_STEPS = f"a whole number from 1 to {MAX_STEPS:,}"
+
+VALID: Mapping[str, str] = {
+    "name": NAMES,
+    "gait": f"{_one_of(NAMED_GAITS)}, or {{right_leg, left_leg, and symmetry or pairs}}",
+    "right_leg": "a leg's number, from 1 on",
+    "left_leg": "a leg's number, from 1 on",
+    "symmetry": "origin or vertical",
+    "pairs": "a list of [leader, partner], two legs' numbers each",
+    "steps": _STEPS,
+    "seed": "a whole number, 0 or more",
+    "observation": _one_of(OBSERVATIONS),
+    "alpha": "a number over 0 and at most 1",
+    "gamma": "a number from 0 to under 1",
+    "epsilon": "a number from 0 to 1",
+    "epsilon_start": "a number from 0 to 1",
+    "epsilon_end": "a number from 0 to 1",
+    "steps_per_episode": _STEPS,
+    "divisions": f"a whole number from {MIN_DIVISIONS} to {MAX_DIVISIONS}",
+    "grid_side_m": f"a number of metres from {MIN_SIDE_M} to {MAX_SIDE_M:g}, that every leg can "
+    "reach",
+    "robot": f"{_one_of(PRESETS)}, or an object that says what differs from a preset",
+    "simulator": _one_of(SIMULATORS),
+    "evaluate_every": f"a whole number from 0 (never) to {MAX_STEPS:,}",
+    "pace": "max, or a number from 0.01 to 1000 times real time",
+    "agent": "the name of an agent; GET /api/v1/options lists them",
+    "continue_from": "the id of a training that is finished or stopped",
+    "training_id": "the id of a training that is finished or stopped",
+    "training": "an object: a training's body without what the race says already",
+    "experiment": _one_of(EXPERIMENTS),
+    "seeds": f"a whole number from 1 to {MAX_SEEDS:,}",
+    "gaits": f"a list, each {_one_of(NAMED_GAITS)}, or an object",
+    "observations": f"a list, each {_one_of(OBSERVATIONS)}",
+    "robots": f"a list, each {_one_of(PRESETS)}, or an object that says what differs from one",
+    "agents": "a list of agents' names; GET /api/v1/options lists them",
+    "workers": "a whole number, from 1 to the number of cores",
+    "lanes": f"a list of 1 to {MAX_LANES} lanes, each {{agent, training_id or training}}",
+    "run_id": "the id of a run",
+    "time_s": "a number of seconds, 0 or more",
+    "playing": "true or false",
+    "speed": "a number from 0.25 to 64, or time-lapse",
+    "clock": _one_of(CLOCKS),
+    "state": _one_of(STATES),
+    "limit": f"a whole number from 1 to {MAX_PAGE}",
+    "cursor": "the next_cursor of the page before",
+    "idempotency-key": "1 to 200 printable ASCII characters without spaces",
+    "format": "a format that the description of the route names",
+}
+
+
+def in_sentences(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
+    """Pydantic's errors as `field` and `detail`, one for each field.
+
+    What was sent is not repeated: it may be large, or not even be JSON.
+    """
+    said: dict[str, str] = {}
+    for error in errors:
+        place = [part for part in error["loc"] if part in VALID or isinstance(part, int)]
+        if error["type"] == "json_invalid":
+            place = []
+        field = ".".join(str(part) for part in place)
+        said.setdefault(field, _sentence(field, error, place))
+    return [{"field": field, "detail": detail} for field, detail in said.items()]
+
+
+def _sentence(field: str, error: Mapping[str, Any], place: list[Any]) -> str:
+    named = [part for part in place if part in VALID]
+    if error["type"] in ("unknown_field", "says_all"):
+        where = f"{field}: " if field else ""
+        return f"{where}{error['msg']}."
+    if error["type"] == "json_invalid":
+        return "The request's body is not valid JSON."
+    if not named:
+        return "The request's body must be a JSON object, sent as application/json."
+    is_missing = error["type"] == "missing"
+    return f"{field} {'is missing; it ' if is_missing else ''}must be {VALID[named[-1]]}."

@@ -1,0 +1,134 @@
+"""Bounds the memory that clients can make the server hold: bodies they send, answers they read.
+
+An answer goes out in pieces, as fast as its client takes them; until then it counts. Where too much
+is held already, a request is refused with 429 or 503 rather than queued, since what waits is held
+as well. Streams that make their pieces one by one hold next to nothing, and always get in.
+"""
+
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.api.auth import Role
+from app.api.problems import problem
+from app.limits.addresses import caller
+from app.limits.memory_budget import MemoryBudget, Refusal
+from app.storage.artifact_file import PIECE_BYTES
+
+ANSWERS_BYTES, ANSWERS_SHARE_BYTES = 64 << 20, 32 << 20
+BODIES_BYTES, BODIES_SHARE_BYTES = 128 << 20, 96 << 20
+_SMALL_BYTES = 64 << 10
+"""Smaller ones are not counted: there are no more of them than connections."""
+_RETRY_AFTER_S = 5
+
+
+class HeldBodies:
+    """Counts the large bodies of each role's requests and answers; within what finds the role."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        """Bound what an app holds."""
+        self._app = app
+        roles: tuple[Role, ...] = ("operator", "spectator")
+        self._answers = {r: MemoryBudget(ANSWERS_BYTES, ANSWERS_SHARE_BYTES) for r in roles}
+        self._bodies = {r: MemoryBudget(BODIES_BYTES, BODIES_SHARE_BYTES) for r in roles}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on, or refuse."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        role: Role = scope["state"]["role"]
+        body = _Body(receive, self._bodies[role], caller(scope))
+        answer = _Answer(send, self._answers[role], caller(scope), body)
+        try:
+            await self._app(scope, body.receive, answer.send)
+        except Exception:
+            if body.refusal is None:
+                raise
+        finally:
+            body.release()
+        refusal = body.refusal or answer.refusal
+        if refusal is not None and not answer.is_begun:
+            await _refused(refusal)(scope, receive, send)
+
+
+class _Body:
+    """A request's body."""
+
+    def __init__(self, receive: Receive, budget: MemoryBudget, client: str) -> None:
+        self._receive, self._budget, self._client = receive, budget, client
+        self._received = self._held = 0
+        self.refusal: Refusal | None = None
+
+    async def receive(self) -> Message:
+        message = await self._receive()
+        self._received += len(message.get("body", b""))
+        if self._received > _SMALL_BYTES:
+            more = self._received - self._held
+            self.refusal = self._budget.take(self._client, more)
+            if self.refusal is not None:
+                # For the app it is as if the sender had left; the answer is given outside.
+                return {"type": "http.disconnect"}
+            self._held += more
+        return message
+
+    def release(self) -> None:
+        if self._held:
+            self._budget.give_back(self._client, self._held)
+
+
+class _Answer:
+    """An answer, which is begun once it is known that it can be given."""
+
+    def __init__(self, send: Send, budget: MemoryBudget, client: str, request_body: _Body) -> None:
+        self._send, self._request_body = send, request_body
+        self._budget, self._client = budget, client
+        self._start: Message | None = None
+        self.refusal: Refusal | None = None
+        self.is_begun = False
+
+    async def send(self, message: Message) -> None:
+        if (self.refusal or self._request_body.refusal) and not self.is_begun:
+            return
+        if message["type"] == "http.response.start":
+            self._start = message
+        elif message["type"] != "http.response.body":
+            await self._begin()
+            await self._send(message)
+        else:
+            await self._send_body(message)
+
+    async def _begin(self) -> None:
+        start, self._start = self._start, None
+        self.is_begun = True
+        if start is not None:
+            await self._send(start)
+
+    async def _send_body(self, message: Message) -> None:
+        body: bytes = message.get("body", b"")
+        if len(body) <= _SMALL_BYTES:
+            await self._begin()
+            await self._send(message)
+            return
+        refusal = self._budget.take(self._client, len(body))
+        if refusal is not None and not self.is_begun:
+            self.refusal = refusal
+            return
+        try:
+            await self._begin()
+            view = memoryview(body)
+            for offset in range(0, len(view), PIECE_BYTES):
+                is_last = offset + PIECE_BYTES >= len(view)
+                more = bool(message.get("more_body", False)) or not is_last
+                piece = bytes(view[offset : offset + PIECE_BYTES])
+                await self._send({**message, "body": piece, "more_body": more})
+        finally:
+            if refusal is None:
+                self._budget.give_back(self._client, len(body))
+
+
+def _refused(refusal: Refusal) -> ASGIApp:
+    headers = {"Retry-After": str(_RETRY_AFTER_S)}
+    if refusal == "share":
+        detail = "This address has too much to send or to read here at once; take it in turns."
+        return problem(429, detail, headers=headers)
+    detail = "The server holds as much for clients as it can; try again in a moment."
+    return problem(503, detail, headers=headers)

@@ -1,0 +1,86 @@
+"""Runs as files: out of one server, and into another."""
+
+from fastapi import APIRouter, Request
+from starlette.responses import JSONResponse, Response
+
+from app.api.answers import ExperimentView, RaceView, TrainingView
+from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
+from app.api.deps import Given, StartRequest
+from app.api.formats import attachment
+from app.api.runs import RunPath, find
+from app.archive import archive
+from app.archive.transfer import export_pieces, import_run
+from app.domain.errors import InvalidInput
+from app.events.run_view import run_view
+
+_ARCHIVE = answers(200, {archive.MEDIA_TYPE: BINARY}, headers=ATTACHMENT)
+
+router = APIRouter()
+
+
+@router.get(
+    "/trainings/{run_id}/export",
+    tags=["trainings"],
+    summary="A training with all it has",
+    response_class=Response,
+    responses=_ARCHIVE,
+)
+def export_training(services: Given, run_id: RunPath) -> Response:
+    """A `.zip` that another server's import, or `hexapods import`, takes in."""
+    run = find(services, "training", run_id)
+    data = export_pieces(services.store, run.id, services.exports)
+    return attachment(data, archive.MEDIA_TYPE, f"training-{run.id}.zip")
+
+
+@router.get(
+    "/races/{run_id}/export",
+    tags=["races"],
+    summary="A race with all it has",
+    response_class=Response,
+    responses=_ARCHIVE,
+)
+def export_race(services: Given, run_id: RunPath) -> Response:
+    """A `.zip` that another server's import, or `hexapods import`, takes in."""
+    run = find(services, "race", run_id)
+    data = export_pieces(services.store, run.id, services.exports)
+    return attachment(data, archive.MEDIA_TYPE, f"race-{run.id}.zip")
+
+
+@router.get(
+    "/experiments/{run_id}/export",
+    tags=["experiments"],
+    summary="An experiment with all it has",
+    response_class=Response,
+    responses=_ARCHIVE,
+)
+def export_experiment(services: Given, run_id: RunPath) -> Response:
+    """A `.zip` that another server's import, or `hexapods import`, takes in."""
+    run = find(services, "experiment", run_id)
+    data = export_pieces(services.store, run.id, services.exports)
+    return attachment(data, archive.MEDIA_TYPE, f"experiment-{run.id}.zip")
+
+
+@router.post(
+    "/import",
+    status_code=201,
+    tags=["trainings", "races", "experiments"],
+    summary="Take in a run that was exported",
+    response_model=TrainingView | RaceView | ExperimentView,
+    responses=answers(201, headers=LOCATION),
+    openapi_extra=takes_file("application/octet-stream"),
+)
+def import_archive(services: Given, request: Request, asked: StartRequest) -> Response:
+    """The archive is the body. A run that is here already is not replaced: it comes twice.
+
+    Unless it is the same request again, with the same `Idempotency-Key`. It keeps its id if that
+    is free here, and could have been made by now; the answer has the id that it got.
+    """
+    if not asked.body:
+        raise InvalidInput("send the .zip file of an exported run as the request's body")
+    store, agents, ids = services.store, services.agents, services.jobs.new_id
+    run = asked.start(
+        services, lambda key: import_run(store, asked.body, ids, agents, "the archive", key=key)
+    )
+    services.bus.publish("run", run_view(run), run.id)
+    location = request.url_for(f"get_{run.kind}", run_id=run.id).path
+    return JSONResponse(run_view(run), 201, {"Location": location})

@@ -1,0 +1,191 @@
+"""The files of a run in its archive: which there are, and that each is what it should be."""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from app.archive.archive import Member
+from app.archive.archived_trials import check_reported, is_reported, reported_files
+from app.archive.imported_tables import checked_table
+from app.archive.untrusted_input import Large, Metres, Seconds, Share, Step, Words
+from app.domain.errors import DamagedFile, HexapodError
+from app.domain.simulator import Motion
+from app.domain.types import Action, Cells
+from app.experiments.config import ExperimentConfig
+from app.runs import tables
+from app.runs.config import RaceConfig, TrainingConfig, Walk
+from app.runs.recording import race_recording
+from app.runs.records import Knowledge
+from app.runs.stored_practice import practice_recording
+from app.storage.artifact_file import pieces
+from app.storage.store import CHECKPOINT, RESUMABLE, TABLE, Run, RunStore
+from app.storage.stored_recordings import PRACTICE, RACE, evaluations_file
+
+MAX_EVALUATION_FILES = 100
+_EVALUATIONS = re.compile(r"evaluations-\d{4}\.npz", re.ASCII)
+
+
+def is_file_of(name: str, kind: str) -> bool:
+    """Whether a run of this kind may have a file of this name. Films are made anew."""
+    if kind == "experiment":
+        return is_reported(name)
+    if kind == "race":
+        return name == RACE
+    return name in (TABLE, CHECKPOINT, PRACTICE) or _EVALUATIONS.fullmatch(name) is not None
+
+
+def files_of(store: RunStore, run: Run) -> dict[str, Member]:
+    """All files of a run that go with it, each found whole now, and read when its turn comes.
+
+    Raises:
+        DamagedFile: if one is damaged, or missing.
+    """
+    names = [RACE]
+    if run.kind == "experiment":
+        names = reported_files(run)
+    if run.kind == "training":
+        names = [TABLE, PRACTICE, *map(evaluations_file, range(MAX_EVALUATION_FILES))]
+        if run.state in RESUMABLE[run.kind]:
+            names.append(CHECKPOINT)
+    found = {}
+    for name in names:
+        file = store.open_artifact(run.id, name)
+        if file is not None:
+            found[name] = Member(file.size, partial(_pieces_of, store, run.id, name))
+            file.close()
+    return found
+
+
+def _pieces_of(store: RunStore, run_id: str, name: str) -> Iterator[bytes]:
+    file = store.open_artifact(run_id, name)
+    if file is None:
+        raise DamagedFile(f"{name} of run {run_id} is not there any more")
+    return pieces(file)
+
+
+def check_files(run: Run, files: Mapping[str, bytes], said: str) -> None:
+    """Make sure that everything in the files can be shown, and gone on with.
+
+    Raises:
+        DamagedFile: if something cannot be.
+        TableMismatch: if a table was learned for another problem.
+    """
+    if isinstance(run.config, ExperimentConfig):
+        check_reported(run, files, said)
+        return
+    for name, data in files.items():
+        if not is_file_of(name, run.kind):
+            raise DamagedFile(f"{said} has {name}, which no {run.kind} has")
+        if name in (TABLE, CHECKPOINT):
+            _check_table(run, name, data, f"{name} of {said}")
+    try:
+        if isinstance(run.config, RaceConfig):
+            _check_race(run.config, files)
+        else:
+            _check_practice(run.config, files)
+    except Exception as error:  # NumPy does not say all that strange arrays make it raise
+        raise DamagedFile(f"{said} has a recording that cannot be shown: {error}") from error
+
+
+def _check_table(run: Run, name: str, data: bytes, said: str) -> None:
+    config = run.config
+    if not isinstance(config, TrainingConfig):
+        return
+    checkpoint, meta, _ = checked_table(data, said)
+    try:
+        tables.check_fits(checkpoint, config, config.observation)
+        if meta.agent != config.agent:
+            raise ValueError("another agent learned it")
+        if meta.step > run.total:
+            raise ValueError("it is of another step")
+        if "where" in tables.agent_state(checkpoint):
+            digest = tables.table_of(checkpoint).sha256()
+            if name == TABLE and run.result is not None and run.result["q_table_sha256"] != digest:
+                raise ValueError("its values are not those of the run's result")
+    except HexapodError:
+        raise
+    except Exception as error:  # NumPy does not say all that strange arrays make it raise
+        raise DamagedFile(f"{said} does not hold together: {error}") from error
+
+
+def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
+    if RACE not in files:
+        return
+    lanes = race_recording(tables.read_arrays(files[RACE]))
+    msgspec.convert([lane.failure for lane in lanes], list[Words | None])
+    if [lane.agent for lane in lanes] != [lane.agent for lane in config.lanes]:
+        raise ValueError("it has other lanes")
+    for lane in lanes:
+        if len(lane.steps) > config.steps:
+            raise ValueError("it has more steps than the race")
+        _check_poses(lane.rest_qpos[None], config)
+        for step in lane.steps:
+            msgspec.convert((step.reward_m, step.distance_m), tuple[Metres, Metres])
+            msgspec.convert((step.decision_s, step.transitions), tuple[Seconds, Large])
+            _check_motion(step.motion, config)
+            _check_choice(step.observation, step.action, step.knowledge, config)
+
+
+def _check_practice(config: Walk, files: Mapping[str, bytes]) -> None:
+    if PRACTICE not in files:
+        return
+    later = sorted(name for name in files if _EVALUATIONS.fullmatch(name))
+    if later != [evaluations_file(number) for number in range(len(later))]:
+        raise ValueError("an evaluation is missing")
+    evaluations = [tables.read_arrays(files[name]) for name in later]
+    recording = practice_recording(tables.read_arrays(files[PRACTICE]), evaluations)
+    _check_poses(recording.rest_qpos[None], config)
+    for step in recording.steps:
+        msgspec.convert((step.step, step.episode), tuple[Step, Step])
+        msgspec.convert((step.reward_m, step.distance_m), tuple[Metres, Metres])
+        msgspec.convert(step.epsilon, Share)
+        _check_motion(step.motion, config)
+        _check_choice(step.observation, step.action, step.knowledge, config)
+    for evaluation in recording.evaluations:
+        msgspec.convert((evaluation.step, evaluation.epsilon), tuple[Step, Share])
+        msgspec.convert(evaluation.distance_m, Metres)
+        _check_motion(evaluation.motion, config)
+
+
+def _check_motion(motion: Motion | None, walk: Walk) -> None:
+    if motion is None:
+        return
+    _check_poses(motion.qpos, walk)
+    times = motion.time_s
+    if times.shape != (len(motion.qpos),) or not np.isfinite(times).all():
+        raise ValueError("its times are none")
+    if (np.diff(times) <= 0).any() or times[0] <= 0:
+        raise ValueError("its time does not go on")
+
+
+def _check_poses(qpos: NDArray[np.float32], walk: Walk) -> None:
+    """(frames, 7 + joints): a position, a quaternion, three joints a leg."""
+    if qpos.shape[1:] != (7 + 3 * len(walk.robot.legs),) or not len(qpos):
+        raise ValueError("its robot has other joints")
+    if qpos.dtype.kind != "f" or not np.isfinite(qpos).all():
+        raise ValueError("its poses are none")
+
+
+def _check_choice(
+    observation: Cells, action: Action, knowledge: Knowledge | None, walk: Walk
+) -> None:
+    pairs, cells = len(walk.resolved_gait.pairs), len(walk.grid)
+    if len(observation) != pairs or not _are_below(observation, cells):
+        raise ValueError("what it saw is on no foot grid")
+    if not _are_below([action.pair], pairs) or not _are_below([action.cell], cells):
+        raise ValueError("what it did cannot be done")
+    if knowledge is not None:
+        shapes = {np.shape(knowledge.values), np.shape(knowledge.visits)}
+        if shapes != {(pairs, cells)}:
+            raise ValueError("what it knew is of another problem")
+        # NaN stands where an action is not possible.
+        if np.isinf(knowledge.values).any() or np.isinf(knowledge.visits).any():
+            raise ValueError("what it knew is no number")
+
+
+def _are_below(numbers: Iterable[object], limit: int) -> bool:
+    return all(isinstance(number, int) and 0 <= number < limit for number in numbers)

@@ -1,0 +1,252 @@
+"""A run as the `run.json` of its archive: one strict shape, so that nothing else gets in."""
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import Annotated, Any, Literal
+
+import msgspec
+from msgspec import UNSET, Meta, Raw, UnsetType
+
+from app import __version__
+from app.archive.archived_trials import ExperimentResult
+from app.archive.imported_tables import check_change
+from app.archive.untrusted_input import (
+    Count,
+    Large,
+    Metres,
+    Moment,
+    Name,
+    Seconds,
+    Share,
+    Step,
+    Strict,
+    Words,
+    check_moment,
+)
+from app.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownName
+from app.domain.robot import robot
+from app.domain.text import check_name
+from app.experiments.config import ExperimentConfig
+from app.jobs.submissions import MAX_WORKERS, check_walk, plan_of
+from app.runs.clocks import CLOCKS
+from app.runs.config import MAX_LANES, RaceConfig
+from app.storage.configs import CONFIGS, config_as_json, config_of
+from app.storage.errors import Conflict
+from app.storage.store import UNENDED, Config, Kind, Run
+
+FORMAT = 1
+MAX_JSON_BYTES = 64_000_000
+_MAX_PART_BYTES = 256_000  # of what is not a curve
+
+_Id = Annotated[str, Meta(pattern="^[0-9a-z]{1,32}$")]
+_Known = Metres | None  # null if it never came about; JSON has no NaN
+
+
+class _Change(Strict, frozen=True):
+    step: Count
+    pace: float | Literal["max"] | UnsetType = UNSET
+    alpha: float | UnsetType = UNSET
+    gamma: float | UnsetType = UNSET
+    epsilon: float | UnsetType = UNSET
+
+
+class _Evaluation(Strict, frozen=True):
+    step: Step
+    distance_m: Metres
+    epsilon: Share
+
+
+class _TrainingResult(Strict, frozen=True):
+    distance_m: _Known
+    greedy_distance_m: _Known
+    q_table_sha256: Annotated[str, Meta(pattern="^[0-9a-f]{64}$")] | None
+
+
+class _Figures(Strict, frozen=True):
+    finished_distance_m: Metres
+    elapsed_s: Seconds
+    crossed_s: Seconds | None
+    rank: Annotated[int, Meta(ge=1, le=MAX_LANES)]
+
+
+class _LaneResult(Strict, frozen=True):
+    agent: Name
+    training_id: _Id | None
+    trained_robot: dict[str, Any] | None
+    steps: Step
+    total_distance_m: _Known
+    failure: Words | None
+    decision_s: Seconds
+    simulated_transitions: Large
+    clocks: dict[str, _Figures]
+
+
+class _RaceResult(Strict, frozen=True):
+    lanes: list[_LaneResult]
+    shared_machine: bool
+
+
+class _Shape(Strict, frozen=True):
+    """A `Run` that has ended."""
+
+    id: _Id
+    kind: Kind
+    name: Name
+    state: Literal["finished", "stopped", "failed", "interrupted"]
+    config: Raw
+    lane_training_ids: Annotated[list[_Id | None], Meta(max_length=MAX_LANES)]
+    continued_from: _Id | None
+    done: Count
+    total: Count
+    changes: Annotated[list[_Change], Meta(max_length=10_000)]
+    greedy_distance_m: _Known
+    result: Raw
+    error: Words | None
+    created_at: Moment
+    started_at: Moment | None
+    ended_at: Moment | None
+    workers: Annotated[int, Meta(ge=1, le=MAX_WORKERS)] | None = None
+
+
+class _File(Strict, frozen=True):
+    format: int
+    version: Name
+    run: _Shape
+    curve: list[_Evaluation]
+
+
+class _Head(msgspec.Struct):
+    format: int
+    version: str = ""
+
+
+def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
+    """A run that has ended, and its curve.
+
+    Raises:
+        Conflict: if it has not ended.
+        InvalidInput: if it is too long.
+    """
+    if run.state in UNENDED:
+        raise Conflict(f"{run.kind} {run.id} is {run.state}; stop it first", run.state)
+    own = {name: getattr(run, name) for name in _Shape.__struct_fields__}
+    own["config"] = config_as_json(run.config)
+    written = {"format": FORMAT, "version": __version__, "run": own, "curve": list(curve)}
+    data = msgspec.json.format(msgspec.json.encode(written), indent=1)
+    if len(data) > MAX_JSON_BYTES:
+        raise InvalidInput(f"{run.kind} {run.id} has too long a curve for an archive")
+    return data
+
+
+def read_run_json(
+    data: bytes, said: str, agents: Collection[str]
+) -> tuple[Run, list[dict[str, Any]]]:
+    """The run and its curve.
+
+    Args:
+        data: what `run_json` wrote.
+        said: what to call the file in messages.
+        agents: the names that are registered here.
+
+    Raises:
+        DamagedFile: if `run_json` of this version did not write it.
+        InvalidInput: if it is of an agent, a robot or a gait that cannot be here.
+    """
+    try:
+        if len(data) > MAX_JSON_BYTES:
+            raise ValueError("it is too long")
+        head = msgspec.json.decode(data, type=_Head)
+        if head.format != FORMAT:
+            raise DamagedFile(
+                f"{said} has format {head.format}, of version {head.version[:40]!r}; this version "
+                f"({__version__}) reads {FORMAT}"
+            )
+        file = msgspec.json.decode(data, type=_File)
+        run = _run(file.run, agents)
+        curve: list[dict[str, Any]] = msgspec.to_builtins(file.curve)
+        _check(run, curve)
+    except DamagedFile:
+        raise
+    except HexapodError as error:
+        raise InvalidInput(f"{said} cannot be taken in: {error}") from error
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+        raise DamagedFile(f"{said} does not hold a run as it should: {error}") from error
+    return run, curve
+
+
+_RESULTS: Mapping[Kind, Any] = {
+    "training": _TrainingResult,
+    "race": _RaceResult,
+    "experiment": ExperimentResult,
+}
+
+
+def _run(shape: _Shape, agents: Collection[str]) -> Run:
+    config = config_of(shape.kind, _part(shape.config, dict[str, Any]))
+    if not isinstance(config, CONFIGS[shape.kind]) or shape.done > shape.total:
+        raise ValueError("its kind, its config and its progress do not fit together")
+    # First of all: laying out an experiment imports its agents.
+    _check_agents(config, agents)
+    if isinstance(config, ExperimentConfig):
+        if plan_of(config).total != shape.total:
+            raise ValueError("its total is not that of its trials")
+    else:
+        check_walk(config)
+    # Checked only: what was written is kept as it is.
+    _part(shape.result, _RESULTS[shape.kind] | None)
+    result = _part(shape.result, Any)
+    values = {name: getattr(shape, name) for name in shape.__struct_fields__}
+    changes = tuple(msgspec.to_builtins(change) for change in shape.changes)
+    lanes = tuple(shape.lane_training_ids)
+    values |= {"config": config, "result": result, "changes": changes, "lane_training_ids": lanes}
+    return Run(**values)
+
+
+def _part(raw: Raw, kind: Any) -> Any:
+    if len(bytes(raw)) > _MAX_PART_BYTES:
+        raise ValueError("it is too long")
+    return msgspec.json.decode(raw, type=kind)
+
+
+def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
+    """What holds for every run, beyond the shape of each field."""
+    check_name(run.name)
+    for name in ("created_at", "started_at", "ended_at"):
+        check_moment(name, getattr(run, name))
+    for change in run.changes:
+        check_change(change)
+    _check_curve(run, curve)
+    _check_lanes(run)
+
+
+def _check_curve(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
+    steps = [row["step"] for row in curve]
+    if steps != sorted(set(steps)) or (steps and run.kind != "training"):
+        raise ValueError("its curve is none")
+
+
+def _check_lanes(run: Run) -> None:
+    if not isinstance(run.config, RaceConfig):
+        if run.lane_training_ids:
+            raise ValueError(f"it is no race but a {run.kind}, and has lanes")
+        return
+    agents = [lane.agent for lane in run.config.lanes]
+    if len(run.lane_training_ids) != len(agents):
+        raise ValueError("its lanes do not fit together")
+    for lane, agent in zip((run.result or {"lanes": ()})["lanes"], agents, strict=False):
+        if lane["agent"] != agent or lane["clocks"].keys() != set(CLOCKS):
+            raise ValueError("its result is of other lanes")
+        if lane["trained_robot"] is not None:
+            robot(lane["trained_robot"])
+    if run.result is not None and len(run.result["lanes"]) != len(agents):
+        raise ValueError("its result is of other lanes")
+
+
+def _check_agents(config: Config, agents: Collection[str]) -> None:
+    """An agent named by module would be imported, and so run, when someone goes on with it."""
+    if isinstance(config, RaceConfig):
+        used: Collection[str] = [lane.agent for lane in config.lanes]
+    else:
+        used = config.agents if isinstance(config, ExperimentConfig) else [config.agent]
+    for name in used:
+        if name not in agents:
+            raise UnknownName("agent", name, agents)

@@ -1,0 +1,65 @@
+"""Asks the server that has the data folder to do what only it may do there."""
+
+import json
+import urllib.error
+import urllib.request
+from typing import Any
+
+from app.domain.errors import InvalidInput
+from app.settings import PREFIX, Settings
+from app.storage.address_file import noted_address
+
+_WAIT_S = 60.0
+
+
+def ask_server(settings: Settings, method: str, path: str, body: bytes | None = None) -> Any:
+    """What the server of the data folder answers.
+
+    Args:
+        settings: its data folder, and the token if it has one.
+        method: of the request.
+        path: without the slash at its beginning.
+        body: of the request, if it has one.
+
+    Raises:
+        InvalidInput: if there is no answer, or the server refuses.
+    """
+    address = noted_address(settings.data)
+    if address is None:
+        raise InvalidInput(
+            f"another process has the data folder {settings.data}, and does not say where it "
+            "listens; try again in a moment, or stop it"
+        )
+    headers = {"Content-Type": "application/octet-stream"} if body is not None else {}
+    if settings.token is not None:
+        headers["Authorization"] = f"Bearer {settings.token}"
+    request = urllib.request.Request(  # noqa: S310 - our own server's, which is checked
+        address + path, body, headers, method=method
+    )
+    # A proxy for the world outside is none for this machine.
+    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+    try:
+        with opener.open(request, timeout=_WAIT_S) as answer:
+            data = answer.read()
+    except urllib.error.HTTPError as error:
+        with error:
+            raise InvalidInput(_refusal(address, error)) from error
+    except OSError as error:
+        raise InvalidInput(
+            f"the server that has the data folder {settings.data} does not answer at {address}; "
+            "look at its log, or stop it"
+        ) from error
+    return json.loads(data) if data else None
+
+
+def _refusal(address: str, error: urllib.error.HTTPError) -> str:
+    if error.code == 401:
+        return (
+            f"the server at {address}, which has the data folder, needs its token: set "
+            f"{PREFIX}TOKEN to it"
+        )
+    try:
+        detail = str(json.loads(error.read())["detail"])
+    except (ValueError, KeyError, TypeError):
+        detail = f"it answers {error.code}"
+    return f"the server at {address}, which has the data folder, refuses: {detail}"

@@ -1,0 +1,106 @@
+"""From runs that did not come to their end to runs that can be queued again.
+
+A training goes on from its newest checkpoint, or from its start if it has none: with the changes
+that were made since, after the same steps, and so to the same end. A race begins anew, since it is
+short and the same again; trainings that it still waits for go on before it. An experiment goes on
+with what it has not tried yet, however it ended.
+"""
+
+from dataclasses import replace
+
+from app.domain.errors import DamagedFile
+from app.experiments.config import ExperimentConfig
+from app.jobs.messages import ExperimentOrder, RaceOrder, TrainingOrder
+from app.jobs.submissions import Entry, load_table, wall_s_of
+from app.runs.config import RaceConfig, TrainingConfig
+from app.runs.tables import Checkpoint, check_fits, from_bytes
+from app.storage.errors import Conflict, NotFound
+from app.storage.store import CHECKPOINT, RESUMABLE, UNENDED, Run, RunStore
+
+
+def resumed_entries(run: Run, store: RunStore) -> list[Entry]:
+    """A run that can go on, ready to be queued again, after the trainings that it waits for.
+
+    Raises:
+        Conflict: if it cannot, or what it needs is gone.
+        InvalidInput: if what it needs is gone, or damaged.
+    """
+    if run.state not in RESUMABLE[run.kind]:
+        choices = " or ".join(sorted(RESUMABLE[run.kind]))
+        raise Conflict(
+            f"{run.kind} {run.id} is {run.state}; it can be resumed while it is {choices}",
+            run.state,
+        )
+    if isinstance(run.config, ExperimentConfig):
+        return [_experiment(run, run.config, store)]
+    if isinstance(run.config, RaceConfig):
+        return _race(run, run.config, store)
+    return [_training(run, run.config, store)]
+
+
+def _training(run: Run, config: TrainingConfig, store: RunStore) -> Entry:
+    checkpoint = _checkpoint(run, config, store)
+    if checkpoint is None:
+        table = None if run.continued_from is None else load_table(store, run.continued_from)
+        order, step = TrainingOrder(config, table, changes=run.changes), 0
+    else:
+        since = run.changes[len(checkpoint.meta["changes"]) :]
+        order = TrainingOrder(config, checkpoint=checkpoint, changes=since)
+        step = checkpoint.meta["step"]
+    return Entry(_again(run, step), lambda: order, set(), goes_on=True)
+
+
+def _checkpoint(run: Run, config: TrainingConfig, store: RunStore) -> Checkpoint | None:
+    """It may have come from another machine, so it is checked as a table from there is."""
+    data, said = store.artifact(run.id, CHECKPOINT), f"the checkpoint of training {run.id}"
+    if data is None:
+        return None
+    checkpoint = from_bytes(data, said)
+    meta = checkpoint.meta
+    try:
+        check_fits(checkpoint, config, config.observation)
+        is_whole = meta["agent"] == config.agent and 0 <= meta["step"] <= config.steps
+        steps = [change["step"] <= meta["step"] for change in meta["changes"]]
+        is_whole = is_whole and all(steps) and len(steps) <= len(run.changes)
+        is_whole = is_whole and {"due_epsilon", "episode_reward_m", "rng"} <= set(meta)
+    except (KeyError, TypeError) as error:
+        raise DamagedFile(f"{said} does not hold together ({error!r})") from error
+    if not is_whole:
+        raise DamagedFile(f"{said} does not hold together")
+    return checkpoint
+
+
+def _race(run: Run, config: RaceConfig, store: RunStore) -> list[Entry]:
+    before: list[Entry] = []
+    waits_for = []
+    for training_id in dict.fromkeys(filter(None, run.lane_training_ids)):
+        try:
+            training = store.get(training_id)
+        except NotFound as error:
+            why = f"training {training_id}, whose table it needs, was deleted"
+            raise Conflict(f"race {run.id} cannot go on: {why}", run.state) from error
+        if training.state in RESUMABLE[training.kind]:
+            before += resumed_entries(training, store)
+        elif training.state not in UNENDED:
+            load_table(store, training_id)
+            continue
+        waits_for.append(training_id)
+
+    def make_order() -> RaceOrder:
+        ids = run.lane_training_ids
+        return RaceOrder(config, tuple(None if i is None else load_table(store, i) for i in ids))
+
+    again = replace(_again(run, 0), waiting_for=tuple(waits_for))
+    return [*before, Entry(again, make_order, set(waits_for), goes_on=True)]
+
+
+def _experiment(run: Run, config: ExperimentConfig, store: RunStore) -> Entry:
+    def make_order() -> ExperimentOrder:
+        rows = tuple(store.trials(run.id))
+        return ExperimentOrder(config, run.workers, rows, wall_s_of(store, run.id))
+
+    return Entry(_again(run, len(store.trials(run.id))), make_order, set(), goes_on=True)
+
+
+def _again(run: Run, step: int) -> Run:
+    return replace(run, state="queued", done=step, error=None, result=None, ended_at=None)

@@ -1,0 +1,345 @@
+"""From what a user asks for to runs that can be queued: everything is checked before any starts."""
+
+import io
+import json
+import math
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+from app.agents.q_table import MAX_VALUES
+from app.agents.registry import learns
+from app.domain.errors import DamagedFile, InvalidInput, TableMismatch
+from app.domain.kinematics import check_reach
+from app.domain.observation import Observation
+from app.experiments.config import GRID, ExperimentConfig
+from app.experiments.plan import Plan
+from app.jobs.messages import ExperimentOrder, Order, RaceOrder, TrainingOrder
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, Walk
+from app.runs.table_file import TableFile
+from app.runs.tables import Checkpoint, check_fits, from_bytes
+from app.storage.artifact_file import ArtifactFile, ReadableArtifact
+from app.storage.errors import Conflict, NotFound
+from app.storage.store import SUMMARY, TABLE, Run, RunStore
+
+T = TypeVar("T")
+MAX_RECORDED_STEPS = 300_000
+"""Of all lanes of a race together: every one is recorded, in about 3 kB."""
+
+
+@dataclass(frozen=True)
+class TrainingStart:
+    """A training as it was asked for.
+
+    Attributes:
+        config: the training; its seed does not count if it continues another.
+        name: None lets one be found.
+        continue_from: the training whose table it goes on from.
+    """
+
+    config: TrainingConfig
+    name: str | None = None
+    continue_from: str | None = None
+
+
+@dataclass(frozen=True)
+class LaneStart:
+    """A lane as it was asked for: with a training's table, with a training to come, or neither."""
+
+    agent: str
+    training_id: str | None = None
+    training: TrainingStart | None = None
+
+
+@dataclass(frozen=True)
+class RaceStart:
+    """A race as it was asked for."""
+
+    walk: Walk
+    lanes: Sequence[LaneStart]
+    steps: int
+    seed: int
+    name: str | None = None
+
+
+@dataclass
+class Entry:
+    """A run that waits for its turn.
+
+    Attributes:
+        run: as it was stored.
+        make_order: says what its process is to do, when its turn comes.
+        waits_for: trainings that must finish before.
+        goes_on: whether it was interrupted, and so is in the store already.
+    """
+
+    run: Run
+    make_order: Callable[[], Order]
+    waits_for: set[str]
+    goes_on: bool = False
+
+
+def training_entry(start: TrainingStart, store: RunStore, new_id: Callable[[], str]) -> Entry:
+    """A training, ready to be queued.
+
+    Raises:
+        InvalidInput, TableMismatch, NotFound, Conflict: if it cannot be.
+    """
+    config, table = start.config, None
+    if not learns(config.agent):
+        raise InvalidInput(f"{config.agent} does not learn, so it cannot be trained")
+    check_walk(config)
+    if start.continue_from is not None:
+        table = load_table(store, start.continue_from)
+        check_fits(table, config, config.observation)
+        _check_agent(table, config.agent, start.continue_from)
+        # Its learning generator goes on; evaluations take theirs from the seed that began it.
+        config = replace(config, seed=table.meta["config"]["seed"])
+    run = Run(
+        id=new_id(),
+        kind="training",
+        name=start.name or f"{config.steps:,} steps, {config.resolved_gait.name}",
+        config=config,
+        continued_from=start.continue_from,
+        total=config.steps,
+    )
+    return Entry(run, lambda: TrainingOrder(config, table), set())
+
+
+def race_entries(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> list[Entry]:
+    """A race, ready to be queued, after the trainings that it brings along.
+
+    Raises:
+        InvalidInput, TableMismatch, NotFound, Conflict: if it cannot be.
+    """
+    check_walk(start.walk)
+    if start.steps * len(start.lanes) > MAX_RECORDED_STEPS:
+        raise InvalidInput(
+            f"a race records every step, so steps times lanes must be at most "
+            f"{MAX_RECORDED_STEPS:,}, not {start.steps * len(start.lanes):,}"
+        )
+    before: dict[int, Entry] = {}
+    tables: list[Checkpoint | None] = []
+    lanes: list[LaneConfig] = []
+    observation: Observation
+    for number, lane in enumerate(start.lanes):
+        table = _lane_table(lane, number, start.walk, store)
+        tables.append(table)
+        if lane.training is not None:
+            before[number] = training_entry(lane.training, store, new_id)
+            lanes.append(LaneConfig(agent=lane.agent, observation=lane.training.config.observation))
+        else:
+            observation = table.meta["observation"] if table else "measured"
+            lanes.append(LaneConfig(agent=lane.agent, observation=observation))
+    config = RaceConfig(**vars(start.walk), lanes=tuple(lanes), steps=start.steps, seed=start.seed)
+    ids = {number: entry.run.id for number, entry in before.items()}
+    run = Run(
+        id=new_id(),
+        kind="race",
+        name=start.name or f"Race, {config.resolved_gait.name}",
+        config=config,
+        lane_training_ids=tuple(ids.get(n, lane.training_id) for n, lane in enumerate(start.lanes)),
+        waiting_for=tuple(ids.values()),
+        total=config.steps * len(lanes),
+    )
+
+    def make_order() -> RaceOrder:
+        practised = {number: load_table(store, training) for number, training in ids.items()}
+        return RaceOrder(config, tuple(practised.get(n, t) for n, t in enumerate(tables)))
+
+    return [*before.values(), Entry(run, make_order, set(ids.values()))]
+
+
+def check_walk(walk: Walk) -> None:
+    """Make sure that the robot can walk so, and that a table of it would fit into memory.
+
+    Raises:
+        Unreachable: if a leg cannot reach a cell.
+        InvalidInput: if there are too many states.
+    """
+    gait, grid = walk.resolved_gait, walk.grid
+    check_reach(walk.robot, gait, grid)
+    pairs, cells = len(gait.pairs), len(grid)
+    values = cells**pairs * pairs * cells
+    if values > MAX_VALUES:
+        raise InvalidInput(
+            f"{pairs} leg pairs on {cells} cells have {values:,} state-action values; the most is "
+            f"{MAX_VALUES:,}: choose fewer divisions or fewer legs"
+        )
+
+
+def load_table(store: RunStore, training_id: str) -> Checkpoint:
+    """What a training has learned.
+
+    Raises:
+        NotFound: if there is no such training.
+        Conflict: if it has no table, or none yet.
+        DamagedFile: if the table is damaged.
+    """
+    run = _training(store, training_id)
+    data = store.artifact(training_id, TABLE)
+    return from_bytes(_learned(run, data), _said(training_id))
+
+
+def open_table(store: RunStore, training_id: str) -> ArtifactFile:
+    """The file of what a training has learned, to be read piece by piece, and to be closed.
+
+    Raises:
+        NotFound, Conflict, DamagedFile: as `load_table`.
+    """
+    run = _training(store, training_id)
+    return _learned(run, store.open_artifact(training_id, TABLE))
+
+
+def read_rows(file: ArtifactFile, training_id: str) -> TableFile:
+    """The Q-table in such a file.
+
+    Raises:
+        TableMismatch: if its agent keeps none.
+        DamagedFile: if it is none.
+    """
+    readable = io.BufferedReader(ReadableArtifact(file))
+    return TableFile(file, readable, _said(training_id))
+
+
+def _learned(run: Run, table: T | None) -> T:
+    if run.state not in ("finished", "stopped"):
+        raise Conflict(
+            f"training {run.id} is {run.state}; choose one that is finished or stopped", run.state
+        )
+    if table is None:
+        raise Conflict(f"training {run.id} was {run.state} before it began", run.state)
+    return table
+
+
+def _said(training_id: str) -> str:
+    return f"the table of training {training_id}"
+
+
+def _training(store: RunStore, training_id: str) -> Run:
+    try:
+        run = store.get(training_id)
+    except NotFound as error:
+        raise InvalidInput(
+            f"there is no training {training_id!r}; GET /api/v1/trainings lists all"
+        ) from error
+    if run.kind != "training":
+        raise InvalidInput(f"{training_id!r} is a {run.kind}; name a training")
+    return run
+
+
+def _lane_table(lane: LaneStart, number: int, walk: Walk, store: RunStore) -> Checkpoint | None:
+    """The table that a lane brings along, None if it has none (yet)."""
+    can_learn = learns(lane.agent)
+    has_practice = lane.training_id is not None or lane.training is not None
+    if has_practice and not can_learn:
+        raise InvalidInput(f"lane {number + 1}: {lane.agent} does not learn, so it takes no table")
+    if lane.training_id is not None and lane.training is not None:
+        raise InvalidInput(f"lane {number + 1}: give training_id or training, not both")
+    if lane.agent == "q-learning" and not has_practice:
+        raise InvalidInput(
+            f"lane {number + 1}: {lane.agent} races with what it has learned: give training_id, "
+            "a training that is finished or stopped, or training, one that is to come first"
+        )
+    if lane.training_id is None:
+        return None
+    table = load_table(store, lane.training_id)
+    check_fits(table, walk)
+    _check_agent(table, lane.agent, lane.training_id)
+    return table
+
+
+def _check_agent(table: Checkpoint, agent: str, training_id: str) -> None:
+    if table.meta["agent"] != agent:
+        raise TableMismatch(
+            f"training {training_id} is of {table.meta['agent']}, not of {agent}; choose one of "
+            "the same agent"
+        )
+
+
+TITLES = {"table1": "Table 1", "figure4": "Figure 4", "sweep": "Sweep"}
+MAX_WORKERS = 512
+MAX_SETTINGS = 2_000
+"""All of them are summarised again and again while trials come in, and drawn in one report."""
+
+
+@dataclass(frozen=True)
+class ExperimentStart:
+    """An experiment as it was asked for.
+
+    Attributes:
+        config: the experiment.
+        name: None lets one be found.
+        workers: how many trials at once; None is one for each core.
+    """
+
+    config: ExperimentConfig
+    name: str | None = None
+    workers: int | None = None
+
+
+def experiment_entry(start: ExperimentStart, new_id: Callable[[], str]) -> Entry:
+    """An experiment, ready to be queued.
+
+    Raises:
+        InvalidInput, UnknownName, Unreachable: if it cannot be.
+    """
+    config, workers = start.config, start.workers
+    plan = plan_of(config)
+    cores = os.cpu_count() or 1
+    if workers is not None and workers > cores:
+        raise InvalidInput(f"workers must be from 1 to {cores}, the cores of this machine")
+    seeds = "1 seed" if config.seeds == 1 else f"{config.seeds:,} seeds"
+    run = Run(
+        id=new_id(),
+        kind="experiment",
+        name=start.name or f"{TITLES[config.experiment]}, {seeds}",
+        config=config,
+        workers=workers,
+        total=plan.total,
+    )
+    return Entry(run, lambda: ExperimentOrder(config, workers), set())
+
+
+def plan_of(config: ExperimentConfig) -> Plan:
+    """The settings of an experiment, all of which can be.
+
+    Raises:
+        InvalidInput, UnknownName, Unreachable: if one cannot be, or they are too many.
+    """
+    # Before it is laid out: a few long lists make a grid that fits into no memory.
+    settings = _settings(config)
+    if settings > MAX_SETTINGS:
+        raise InvalidInput(
+            f"the grid has {settings:,} settings, a server takes up to {MAX_SETTINGS:,}; choose "
+            "fewer values, or use `hexapods sweep`"
+        )
+    plan = Plan(config)
+    for walk in {_walk(setting.training) for setting in plan.settings}:
+        check_walk(walk)
+    return plan
+
+
+def wall_s_of(store: RunStore, run_id: str) -> float:
+    """How long an experiment has run by its newest summary.
+
+    Raises:
+        DamagedFile: if that does not say.
+    """
+    summary = store.artifact(run_id, SUMMARY)
+    try:
+        cost = None if summary is None else json.loads(summary).get("cost")
+        return float(cost["wall_s"]) if cost else 0.0
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise DamagedFile(f"{SUMMARY} of run {run_id} is no summary ({error!r})") from error
+
+
+def _settings(config: ExperimentConfig) -> int:
+    """How many combinations of values it has, those of agents that look ahead left out."""
+    lists = ("gaits", "observations", "robots", "agents", *GRID)
+    return math.prod(len(getattr(config, name)) for name in lists)
+
+
+def _walk(walk: Walk) -> Walk:
+    return Walk(**{name: getattr(walk, name) for name in Walk.__dataclass_fields__})

@@ -1,0 +1,74 @@
+"""Brings a database to the schema of this version."""
+
+import logging
+
+from alembic import command
+from alembic.config import Config
+from alembic.runtime.migration import MigrationContext
+from alembic.script import ScriptDirectory
+from sqlalchemy import Connection
+
+from app.domain.errors import InvalidInput
+from app.storage.database.engine import Database
+
+CONNECTION = "connection"
+"""Where `migrations/env.py` finds its connection."""
+
+
+def migrate(database: Database) -> None:
+    """Bring the database to this version's schema, or leave it as it is.
+
+    Raises:
+        InvalidInput: if a newer version made it.
+        StorageFailed: if it cannot be used.
+    """
+    # It would tell of every start.
+    logging.getLogger("alembic").setLevel(logging.WARNING)
+
+    def work(connection: Connection) -> None:
+        _refuse_newer(connection)
+        config = _config()
+        config.attributes[CONNECTION] = connection
+        command.upgrade(config, "head")
+
+    database.write(work)
+
+
+def check_current(connection: Connection) -> bool:
+    """Whether the database has this version's schema; False if it has none yet.
+
+    Raises:
+        InvalidInput: if another version made it.
+    """
+    _refuse_newer(connection)
+    heads = MigrationContext.configure(connection).get_current_heads()
+    if heads and newest_revision() not in heads:
+        raise InvalidInput(
+            "an older version of Racing Hexapods made this database; start `hexapods serve` once, "
+            "which brings it to this version"
+        )
+    return bool(heads)
+
+
+def newest_revision() -> str:
+    """The schema of this version."""
+    return str(ScriptDirectory.from_config(_config()).get_current_head())
+
+
+def _config() -> Config:
+    config = Config()
+    config.set_main_option("script_location", "app.storage.database:migrations")
+    # What else alembic knows of paths is about its own command.
+    config.set_main_option("path_separator", "os")
+    return config
+
+
+def _refuse_newer(connection: Connection) -> None:
+    known = {script.revision for script in ScriptDirectory.from_config(_config()).walk_revisions()}
+    unknown = set(MigrationContext.configure(connection).get_current_heads()) - known
+    if unknown:
+        raise InvalidInput(
+            f"a newer version of Racing Hexapods made this database (its schema is "
+            f"{', '.join(sorted(unknown))}, this version knows up to {newest_revision()}); "
+            "install that version, or choose another data folder or database"
+        )

@@ -1,0 +1,80 @@
+"""Looks into the store of a server, which may run meanwhile, and changes nothing in it."""
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+from urllib.parse import quote
+
+from sqlalchemy import Connection, Engine, create_engine, event, select
+from sqlalchemy.pool import NullPool
+
+from app.settings import Settings
+from app.storage.artifacts import ArtifactFiles
+from app.storage.database.engine import BUSY_S, Database, decode_leniently, postgresql_engine
+from app.storage.database.migration import check_current
+from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
+from app.storage.database.schema import ABOUT
+from app.storage.database.sqlite_file import check_file
+from app.storage.database.store import SqlStore
+from app.storage.disk_space import Room
+from app.storage.memory_store import MemoryStore
+from app.storage.store import RunStore
+
+
+@contextmanager
+def look_into_store(settings: Settings) -> Iterator[RunStore]:
+    """The store as it is, for who only reads; empty where no server has ever been.
+
+    Raises:
+        InvalidInput: if another version's server made it.
+        DamagedFile: if the database is damaged.
+        StorageFailed: if it cannot be read.
+    """
+    engine = _engine(settings)
+    if engine is None:
+        yield MemoryStore()
+        return
+    with closing(Database(engine)) as database:
+        found = database.read(_id)
+        if found is None:
+            yield MemoryStore()
+            return
+        folder = settings.data / ARTIFACTS_FOLDER / found
+        yield SqlStore(database, ArtifactFiles(folder, Room(settings.data)))
+
+
+def _engine(settings: Settings) -> Engine | None:
+    if settings.database_url is not None:
+        engine = postgresql_engine(settings.database_url)
+        event.listen(engine, "connect", _only_read)
+        return engine
+    path = settings.data / DATABASE_FILE
+    check_file(path, settings.data / ARTIFACTS_FOLDER)
+    return _sqlite_engine(path) if path.is_file() else None
+
+
+def _sqlite_engine(path: Path) -> Engine:
+    def connect() -> sqlite3.Connection:
+        # Not by a path: only a URI can ask for no writing.
+        address = f"file:{quote(str(path))}?mode=ro"
+        connection = sqlite3.connect(address, timeout=BUSY_S, isolation_level=None, uri=True)
+        decode_leniently(connection)
+        return connection
+
+    engine = create_engine("sqlite://", creator=connect, poolclass=NullPool)
+    event.listen(engine, "begin", lambda connection: connection.exec_driver_sql("BEGIN"))
+    return engine
+
+
+def _only_read(connection: object, record: object) -> None:
+    del record
+    connection.read_only = True  # type: ignore[attr-defined] # psycopg's
+
+
+def _id(connection: Connection) -> str | None:
+    """The id of the database; None if no server got as far as to make its tables."""
+    if not check_current(connection):
+        return None
+    found: str | None = connection.execute(select(ABOUT.c.id)).scalar()
+    return found

@@ -1,0 +1,171 @@
+"""Runs as rows of the database, and back."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import fields
+from datetime import UTC, datetime
+from functools import lru_cache
+from typing import Any, TypeVar
+
+from app.domain.text import visible
+from app.runs.config import RaceConfig
+from app.storage.configs import CONFIGS, config_as_json, config_of
+from app.storage.database.columns import decoded
+from app.storage.database.queries import MAX_CELL, shown_id
+from app.storage.errors import Damaged
+from app.storage.store import KINDS, STATES, AnyRun, Config, DamagedRun, Run
+
+MAX_ERROR = 10_000
+"""Characters of a run's error; an agent of one's own may raise one of any length."""
+MAX_COUNT = 2**53
+"""Of steps or trials: beyond it JavaScript no longer counts by ones."""
+_MAX_TEXT = 10_000
+_SHORT = 10_000
+"""Characters of a config that is kept in memory once it was parsed."""
+_JSON = ("lane_training_ids", "waiting_for", "changes", "result")
+_LISTS: Mapping[str, Any] = {"lane_training_ids": str | None, "waiting_for": str, "changes": dict}
+_TIMES = ("created_at", "started_at", "ended_at")
+T = TypeVar("T")
+
+
+def row_of(run: Run) -> dict[str, Any]:
+    """All columns of a run."""
+    return columns_of({field.name: getattr(run, field.name) for field in fields(run)})
+
+
+def columns_of(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Some fields of a run as the columns take them."""
+    columns = dict(values)
+    config: Config | None = columns.get("config")
+    if config is not None:
+        columns["config"] = config_as_json(config)
+    for name in _LISTS:
+        if name in columns:
+            columns[name] = [dict(v) if isinstance(v, Mapping) else v for v in columns[name]]
+    error = columns.get("error")
+    if error is not None and len(error) > MAX_ERROR:
+        columns["error"] = f"{error[: MAX_ERROR - 1]}…"
+    return columns
+
+
+def run_of(row: Mapping[str, Any]) -> Run:
+    """The run of an undecoded row.
+
+    Raises:
+        Damaged: if this version cannot read it.
+    """
+    run = any_run_of(row)
+    if isinstance(run, DamagedRun):
+        raise Damaged(run.id, run.damaged)
+    return run
+
+
+def any_run_of(row: Mapping[str, Any]) -> AnyRun:
+    """The run of an undecoded row, or what of it can be read."""
+    try:
+        return Run(**_fields(row))
+    except Exception as error:  # a config of another version may raise anything
+        return DamagedRun(
+            id=shown_id(row["id"]),
+            kind=row["kind"] if row["kind"] in KINDS else None,
+            name=visible(row["name"])[:_MAX_TEXT] if isinstance(row["name"], str) else None,
+            state=row["state"] if row["state"] in STATES else None,
+            created_at=_or_none(row["created_at"]),
+            damaged=f"this version cannot read what the database holds of it ({_said(error)})",
+        )
+
+
+def _fields(row: Mapping[str, Any]) -> dict[str, Any]:
+    values = {**row, **{name: _json(name, row[name]) for name in _JSON}}
+    values |= {name: _time(name, row[name]) for name in _TIMES}
+    for name in ("name", "error", "continued_from"):
+        values[name] = _text(name, row[name], is_needed=name == "name")
+    _check_plain(row, values)
+    for name, kinds in _LISTS.items():
+        values[name] = tuple(_list(name, values[name], kinds))
+    parse = _config if len(row["config"]) <= _SHORT else _config.__wrapped__
+    values["config"] = config = parse(row["kind"], row["config"])
+    if not isinstance(config, CONFIGS[row["kind"]]):
+        raise ValueError("its config is that of another kind")
+    if isinstance(config, RaceConfig) and len(config.lanes) != len(values["lane_training_ids"]):
+        raise ValueError("its lanes do not fit together")
+    return values
+
+
+@lru_cache(maxsize=512)
+def _config(kind: str, text: str) -> Config:
+    """The config in a column; most runs share theirs with others, and parsing takes the longest."""
+    return config_of(kind, _json("config", text))
+
+
+def _check_plain(row: Mapping[str, Any], values: Mapping[str, Any]) -> None:
+    if shown_id(row["id"]) != row["id"]:
+        raise ValueError("its id is none")
+    for name, choices in (("kind", KINDS), ("state", STATES)):
+        if row[name] not in choices:
+            raise ValueError(f"its {name} is none of {', '.join(choices)}")
+    if values["created_at"] is None:
+        raise ValueError("its created_at is none")
+    for name in ("done", "total", "workers"):
+        _check_count(name, row[name], is_needed=name != "workers")
+    for name in ("eta_s", "greedy_distance_m"):
+        if row[name] is not None and not isinstance(row[name], int | float):
+            raise ValueError(f"its {name} is no number")
+    if not isinstance(values["result"], dict | None):
+        raise ValueError("its result is none")
+
+
+def _json(name: str, text: Any) -> Any:
+    if text is None:
+        return None
+    if len(text) > MAX_CELL:
+        raise ValueError(f"its {name} is too long")
+    return decoded(json.loads(text))
+
+
+def _time(name: str, text: Any) -> datetime | None:
+    if text is None:
+        return None
+    moment = datetime.fromisoformat(text)
+    # SQLite knows no time zones.
+    moment = moment.replace(tzinfo=UTC) if moment.tzinfo is None else moment.astimezone(UTC)
+    if not 1970 <= moment.year < 9999:
+        raise ValueError(f"its {name} is no date of ours")
+    return moment
+
+
+def _or_none(text: Any) -> datetime | None:
+    try:
+        return _time("created_at", text)
+    except (ValueError, TypeError, OverflowError):
+        return None
+
+
+def _text(name: str, value: Any, *, is_needed: bool) -> str | None:
+    if value is None and not is_needed:
+        return None
+    if not isinstance(value, str):
+        raise ValueError(f"its {name} is no text")
+    if name == "error":
+        # Of several lines, where an agent's exception is.
+        return value[:MAX_ERROR].encode("utf-8", "replace").decode()
+    if len(value) > _MAX_TEXT:
+        raise ValueError(f"its {name} is too long")
+    return visible(value)
+
+
+def _check_count(name: str, value: Any, *, is_needed: bool) -> None:
+    if value is None and not is_needed:
+        return
+    if not isinstance(value, int) or not 0 <= value <= MAX_COUNT:
+        raise ValueError(f"its {name} is no count")
+
+
+def _list(name: str, value: Any, kinds: Any) -> list[Any]:
+    if not isinstance(value, list) or not all(isinstance(one, kinds) for one in value):
+        raise ValueError(f"its {name} is no list, or of something else")
+    return value
+
+
+def _said(error: Exception) -> str:
+    return visible(f"{type(error).__name__}: {error}" if str(error) else type(error).__name__)[:300]

@@ -1,0 +1,172 @@
+"""The store of runs that lasts as long as the process."""
+
+import math
+import threading
+from collections import Counter
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from app.storage.artifact_file import ArtifactFile, BytesFile
+from app.storage.errors import Conflict, NotFound
+from app.storage.sessions import MemorySessionRows
+from app.storage.store import (
+    RUNNING,
+    UNENDED,
+    AnyRun,
+    Content,
+    IdempotencyKey,
+    Kind,
+    Page,
+    Run,
+    Started,
+    State,
+)
+
+
+class MemoryStore:
+    """Implements `RunStore` for as long as the process lives."""
+
+    def __init__(self) -> None:
+        self._runs: dict[str, Run] = {}
+        self._curves: dict[str, list[Mapping[str, Any]]] = {}
+        self._trials: dict[str, dict[str, Mapping[str, Any]]] = {}
+        self._artifacts: dict[str, dict[str, bytes]] = {}
+        self._keys: dict[str, Started] = {}
+        self._lock = threading.Lock()
+        self.sessions = MemorySessionRows()
+
+    def check_room(self) -> None:
+        pass
+
+    def create(self, *runs: Run, key: IdempotencyKey | None = None) -> None:
+        with self._lock:
+            self._runs |= {run.id: run for run in runs}
+            if key is not None:
+                self._keys[key.key] = Started(key.digest, runs[-1].id)
+
+    def add(
+        self,
+        run: Run,
+        content: Content,
+        new_id: Callable[[], str],
+        key: IdempotencyKey | None = None,
+    ) -> Run:
+        if run.id in self._runs:
+            run = replace(run, id=new_id())
+        self.create(run, key=key)
+        self.append_evaluations(run.id, content.evaluations)
+        self.append_trials(run.id, content.trials)
+        for name, data in content.artifacts.items():
+            self.put_artifact(run.id, name, data)
+        return run
+
+    def started_by(self, key: str) -> Started | None:
+        with self._lock:
+            return self._keys.get(key)
+
+    def find(self, run_id: str) -> AnyRun:
+        return self.get(run_id)
+
+    def get(self, run_id: str) -> Run:
+        with self._lock:
+            return self._run(run_id)
+
+    def list(
+        self,
+        kind: Kind | None = None,
+        state: State | None = None,
+        limit: int = 50,
+        cursor: str | None = None,
+    ) -> Page:
+        with self._lock:
+            found = [
+                run
+                for run in self._runs.values()
+                if (kind is None or run.kind == kind)
+                and (state is None or run.state == state)
+                and (cursor is None or run.id < cursor)
+            ]
+        found.sort(key=lambda run: run.id, reverse=True)
+        more = len(found) > limit
+        return Page([*found[:limit]], found[limit - 1].id if more else None)
+
+    def counts(self) -> Mapping[State, int]:
+        with self._lock:
+            return Counter(run.state for run in self._runs.values())
+
+    def change(
+        self, run_id: str, from_states: Collection[State], to_state: State, **fields: Any
+    ) -> Run:
+        with self._lock:
+            run = self._run(run_id)
+            if run.state not in from_states:
+                raise Conflict(f"{run.kind} {run_id} is {run.state}", run.state)
+            self._runs[run_id] = replace(run, state=to_state, **{"eta_s": None, **fields})
+            return self._runs[run_id]
+
+    def update(self, run_id: str, **fields: Any) -> Run:
+        with self._lock:
+            self._runs[run_id] = replace(self._run(run_id), **fields)
+            return self._runs[run_id]
+
+    def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> Run:
+        with self._lock:
+            run = self._run(run_id)
+            left_s = eta_s if run.state in RUNNING else None
+            self._runs[run_id] = replace(run, done=done, eta_s=left_s)
+            return self._runs[run_id]
+
+    def delete(self, run_id: str) -> None:
+        with self._lock:
+            run = self._run(run_id)
+            if run.state in UNENDED:
+                raise Conflict(f"{run.kind} {run_id} is {run.state}; stop it first", run.state)
+            for kept in (self._runs, self._curves, self._trials, self._artifacts):
+                kept.pop(run_id, None)
+
+    def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
+        with self._lock:
+            self._run(run_id)
+            first = min((row["step"] for row in rows), default=math.inf)
+            before = [row for row in self._curves.get(run_id, ()) if row["step"] < first]
+            self._curves[run_id] = [*before, *rows]
+
+    def evaluations(self, run_id: str) -> Sequence[Mapping[str, Any]]:
+        with self._lock:
+            self._run(run_id)
+            return [*self._curves.get(run_id, ())]
+
+    def forget_evaluations(self, run_id: str, after_step: int) -> None:
+        with self._lock:
+            curve = self._curves.get(run_id, [])
+            self._curves[run_id] = [row for row in curve if row["step"] <= after_step]
+
+    def append_trials(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
+        with self._lock:
+            self._run(run_id)
+            self._trials.setdefault(run_id, {}).update({row["key"]: dict(row) for row in rows})
+
+    def trials(self, run_id: str) -> Sequence[Mapping[str, Any]]:
+        with self._lock:
+            self._run(run_id)
+            return [row for _, row in sorted(self._trials.get(run_id, {}).items())]
+
+    def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
+        with self._lock:
+            self._runs[run_id] = replace(self._run(run_id), **fields)
+            self._artifacts.setdefault(run_id, {})[name] = data
+
+    def artifact(self, run_id: str, name: str) -> bytes | None:
+        with self._lock:
+            self._run(run_id)
+            return self._artifacts.get(run_id, {}).get(name)
+
+    def open_artifact(self, run_id: str, name: str) -> ArtifactFile | None:
+        data = self.artifact(run_id, name)
+        return None if data is None else BytesFile(data)
+
+    def _run(self, run_id: str) -> Run:
+        if run_id not in self._runs:
+            raise NotFound(f"there is no run {run_id!r} (any more)")
+        return self._runs[run_id]

@@ -1,0 +1,125 @@
+"""What is drawn now and then: the distances of a photo finish, the ghosts of evaluations."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import viser
+
+from app.stage.scene_spec import rest_pose
+from app.stage.stage_frame import Cast, Ghost, StageFrame
+from app.viewer.colormap import batched, rgb
+from app.viewer.robot_mesh import RobotMesh
+from app.viewer.shapes import strip
+
+_BAR_M = 0.05
+_TEXT_SCALE = 1.7
+
+
+class PhotoFinish:
+    """A bar from the start line to each robot with its distance, while the picture is frozen."""
+
+    def __init__(
+        self, server: viser.ViserServer, root: str, cast: Cast, xs: Sequence[float]
+    ) -> None:
+        self._server, self._root, self._cast, self._xs = server, root, cast, xs
+        self._shown: tuple[tuple[int, float], ...] = ()
+        self._frame: viser.FrameHandle | None = None
+
+    def draw(self, frame: StageFrame) -> None:
+        """Show or hide it, as the frame says; another clock has another photo."""
+        frozen = frame.phase == "photo-finish"
+        wanted = tuple((lane.rank, lane.distance_m) for lane in frame.lanes) if frozen else ()
+        if wanted == self._shown:
+            return
+        if self._frame is not None:
+            self._frame.remove()
+            self._frame = None
+        self._shown = wanted
+        if not wanted:
+            return
+        self._frame = self._server.scene.add_frame(self._root, show_axes=False)
+        for number, ((rank, far), x) in enumerate(zip(wanted, self._xs, strict=True)):
+            bar = strip(_BAR_M, max(abs(far), 0.002))
+            color = rgb(self._cast.roles[number].color)
+            self._server.scene.add_mesh_simple(
+                f"{self._root}/bar{number}",
+                bar.vertices,
+                bar.faces,
+                color=color,
+                position=(x, far / 2, 0.004),
+                cast_shadow=False,
+                receive_shadow=False,
+            )
+            self._server.scene.add_label(
+                f"{self._root}/far{number}",
+                f"{rank}.  {far:.2f} m",
+                position=(x, -0.02, 0.0),
+                anchor="top-center",
+                font_screen_scale=_TEXT_SCALE,
+            )
+
+
+class Ghosts:
+    """Evaluations on a lane of their own: a line for each, a pale robot for the newest."""
+
+    def __init__(
+        self, server: viser.ViserServer, root: str, cast: Cast, mesh: RobotMesh, x_m: float
+    ) -> None:
+        self._server, self._root, self._x_m, self._mesh = server, root, x_m, mesh
+        self._width = 2 * cast.robot.home_radius_m
+        self._color, self._rest = rgb(cast.roles[0].color), rest_pose(cast)
+        self._shown: tuple[Ghost, ...] = ()
+        self._frame: viser.FrameHandle | None = None
+
+    def draw(self, ghosts: tuple[Ghost, ...]) -> None:
+        """Show these, from the oldest to the newest."""
+        if ghosts == self._shown:
+            return
+        if self._frame is not None:
+            self._frame.remove()
+            self._frame = None
+        self._shown = ghosts
+        if not ghosts:
+            return
+        self._frame = self._server.scene.add_frame(
+            self._root, show_axes=False, position=(self._x_m, 0.0, 0.0)
+        )
+        for number, ghost in enumerate(ghosts):
+            self._draw_line(number, ghost.distance_m, (number + 1) / len(ghosts))
+        self._draw_robot(ghosts[-1])
+
+    def _draw_line(self, number: int, distance_m: float, newness: float) -> None:
+        line = strip(self._width, 0.008)
+        self._server.scene.add_mesh_simple(
+            f"{self._root}/line{number}",
+            line.vertices,
+            line.faces,
+            color=self._color,
+            opacity=0.15 + 0.75 * newness,
+            position=(0.0, distance_m, 0.004),
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+    def _draw_robot(self, ghost: Ghost) -> None:
+        placed = self._mesh.place(self._rest).moved(0.0, ghost.distance_m)
+        for number, part in enumerate(self._mesh.parts):
+            self._server.scene.add_batched_meshes_simple(
+                f"{self._root}/robot/{number}",
+                part.shape.vertices,
+                part.shape.faces,
+                batched_positions=placed.places[part.links],
+                batched_wxyzs=placed.attitudes[part.links],
+                batched_colors=batched(np.array([self._color] * len(part.links), np.uint8)),
+                opacity=0.4,
+                lod="off",
+                cast_shadow=False,
+                receive_shadow=False,
+            )
+        self._server.scene.add_label(
+            f"{self._root}/robot/label",
+            f"{ghost.distance_m:.2f} m\nafter {ghost.step} steps",
+            position=(0.0, ghost.distance_m, 0.22),
+            anchor="bottom-center",
+            font_screen_scale=1.35,
+        )

@@ -1,0 +1,91 @@
+"""Large answers that nobody reads, and large bodies that never end, are bounded."""
+
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, suppress
+
+import pytest
+import uvicorn
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from app.api.memory_limit import ANSWERS_SHARE_BYTES, BODIES_SHARE_BYTES, HeldBodies
+
+MB = 1 << 20
+LARGE = 8 * MB
+
+
+async def answer(scope: Scope, receive: Receive, send: Send) -> None:
+    request = Request(scope, receive)
+    body = await request.body()
+    size = LARGE if scope["path"] == "/large" else 10
+    await Response(b"x" * size, headers={"X-Received": str(len(body))})(scope, receive, send)
+
+
+class AsOperator:
+    """What the guard of tokens says of every request."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "http":
+            scope["state"] = {"role": "operator"}
+        await self._app(scope, receive, send)
+
+
+@pytest.fixture
+def port() -> Iterator[int]:
+    app = AsOperator(HeldBodies(answer))
+    config = uvicorn.Config(app, host="127.0.0.1", port=0, lifespan="off", log_level="critical")
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    while not server.started:
+        time.sleep(0.01)
+    yield server.servers[0].sockets[0].getsockname()[1]
+    server.should_exit = server.force_exit = True
+    thread.join()
+
+
+def ask(stack: ExitStack, port: int, head: str, body: bytes = b"") -> socket.socket:
+    sock = stack.enter_context(socket.socket())
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    sock.settimeout(30)
+    sock.connect(("127.0.0.1", port))
+    sock.sendall(f"{head} HTTP/1.1\r\nHost: x\r\n".encode() + body)
+    return sock
+
+
+def test_unread_answers_are_refused_beyond_the_share_and_whole_within(port: int) -> None:
+    with ExitStack() as stack:
+        within = ANSWERS_SHARE_BYTES // LARGE
+        readers = [ask(stack, port, "GET /large", b"\r\n") for _ in range(within)]
+        assert [reader.recv(12) for reader in readers] == [b"HTTP/1.1 200"] * within
+        refused = ask(stack, port, "GET /large", b"\r\n").recv(4096)
+        assert refused.startswith(b"HTTP/1.1 429")
+        assert b"retry-after: 5" in refused.lower()
+        assert ask(stack, port, "GET /small", b"\r\n").recv(12) == b"HTTP/1.1 200"
+
+        whole = b""
+        while whole.count(b"x") < LARGE:
+            part = readers[0].recv(1 << 16)
+            assert part
+            whole += part
+        assert ask(stack, port, "GET /large", b"\r\n").recv(12) == b"HTTP/1.1 200"
+
+
+def test_bodies_that_never_end_are_refused_beyond_the_share(port: int) -> None:
+    with ExitStack() as stack:
+        length = f"Content-Length: {64 * MB}\r\n\r\n".encode()
+        held = BODIES_SHARE_BYTES // (16 * MB)
+        senders = [ask(stack, port, "POST /small", length) for _ in range(held + 1)]
+        for sender in senders[:held]:
+            sender.sendall(bytes(16 * MB - 256 * 1024))
+        time.sleep(0.5)
+        with suppress(OSError):  # hung up on while it still sent
+            senders[held].sendall(bytes(16 * MB))
+        assert senders[held].recv(12) == b"HTTP/1.1 429"

@@ -1,0 +1,303 @@
+"""Runs move between stores with all they have, and a file that lies does not get in."""
+
+import io
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.agents.registry import OURS
+from app.archive import archive
+from app.archive.transfer import RUN, export_run, import_run
+from app.domain.errors import InvalidInput
+from app.runs.recording import race_arrays
+from app.storage.database.store import SqlStore
+from app.storage.errors import Conflict, NotFound
+from app.storage.memory_store import MemoryStore
+from app.storage.recordings import Recordings
+from app.storage.run_ids import RunIds
+from app.storage.store import CHECKPOINT, TABLE, Run, RunStore, State
+from app.storage.stored_recordings import PRACTICE, RACE
+from tests.storage.ended import ended_race, ended_training
+from tests.storage.stores import ODD, opened, training
+
+TRAINING, RACED = "00000000000t1", "00000000000r1"
+ONE, OTHER = "00000000000a1", "00000000000b1"
+Change = Callable[[Any], object]
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SqlStore]:
+    with opened(tmp_path_factory.mktemp("source"), None) as store:
+        ended_training(store, TRAINING, "ü 🕷 <b>it</b> [red]learned")
+        ended_race(store, RACED, TRAINING)
+        yield store
+
+
+def taken_in(data: bytes, store: RunStore | None = None) -> Run:
+    return import_run(store or MemoryStore(), data, RunIds(), tuple(OURS), "run.zip")
+
+
+def refusal(data: bytes) -> str:
+    store = MemoryStore()
+    with pytest.raises(InvalidInput) as error:
+        taken_in(data, store)
+    assert "\n" not in str(error.value)
+    assert store.list().items == []
+    return str(error.value)
+
+
+def repacked(data: bytes, **members: bytes | None) -> bytes:
+    """The archive with other members, and a manifest that fits them."""
+    former = archive.unpack(data, "run.zip", lambda name: True)
+    changed = {**former, **{name.replace("_", "."): data for name, data in members.items()}}
+    return archive.pack({name: data for name, data in changed.items() if data is not None})
+
+
+def rewritten(data: bytes, change: Change) -> bytes:
+    """The archive with another run.json."""
+    shown = json.loads(archive.unpack(data, "run.zip", lambda name: True)[RUN])
+    change(shown)
+    return repacked(data, run_json=json.dumps(shown).encode())
+
+
+@pytest.mark.parametrize("run_id", [TRAINING, RACED])
+def test_everything_arrives(source: SqlStore, run_id: str, tmp_path: Path) -> None:
+    data = export_run(source, run_id)
+    with opened(tmp_path, None) as target:
+        assert taken_in(data, target) == source.get(run_id)
+        assert target.evaluations(run_id) == source.evaluations(run_id)
+        for name in (TABLE, RACE, PRACTICE):
+            assert target.artifact(run_id, name) == source.artifact(run_id, name)
+        assert export_run(target, run_id) == data
+        here, there = Recordings(target), Recordings(source)
+        if run_id == RACED:
+            lanes, were = here.race(run_id), there.race(run_id)
+            assert lanes is not None
+            assert were is not None
+            same = zip(race_arrays(lanes).values(), race_arrays(were).values(), strict=True)
+            assert all(one.tobytes() == other.tobytes() for one, other in same)
+        else:
+            practised, was = here.training(run_id), there.training(run_id)
+            assert practised is not None
+            assert was is not None
+            assert [s.step for s in practised.steps] == [s.step for s in was.steps]
+            assert len(practised.evaluations) == len(was.evaluations) == 24
+
+
+def test_what_is_here_is_not_replaced(source: SqlStore) -> None:
+    data, store = export_run(source, TRAINING), MemoryStore()
+    first = taken_in(data, store)
+    store.update(first.id, name="Mine")
+    second = taken_in(data, store)
+    assert first.id == TRAINING != second.id
+    assert store.get(TRAINING).name == "Mine"
+    assert second == replace(source.get(TRAINING), id=second.id)
+    assert store.artifact(second.id, TABLE) == source.artifact(TRAINING, TABLE)
+
+
+def test_runs_of_every_end_move(source: SqlStore) -> None:
+    states = ("stopped", "failed", "interrupted")
+    for state in states:
+        store = MemoryStore()
+        store.create(training(ONE, state=state, error="It broke.", greedy_distance_m=0.5))
+        assert taken_in(export_run(store, ONE)) == store.get(ONE)
+    for state in ("queued", "running", "paused"):
+        store = MemoryStore()
+        store.create(training("a", state=state))
+        with pytest.raises(Conflict, match="stop it first"):
+            export_run(store, "a")
+    with pytest.raises(NotFound):
+        export_run(source, "none")
+
+
+def test_what_was_interrupted_can_go_on_elsewhere(source: SqlStore) -> None:
+    store, target, saved = MemoryStore(), MemoryStore(), source.artifact(TRAINING, TABLE) or b""
+    config = source.get(TRAINING).config
+    states: dict[str, State] = {ONE: "interrupted", OTHER: "finished"}
+    for run_id, state in states.items():
+        store.create(training(run_id, state=state, config=config, done=120, total=120))
+        store.put_artifact(run_id, CHECKPOINT, saved)
+        taken_in(export_run(store, run_id), target)
+    assert target.artifact(ONE, CHECKPOINT) == saved
+    # Nobody goes on from there, so that it is not carried along.
+    assert target.artifact(OTHER, CHECKPOINT) is None
+    data = export_run(store, ONE)
+    assert "another step" in refusal(rewritten(data, _shorter))
+    assert "is not a Q-table" in refusal(repacked(data, checkpoint_npz=b"milk"))
+
+
+def test_odd_configs_move_and_foreign_agents_do_not() -> None:
+    store = MemoryStore()
+    store.create(training(ONE, state="finished", config=replace(ODD, agent="q-learning")))
+    store.create(training(OTHER, state="finished", config=ODD))
+    assert taken_in(export_run(store, ONE)) == store.get(ONE)
+    assert "q-learning, greedy, two-step" in refusal(export_run(store, OTHER))
+
+
+def _set(name: str, value: Any, *path: str | int) -> Change:
+    def change(shown: Any) -> None:
+        for part in path:
+            shown = shown[part]
+        shown[name] = value
+
+    return change
+
+
+def _shorter(shown: Any) -> None:
+    shown["run"] |= {"done": 119, "total": 119}
+
+
+@pytest.mark.parametrize(
+    ("change", "names"),
+    [
+        (_set("format", 2), "format 2"),
+        (_set("format", "1"), "run.json"),
+        (_set("more", 1), "unknown field `more`"),
+        (_set("more", 1, "run"), "unknown field `more`"),
+        (_set("more", 1, "run", "result"), "unknown field `more`"),
+        (_set("more", 1, "run", "config"), "more"),
+        (_set("wings", 2, "run", "config", "robot"), "femur_m"),
+        (_set("n_legs", 10**9, "run", "config", "robot"), "even number of legs"),
+        (_set("grid_side_m", 0.5, "run", "config"), "cannot reach"),
+        (_set("steps", 10**9, "run", "config"), "10,000,000"),
+        (_set("divisions", 3, "run", "config"), "divisions 2"),
+        (_set("config", None, "run"), "run.json"),
+        (_set("config", {"gait": ["left"]}, "run"), "run.json"),
+        (_set("id", "../x", "run"), "run.json"),
+        (_set("kind", "race", "run"), "do not fit together"),
+        (_set("state", "running", "run"), "running"),
+        (_set("name", "x" * 101, "run"), "name"),
+        (_set("name", "a\x1b[2J", "run"), "control characters"),
+        (_set("name", 3, "run"), "name"),
+        (_set("name", "a\u202eb", "run"), "U+202E"),
+        (_set("error", "x" * 10_001, "run"), "error"),
+        (_set("created_at", "9999-12-31T23:59:59-12:00", "run"), "created_at must be from 1970"),
+        (_set("created_at", "1969-12-31T23:59:59Z", "run"), "created_at must be from 1970"),
+        (_set("started_at", "2999-01-01T00:00:00Z", "run"), "started_at"),
+        (_set("ended_at", "0001-01-01T00:00:00+14:00", "run"), "ended_at"),
+        (_set("greedy_distance_m", float("nan"), "run"), "run.json"),
+        (_set("greedy_distance_m", 1e300, "run"), "greedy_distance_m"),
+        (_set("distance_m", 1e300, "run", "result"), "distance_m"),
+        (_set("changes", [{"step": 5, "alpha": 7.0}], "run"), "alpha"),
+        (_set("changes", [{"step": 5, "pace": -1.0}], "run"), "pace"),
+        (_set("curve", [{"step": 5, "distance_m": 1, "epsilon": 1.5}]), "epsilon"),
+        (_set("curve", [{"step": 10**30, "distance_m": 1, "epsilon": 0}]), "step"),
+        (_set("done", -1, "run"), "done"),
+        (_set("done", 121, "run"), "progress"),
+        (_set("created_at", "2026-01-01T00:00:00", "run"), "created_at"),
+        (_set("created_at", "yesterday", "run"), "created_at"),
+        (_set("distance_m", "far", "run", "result"), "distance_m"),
+        (_set("q_table_sha256", "0" * 64, "run", "result"), "not those of the run's result"),
+        (_set("curve", [{"step": 5, "distance_m": 1, "epsilon": 0}] * 2), "curve"),
+        (_set("curve", [{"step": 5}]), "distance_m"),
+        (_set("curve", [{"step": 5, "distance_m": None, "epsilon": 0}]), "distance_m"),
+        (_set("lane_training_ids", [None], "run"), "has lanes"),
+        (lambda shown: shown.pop("run"), "run"),
+    ],
+)
+def test_a_run_that_says_something_else_is_refused(
+    source: SqlStore, change: Change, names: str
+) -> None:
+    assert names in refusal(rewritten(export_run(source, TRAINING), change))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        _set("lane_training_ids", [None], "run"),
+        _set("lanes", [], "run", "result"),
+        _set("curve", [{"step": 5, "distance_m": 1, "epsilon": 0}]),
+        lambda shown: shown["run"]["result"]["lanes"].reverse(),
+        lambda shown: shown["run"]["result"]["lanes"][0].update(decision_s=None),
+        lambda shown: shown["run"]["result"]["lanes"][0]["clocks"].pop("wall"),
+        lambda shown: shown["run"]["config"]["lanes"].pop(),
+        lambda shown: shown["run"]["config"]["lanes"].reverse(),
+        _set("steps", 3, "run", "config"),
+        _set("divisions", 3, "run", "config"),
+    ],
+)
+def test_a_race_that_says_something_else_is_refused(source: SqlStore, change: Change) -> None:
+    refusal(rewritten(export_run(source, RACED), change))
+
+
+def test_text_that_is_no_json_is_refused(source: SqlStore) -> None:
+    data = export_run(source, RACED)
+    for text in (b"", b"{", b"[]", b"null", b"[" * 100_000, b"\xff", b'{"format": 1e999}'):
+        assert "run.json" in refusal(repacked(data, run_json=text))
+    assert "run.json" in refusal(repacked(data, run_json=None))
+
+
+def test_files_of_another_run_are_refused(source: SqlStore) -> None:
+    race, practice = export_run(source, RACED), export_run(source, TRAINING)
+    table = source.artifact(TRAINING, TABLE)
+    raced = source.artifact(RACED, RACE)
+    assert "which no race has" in refusal(repacked(race, **{"q-table_npz": table}))
+    assert "which no training has" in refusal(repacked(practice, race_npz=raced))
+    assert "is not a Q-table" in refusal(repacked(practice, **{"q-table_npz": raced}))
+    assert "cannot be shown" in refusal(repacked(practice, practice_npz=raced))
+    assert "cannot be shown" in refusal(repacked(practice, **{"evaluations-0000_npz": None}))
+    for junk in (b"", b"milk", b"PK\5\6" + bytes(18)):
+        assert "cannot be shown" in refusal(repacked(race, race_npz=junk))
+
+
+def _race_with(source: SqlStore, change: Change) -> bytes:
+    with np.load(io.BytesIO(source.artifact(RACED, RACE) or b"")) as file:
+        arrays = {name: file[name] for name in file.files}
+    change(arrays)
+    buffer = io.BytesIO()
+    np.savez(buffer, **arrays)
+    return repacked(export_run(source, RACED), race_npz=buffer.getvalue())
+
+
+def test_recordings_that_cannot_be_drawn_are_refused(source: SqlStore) -> None:
+    assert taken_in(_race_with(source, lambda arrays: None)).id == RACED
+
+    def put(name: str, value: Callable[[Any], Any]) -> Change:
+        return lambda arrays: arrays.update({name: value(arrays[name])})
+
+    for change in (
+        put("lane0.qpos", lambda a: a[:, :-3]),
+        put("lane0.qpos", lambda a: a * np.nan),
+        put("lane0.qpos", lambda a: a.astype(str)),
+        put("lane0.rest_qpos", lambda a: a[:-1]),
+        put("lane0.time_s", lambda a: a[::-1]),
+        put("lane0.time_s", lambda a: a * 0),
+        put("lane0.frames", lambda a: a * 1000),
+        put("lane0.frames", lambda a: -a),
+        put("lane0.observation", lambda a: a + 100),
+        put("lane0.observation", lambda a: a[:, :-1]),
+        put("lane0.action", lambda a: a - 100),
+        put("lane0.action", lambda a: a * 0.5),
+        put("lane0.scalars", lambda a: a * np.nan),
+        put("lane0.values", lambda a: a[:, :1]),
+        put("meta", lambda a: np.array("[]")),
+        put("meta", lambda a: np.array("[" * 100_000)),
+    ):
+        assert "cannot be shown" in refusal(_race_with(source, change))
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, meta=np.zeros(10_000_000))
+    bomb = repacked(export_run(source, RACED), race_npz=buffer.getvalue())
+    assert "compressed" in refusal(bomb)
+
+
+def test_an_id_that_could_not_have_been_made_yet_is_not_kept(source: SqlStore) -> None:
+    for run_id in ("zzzzzzzzz0000", "0", "training", "1zzzzzzzzzzzz"):
+        store, ids = MemoryStore(), RunIds()
+        data = rewritten(export_run(source, TRAINING), _set("id", run_id, "run"))
+        run = import_run(store, data, ids, tuple(OURS), "run.zip")
+        assert run.id != run_id
+        assert store.get(run.id) == replace(source.get(TRAINING), id=run.id)
+        assert ids() > run.id
+
+
+def test_new_runs_sort_last_beside_one_of_the_year_3000() -> None:
+    store = MemoryStore()
+    believed = "1m7zzzzzz0000"  # of November 2026
+    store.create(training("zzzzzzzzz0000", state="finished"), training(believed, state="finished"))
+    first = RunIds.of(store)()
+    assert believed < first < "zzzzzzzzz0000"

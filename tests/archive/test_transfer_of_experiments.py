@@ -1,0 +1,152 @@
+"""Experiments move between stores with all they have, and one that lies does not get in."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.archive import archive
+from app.archive.archived_trials import TRIALS
+from app.archive.transfer import export_run
+from app.storage.database.store import SqlStore
+from app.storage.memory_store import MemoryStore
+from app.storage.store import SUMMARY, State
+from tests.archive.test_transfer import Change, _set, refusal, repacked, rewritten, taken_in
+from tests.storage.ended import ended_experiment
+from tests.storage.stores import SWEEP, experiment, opened
+
+RUN_ID = "00000000000e1"
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SqlStore]:
+    with opened(tmp_path_factory.mktemp("source"), None) as store:
+        ended_experiment(store, RUN_ID)
+        yield store
+
+
+def members(data: bytes) -> dict[str, bytes]:
+    return archive.unpack(data, "run.zip", lambda name: True)
+
+
+def with_trials(data: bytes, change: Change) -> bytes:
+    """The archive with other trials."""
+    rows = json.loads(members(data)[TRIALS])
+    change(rows)
+    return repacked(data, trials_json=json.dumps(rows).encode())
+
+
+def test_everything_arrives(source: SqlStore, tmp_path: Path) -> None:
+    data = export_run(source, RUN_ID)
+    with opened(tmp_path, None) as target:
+        assert taken_in(data, target) == source.get(RUN_ID)
+        assert target.trials(RUN_ID) == source.trials(RUN_ID)
+        for name in (SUMMARY, "trials.csv"):
+            assert target.artifact(RUN_ID, name) == source.artifact(RUN_ID, name)
+        assert export_run(target, RUN_ID) == data
+
+
+def test_one_that_did_not_come_to_its_end_moves_with_what_it_has(source: SqlStore) -> None:
+    store = MemoryStore()
+    config, rows = source.get(RUN_ID).config, source.trials(RUN_ID)[:2]
+    states: dict[str, State] = {"0000000000001": "interrupted", "0000000000002": "stopped"}
+    for run_id, state in {**states, "0000000000003": "failed"}.items():
+        run = experiment(run_id, state=state, config=config, total=4, done=2, workers=2)
+        store.create(run)
+        store.append_trials(run_id, rows)
+        target = MemoryStore()
+        assert taken_in(export_run(store, run_id), target) == run
+        assert target.trials(run_id) == rows
+
+
+def test_agents_that_are_not_here_do_not_get_in_and_are_not_even_imported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "evil.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')")
+    monkeypatch.syspath_prepend(tmp_path)
+    store = MemoryStore()
+    config = replace(SWEEP, agents=("q-learning", "evil:Agent"))
+    store.create(experiment("a", state="failed", config=config))
+    assert "q-learning, greedy, two-step" in refusal(export_run(store, "a"))
+    assert not (tmp_path / "ran").exists()
+
+
+@pytest.mark.parametrize(
+    ("change", "names"),
+    [
+        (_set("kind", "race", "run"), "run.json"),
+        (_set("kind", "training", "run"), "run.json"),
+        (_set("total", 1_000, "run"), "total"),
+        (_set("done", 5, "run"), "progress"),
+        (_set("workers", 0, "run"), "workers"),
+        (_set("workers", 10**6, "run"), "workers"),
+        (_set("lane_training_ids", [None], "run"), "has lanes"),
+        (_set("seeds", 0, "run", "config"), "seeds"),
+        (_set("seeds", 10**9, "run", "config"), "seeds"),
+        (_set("alpha", [n / 1000 for n in range(1, 999)], "run", "config"), "total"),
+        (_set("grid_side_m", [0.5], "run", "config"), "cannot reach"),
+        (_set("experiment", "table9", "run", "config"), "table1, figure4, sweep"),
+        (_set("agents", ["my.module:Agent"], "run", "config"), "run.json"),
+        (_set("colour", 1, "run", "config"), "colour"),
+        (_set("files", ["../../x"], "run", "result"), "this experiment has not"),
+        (_set("files", 3, "run", "result"), "files"),
+        (_set("more", 3, "run", "result"), "more"),
+        (_set("curve", [{"step": 5, "distance_m": 1, "epsilon": 0}]), "curve"),
+    ],
+)
+def test_a_run_that_says_something_else_is_refused(
+    source: SqlStore, change: Change, names: str
+) -> None:
+    assert names in refusal(rewritten(export_run(source, RUN_ID), change))
+
+
+def _again(rows: Any) -> None:
+    rows.append(rows[0])
+
+
+@pytest.mark.parametrize(
+    ("change", "names"),
+    [
+        (_set("key", "left-right-origin/felt/stiff/greedy#0", 0), "none of this experiment"),
+        (_set("key", 3, 0), "key"),
+        (_set("compute_s", -1, 0), "compute_s"),
+        (_set("compute_s", None, 0), "compute_s"),
+        (_set("set_aside", "It broke.", 0), "neither or both"),
+        (_set("result", None, 0), "neither or both"),
+        (_set("distances_m", ["far"], 0, "result"), "distances_m"),
+        (_set("distances_m", [0.1] * 2_000, 0, "result"), "distances_m"),
+        (_set("more", 1, 0), "more"),
+        (_again, "twice"),
+    ],
+)
+def test_trials_that_say_something_else_are_refused(
+    source: SqlStore, change: Change, names: str
+) -> None:
+    assert names in refusal(with_trials(export_run(source, RUN_ID), change))
+
+
+def summary_with(data: bytes, **fields: Any) -> bytes:
+    return json.dumps({**json.loads(members(data)[SUMMARY]), **fields}).encode()
+
+
+def test_files_are_what_their_names_say(source: SqlStore) -> None:
+    data = export_run(source, RUN_ID)
+    for changed, names in (
+        ({"summary_json": b"{}"}, "no summary"),
+        ({"summary_json": summary_with(data, cost={"wall_s": "long"})}, "no summary"),
+        ({"trials_csv": b"key,failure\r\na,=1+1\r\n"}, "takes for a formula"),
+        ({"trials_csv": b"key,failure\r\na,\xff\r\n"}, "no table"),
+        ({"summary_json": b"[" * 100_000}, "no summary"),
+        ({"trials_json": b"{}"}, "trials"),
+        ({"trials_json": None}, "has no trials.json"),
+        ({"report_html": b"<script>"}, "this experiment has not"),
+        ({"q-table_npz": b"x"}, "this experiment has not"),
+        ({"figures/x_exe": b"x"}, "which no run has"),
+    ):
+        assert names in refusal(repacked(data, **changed))
+    allowed = _set("files", ["summary.json", "figures/x.png"], "run", "result")
+    painted = repacked(rewritten(data, allowed), **{"figures/x_png": b"GIF", "trials_csv": None})
+    assert "which is no PNG" in refusal(painted)

@@ -1,0 +1,30 @@
+"""Names are what they look like."""
+
+import unicodedata
+
+import pytest
+
+from app.domain.errors import InvalidInput
+from app.domain.text import check_name, visible
+
+BIDI = [*map(chr, range(0x202A, 0x202F)), *map(chr, range(0x2066, 0x206A)), "\u200e", "\u200f"]
+HIDDEN = [*BIDI, "\u061c", "\u200b", "\u200d", "\u2060", "\ufeff", "\u00ad", "\U000e0041", "\u2028"]
+
+
+@pytest.mark.parametrize("mark", [*HIDDEN, "\x00", "\x1b", "\x7f", "\ud800", "\u3164"])
+def test_what_cannot_be_seen_is_refused_and_named(mark: str) -> None:
+    with pytest.raises(InvalidInput, match=rf"invisible.*U\+{ord(mark):04X}"):
+        check_name(f"a{mark}b")
+    assert visible(f"a{mark}b") == "a\ufffdb"
+
+
+@pytest.mark.parametrize("name", ["", "Ä ß 蜘蛛 🕷 ❤️ ِعربي עברית", "=1+1", "<b>", "x" * 100])
+def test_all_else_is_a_name(name: str) -> None:
+    assert check_name(name) == name
+    assert visible(name) == name
+    assert all(unicodedata.category(one) != "Cf" for one in name)
+
+
+def test_a_long_name_is_refused() -> None:
+    with pytest.raises(InvalidInput, match="at most 100"):
+        check_name("x" * 101)

@@ -1,0 +1,23 @@
+"""What tests of the services stand on, where they need no other."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from app.events.bus import EventBus
+from app.jobs.jobs import Jobs
+from app.storage.memory_store import MemoryStore
+from app.storage.recordings import Recordings
+
+
+@pytest.fixture
+def store() -> MemoryStore:
+    return MemoryStore()
+
+
+@pytest.fixture
+def jobs(store: MemoryStore) -> Iterator[Jobs]:
+    made = Jobs(store, Recordings(), EventBus(), cores=1)
+    made.open()
+    yield made
+    made.close()

@@ -1,0 +1,38 @@
+"""What an experiment's process is told between two trials."""
+
+import queue
+
+import pytest
+
+from app.jobs.experiment_worker import _Listener
+from app.jobs.messages import Word
+
+
+@pytest.fixture
+def words() -> "queue.SimpleQueue[Word]":
+    return queue.SimpleQueue()
+
+
+def test_a_pause_holds_until_somebody_has_waited(words: "queue.SimpleQueue[Word]") -> None:
+    """Else a cluster that winds down for a pause would take what is left for done."""
+    listener = _Listener(words)
+    assert listener.wait()
+    assert listener.go_on()
+    words.put(Word("pause"))
+    assert not listener.go_on()
+    words.put(Word("resume"))
+    assert not listener.go_on()
+    assert listener.held
+    assert listener.wait()
+    assert listener.go_on()
+    assert not listener.held
+
+
+@pytest.mark.parametrize("verb", ["stop", "leave"])
+def test_an_end_comes_before_a_pause(verb: str, words: "queue.SimpleQueue[Word]") -> None:
+    listener = _Listener(words)
+    for said in (Word("pause"), Word("resume"), Word("pause"), Word(verb)):  # type: ignore[arg-type]
+        words.put(said)
+    assert not listener.wait()
+    assert listener.stopped == (verb == "stop")
+    assert listener.leaving == (verb == "leave")

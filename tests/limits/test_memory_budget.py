@@ -1,0 +1,27 @@
+"""How much may be held for clients."""
+
+from app.limits.memory_budget import MemoryBudget
+
+
+def test_a_client_has_a_share_and_all_have_a_limit() -> None:
+    budget = MemoryBudget(limit=100, share=60)
+
+    assert budget.take("a", 40) is None
+    assert budget.take("a", 30) == "share"
+    assert budget.take("a", 20) is None
+    assert budget.take("b", 50) == "all"
+    assert budget.take("b", 40) is None
+    budget.give_back("a", 60)
+    assert budget.take("b", 50) == "share"
+    assert budget.take("c", 60) is None
+    assert budget.held == 100
+
+
+def test_what_is_larger_than_all_gets_in_alone() -> None:
+    budget = MemoryBudget(limit=100, share=60)
+
+    assert budget.take("a", 500) is None
+    assert budget.take("b", 1) == "all"
+    budget.give_back("a", 500)
+    assert budget.held == 0
+    assert budget.take("b", 1) is None

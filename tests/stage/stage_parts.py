@@ -1,0 +1,125 @@
+"""A stage with a clock of its own, and real runs to show: computed by the kinematic simulator."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from app.assembly import build_learner, build_walkers
+from app.events.bus import EventBus
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.racing import race
+from app.runs.recording import LaneRecording
+from app.runs.records import StepTaken
+from app.runs.training import train
+from app.stage.stage import Stage
+from app.stage.stage_frame import StageFrame
+from app.storage.memory_store import MemoryStore
+from app.storage.recordings import Recordings
+from app.storage.store import Run
+
+Walk = Callable[[], bool]
+"""Takes a run's next step; False at the end."""
+
+FRAME_S = 1 / 30
+GAIT = "left-right-origin"
+
+
+class Theatre:
+    """Runs are made step by step, and the stage is watched frame by frame."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+        self.store, self.recordings, self.bus = MemoryStore(), Recordings(), EventBus()
+        self.stage = Stage(self.store, self.recordings, self.bus, now=lambda: self.now)
+        self._made = 0
+
+    def watch(self, seconds: float) -> list[StageFrame]:
+        """Every frame for so long."""
+        frames = []
+        for _ in range(round(seconds / FRAME_S)):
+            self.now += FRAME_S
+            frames.append(self.stage.frame())
+        return frames
+
+    def watch_to_end(self, at_most_s: float = 200.0) -> list[StageFrame]:
+        """Every frame until the show has ended."""
+        frames: list[StageFrame] = []
+        while not self.stage.state()["ended"]:
+            frames += self.watch(FRAME_S)
+            assert len(frames) < at_most_s / FRAME_S, "the show does not end"
+        return frames
+
+    def look(self) -> StageFrame:
+        """The frame of a moment later, with what the store knows by then."""
+        return self.watch(0.2)[-1]
+
+    def create(self, config: TrainingConfig | RaceConfig, **fields: Any) -> Run:
+        """A queued run of which nothing is recorded."""
+        self._made += 1
+        kind = "race" if isinstance(config, RaceConfig) else "training"
+        fields = {"name": f"{kind.title()} {self._made}", "total": config.steps, **fields}
+        run = Run(id=f"{kind}{self._made:03}", kind=kind, config=config, **fields)  # type: ignore[arg-type]
+        self.store.create(run)
+        return run
+
+    def set_state(self, run: Run, state: Any) -> None:
+        """Whatever its state is now."""
+        self.store.change(run.id, [self.store.get(run.id).state], state)
+
+    def race(self, agents: tuple[str, ...] = ("greedy", "two-step"), steps: int = 12) -> Run:
+        """A race that is over."""
+        run, walk = self.racing(agents, steps)
+        return self._finish(run, walk)
+
+    def racing(
+        self, agents: tuple[str, ...] = ("greedy", "two-step"), steps: int = 12
+    ) -> tuple[Run, Walk]:
+        """A running race, and what takes its next step of one lane; that is False at the end."""
+        lanes = tuple(LaneConfig(agent=agent) for agent in agents)
+        config = RaceConfig(gait=GAIT, simulator="kinematic", lanes=lanes, steps=steps)
+        run = self.create(config, state="running")
+        walkers = build_walkers(config, [None] * len(lanes))
+        poses = [w.simulator.pose(w.state).astype(np.float32) for w in walkers]
+        self.recordings.begin_race(
+            run.id, [LaneRecording(a, pose) for a, pose in zip(agents, poses, strict=True)]
+        )
+        records = race(walkers, steps, time.perf_counter)
+
+        def walk() -> bool:
+            record = next(records, None)
+            if record is not None:
+                self.recordings.add(run.id, record)
+            return record is not None
+
+        return run, walk
+
+    def _finish(self, run: Run, walk: Walk) -> Run:
+        while walk():
+            pass
+        self.set_state(run, "finished")
+        return run
+
+    def training(self, steps: int = 100, **fields: Any) -> Run:
+        """A training that is over."""
+        run, walk = self.practising(steps, **fields)
+        return self._finish(run, walk)
+
+    def practising(self, steps: int = 100, **fields: Any) -> tuple[Run, Walk]:
+        """A running training, and what takes its next step; that is False at the end."""
+        config = TrainingConfig(gait=GAIT, simulator="kinematic", steps=steps, **fields)
+        run = self.create(config, state="running")
+        learner = build_learner(config)
+        pose = learner.walker.simulator.pose(learner.walker.state)
+        self.recordings.begin_training(run.id, pose.astype(np.float32))
+        records = train(learner, config, record=True)
+
+        def walk() -> bool:
+            for record in records:
+                self.recordings.add(run.id, record)
+                if isinstance(record, StepTaken):
+                    return True
+            return False
+
+        return run, walk

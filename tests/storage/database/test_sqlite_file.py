@@ -1,0 +1,72 @@
+"""A database file that has lost what it held is refused, not begun anew."""
+
+import json
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from app.domain.errors import DamagedFile
+from app.settings import Settings
+from app.storage.database import sqlite_file
+from app.storage.database.opening import DATABASE_FILE
+from app.storage.database.read_only import look_into_store
+from tests.cli.running import hexapods
+from tests.storage.stores import opened, training
+
+
+def refused(folder: Path, names: str) -> None:
+    before = (folder / DATABASE_FILE).read_bytes()
+    with pytest.raises(DamagedFile, match=names), opened(folder, None):
+        pass
+    with pytest.raises(DamagedFile, match=names), look_into_store(Settings(data=folder)):
+        pass
+    assert (folder / DATABASE_FILE).read_bytes() == before
+
+
+@pytest.mark.parametrize("was_used", [False, True])
+def test_a_file_of_no_length_is_refused(was_used: bool, tmp_path: Path) -> None:
+    if was_used:
+        with opened(tmp_path, None) as store:
+            store.create(training("a"))
+    (tmp_path / DATABASE_FILE).write_bytes(b"")
+    refused(tmp_path, "is empty.*put a backup of it back.*move it away")
+    done = hexapods("doctor", "--data", ".", "--json", folder=tmp_path, HEXAPODS_PORT="0")
+    found = {check["name"]: check for check in json.loads(done.stdout)["checks"]}
+    assert not found["database"]["ok"]
+    assert "move it away" in found["database"]["said"]
+    (tmp_path / DATABASE_FILE).rename(tmp_path / "moved away")
+    with opened(tmp_path, None) as store:
+        assert store.list().items == []
+
+
+@pytest.mark.parametrize("tables", [["runs"], None])
+def test_one_that_has_lost_its_tables_is_refused(tables: list[str] | None, tmp_path: Path) -> None:
+    with opened(tmp_path, None) as store:
+        store.create(training("a", state="finished"))
+        store.put_artifact("a", "q-table.npz", b"x")
+    with closing(sqlite3.connect(tmp_path / DATABASE_FILE)) as file:
+        query = "SELECT name FROM sqlite_master WHERE type = 'table'"
+        for name in tables or [name for (name,) in file.execute(query).fetchall()]:
+            file.execute(f"DROP TABLE {name}")
+        file.commit()
+    refused(tmp_path, "has lost its tables .*runs")
+    assert len(list(tmp_path.glob("artifacts/*/*"))) == 1, "the files are left for the backup"
+
+
+def test_a_first_start_that_is_killed_leaves_nothing_to_refuse(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def die(database: object) -> None:
+        raise SystemExit("killed")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(sqlite_file, "migrate", die)
+        with pytest.raises(SystemExit), opened(tmp_path, None):
+            pass
+    assert not (tmp_path / DATABASE_FILE).exists()
+    (tmp_path / f"{DATABASE_FILE}.new").write_bytes(b"half")
+    with opened(tmp_path, None) as store:
+        store.create(training("a"))
+    assert not (tmp_path / f"{DATABASE_FILE}.new").exists()

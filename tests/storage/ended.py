@@ -1,0 +1,97 @@
+"""Runs that have ended, made by the real loops, with all that a server keeps of them."""
+
+import json
+import time
+
+import numpy as np
+
+from app.assembly import build_learner, build_walkers, finish_training
+from app.experiments.plan import Plan
+from app.experiments.summary import summarise
+from app.experiments.trial import run_trial
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.racing import record_race
+from app.runs.records import Evaluated, StepTaken
+from app.runs.results import race_result
+from app.runs.tables import from_bytes, snapshot, to_bytes
+from app.runs.training import train
+from app.storage.recordings import Recordings
+from app.storage.store import SUMMARY, TABLE, Run, RunStore
+from app.storage.stored_trials import trials_as_csv
+from tests.jobs.experiments import sweep
+from tests.storage.stores import training
+
+GAIT = "left-right-origin"
+
+
+def ended_training(store: RunStore, run_id: str, name: str = "It learned", steps: int = 120) -> Run:
+    """A training whose every file is in the store."""
+    config = TrainingConfig(gait=GAIT, steps=steps, simulator="kinematic", evaluate_every=5)
+    store.create(training(run_id, name=name, config=config, total=steps))
+    recordings, learner = Recordings(store), build_learner(config)
+    rest = learner.walker.simulator.pose(learner.walker.state).astype(np.float32)
+    recordings.begin_training(run_id, rest)
+    for record in train(learner, config):
+        if isinstance(record, StepTaken | Evaluated):
+            recordings.add(run_id, record)
+        if isinstance(record, Evaluated):
+            row = {n: getattr(record, n) for n in ("step", "distance_m", "epsilon")}
+            store.append_evaluations(run_id, [row])
+    recordings.finish(run_id)
+    store.put_artifact(run_id, TABLE, to_bytes(snapshot(learner, config)))
+    result = finish_training(learner, config)
+    changes = ({"step": 3, "alpha": 0.25}, {"step": 9, "pace": "max"})
+    return store.change(run_id, {"queued"}, "finished", done=steps, result=result, changes=changes)
+
+
+def ended_race(store: RunStore, run_id: str, training_id: str) -> Run:
+    """A race of that training's table and a greedy lane, whose every file is in the store."""
+    lanes = (LaneConfig(agent="q-learning"), LaneConfig(agent="greedy"))
+    config = RaceConfig(gait=GAIT, simulator="kinematic", steps=8, lanes=lanes)
+    table = from_bytes(store.artifact(training_id, TABLE) or b"", "the table")
+    store.create(
+        Run(
+            id=run_id,
+            kind="race",
+            name="It raced",
+            config=config,
+            lane_training_ids=(training_id, None),
+            total=16,
+        )
+    )
+    *_, recorded = record_race(build_walkers(config, [table, None]), config, time.perf_counter)
+    recordings = Recordings(store)
+    recordings.begin_race(run_id, recorded)
+    recordings.finish(run_id)
+    result = race_result(recorded, config.steps)
+    for lane, known in zip(result["lanes"], (training_id, None), strict=True):
+        lane |= {"training_id": known, "trained_robot": None}
+    result["shared_machine"] = False
+    return store.change(run_id, {"queued"}, "finished", done=16, result=result)
+
+
+def ended_experiment(store: RunStore, run_id: str) -> Run:
+    """A sweep with its trials and its summary, but without the figures."""
+    config = sweep(seeds=3, agents=("q-learning", "greedy"))
+    plan = Plan(config)
+    store.create(
+        Run(id=run_id, kind="experiment", name="It was tried", config=config, total=plan.total)
+    )
+    results = {trial.key: run_trial(trial.config) for trial in plan.trials()}
+    rows = [
+        {"key": key, "result": result.as_json(), "set_aside": None, "compute_s": 0.5}
+        for key, result in results.items()
+    ]
+    store.append_trials(run_id, rows)
+    summary = summarise(config, results)
+    store.put_artifact(run_id, SUMMARY, json.dumps(summary).encode())
+    store.put_artifact(run_id, "trials.csv", trials_as_csv(config, rows))
+    counted = {name: summary["trials"][name] for name in ("done", "total", "failed")}
+    claims = [{name: claim[name] for name in ("id", "verdict")} for claim in summary["claims"]]
+    result = {
+        "trials": {**counted, "set_aside": 0},
+        "claims": claims,
+        "files": [SUMMARY, "trials.csv"],
+        "shared_machine": False,
+    }
+    return store.change(run_id, {"queued"}, "finished", done=plan.total, result=result)

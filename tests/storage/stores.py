@@ -1,0 +1,101 @@
+"""Stores of every kind, and runs to put into them."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from app.domain.gait import GaitSpec
+from app.domain.robot import robot
+from app.experiments.config import ExperimentConfig
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.settings import Settings
+from app.storage.database.opening import open_store
+from app.storage.database.store import SqlStore
+from app.storage.store import Run
+from tests.postgresql import PostgresServer
+
+BACKENDS = ["sqlite", "postgresql"]
+PLAIN = TrainingConfig(gait="left-right-origin")
+ODD = TrainingConfig(
+    gait=GaitSpec(right_leg=1, left_leg=4, pairs=((1, 4), (2, 6), (3, 5))),
+    robot=robot({"preset": "slippery", "n_legs": 6, "mount_radius_m": 0.12, "femur_m": 0.09}),
+    simulator="kinematic",
+    seed=2**80,
+    pace=2.5,
+    agent="my.module:Agent",
+)
+RACE = RaceConfig(
+    gait="front-back-vertical",
+    lanes=(LaneConfig(agent="q-learning", observation="commanded"), LaneConfig(agent="greedy")),
+)
+
+
+def training(run_id: str, **fields: Any) -> Run:
+    """A training, queued unless it is said otherwise."""
+    fields = {"name": f"training {run_id}", "config": PLAIN, "total": 500, **fields}
+    return Run(id=run_id, kind="training", **fields)
+
+
+def race(run_id: str, **fields: Any) -> Run:
+    """A race, queued unless it is said otherwise."""
+    fields = {"name": f"race {run_id}", "config": RACE, "total": 100, **fields}
+    return Run(id=run_id, kind="race", lane_training_ids=("abc", None), **fields)
+
+
+SWEEP = ExperimentConfig(
+    experiment="sweep",
+    seeds=3,
+    seed=2**80,
+    agents=("q-learning", "my.module:Agent"),
+    gaits=("left-right-origin", ODD.gait),
+    observations=("commanded",),
+    robots=(robot("stiff"), ODD.robot),
+    simulator="kinematic",
+    alpha=(0.1, 0.3),
+    divisions=(2, 3),
+)
+TRIALS: list[dict[str, Any]] = [
+    {
+        "key": "left-right-origin/commanded/stiff/greedy#0",
+        "result": {
+            "distances_m": [0.49666, -0.25],
+            "finished_distance_m": None,
+            "elapsed_s": 1.5,
+            "transitions": 600,
+            "wall": [{"agent": "greedy", "rank": 1}],
+            "failure": None,
+        },
+        "set_aside": None,
+        "compute_s": 0.0125,
+    },
+    {
+        "key": "left-right-origin/commanded/stiff/q-learning/500/α=0.1#12",
+        "result": None,
+        "set_aside": "it ended its worker's process 3 times",
+        "compute_s": 0.0,
+    },
+]
+
+
+def experiment(run_id: str, **fields: Any) -> Run:
+    """An experiment, queued unless it is said otherwise."""
+    fields = {"name": f"experiment {run_id}", "config": SWEEP, "total": 100, **fields}
+    return Run(id=run_id, kind="experiment", **fields)
+
+
+@contextmanager
+def database_url(backend: str, server: PostgresServer) -> Iterator[str | None]:
+    """What to set for a database that is there until the context ends."""
+    if backend == "sqlite":
+        yield None
+        return
+    with server.database() as url:
+        yield url
+
+
+@contextmanager
+def opened(folder: Path, url: str | None) -> Iterator[SqlStore]:
+    """The store of a server with this data folder and database."""
+    with open_store(Settings(data=folder, database_url=url)) as store:
+        yield store

@@ -1,0 +1,104 @@
+"""Files of runs: whole or not there, checked, and bounded."""
+
+import errno
+import os
+from pathlib import Path
+
+import pytest
+
+from app.domain.errors import DamagedFile
+from app.storage.artifacts import ArtifactFiles, Stored
+from app.storage.database.store import SqlStore
+from app.storage.disk_space import MB, RESERVE_BYTES, Room
+from app.storage.errors import NotFound, StorageFailed, StorageFull
+from tests.storage.stores import opened, training
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> ArtifactFiles:
+    return ArtifactFiles(tmp_path / "files", Room(tmp_path))
+
+
+def names(tmp_path: Path) -> list[str]:
+    return [path.name for path in (tmp_path / "files").iterdir()]
+
+
+def test_a_file_that_cannot_be_written_leaves_nothing(
+    files: ArtifactFiles, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(handle: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    kept = files.write(b"old")
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "fsync", full)
+        with pytest.raises(StorageFull, match="make room"):
+            files.write(b"new")
+    assert names(tmp_path) == [kept.file]
+    assert files.read(kept, "it") == b"old"
+
+
+def test_a_folder_that_is_gone_is_said(files: ArtifactFiles, tmp_path: Path) -> None:
+    (tmp_path / "files").rmdir()
+    with pytest.raises(StorageFailed, match="No such file"):
+        files.write(b"new")
+
+
+@pytest.mark.parametrize("damaged", [b"", b"wholf", b"whol", b"wholes", bytes(5)])
+def test_a_damaged_file_is_named(files: ArtifactFiles, tmp_path: Path, damaged: bytes) -> None:
+    kept = files.write(b"whole")
+    (tmp_path / "files" / kept.file).write_bytes(damaged)
+    with pytest.raises(DamagedFile, match="the table of Ben is damaged"):
+        files.read(kept, "the table of Ben")
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with opened(tmp_path, None) as store:
+        store.create(training("a"))
+        store.put_artifact("a", "q-table.npz", b"data")
+        for path in (tmp_path / "artifacts").glob("*/*"):
+            path.unlink()
+        with pytest.raises(DamagedFile, match=r"q-table\.npz of run a is missing"):
+            store.artifact("a", "q-table.npz")
+        store.put_artifact("a", "q-table.npz", b"again")
+        assert store.artifact("a", "q-table.npz") == b"again"
+
+
+def test_a_run_that_is_gone_gets_no_file(tmp_path: Path) -> None:
+    class Slow(ArtifactFiles):
+        def write(self, data: bytes) -> Stored:
+            stored = super().write(data)
+            store.delete("a")
+            return stored
+
+    with opened(tmp_path, None) as opened_store:
+        folder = tmp_path / "slow"
+        files = Slow(folder, Room(tmp_path))
+        store = SqlStore(opened_store._database, files)
+        store.create(training("a", state="finished"))
+        with pytest.raises(NotFound, match="no run 'a'"):
+            store.put_artifact("a", "q-table.npz", b"late")
+        assert list(folder.iterdir()) == []
+
+
+def test_the_quota_is_kept(tmp_path: Path) -> None:
+    room = Room(tmp_path, quota_mb=10)
+    files = ArtifactFiles(tmp_path / "files", room)
+    kept = [files.write(bytes(3 * MB)) for _ in range(3)]
+    with pytest.raises(StorageFull, match=r"10 MB.*3\.0 MB more.*HEXAPODS_QUOTA_MB"):
+        files.write(bytes(3 * MB))
+    assert len(names(tmp_path)) == 3
+    files.remove(kept[0].file)
+    files.write(bytes(3 * MB))
+
+
+def test_the_reserve_is_given_up_once(tmp_path: Path) -> None:
+    room = Room(tmp_path)
+    room.reserve()
+    assert room.used_bytes() == RESERVE_BYTES
+    room.reserve()
+    assert room.release()
+    assert room.used_bytes() == 0
+    assert not room.release()
+    room.check(1)
+    assert room.used_bytes() == RESERVE_BYTES

@@ -1,0 +1,61 @@
+"""Runs are refused before the disk is full, and nothing else is."""
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from app.events.bus import EventBus
+from app.jobs.jobs import Jobs
+from app.jobs.submissions import TrainingStart
+from app.runs.config import TrainingConfig
+from app.settings import Settings
+from app.storage.database.opening import open_store
+from app.storage.database.store import SqlStore
+from app.storage.disk_space import KEPT_FREE_BYTES, MB, START_BYTES, Room
+from app.storage.errors import StorageFull
+from app.storage.recordings import Recordings
+from app.storage.store import QUEUED, TABLE
+from tests.storage.stores import training
+
+QUOTA_MB = 12
+START = TrainingStart(TrainingConfig(gait="left-right-origin", simulator="kinematic"))
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[SqlStore]:
+    with open_store(Settings(data=tmp_path, quota_mb=QUOTA_MB)) as found:
+        yield found
+
+
+def test_a_start_is_refused_before_the_quota_is_used_up(store: SqlStore) -> None:
+    jobs = Jobs(store, Recordings(), EventBus())  # nothing is open, so that all of it waits
+    store.create(training("0old"))
+    store.put_artifact("0old", TABLE, bytes(6 * MB))
+    with pytest.raises(StorageFull, match="raise HEXAPODS_QUOTA_MB"):
+        jobs.train(START)
+    with pytest.raises(StorageFull, match="delete runs"):
+        store.check_room()
+    assert [run.id for run in store.list().items] == ["0old"]
+    # What goes on has what is left, and all can be read.
+    store.put_artifact("0old", "race.npz", bytes(1 * MB))
+    assert store.artifact("0old", TABLE) == bytes(6 * MB)
+    store.change("0old", QUEUED, "stopped")
+    store.delete("0old")
+    assert jobs.train(START).state == "queued"
+
+
+def test_a_start_is_refused_before_the_disk_is_full(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Usage(NamedTuple):
+        free: int
+
+    room, needed = Room(tmp_path), START_BYTES + KEPT_FREE_BYTES
+    monkeypatch.setattr(shutil, "disk_usage", lambda folder: Usage(needed))
+    room.check(START_BYTES)
+    monkeypatch.setattr(shutil, "disk_usage", lambda folder: Usage(needed - 1))
+    with pytest.raises(StorageFull, match="the disk of the data folder has"):
+        room.check(START_BYTES)

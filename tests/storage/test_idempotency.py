@@ -1,0 +1,129 @@
+"""The same key is the same run, for a day, whatever happens to the server."""
+
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from app.domain.errors import InvalidInput
+from app.storage.database import keys
+from app.storage.errors import Busy, Gone
+from app.storage.idempotency import Idempotency
+from app.storage.run_ids import RunIds
+from app.storage.store import KEY_KEPT, Content, IdempotencyKey, Run, RunStore
+from tests.storage.stores import BACKENDS, database_url, opened, training
+
+new_id = RunIds()
+
+
+@pytest.fixture(params=BACKENDS)
+def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RunStore]:
+    server = request.param == "postgresql" and request.getfixturevalue("postgresql")
+    with database_url(request.param, server) as url, opened(tmp_path, url) as found:
+        yield found
+
+
+class Starts:
+    """Creates a run with each call."""
+
+    def __init__(self, store: RunStore) -> None:
+        self.store = store
+
+    def __call__(self, key: IdempotencyKey | None) -> Run:
+        run = training(new_id(), state="finished")
+        self.store.create(run, key=key)
+        return run
+
+
+def count(store: RunStore) -> int:
+    return len(store.list().items)
+
+
+def test_a_key_starts_once_and_is_not_for_anything_else(store: RunStore) -> None:
+    idempotency, start = Idempotency(store), Starts(store)
+    assert idempotency.run(None, b"x", start) != idempotency.run(None, b"x", start)
+    run = idempotency.run("key", b"x", start)
+    assert idempotency.run("key", b"x", start) == run
+    assert Idempotency(store).run("key", b"x", start) == run
+    assert idempotency.run("other", b"x", start) != run
+    with pytest.raises(InvalidInput, match="Idempotency-Key"):
+        idempotency.run("key", b"y", start)
+    assert count(store) == 4
+
+
+def test_an_import_remembers_its_key_too(store: RunStore) -> None:
+    idempotency = Idempotency(store)
+
+    def add(key: IdempotencyKey | None) -> Run:
+        run = training("00000000000t1", state="finished")
+        return store.add(run, Content(artifacts={"q-table.npz": b"x"}), new_id, key)
+
+    run = idempotency.run("key", b"x", add)
+    assert idempotency.run("key", b"x", add) == run
+    assert idempotency.run("other", b"x", add).id != run.id
+    assert count(store) == 2
+
+
+def test_who_comes_meanwhile_waits_for_the_same_run(store: RunStore) -> None:
+    idempotency, start, gate = Idempotency(store), Starts(store), threading.Event()
+
+    def slowly(key: IdempotencyKey | None) -> Run:
+        gate.wait()
+        return start(key)
+
+    with ThreadPoolExecutor(8) as pool:
+        asked = [pool.submit(idempotency.run, "key", b"x", slowly) for _ in range(8)]
+        gate.set()
+        runs = {one.result().id for one in asked}
+    assert len(runs) == count(store) == 1
+
+
+def test_what_could_not_be_started_can_be_tried_again(store: RunStore) -> None:
+    idempotency = Idempotency(store)
+
+    def refuse(key: IdempotencyKey | None) -> Run:
+        raise Busy("later", 1)
+
+    with pytest.raises(Busy):
+        idempotency.run("key", b"x", refuse)
+    assert idempotency.run("key", b"x", Starts(store)).state == "finished"
+
+
+def test_a_key_whose_run_was_deleted_is_gone(store: RunStore) -> None:
+    idempotency, start = Idempotency(store), Starts(store)
+    run = idempotency.run("key", b"x", start)
+    store.delete(run.id)
+    with pytest.raises(Gone, match=f"{run.id}.*send a new key"):
+        idempotency.run("key", b"x", start)
+    assert count(store) == 0
+
+
+class Clock(datetime):
+    """The time of day, put forward."""
+
+    ahead = timedelta()
+
+    @classmethod
+    def now(cls, tz: object = None) -> datetime:  # type: ignore[override]
+        return datetime.now(UTC) + cls.ahead
+
+
+def test_keys_are_forgotten_after_a_day_or_when_there_are_too_many(
+    store: RunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(keys, "datetime", Clock)
+    monkeypatch.setattr(keys, "MAX_KEYS", 5)
+    idempotency, start = Idempotency(store), Starts(store)
+    first = idempotency.run("key", b"x", start)
+    monkeypatch.setattr(Clock, "ahead", KEY_KEPT - timedelta(minutes=1))
+    assert idempotency.run("key", b"x", start) == first
+    monkeypatch.setattr(Clock, "ahead", KEY_KEPT + timedelta(minutes=1))
+    assert idempotency.run("key", b"y", start) != first
+    for number in range(10):
+        monkeypatch.setattr(Clock, "ahead", Clock.ahead + timedelta(seconds=1))
+        idempotency.run(f"key {number}", b"x", start)
+    kept = [n for n in range(10) if store.started_by(f"key {n}") is not None]
+    assert kept == [5, 6, 7, 8, 9]

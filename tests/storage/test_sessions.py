@@ -1,0 +1,61 @@
+"""Sessions outlive the server, but not their time or their token."""
+
+from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from app.storage.database.store import SqlStore
+from app.storage.sessions import MAX_SESSIONS, SESSION_S, MemorySessionRows, Sessions
+from tests.storage.stores import BACKENDS, database_url, opened
+
+TOKEN, OTHER = "a-token-for-tests", "another-token-for-tests"
+
+
+@pytest.fixture(params=BACKENDS)
+def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[SqlStore]:
+    server = request.param == "postgresql" and request.getfixturevalue("postgresql")
+    with database_url(request.param, server) as url, opened(tmp_path, url) as made:
+        yield made
+
+
+def test_they_outlive_the_server_but_not_the_token(store: SqlStore) -> None:
+    sessions = Sessions(store.sessions, TOKEN)
+    first, second = sessions.open(), sessions.open()
+    sessions.close(second)
+    assert first != second
+    again = Sessions(store.sessions, TOKEN)
+    assert [again.is_open(one) for one in (first, second, "", "guess")] == [True] + 3 * [False]
+    stored = store.sessions.load()
+    assert len(stored) == 1
+    assert first not in str(stored)
+    assert TOKEN not in str(stored)
+    assert not Sessions(store.sessions, OTHER).is_open(first)
+    assert store.sessions.load() == []
+    assert not Sessions(store.sessions, TOKEN).is_open(first)
+
+
+def test_they_expire() -> None:
+    now, rows = [datetime(2026, 1, 1, tzinfo=UTC)], MemorySessionRows()
+    sessions = Sessions(rows, TOKEN, lambda: now[0])
+    opened_one = sessions.open()
+    now[0] += timedelta(seconds=SESSION_S - 1)
+    assert sessions.is_open(opened_one)
+    now[0] += timedelta(seconds=1)
+    assert not sessions.is_open(opened_one)
+    sessions.open()
+    assert len(rows.load()) == 1
+    now[0] += timedelta(days=365)
+    Sessions(rows, TOKEN, lambda: now[0])
+    assert rows.load() == []
+
+
+def test_there_are_not_too_many() -> None:
+    rows = MemorySessionRows()
+    sessions = Sessions(rows, TOKEN)
+    first = sessions.open()
+    others = [sessions.open() for _ in range(MAX_SESSIONS)]
+    assert not sessions.is_open(first)
+    assert all(map(sessions.is_open, others))
+    assert len(rows.load()) == MAX_SESSIONS

@@ -1,0 +1,359 @@
+"""What every store of runs has to do: in memory, in SQLite, in PostgreSQL."""
+
+import math
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta, timezone
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.storage.errors import Conflict, NotFound
+from app.storage.memory_store import MemoryStore
+from app.storage.run_ids import RunIds
+from app.storage.store import LIVE, QUEUED, RUNNING, UNENDED, AnyRun, Run, RunStore, State
+from tests.storage.stores import (
+    BACKENDS,
+    ODD,
+    TRIALS,
+    database_url,
+    experiment,
+    opened,
+    race,
+    training,
+)
+
+new_id = RunIds()
+
+
+@pytest.fixture(params=["memory", *BACKENDS])
+def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RunStore]:
+    if request.param == "memory":
+        yield MemoryStore()
+        return
+    server = request.param == "postgresql" and request.getfixturevalue("postgresql")
+    with database_url(request.param, server) as url, opened(tmp_path, url) as found:
+        yield found
+
+
+def a_run(store: RunStore, name: str = "it") -> Run:
+    run = training(new_id(), name=name)
+    store.create(run)
+    return run
+
+
+def test_what_went_in_comes_out(store: RunStore) -> None:
+    now = datetime(2026, 3, 1, 12, 30, 15, 123456, tzinfo=timezone(timedelta(hours=5)))
+    runs = [
+        training("a", config=ODD, continued_from="x", changes=({"step": 3, "pace": "max"},)),
+        training("b", result={"nan": math.inf, "more": [1, None, {"a": True}]}, error="It broke."),
+        race("c", waiting_for=("a", "b"), state="running", done=2**40, eta_s=1.25),
+        training("d", name="ü 🕷 <b>'--", created_at=now, started_at=now, ended_at=now),
+        experiment("d2", workers=2, done=7),
+        training("e", greedy_distance_m=-0.1, state="failed", config=replace(ODD, pace="max")),
+    ]
+    store.create(*runs)
+    store.create()
+    assert [store.get(run.id) for run in runs] == runs
+    assert store.list().items == list(reversed(runs))
+    assert store.get("d").created_at.astimezone(UTC) == now
+
+
+def test_it_counts_runs_by_state(store: RunStore) -> None:
+    assert not store.counts()
+    store.create(training("a"), race("b"), training("c", state="failed"))
+    assert store.counts() == {"queued": 2, "failed": 1}
+
+
+def test_nan_is_kept(store: RunStore) -> None:
+    store.create(training("a", result={"distance_m": math.nan, "lanes": [math.nan, -math.inf]}))
+    result: Any = store.get("a").result
+    assert math.isnan(result["distance_m"])
+    assert math.isnan(result["lanes"][0])
+    assert result["lanes"][1] == -math.inf
+    store.append_evaluations("a", [{"step": 1, "distance_m": math.nan, "epsilon": 1.0}])
+    assert math.isnan(store.evaluations("a")[0]["distance_m"])
+
+
+def test_what_is_not_there_is_said(store: RunStore) -> None:
+    for run_id in ("none", "", "a\0b", "\ud800", "' OR 1=1 --"):
+        for look in (
+            store.get,
+            store.delete,
+            store.evaluations,
+            store.trials,
+            lambda i: store.append_trials(i, TRIALS),
+            lambda i: store.append_trials(i, []),
+            lambda i: store.update(i, done=1),
+            lambda i: store.update_progress(i, 1),
+            lambda i: store.change(i, UNENDED, "failed"),
+            lambda i: store.artifact(i, "a"),
+            lambda i: store.put_artifact(i, "a", b""),
+            lambda i: store.append_evaluations(i, [{"step": 1, "distance_m": 0.0, "epsilon": 0}]),
+        ):
+            with pytest.raises(NotFound):
+                look(run_id)
+
+
+@pytest.mark.parametrize("cursor", ["", "a\0", "\ud800", "zzzz", "c"])
+def test_any_text_is_a_cursor(store: RunStore, cursor: str) -> None:
+    store.create(training("b"), training("d"))
+    assert [run.id for run in store.list(cursor=cursor).items] == [
+        run_id for run_id in ("d", "b") if run_id < cursor
+    ]
+
+
+def test_lists_are_filtered(store: RunStore) -> None:
+    states: list[State] = ["queued", "running", "finished"]
+    store.create(*(training(f"t{n}", state=state) for n, state in enumerate(states)))
+    store.create(*(race(f"r{n}", state=state) for n, state in enumerate(states)))
+
+    def found(**wanted: Any) -> list[str]:
+        return [run.id for run in store.list(**wanted).items]
+
+    assert found() == ["t2", "t1", "t0", "r2", "r1", "r0"]
+    assert found(kind="race") == ["r2", "r1", "r0"]
+    assert found(state="running") == ["t1", "r1"]
+    assert found(kind="training", state="finished", limit=1) == ["t2"]
+    page = store.list(kind="race", limit=2)
+    assert page.next_cursor == "r1"
+    assert store.list(kind="race", limit=2, cursor=page.next_cursor).next_cursor is None
+
+
+def test_progress_is_seen_at_once_and_outlives_changes(store: RunStore) -> None:
+    run = a_run(store)
+    store.change(run.id, QUEUED, "running")
+    for done in range(1, 200):
+        assert store.update_progress(run.id, done, eta_s=200.0 - done).done == done
+    assert store.list().runs[0].done == 199
+    assert store.get(run.id).eta_s == 1.0
+    assert store.update(run.id, greedy_distance_m=0.5).done == 199
+    store.update_progress(run.id, 200, eta_s=0.0)
+    ended = store.change(run.id, RUNNING, "finished")
+    assert (ended.done, ended.eta_s, ended.greedy_distance_m) == (200, None, 0.5)
+    assert store.get(run.id) == ended
+    assert store.update(run.id, done=7).done == 7
+
+
+@pytest.mark.parametrize("state", ["paused", "finished", "failed"])
+def test_only_a_running_run_has_time_left(store: RunStore, state: State) -> None:
+    """A late report of progress does not bring the estimate back."""
+    run = a_run(store)
+    store.change(run.id, QUEUED, "running")
+    store.update_progress(run.id, 10, eta_s=5.0)
+    shown: list[AnyRun] = [store.change(run.id, RUNNING, state)]
+    for done in (11, 12):
+        shown.append(store.update_progress(run.id, done, eta_s=4.0))
+        shown += [store.get(run.id), *store.list().items, store.update(run.id, error="late")]
+    assert [one.eta_s for one in shown if isinstance(one, Run)] == [None] * len(shown)
+
+
+def test_a_reader_never_sees_the_estimate_of_an_ended_run(store: RunStore) -> None:
+    """Readers look between the write of the last state and the removal of the newest progress."""
+    runs = [a_run(store) for _ in range(50)]
+    seen: list[Run] = []
+    over = threading.Event()
+
+    def read() -> None:
+        is_last = False
+        while not is_last:
+            is_last = over.is_set()
+            found = store.list().items
+            seen.extend(run for run in found if isinstance(run, Run) and run.state == "finished")
+
+    readers = [threading.Thread(target=read) for _ in range(2)]
+    for reader in readers:
+        reader.start()
+    for run in runs:
+        store.change(run.id, QUEUED, "running")
+        store.update_progress(run.id, 500, eta_s=0.0)
+        store.change(run.id, RUNNING, "finished", eta_s=None)
+    over.set()
+    for reader in readers:
+        reader.join()
+    assert seen
+    assert {run.eta_s for run in seen} == {None}
+
+
+def test_progress_never_goes_back(store: RunStore) -> None:
+    """Whatever is written to the run meanwhile."""
+    run = a_run(store)
+    store.change(run.id, QUEUED, "running")
+    seen: list[int] = []
+    over = threading.Event()
+
+    def act(what: Callable[[], object]) -> threading.Thread:
+        def repeat() -> None:
+            while not over.is_set():
+                what()
+
+        thread = threading.Thread(target=repeat)
+        thread.start()
+        return thread
+
+    threads = [
+        act(lambda: seen.append(store.get(run.id).done)),
+        act(lambda: store.update(run.id, greedy_distance_m=0.5)),
+        act(lambda: store.put_artifact(run.id, "a", b"", error=None)),
+    ]
+    for done in range(1, 300):
+        store.update_progress(run.id, done, eta_s=1.0)
+    over.set()
+    for thread in threads:
+        thread.join()
+    assert seen == sorted(seen)
+    assert store.get(run.id).done == 299
+
+
+def test_a_curve_grows_and_what_is_evaluated_again_takes_its_place(store: RunStore) -> None:
+    run = a_run(store)
+
+    def row(step: int, distance: float) -> dict[str, float]:
+        return {"step": step, "distance_m": distance, "epsilon": 1 - step / 1000}
+
+    store.append_evaluations(run.id, [])
+    store.append_evaluations(run.id, [row(50, 0.1), row(100, 0.2)])
+    store.append_evaluations(run.id, [row(150, 0.3)])
+    assert store.evaluations(run.id) == [row(50, 0.1), row(100, 0.2), row(150, 0.3)]
+    store.append_evaluations(run.id, [row(100, 0.25)])
+    assert store.evaluations(run.id) == [row(50, 0.1), row(100, 0.25)]
+
+
+def test_trials_come_as_they_end_and_one_that_comes_again_is_one(store: RunStore) -> None:
+    store.create(experiment("a"), experiment("b"))
+    assert store.trials("a") == []
+    first, second = TRIALS
+    store.append_trials("a", [second])
+    store.append_trials("a", [first])
+    store.append_trials("b", [first])
+    assert store.trials("a") == TRIALS
+    better = {**second, "result": first["result"], "set_aside": None}
+    store.append_trials("a", [better, second, better])
+    assert store.trials("a") == [first, better]
+    store.change("a", QUEUED, "stopped")
+    store.delete("a")
+    assert store.trials("b") == [first]
+    store.create(experiment("a"))
+    assert store.trials("a") == []
+
+
+def test_a_file_takes_the_place_of_the_one_before(store: RunStore) -> None:
+    runs = a_run(store), a_run(store)
+    for size in (0, 1, 1_000_000, 10):
+        for number, run in enumerate(runs):
+            data = bytes([number]) * size
+            store.put_artifact(run.id, "a", data)
+            assert store.artifact(run.id, "a") == data
+    assert store.artifact(runs[0].id, "../a") is None
+
+
+def test_who_reads_a_file_gets_one_that_was_whole(store: RunStore) -> None:
+    run = a_run(store)
+    store.put_artifact(run.id, "a", bytes(100_000))
+    stopped = threading.Event()
+    seen: list[bytes | None] = []
+
+    def read() -> None:
+        while not stopped.is_set():
+            seen.append(store.artifact(run.id, "a"))
+
+    reader = threading.Thread(target=read)
+    reader.start()
+    for number in range(50):
+        store.put_artifact(run.id, "a", bytes([number]) * 100_000)
+    stopped.set()
+    reader.join()
+    assert seen
+    assert all(data == data[:1] * 100_000 for data in seen if data is not None)
+    assert None not in seen
+
+
+def test_a_state_changes_only_from_where_it_was_thought_to_be(store: RunStore) -> None:
+    run = a_run(store)
+    assert store.change(run.id, QUEUED, "running", done=3).done == 3
+    with pytest.raises(Conflict, match="is running") as error:
+        store.change(run.id, QUEUED, "stopped")
+    assert error.value.state == "running"
+    assert store.get(run.id).state == "running"
+
+
+def test_of_many_at_once_one_wins(store: RunStore) -> None:
+    run = a_run(store)
+    store.change(run.id, QUEUED, "running")
+    won: list[int] = []
+
+    def pause(number: int) -> None:
+        try:
+            store.change(run.id, RUNNING, "paused")
+        except Conflict:
+            return
+        won.append(number)
+
+    threads = [threading.Thread(target=pause, args=(n,)) for n in range(32)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(won) == 1
+
+
+def test_pages_go_on_where_the_last_ended(store: RunStore) -> None:
+    runs = [a_run(store, f"run {n}") for n in range(5)]
+    seen, cursor = [], None
+    while True:
+        page = store.list(limit=2, cursor=cursor)
+        seen += [run.id for run in page.items]
+        cursor = page.next_cursor
+        if cursor is None:
+            break
+        a_run(store, "one more does not move the page")
+    assert seen == [run.id for run in reversed(runs)]
+    assert store.list(kind="race").items == []
+    assert store.list(state="running").items == []
+
+
+def test_only_what_has_ended_is_deleted_and_then_wholly(store: RunStore) -> None:
+    run = a_run(store)
+    store.put_artifact(run.id, "a", b"1")
+    store.append_evaluations(run.id, [{"step": 50, "distance_m": 0.1, "epsilon": 0.5}])
+    assert store.artifact(run.id, "a") == b"1"
+    assert store.artifact(run.id, "b") is None
+    with pytest.raises(Conflict, match="queued"):
+        store.delete(run.id)
+    store.change(run.id, QUEUED | LIVE, "stopped")
+    store.delete(run.id)
+    for look in (store.get, store.delete, store.evaluations):
+        with pytest.raises(NotFound, match=run.id):
+            look(run.id)
+    with pytest.raises(NotFound):
+        store.artifact(run.id, "a")
+
+
+def test_ids_rise_even_within_a_millisecond() -> None:
+    ids = [new_id() for _ in range(1000)]
+    assert ids == sorted(ids)
+    assert len(set(ids)) == 1000
+    assert all(len(made) == 13 and made.isalnum() for made in ids)
+
+
+def test_a_file_and_what_goes_with_it_are_kept_together(store: RunStore) -> None:
+    run = a_run(store)
+    store.update_progress(run.id, 7, 2.0)
+    store.put_artifact(run.id, "checkpoint.npz", b"5", done=5)
+    store.put_artifact(run.id, "other", b"x")
+    kept = store.change(run.id, QUEUED, "interrupted")
+    assert (kept.done, store.artifact(run.id, "checkpoint.npz")) == (5, b"5")
+    with pytest.raises(NotFound):
+        store.put_artifact("none", "checkpoint.npz", b"5", done=5)
+
+
+def test_a_curve_is_cut_off_after_a_step(store: RunStore) -> None:
+    run, other = a_run(store), a_run(store)
+    for one in (run, other):
+        rows = [{"step": step, "distance_m": 0.1, "epsilon": 0.0} for step in (50, 100, 150)]
+        store.append_evaluations(one.id, rows)
+    store.forget_evaluations(run.id, after_step=100)
+    assert [row["step"] for row in store.evaluations(run.id)] == [50, 100]
+    assert [row["step"] for row in store.evaluations(other.id)] == [50, 100, 150]

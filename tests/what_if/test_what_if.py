@@ -1,0 +1,147 @@
+"""What other rates would do: the trials behind the answer, and the processes that run them."""
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import psutil
+import pytest
+from scipy import stats
+
+from app.domain.errors import InvalidInput
+from app.experiments.plan import trial_seed
+from app.experiments.trial import TrialConfig, run_trial
+from app.runs.config import TrainingConfig
+from app.storage.errors import Busy
+from app.what_if.trial_pool import TrialPool
+from app.what_if.what_if import MAX_WAITING, SEEDS, WhatIf, _interquartile_mean
+
+SHORT = TrainingConfig(gait="left-right-origin", steps=40)
+LONG_S = 60.0
+
+
+@pytest.fixture(scope="module")
+def pool() -> Iterator[TrialPool]:
+    made = TrialPool(count=2)
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def what_if(pool: TrialPool) -> WhatIf:
+    return WhatIf(pool)
+
+
+def distances(training: TrainingConfig) -> list[float]:
+    """The same by a plain loop."""
+    kinematic = replace(training, simulator="kinematic", evaluate_every=0)
+    seeds = [trial_seed(0, 0, number) for number in range(SEEDS)]
+    trials = [TrialConfig(training=replace(kinematic, seed=seed)) for seed in seeds]
+    return [run_trial(trial).distances_m[0] for trial in trials]
+
+
+def test_it_is_thirty_kinematic_seeds_of_each(what_if: WhatIf) -> None:
+    chosen = replace(SHORT, alpha=0.9, epsilon_end=0.2)
+    answer = what_if.ask(chosen)
+    assert answer["seeds"] == 30
+    assert answer["greedy_m"] == pytest.approx(24.833 * 0.02, abs=1e-5)
+    assert answer["chosen"]["distances_m"] == distances(chosen)
+    assert answer["default"]["distances_m"] == distances(SHORT)
+    assert (answer["chosen"]["alpha"], answer["default"]["alpha"]) == (0.9, 0.3)
+    for half in (answer["chosen"], answer["default"]):
+        far = [metres for metres in half["distances_m"] if metres >= answer["greedy_m"] / 2]
+        assert half["walkers"] == len(far) / 30
+
+
+def test_the_rest_of_the_training_is_the_same_in_both(what_if: WhatIf) -> None:
+    answer = what_if.ask(replace(SHORT, observation="commanded"))
+    commanded = replace(SHORT, observation="commanded")
+    assert answer["default"]["distances_m"] == distances(commanded)
+    assert answer["chosen"] == answer["default"]
+
+
+def test_what_is_known_is_not_tried_again(what_if: WhatIf, pool: TrialPool) -> None:
+    first = what_if.ask(SHORT)
+    pids = pool.pids
+    # Neither seed, pace nor simulator counts.
+    again = what_if.ask(replace(SHORT, seed=7, pace=3.0, evaluate_every=0, simulator="kinematic"))
+    for name in ("greedy_m", "chosen", "default"):
+        assert again[name] == first[name]
+    assert pool.pids == pids
+    assert all(psutil.Process(pid).nice() == 10 for pid in pids)
+
+
+def test_the_middle_half_is_scipys() -> None:
+    values = np.random.default_rng(1).normal(size=31)
+    for count in (1, 2, 3, 5, 30, 31):
+        ours = _interquartile_mean(tuple(values[:count]))
+        assert ours == pytest.approx(stats.trim_mean(values[:count], 0.25))
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"agent": "greedy"}, "does not learn"),
+        ({"steps": 2_001}, "at most 2,000"),
+        ({"divisions": 6, "grid_side_m": 0.03}, "fewer divisions"),
+        ({"agent": "no.such:Agent"}, "no.such"),
+        ({"grid_side_m": 0.5}, "reach"),
+        ({"agent": "tests.own_agents:Clumsy"}, "I tripped"),
+    ],
+)
+def test_what_cannot_be_tried_is_said(what_if: WhatIf, more: dict[str, Any], words: str) -> None:
+    with pytest.raises(InvalidInput, match=words):
+        what_if.ask(replace(SHORT, **more))
+    assert what_if.ask(SHORT)["seeds"] == 30
+
+
+def test_a_process_that_dies_costs_one_question(what_if: WhatIf, pool: TrialPool) -> None:
+    what_if.ask(replace(SHORT, alpha=0.31))
+    for pid in pool.pids:
+        os.kill(pid, signal.SIGKILL)
+    with pytest.raises(Busy, match="try again"):
+        what_if.ask(replace(SHORT, alpha=0.32))
+    assert what_if.ask(replace(SHORT, alpha=0.32))["chosen"]["alpha"] == 0.32
+
+
+def test_few_wait_and_the_others_are_told(what_if: WhatIf) -> None:
+    answers: list[Any] = []
+
+    def ask(number: int) -> None:
+        try:
+            answers.append(what_if.ask(replace(SHORT, steps=100, gamma=number / 50)))
+        except Busy as busy:
+            answers.append(busy)
+
+    threads = [threading.Thread(target=ask, args=(n,)) for n in range(2 * MAX_WAITING)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    told = [answer for answer in answers if isinstance(answer, Busy)]
+    assert len(answers) == 2 * MAX_WAITING
+    assert MAX_WAITING - 1 <= len(told) <= MAX_WAITING
+    assert all(busy.retry_after_s > 0 for busy in told)
+
+
+def test_processes_end_when_nobody_asks_and_when_they_are_let_go() -> None:
+    pool = TrialPool(count=1, idle_s=0.3)
+    trial = TrialConfig(training=replace(SHORT, simulator="kinematic", evaluate_every=0))
+    assert pool.pids == [], "nobody has asked"
+    pool.run([trial])
+    (first,) = pool.pids
+    deadline = time.monotonic() + LONG_S
+    while psutil.pid_exists(first):
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    pool.run([trial])
+    (second,) = pool.pids
+    pool.close()
+    assert not psutil.pid_exists(second)
+    with pytest.raises(Busy, match="stopping"):
+        pool.run([trial])
