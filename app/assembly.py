@@ -16,14 +16,14 @@ from app.domain.kinematic import KinematicSimulator
 from app.domain.observation import Observation
 from app.domain.simulator import Simulator
 from app.physics.mujoco_simulator import MujocoSimulator
-from app.runs.config import RaceConfig, TrainingConfig, Walk
+from app.runs.config import RaceConfig, TrainingConfig, WalkingProblem
 from app.runs.seeding import LEARNING, RACING, generator
 from app.runs.tables import Checkpoint, check_fits, continue_from, load_agent
-from app.runs.training import Learner, evaluate, refer
-from app.runs.walker import Foresight, Walker
+from app.runs.training import Learner, evaluate, measure_baseline
+from app.runs.walker import SimulatorExpand, Walker
 
 
-def build_simulator(walk: Walk, threads: int = 1) -> Simulator[Any]:
+def build_simulator(walk: WalkingProblem, threads: int = 1) -> Simulator[Any]:
     """The simulator that a config names.
 
     Args:
@@ -55,7 +55,7 @@ def build_learner(
         simulator, config.agent, config.observation, rng=rng, settings=settings, explore=True
     )
 
-    def contender(chance: np.random.Generator) -> Walker:
+    def evaluator(chance: np.random.Generator) -> Walker:
         copy = _walker(
             simulator,
             config.agent,
@@ -71,10 +71,10 @@ def build_learner(
             copy.agent.load(walker.agent.state())
         return copy
 
-    def rival() -> Walker:
+    def baseline() -> Walker:
         return _walker(simulator, "greedy", "measured", rng=rng, settings={}, explore=False)
 
-    learner = Learner(walker, rng, contender, rival)
+    learner = Learner(walker, rng, evaluator, baseline)
     if table is not None:
         check_fits(table, config, config.observation)
         continue_from(learner, table)
@@ -120,7 +120,7 @@ def finish_training(
     """
     distance = evaluate(learner, config, learner.epsilon).distance_m
     if learner.greedy_distance_m is None and measure_rival:
-        refer(learner)
+        measure_baseline(learner)
     agent = learner.walker.agent
     return {
         "distance_m": distance,
@@ -142,7 +142,7 @@ def _walker(
     agent_class = registry.find(agent_name)
     foresight = None
     if "expand" in registry.asks_for(agent_class):
-        foresight = Foresight(simulator, observation)
+        foresight = SimulatorExpand(simulator, observation)
     offered = {
         **settings,
         "rng": rng,

@@ -23,7 +23,7 @@ from app.domain.robot import Robot
 from app.domain.robot import robot as read_robot
 from app.domain.simulator import WalkState
 from app.domain.types import Action, IntArray
-from app.runs.config import RACE_STEPS, SimulatorName, Walk
+from app.runs.config import RACE_STEPS, SimulatorName, WalkingProblem
 
 WALK_ID = "RacingHexapods/Walk-v0"
 
@@ -70,7 +70,7 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
             InvalidInput: if a value cannot be; the message says what can.
         """
         check_observation(observation)
-        walk = Walk(
+        walk = WalkingProblem(
             gait=gait,
             robot=read_robot(robot),
             simulator=simulator,

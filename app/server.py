@@ -31,7 +31,7 @@ from app.api import (
 )
 from app.api.auth import TokenGuard
 from app.api.body_limit import BodyLimit, SecurityHeaders
-from app.api.concurrency_limit import Turns
+from app.api.concurrency_limit import ConcurrencyLimit
 from app.api.deps import Services
 from app.api.disconnects import Disconnects
 from app.api.host_check import HostGuard
@@ -40,7 +40,7 @@ from app.api.rate_limit import RateLimit
 from app.api.wellformed import WellFormed
 from app.domain.errors import HexapodError
 from app.events import logs
-from app.events.run_metrics import Witness
+from app.events.run_metrics import RunMetrics
 from app.jobs.jobs import Jobs
 from app.limits.addresses import caller
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
@@ -49,7 +49,7 @@ from app.limits.open_files import connection_table, raise_file_limit
 from app.limits.places import Places
 from app.settings import Settings
 from app.stage.stage import Stage
-from app.storage.address_file import note_address
+from app.storage.address_file import write_address_file
 from app.storage.database.opening import open_store
 from app.storage.errors import OwnershipLost
 from app.storage.idempotency import Idempotency
@@ -58,7 +58,7 @@ from app.storage.recordings import Recordings
 from app.storage.sessions import Sessions
 from app.storage.store import RunStore
 from app.viewer.protocol import websocket_options
-from app.viewer.service import Theatre, viewer_routes
+from app.viewer.service import ViewerService, viewer_routes
 from app.what_if.trial_pool import TrialPool
 from app.what_if.what_if import WhatIf
 
@@ -81,9 +81,9 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
         store: where runs are kept; None keeps them for as long as the application lives.
     """
     store = MemoryStore() if store is None else store
-    recordings, bus = Recordings(store), Witness()
+    recordings, bus = Recordings(store), RunMetrics()
     show = Stage(store, recordings, bus)
-    theatre = Theatre(
+    viewer = ViewerService(
         show,
         bus,
         allowed_origins=_further_origins(settings),
@@ -100,7 +100,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
         docs_url=None,
         redoc_url=None,
     )
-    app.state.theatre = theatre
+    app.state.viewer = viewer
     app.state.services = Services(
         store=store,
         recordings=recordings,
@@ -109,20 +109,20 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
         stage=show,
         idempotency=Idempotency(store),
         agents=tuple(registered()),
-        audience=lambda: theatre.hub.counters,
+        audience=lambda: viewer.hub.counters,
         ready=lambda: _trouble(jobs, store),
-        film=theatre.film,
+        film=viewer.recorded_stream,
         what_if=WhatIf(TrialPool()),
         listeners=Places(settings.max_viewers, settings.viewers_per_address),
     )
     app.state.metrics = metrics.registry_of(app.state.services)
-    _add_routes(app, theatre)
+    _add_routes(app, viewer)
     problems.install(app)
     contract.install(app, app.state.services.agents, settings)
     # The last is the first to see a request.
     app.add_middleware(Disconnects)
     app.add_middleware(BodyLimit)
-    app.add_middleware(Turns)
+    app.add_middleware(ConcurrencyLimit)
     app.add_middleware(HeldBodies)
     app.add_middleware(RateLimit, settings=settings)
     sessions = None if settings.token is None else Sessions(store.sessions, settings.token)
@@ -133,7 +133,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
     return app
 
 
-def _add_routes(app: FastAPI, theatre: Theatre) -> None:
+def _add_routes(app: FastAPI, viewer: ViewerService) -> None:
     versioned = APIRouter(prefix="/api/v1")
     # First: `import` is no run's id.
     for module in (transfer, trainings, races, experiments, stage, events, what_if, options):
@@ -142,7 +142,7 @@ def _add_routes(app: FastAPI, theatre: Theatre) -> None:
     app.include_router(health.router)
     app.include_router(metrics.router)
     app.include_router(docs.router)
-    app.router.routes += [*viewer_routes(theatre.hub), *pages.page_routes(assets.static_dir())]
+    app.router.routes += [*viewer_routes(viewer.hub), *pages.page_routes(assets.static_dir())]
 
 
 def _trouble(jobs: Jobs, store: RunStore) -> str | None:
@@ -168,7 +168,7 @@ def _further_origins(settings: Settings) -> list[str]:
 @contextlib.asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     services: Services = app.state.services
-    async with app.state.theatre:
+    async with app.state.viewer:
         services.jobs.open()
         try:
             yield
@@ -235,7 +235,7 @@ class _Server(uvicorn.Server):
         await super().startup(sockets)
         if self.started:
             self._listener.listen(WAITING)
-            note_address(self._settings.data, _local_address(self._listener))
+            write_address_file(self._settings.data, _local_address(self._listener))
             address = self._settings.public_url or _local_address(self._listener, "localhost")
             sys.stdout.write(f"Racing Hexapods is at {address} (Ctrl-C stops it)\n")
             sys.stdout.flush()
@@ -248,7 +248,7 @@ class _Server(uvicorn.Server):
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         # The lifespan ends after all connections have, and a stream of events never would.
         self._app.state.services.bus.close()
-        await self._app.state.theatre.hub.stop()
+        await self._app.state.viewer.hub.stop()
         await super().shutdown(sockets)
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:

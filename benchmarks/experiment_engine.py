@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 from distributed import Client
 
-from app.experiments.cluster import Where, connect
+from app.experiments.cluster import ClusterSpec, connect
 from app.experiments.config import experiment_config
 from app.experiments.engine import run_on
 from app.experiments.plan import Plan, Trial
@@ -77,7 +77,7 @@ def main() -> None:
     trials = learners(options.simulator, options.trials)
     one: list[Pass] = []
     two: list[Pass] = []
-    with connect(Where(workers=1)) as single, connect(Where(workers=2)) as double:
+    with connect(ClusterSpec(workers=1)) as single, connect(ClusterSpec(workers=2)) as double:
         timed(single, trials[:2])
         timed(double, trials[:4])
         for _ in range(options.repeats):

@@ -13,7 +13,7 @@ from app.domain.gait import GaitSpec
 from app.domain.kinematic import KinematicSimulator
 from app.domain.robot import robot
 from app.physics.mujoco_simulator import MujocoSimulator
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, Walk
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, WalkingProblem
 from app.runs.tables import Checkpoint, snapshot
 from app.runs.training import train
 from tests import own_agents
@@ -42,7 +42,7 @@ def table() -> Checkpoint:
 
 def test_a_config_names_its_simulator() -> None:
     made = robot({"n_legs": 8})
-    walk = Walk(gait="front-back-vertical", robot=made, divisions=3, grid_side_m=0.03)
+    walk = WalkingProblem(gait="front-back-vertical", robot=made, divisions=3, grid_side_m=0.03)
     physics, law = build_simulator(walk), build_simulator(replace(walk, simulator="kinematic"))
 
     assert isinstance(physics, MujocoSimulator)
@@ -57,7 +57,9 @@ def test_a_config_names_its_simulator() -> None:
 @pytest.mark.parametrize("simulator", ["mujoco", "kinematic"])
 def test_a_grid_out_of_reach_is_refused_with_leg_and_cell(simulator: Any) -> None:
     with pytest.raises(Unreachable, match=r"leg 2 cannot reach cell 1 \(front left\)"):
-        build_simulator(Walk(gait="left-right-origin", grid_side_m=0.2, simulator=simulator))
+        build_simulator(
+            WalkingProblem(gait="left-right-origin", grid_side_m=0.2, simulator=simulator)
+        )
 
 
 def test_a_learner_gets_its_rates_from_the_config() -> None:

@@ -15,7 +15,7 @@ from app.api.rate_limit import too_many
 from app.domain.errors import HexapodError
 from app.limits.addresses import caller
 from app.limits.connections import Connection
-from app.limits.token_bucket import Buckets
+from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
 from app.storage.sessions import Sessions
 
@@ -50,7 +50,7 @@ class TokenGuard:
         self._app = app
         self._token, self._sessions = settings.token, sessions
         self._all_may_watch = settings.token is None or settings.spectators == "public"
-        self._guesses = Buckets(WRONG_TOKENS, WRONG_TOKENS_PER_S)
+        self._guesses = RateLimiter(WRONG_TOKENS, WRONG_TOKENS_PER_S)
         self._is_https = (settings.public_url or "").startswith("https:")
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:

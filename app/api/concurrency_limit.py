@@ -65,7 +65,7 @@ class FairSemaphore:
         self._free += 1
 
 
-class Turns:
+class ConcurrencyLimit:
     """Lets so many requests of each role be worked on at once; the others wait."""
 
     def __init__(self, app: ASGIApp) -> None:

@@ -9,7 +9,7 @@ from starlette.requests import ClientDisconnect
 
 from app.api.auth import Role
 from app.api.descriptions import VALID
-from app.events.run_metrics import Witness
+from app.events.run_metrics import RunMetrics
 from app.jobs.jobs import Jobs
 from app.limits.memory_budget import MemoryBudget
 from app.limits.places import Places
@@ -51,7 +51,7 @@ class Services:
 
     store: RunStore
     recordings: Recordings
-    bus: Witness
+    bus: RunMetrics
     jobs: Jobs
     stage: Stage
     idempotency: Idempotency
@@ -71,7 +71,7 @@ class Listener:
         self.close: Callable[[], None] = lambda: None
 
 
-class Asked(NamedTuple):
+class StartRequest(NamedTuple):
     """A request to start something, as it was sent."""
 
     address: str
@@ -100,14 +100,14 @@ async def _asked(
         str | None,
         Header(pattern=r"^[\x21-\x7e]{1,200}$", description=VALID["idempotency-key"]),
     ] = None,
-) -> Asked:
+) -> StartRequest:
     try:
         body = await request.body()
     except ClientDisconnect as error:
         raise HTTPException(400) from error
-    return Asked(f"{request.url.path}?{request.url.query}", body, idempotency_key)
+    return StartRequest(f"{request.url.path}?{request.url.query}", body, idempotency_key)
 
 
-Given = Annotated[Services, Depends(_services)]
-StartRequest = Annotated[Asked, Depends(_asked)]
+ServicesDep = Annotated[Services, Depends(_services)]
+StartRequestDep = Annotated[StartRequest, Depends(_asked)]
 Who = Annotated[Role, Depends(_role)]

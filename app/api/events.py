@@ -8,7 +8,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app import __version__
-from app.api.deps import Given, Listener, Services, Who
+from app.api.deps import Listener, Services, ServicesDep, Who
 from app.api.descriptions import VALID
 from app.limits.addresses import caller
 from app.limits.places import NoPlace, Refusal
@@ -27,14 +27,14 @@ router = APIRouter(prefix="/events", tags=["events"])
 
 
 def _known_run(
-    services: Given,
+    services: ServicesDep,
     run_id: Annotated[str | None, Query(max_length=64, description=VALID["run_id"])] = None,
 ) -> str | None:
     """The run to listen to, checked while the answer may still be 404."""
     return None if run_id is None else services.store.find(run_id).id
 
 
-async def _place(request: Request, services: Given, role: Who) -> AsyncIterator[Listener]:
+async def _place(request: Request, services: ServicesDep, role: Who) -> AsyncIterator[Listener]:
     """A place among those who listen, until the stream ends.
 
     Raises:
@@ -55,7 +55,7 @@ async def _place(request: Request, services: Given, role: Who) -> AsyncIterator[
 
 @router.get("", summary="What happens, as it happens", response_class=EventSourceResponse)
 async def get_events(
-    services: Given,
+    services: ServicesDep,
     role: Who,
     run_id: Annotated[str | None, Depends(_known_run)],
     listener: Annotated[Listener, Depends(_place)],

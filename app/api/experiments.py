@@ -7,7 +7,7 @@ from starlette.responses import JSONResponse, Response
 
 from app.api.answers import ExperimentView
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, TEXT, answers
-from app.api.deps import Given, StartRequest
+from app.api.deps import ServicesDep, StartRequestDep
 from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.experiment_body import ExperimentBody
 from app.api.formats import attachment, chosen, file_response
@@ -53,7 +53,7 @@ router = run_routes("experiment")
     responses=answers(202, headers=LOCATION),
 )
 def start_experiment(
-    services: Given, request: Request, asked: StartRequest, body: ExperimentBody
+    services: ServicesDep, request: Request, asked: StartRequestDep, body: ExperimentBody
 ) -> Response:
     """Queue it, and answer with its run."""
     jobs, agents = services.jobs, services.agents
@@ -62,7 +62,7 @@ def start_experiment(
 
 
 @router.get("/{run_id}/summary", summary="What its trials show so far", response_model=SummaryView)
-def get_summary(services: Given, run_id: RunPath) -> Response:
+def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
     """The newest summary; it is made again every few seconds while trials come in."""
     run = find(services, "experiment", run_id)
     summary = services.store.open_artifact(run_id, SUMMARY)
@@ -77,7 +77,7 @@ def get_summary(services: Given, run_id: RunPath) -> Response:
     response_class=Response,
     responses=answers(200, {"text/html": TEXT}, headers=ATTACHMENT),
 )
-def get_report(services: Given, run_id: RunPath) -> Response:
+def get_report(services: ServicesDep, run_id: RunPath) -> Response:
     """All of it in one file, once the experiment has ended."""
     run = find(services, "experiment", run_id)
     return _file(run, REPORT, _reported(services, run, REPORT), "inline")
@@ -90,7 +90,7 @@ def get_report(services: Given, run_id: RunPath) -> Response:
     responses=answers(200, _FILES, headers=ATTACHMENT),
 )
 def get_file(
-    services: Given, run_id: RunPath, name: Annotated[str, Path(description="of the file")]
+    services: ServicesDep, run_id: RunPath, name: Annotated[str, Path(description="of the file")]
 ) -> Response:
     """One of those that the run's `result` names in `files`."""
     run = find(services, "experiment", run_id)
@@ -104,7 +104,7 @@ def get_file(
     responses=answers(200, {"text/csv": TEXT}),
 )
 def get_trials(
-    services: Given,
+    services: ServicesDep,
     request: Request,
     run_id: RunPath,
     format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
@@ -140,7 +140,7 @@ def _nothing_yet(run: Run) -> dict[str, Any]:
     }
 
 
-def _reported(services: Given, run: Run, name: str) -> ArtifactFile:
+def _reported(services: ServicesDep, run: Run, name: str) -> ArtifactFile:
     if run.state in UNENDED or run.state == "interrupted":
         raise Conflict(
             f"experiment {run.id} is {run.state}; its report can be had once it is finished or "

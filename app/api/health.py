@@ -5,7 +5,7 @@ from starlette.responses import JSONResponse, Response
 
 from app import __version__
 from app.api.answers import HealthView
-from app.api.deps import Given
+from app.api.deps import ServicesDep
 from app.api.problems import problem
 
 router = APIRouter(tags=["health"])
@@ -18,7 +18,7 @@ async def get_health() -> Response:
 
 
 @router.get("/readyz", response_model=HealthView, summary="Whether the server is ready to work")
-def get_readiness(services: Given) -> Response:
+def get_readiness(services: ServicesDep) -> Response:
     """503 with the reason while something that runs need is away."""
     trouble = services.ready()
     if trouble is not None:

@@ -9,7 +9,7 @@ from starlette.responses import JSONResponse, Response
 from app import __version__
 from app.agents.registry import learns
 from app.api.answers import OptionsView
-from app.api.deps import Given
+from app.api.deps import ServicesDep
 from app.domain.gait import NAMED_GAITS, resolve
 from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M
 from app.domain.robot import PRESETS, Robot, as_mapping
@@ -42,7 +42,7 @@ router = APIRouter(prefix="/options", tags=["options"])
     response_model=OptionsView,
     summary="Gaits, robots, agents, clocks; defaults, limits and help",
 )
-def get_options(services: Given) -> Response:
+def get_options(services: ServicesDep) -> Response:
     """All that a form needs."""
     return JSONResponse(catalogue(services.agents))
 

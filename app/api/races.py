@@ -7,7 +7,7 @@ from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from app.api.answers import RaceView, RecordingView, TimelineView
 from app.api.contract import BINARY, LOCATION, answers
-from app.api.deps import Given, Services, StartRequest
+from app.api.deps import Services, ServicesDep, StartRequestDep
 from app.api.formats import attachment, chosen
 from app.api.runs import RunPath, accepted, find, run_routes
 from app.api.schemas import RaceBody
@@ -31,7 +31,9 @@ router = run_routes("race")
     response_model=RaceView,
     responses=answers(202, headers=LOCATION),
 )
-def start_race(services: Given, request: Request, asked: StartRequest, body: RaceBody) -> Response:
+def start_race(
+    services: ServicesDep, request: Request, asked: StartRequestDep, body: RaceBody
+) -> Response:
     """Queue the trainings of its lanes and then the race, and answer with the race's run."""
     jobs, agents = services.jobs, services.agents
     run = asked.start(services, lambda key: jobs.race(body.start(agents), key))
@@ -45,7 +47,7 @@ def start_race(services: Given, request: Request, asked: StartRequest, body: Rac
     responses=answers(200, {"application/x-npz": BINARY, "application/octet-stream": BINARY}),
 )
 def get_recording(
-    services: Given,
+    services: ServicesDep,
     request: Request,
     run_id: RunPath,
     format: Annotated[Literal["json", "npz", "viser"] | None, Query()] = None,  # noqa: A002
@@ -71,7 +73,7 @@ def get_recording(
     response_model=TimelineView,
 )
 def get_timeline(
-    services: Given, run_id: RunPath, clock: Annotated[Clock, Query()] = "paper"
+    services: ServicesDep, run_id: RunPath, clock: Annotated[Clock, Query()] = "paper"
 ) -> Response:
     """When each lane thinks and walks; flat parts of its points are thinking."""
     run, config, lanes = _recorded(services, run_id)

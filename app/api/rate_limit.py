@@ -9,7 +9,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.problems import problem
 from app.limits.addresses import caller
-from app.limits.token_bucket import Buckets
+from app.limits.token_bucket import RateLimiter
 from app.settings import PREFIX, Settings
 
 _STARTS = re.compile(r"/api/v1/(?!stage$|events$)\w+(/import|/[^/]+/resume)?")
@@ -26,7 +26,7 @@ class RateLimit:
         """Limit an app as the settings say; inside of what finds out the role."""
         self._app = app
         self._per_minute = settings.starts_per_minute
-        self._buckets = Buckets(self._per_minute, self._per_minute / 60)
+        self._buckets = RateLimiter(self._per_minute, self._per_minute / 60)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on, or answer 429."""

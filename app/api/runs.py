@@ -16,7 +16,7 @@ from app.api.answers import (
     TrainingPage,
     TrainingView,
 )
-from app.api.deps import Given, Services
+from app.api.deps import Services, ServicesDep
 from app.api.descriptions import MAX_PAGE, VALID
 from app.jobs.jobs import Jobs
 from app.storage.errors import Damaged, NotFound
@@ -66,7 +66,7 @@ def run_routes(kind: Kind) -> APIRouter:
 
     @router.get("", summary=f"The {kind}s, newest first", name=f"list_{kind}s", response_model=page)
     def list_runs(
-        services: Given,
+        services: ServicesDep,
         state: Annotated[State | None, Query(description=VALID["state"])] = None,
         limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 50,
         cursor: Annotated[str | None, Query(max_length=64, description=VALID["cursor"])] = None,
@@ -76,7 +76,7 @@ def run_routes(kind: Kind) -> APIRouter:
         return JSONResponse({"items": items, "next_cursor": page.next_cursor})
 
     @router.get("/{run_id}", summary=_phrase("{}", kind), name=f"get_{kind}", response_model=view)
-    def get_run(services: Given, run_id: RunPath) -> Response:
+    def get_run(services: ServicesDep, run_id: RunPath) -> Response:
         return JSONResponse(services.jobs.view(find_any(services, kind, run_id)))
 
     @router.delete(
@@ -85,7 +85,7 @@ def run_routes(kind: Kind) -> APIRouter:
         summary=_phrase("Delete {} that has ended", kind),
         name=f"del_{kind}",
     )
-    def delete_run(services: Given, run_id: RunPath) -> None:
+    def delete_run(services: ServicesDep, run_id: RunPath) -> None:
         find_any(services, kind, run_id)
         services.jobs.delete(run_id)
 
@@ -122,7 +122,7 @@ def _phrase(template: str, kind: Kind) -> str:
 def _command(kind: Kind, verb: str) -> Callable[..., Any]:
     act = {"stop": Jobs.stop, "pause": Jobs.pause, "resume": Jobs.resume}[verb]
 
-    def command(services: Given, run_id: RunPath) -> Response:
+    def command(services: ServicesDep, run_id: RunPath) -> Response:
         find(services, kind, run_id)
         return JSONResponse(services.jobs.view(act(services.jobs, run_id)), 202)
 

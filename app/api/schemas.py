@@ -35,7 +35,7 @@ from app.runs.config import (
     RACE_STEPS,
     SimulatorName,
     TrainingConfig,
-    Walk,
+    WalkingProblem,
 )
 
 Leg = Annotated[
@@ -84,17 +84,17 @@ class WalkBody(Body):
 
     gait: Gait
     robot: RobotBody = "stiff"
-    simulator: SimulatorName = Walk.simulator
-    divisions: Divisions = Walk.divisions
-    grid_side_m: Side = Walk.grid_side_m
+    simulator: SimulatorName = WalkingProblem.simulator
+    divisions: Divisions = WalkingProblem.divisions
+    grid_side_m: Side = WalkingProblem.grid_side_m
 
-    def walk(self) -> Walk:
+    def walk(self) -> WalkingProblem:
         """As the loops know it.
 
         Raises:
             InvalidInput: for a gait or robot that cannot be.
         """
-        return Walk(
+        return WalkingProblem(
             gait=self.gait.spec() if isinstance(self.gait, GaitBody) else self.gait,
             robot=robot(self.robot),
             simulator=self.simulator,
@@ -121,7 +121,7 @@ class PracticeBody(Body):
     pace: Pace = TrainingConfig.pace
     continue_from: Annotated[RunId | None, Field(description=VALID["continue_from"])] = None
 
-    def practice(self, walk: Walk, agent: str, seed: int = 0) -> TrainingStart:
+    def practice(self, walk: WalkingProblem, agent: str, seed: int = 0) -> TrainingStart:
         """The training of an agent, with this seed where none is given."""
         if self.continue_from is not None and self.seed is not None:
             raise InvalidInput(
@@ -161,7 +161,7 @@ class LaneBody(Body):
     training_id: Annotated[RunId | None, Field(description=VALID["training_id"])] = None
     training: Annotated[PracticeBody | None, Field(description=VALID["training"])] = None
 
-    def start(self, walk: Walk, seed: int, agents: Collection[str]) -> LaneStart:
+    def start(self, walk: WalkingProblem, seed: int, agents: Collection[str]) -> LaneStart:
         """What the service is asked to start."""
         check_agent(self.agent, agents)
         if self.training is None:

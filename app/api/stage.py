@@ -4,20 +4,20 @@ from fastapi import APIRouter
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import StageView
-from app.api.deps import Given
+from app.api.deps import ServicesDep
 from app.api.schemas import StageBody
 
 router = APIRouter(prefix="/stage", tags=["stage"])
 
 
 @router.get("", response_model=StageView, summary="What is on stage")
-def get_stage(services: Given) -> Response:
+def get_stage(services: ServicesDep) -> Response:
     """Which run, at which time, how fast, by which clock."""
     return JSONResponse(services.stage.state())
 
 
 @router.put("", response_model=StageView, summary="Show a run, or command the show")
-def put_stage(services: Given, body: StageBody) -> Response:
+def put_stage(services: ServicesDep, body: StageBody) -> Response:
     """What is left out stays as it is."""
     services.stage.set(**body.model_dump())
     return JSONResponse(services.stage.state())

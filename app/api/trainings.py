@@ -8,7 +8,7 @@ from starlette.responses import JSONResponse, Response, StreamingResponse
 from app.api import curves
 from app.api.answers import CurveView, QTableView, TrainingView
 from app.api.contract import BINARY, LOCATION, TEXT, answers, takes_file
-from app.api.deps import Given, StartRequest
+from app.api.deps import ServicesDep, StartRequestDep
 from app.api.fields import Name
 from app.api.formats import attachment, chosen
 from app.api.runs import RunPath, accepted, find, run_routes
@@ -33,7 +33,7 @@ router = run_routes("training")
     responses=answers(202, headers=LOCATION),
 )
 def start_training(
-    services: Given, request: Request, asked: StartRequest, body: TrainingBody
+    services: ServicesDep, request: Request, asked: StartRequestDep, body: TrainingBody
 ) -> Response:
     """Queue a training, and answer with its run."""
     jobs, agents = services.jobs, services.agents
@@ -50,9 +50,9 @@ def start_training(
     openapi_extra=takes_file("application/octet-stream"),
 )
 def import_training(
-    services: Given,
+    services: ServicesDep,
     request: Request,
-    asked: StartRequest,
+    asked: StartRequestDep,
     name: Annotated[Name | None, Query()] = None,
 ) -> Response:
     """Take the `.npz` that a training's q-table gives, or `hexapods train` wrote, as the body."""
@@ -67,7 +67,7 @@ def import_training(
 @router.patch(
     "/{run_id}", summary="Change pace or rates while it runs", response_model=TrainingView
 )
-def change_training(services: Given, run_id: RunPath, body: ChangeBody) -> Response:
+def change_training(services: ServicesDep, run_id: RunPath, body: ChangeBody) -> Response:
     """Obeyed between two steps, and kept with the step's number in `changes`."""
     find(services, "training", run_id)
     return JSONResponse(services.jobs.view(services.jobs.change(run_id, body.changes())))
@@ -80,7 +80,7 @@ def change_training(services: Given, run_id: RunPath, body: ChangeBody) -> Respo
     responses=answers(200, {"text/csv": TEXT}),
 )
 def get_curve(
-    services: Given,
+    services: ServicesDep,
     request: Request,
     run_id: RunPath,
     format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
@@ -101,7 +101,7 @@ def get_curve(
     responses=answers(200, {"text/csv": TEXT, tables.MEDIA_TYPE: BINARY}),
 )
 def get_table(
-    services: Given,
+    services: ServicesDep,
     request: Request,
     run_id: RunPath,
     format: Annotated[Literal["json", "npz", "csv"] | None, Query()] = None,  # noqa: A002

@@ -5,7 +5,7 @@ from starlette.responses import JSONResponse, Response
 
 from app.api.answers import ExperimentView, RaceView, TrainingView
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
-from app.api.deps import Given, StartRequest
+from app.api.deps import ServicesDep, StartRequestDep
 from app.api.formats import attachment
 from app.api.runs import RunPath, find
 from app.archive import archive
@@ -25,7 +25,7 @@ router = APIRouter()
     response_class=Response,
     responses=_ARCHIVE,
 )
-def export_training(services: Given, run_id: RunPath) -> Response:
+def export_training(services: ServicesDep, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "training", run_id)
     data = export_pieces(services.store, run.id, services.exports)
@@ -39,7 +39,7 @@ def export_training(services: Given, run_id: RunPath) -> Response:
     response_class=Response,
     responses=_ARCHIVE,
 )
-def export_race(services: Given, run_id: RunPath) -> Response:
+def export_race(services: ServicesDep, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "race", run_id)
     data = export_pieces(services.store, run.id, services.exports)
@@ -53,7 +53,7 @@ def export_race(services: Given, run_id: RunPath) -> Response:
     response_class=Response,
     responses=_ARCHIVE,
 )
-def export_experiment(services: Given, run_id: RunPath) -> Response:
+def export_experiment(services: ServicesDep, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "experiment", run_id)
     data = export_pieces(services.store, run.id, services.exports)
@@ -69,7 +69,7 @@ def export_experiment(services: Given, run_id: RunPath) -> Response:
     responses=answers(201, headers=LOCATION),
     openapi_extra=takes_file("application/octet-stream"),
 )
-def import_archive(services: Given, request: Request, asked: StartRequest) -> Response:
+def import_archive(services: ServicesDep, request: Request, asked: StartRequestDep) -> Response:
     """The archive is the body. A run that is here already is not replaced: it comes twice.
 
     Unless it is the same request again, with the same `Idempotency-Key`. It keeps its id if that

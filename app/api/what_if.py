@@ -4,7 +4,7 @@ from fastapi import APIRouter
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import WhatIfView
-from app.api.deps import Given
+from app.api.deps import ServicesDep
 from app.api.schemas import TrainingBody
 from app.domain.errors import InvalidInput
 
@@ -16,7 +16,7 @@ router = APIRouter(prefix="/what-if", tags=["what-if"])
     response_model=WhatIfView,
     summary="How far 30 seeds would come after a practice, and by default",
 )
-def ask(services: Given, body: TrainingBody) -> Response:
+def ask(services: ServicesDep, body: TrainingBody) -> Response:
     """A training's body, of at most 2,000 steps; always computed in the kinematic simulator."""
     if body.continue_from is not None:
         raise InvalidInput("a what-if begins with an empty table; leave out continue_from")

@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 from app.archive.archive import Member
 from app.archive.archived_trials import check_reported, is_reported, reported_files
 from app.archive.imported_tables import checked_table
-from app.archive.untrusted_input import Large, Metres, Seconds, Share, Step, Words
+from app.archive.untrusted_input import Large, Metres, PortableText, Seconds, Share, Step
 from app.domain.errors import DamagedFile, HexapodError
 from app.domain.simulator import Motion
 from app.domain.types import Action, Cells
 from app.experiments.config import ExperimentConfig
 from app.runs import tables
-from app.runs.config import RaceConfig, TrainingConfig, Walk
+from app.runs.config import RaceConfig, TrainingConfig, WalkingProblem
 from app.runs.recording import race_recording
-from app.runs.records import Knowledge
+from app.runs.records import ActionValues
 from app.runs.stored_practice import practice_recording
 from app.storage.artifact_file import pieces
 from app.storage.store import CHECKPOINT, RESUMABLE, TABLE, Run, RunStore
@@ -116,7 +116,7 @@ def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
     if RACE not in files:
         return
     lanes = race_recording(tables.read_arrays(files[RACE]))
-    msgspec.convert([lane.failure for lane in lanes], list[Words | None])
+    msgspec.convert([lane.failure for lane in lanes], list[PortableText | None])
     if [lane.agent for lane in lanes] != [lane.agent for lane in config.lanes]:
         raise ValueError("it has other lanes")
     for lane in lanes:
@@ -130,7 +130,7 @@ def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
             _check_choice(step.observation, step.action, step.knowledge, config)
 
 
-def _check_practice(config: Walk, files: Mapping[str, bytes]) -> None:
+def _check_practice(config: WalkingProblem, files: Mapping[str, bytes]) -> None:
     if PRACTICE not in files:
         return
     later = sorted(name for name in files if _EVALUATIONS.fullmatch(name))
@@ -151,7 +151,7 @@ def _check_practice(config: Walk, files: Mapping[str, bytes]) -> None:
         _check_motion(evaluation.motion, config)
 
 
-def _check_motion(motion: Motion | None, walk: Walk) -> None:
+def _check_motion(motion: Motion | None, walk: WalkingProblem) -> None:
     if motion is None:
         return
     _check_poses(motion.qpos, walk)
@@ -162,7 +162,7 @@ def _check_motion(motion: Motion | None, walk: Walk) -> None:
         raise ValueError("its time does not go on")
 
 
-def _check_poses(qpos: NDArray[np.float32], walk: Walk) -> None:
+def _check_poses(qpos: NDArray[np.float32], walk: WalkingProblem) -> None:
     """(frames, 7 + joints): a position, a quaternion, three joints a leg."""
     if qpos.shape[1:] != (7 + 3 * len(walk.robot.legs),) or not len(qpos):
         raise ValueError("its robot has other joints")
@@ -171,7 +171,7 @@ def _check_poses(qpos: NDArray[np.float32], walk: Walk) -> None:
 
 
 def _check_choice(
-    observation: Cells, action: Action, knowledge: Knowledge | None, walk: Walk
+    observation: Cells, action: Action, knowledge: ActionValues | None, walk: WalkingProblem
 ) -> None:
     pairs, cells = len(walk.resolved_gait.pairs), len(walk.grid)
     if len(observation) != pairs or not _are_below(observation, cells):

@@ -15,11 +15,11 @@ from app.archive.untrusted_input import (
     Metres,
     Moment,
     Name,
+    PortableText,
     Seconds,
     Share,
     Step,
-    Strict,
-    Words,
+    UntrustedInput,
     check_moment,
 )
 from app.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownName
@@ -41,7 +41,7 @@ _Id = Annotated[str, Meta(pattern="^[0-9a-z]{1,32}$")]
 _Known = Metres | None  # null if it never came about; JSON has no NaN
 
 
-class _Change(Strict, frozen=True):
+class _Change(UntrustedInput, frozen=True):
     step: Count
     pace: float | Literal["max"] | UnsetType = UNSET
     alpha: float | UnsetType = UNSET
@@ -49,43 +49,43 @@ class _Change(Strict, frozen=True):
     epsilon: float | UnsetType = UNSET
 
 
-class _Evaluation(Strict, frozen=True):
+class _Evaluation(UntrustedInput, frozen=True):
     step: Step
     distance_m: Metres
     epsilon: Share
 
 
-class _TrainingResult(Strict, frozen=True):
+class _TrainingResult(UntrustedInput, frozen=True):
     distance_m: _Known
     greedy_distance_m: _Known
     q_table_sha256: Annotated[str, Meta(pattern="^[0-9a-f]{64}$")] | None
 
 
-class _Figures(Strict, frozen=True):
+class _Figures(UntrustedInput, frozen=True):
     finished_distance_m: Metres
     elapsed_s: Seconds
     crossed_s: Seconds | None
     rank: Annotated[int, Meta(ge=1, le=MAX_LANES)]
 
 
-class _LaneResult(Strict, frozen=True):
+class _LaneResult(UntrustedInput, frozen=True):
     agent: Name
     training_id: _Id | None
     trained_robot: dict[str, Any] | None
     steps: Step
     total_distance_m: _Known
-    failure: Words | None
+    failure: PortableText | None
     decision_s: Seconds
     simulated_transitions: Large
     clocks: dict[str, _Figures]
 
 
-class _RaceResult(Strict, frozen=True):
+class _RaceResult(UntrustedInput, frozen=True):
     lanes: list[_LaneResult]
     shared_machine: bool
 
 
-class _Shape(Strict, frozen=True):
+class _Shape(UntrustedInput, frozen=True):
     """A `Run` that has ended."""
 
     id: _Id
@@ -100,14 +100,14 @@ class _Shape(Strict, frozen=True):
     changes: Annotated[list[_Change], Meta(max_length=10_000)]
     greedy_distance_m: _Known
     result: Raw
-    error: Words | None
+    error: PortableText | None
     created_at: Moment
     started_at: Moment | None
     ended_at: Moment | None
     workers: Annotated[int, Meta(ge=1, le=MAX_WORKERS)] | None = None
 
 
-class _File(Strict, frozen=True):
+class _File(UntrustedInput, frozen=True):
     format: int
     version: Name
     run: _Shape

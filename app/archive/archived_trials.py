@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import msgspec
 from msgspec import Meta
 
-from app.archive.untrusted_input import Large, Metres, Name, Seconds, Strict, Words
+from app.archive.untrusted_input import Large, Metres, Name, PortableText, Seconds, UntrustedInput
 from app.domain.errors import DamagedFile
 from app.domain.text import is_formula
 from app.experiments.config import ExperimentConfig
@@ -24,19 +24,19 @@ _REPORTED = re.compile(
 _BEGINS = {"png": b"\x89PNG\r\n\x1a\n", "pdf": b"%PDF-"}
 
 
-class _Counts(Strict, frozen=True):
+class _Counts(UntrustedInput, frozen=True):
     done: Large
     total: Large
     failed: Large
     set_aside: Large
 
 
-class _Claim(Strict, frozen=True):
+class _Claim(UntrustedInput, frozen=True):
     id: Name
     verdict: Name
 
 
-class ExperimentResult(Strict, frozen=True):
+class ExperimentResult(UntrustedInput, frozen=True):
     """The result of an experiment's run."""
 
     trials: _Counts
@@ -45,7 +45,7 @@ class ExperimentResult(Strict, frozen=True):
     shared_machine: bool
 
 
-class _Lane(Strict, frozen=True):
+class _Lane(UntrustedInput, frozen=True):
     agent: Name
     decision_s: Seconds
     finished_distance_m: Metres
@@ -53,19 +53,19 @@ class _Lane(Strict, frozen=True):
     rank: Annotated[int, Meta(ge=1)]
 
 
-class _Result(Strict, frozen=True):
+class _Result(UntrustedInput, frozen=True):
     distances_m: Annotated[list[Metres], Meta(max_length=1_000)]
     finished_distance_m: Metres | None
     elapsed_s: Seconds | None
     transitions: Large
     wall: list[_Lane] | None
-    failure: Words | None
+    failure: PortableText | None
 
 
-class _Row(Strict, frozen=True):
+class _Row(UntrustedInput, frozen=True):
     key: Annotated[str, Meta(max_length=1_000)]
     result: _Result | None
-    set_aside: Words | None
+    set_aside: PortableText | None
     compute_s: Seconds
 
 

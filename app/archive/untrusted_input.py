@@ -23,12 +23,12 @@ Metres = Annotated[float, Meta(ge=-_MAX_M, le=_MAX_M)]
 Seconds = Annotated[float, Meta(ge=0, le=_MAX_S)]
 Share = Annotated[float, Meta(ge=0, le=1)]
 Name = Annotated[str, Meta(max_length=100)]
-Words = Annotated[str, Meta(max_length=10_000, pattern=r"^[^\x00]*$")]
+PortableText = Annotated[str, Meta(max_length=10_000, pattern=r"^[^\x00]*$")]
 """No database keeps NUL."""
 Moment = Annotated[datetime, Meta(tz=True)]
 
 
-class Strict(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+class UntrustedInput(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """Has the fields it has and no others."""
 
 

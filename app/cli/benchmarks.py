@@ -17,13 +17,13 @@ from app.domain.observation import legal_actions, observe
 from app.domain.types import Action, FloatArray
 from app.physics.mujoco_simulator import MujocoSimulator, MujocoState
 from app.runs.clocks import motion_s
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, Walk
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, WalkingProblem
 from app.runs.racing import race
 from app.runs.records import LaneStep, StepTaken
 from app.runs.training import train
-from app.runs.walker import Foresight, Walker
+from app.runs.walker import SimulatorExpand, Walker
 
-WALK = Walk(gait="left-right-origin")
+WALK = WalkingProblem(gait="left-right-origin")
 TURNS = 5
 
 
@@ -117,7 +117,7 @@ def _add_layers(replay: _Replay) -> None:
 def _two_step(threads: int) -> Walker:
     """A walker at rest; its simulator has warmed up."""
     simulator = MujocoSimulator(WALK.robot, WALK.resolved_gait, WALK.grid, threads)
-    foresight = Foresight(simulator, "measured")
+    foresight = SimulatorExpand(simulator, "measured")
     walker = Walker(simulator, TwoStep(foresight), "measured", foresight)
     walker.decide()
     return walker

@@ -9,10 +9,10 @@ from pathlib import Path
 from app.cli.doctor import Trouble, can_listen
 from app.events.damage import damaged_runs
 from app.settings import PREFIX, Settings
-from app.storage.address_file import noted_address
+from app.storage.address_file import read_address_file
 from app.storage.database.folder_lock import LOCK_FILE, FolderInUse, lock_folder
-from app.storage.database.read_only import look_into_store
-from app.storage.disk_space import MB, Room
+from app.storage.database.read_only import open_read_only
+from app.storage.disk_space import MB, DiskSpace
 
 WANTED_FREE_MB = 200
 _NEARLY_FULL = 0.9
@@ -43,7 +43,7 @@ def _room(settings: Settings) -> str:
             f"the disk has {free_mb:,} MB left, and runs need some: make room for "
             f"{WANTED_FREE_MB} MB at least, or delete runs"
         )
-    used_mb = Room(settings.data).used_bytes() // MB if there == settings.data else 0
+    used_mb = DiskSpace(settings.data).used_bytes() // MB if there == settings.data else 0
     if settings.quota_mb is None:
         return f"{used_mb:,} MB are used, {free_mb:,} MB are free, and there is no quota"
     if used_mb >= _NEARLY_FULL * settings.quota_mb:
@@ -57,13 +57,14 @@ def _room(settings: Settings) -> str:
 def _lock(settings: Settings) -> str:
     if not _is_served(settings.data):
         return "no server has the data folder now"
-    return f"a server has the data folder, at {noted_address(settings.data) or 'an address unsaid'}"
+    address = read_address_file(settings.data) or "an address unsaid"
+    return f"a server has the data folder, at {address}"
 
 
 def _database(settings: Settings) -> str:
     # What the URL says stays out of it, because it may hold a password.
     kind = "SQLite in the data folder" if settings.database_url is None else "PostgreSQL"
-    with look_into_store(settings) as store:
+    with open_read_only(settings) as store:
         has_runs = bool(store.list(limit=1).items)
         damaged = damaged_runs(store)
     if damaged:
@@ -81,7 +82,7 @@ def _port(settings: Settings) -> str:
     where = f"{settings.host} port {settings.port}"
     if can_listen(settings):
         return f"{where} is free"
-    noted = noted_address(settings.data) or ""
+    noted = read_address_file(settings.data) or ""
     if _is_served(settings.data) and noted.rstrip("/").endswith(f":{settings.port}"):
         return f"{where} is where this data folder's server listens"
     raise Trouble(

@@ -6,7 +6,7 @@ from app.cli.trial_options import (
     add_machine_options,
     add_trial_options,
     split,
-    tried_from,
+    trial_grid_from,
     where_from,
 )
 from app.cli.trials import run_experiment
@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
     agents = agents_from(options.agent)
     if agents is not None and options.experiment == "table1":
         raise InvalidInput("table1 has the paper's agents; --agent is for figure4 and sweep")
-    config = experiment_config(options.experiment, {**tried_from(options), "agents": agents})
+    config = experiment_config(options.experiment, {**trial_grid_from(options), "agents": agents})
     return run_experiment(config, where_from(options), options)
 
 

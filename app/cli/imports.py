@@ -11,7 +11,7 @@ from typing import Any
 from app.agents.registry import registered
 from app.archive.archive import MAX_BYTES
 from app.cli.runs import add_data
-from app.cli.server_client import ask_server
+from app.cli.server_client import call_server
 from app.domain.errors import InvalidInput
 from app.settings import Settings, read_settings
 
@@ -60,5 +60,5 @@ def _import(settings: Settings, data: bytes, said: str) -> dict[str, Any]:
         with open_store(settings) as store:
             return run_view(import_run(store, data, RunIds.of(store), registered(), said))
     except FolderInUse:
-        answer: dict[str, Any] = ask_server(settings, "POST", "api/v1/import", data)
+        answer: dict[str, Any] = call_server(settings, "POST", "api/v1/import", data)
         return answer

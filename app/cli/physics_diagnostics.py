@@ -6,14 +6,14 @@ import numpy as np
 
 from app.domain.observation import legal_actions, observe
 from app.physics.mujoco_simulator import MujocoSimulator
-from app.runs.config import Walk
+from app.runs.config import WalkingProblem
 
 STEPS = 10
 
 
 def main() -> None:
     """Walk, and print what there is to say; any exception is the finding."""
-    walk = Walk(gait="left-right-origin")
+    walk = WalkingProblem(gait="left-right-origin")
     simulator = MujocoSimulator(walk.robot, walk.resolved_gait, walk.grid)
     state, began = simulator.rest(), time.perf_counter()
     for number in range(STEPS):

@@ -13,7 +13,7 @@ from urllib.parse import quote
 
 from app.cli.options import whole
 from app.cli.race import show_lanes
-from app.cli.server_client import ask_server
+from app.cli.server_client import call_server
 from app.cli.terminal import show_table
 from app.domain.errors import InvalidInput
 from app.events.run_view import as_shown, run_view
@@ -64,9 +64,9 @@ def found(store: RunStore, run_id: str) -> AnyRun:
 def looking(settings: Settings) -> AbstractContextManager[RunStore]:
     """The store of a data folder, for who only reads."""
     # Databases take a moment to import, which other commands need not.
-    from app.storage.database.read_only import look_into_store  # noqa: PLC0415
+    from app.storage.database.read_only import open_read_only  # noqa: PLC0415
 
-    return look_into_store(settings)
+    return open_read_only(settings)
 
 
 def _list(options: argparse.Namespace) -> int:
@@ -162,7 +162,7 @@ def _delete(options: argparse.Namespace) -> int:
             store.delete(run.id)
     except FolderInUse:
         kind = run.kind or KINDS[0]
-        ask_server(settings, "DELETE", f"api/v1/{kind}s/{quote(run.id, safe='')}")
+        call_server(settings, "DELETE", f"api/v1/{kind}s/{quote(run.id, safe='')}")
     said = f"Deleted {run.kind or 'run'} {run.id}."
     print(json.dumps({"deleted": run.id}) if options.json else said)
     return 0

@@ -7,12 +7,12 @@ from typing import Any
 
 from app.domain.errors import InvalidInput
 from app.settings import PREFIX, Settings
-from app.storage.address_file import noted_address
+from app.storage.address_file import read_address_file
 
 _WAIT_S = 60.0
 
 
-def ask_server(settings: Settings, method: str, path: str, body: bytes | None = None) -> Any:
+def call_server(settings: Settings, method: str, path: str, body: bytes | None = None) -> Any:
     """What the server of the data folder answers.
 
     Args:
@@ -24,7 +24,7 @@ def ask_server(settings: Settings, method: str, path: str, body: bytes | None = 
     Raises:
         InvalidInput: if there is no answer, or the server refuses.
     """
-    address = noted_address(settings.data)
+    address = read_address_file(settings.data)
     if address is None:
         raise InvalidInput(
             f"another process has the data folder {settings.data}, and does not say where it "

@@ -9,7 +9,7 @@ from app.cli.trial_options import (
     add_machine_options,
     add_trial_options,
     split,
-    tried_from,
+    trial_grid_from,
     where_from,
 )
 from app.cli.trials import run_experiment
@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
     """
     given = {name: getattr(options, name) for name in GRID}
     agents = agents_from(options.agent)
-    config = experiment_config("sweep", {**tried_from(options), **given, "agents": agents})
+    config = experiment_config("sweep", {**trial_grid_from(options), **given, "agents": agents})
     return run_experiment(config, where_from(options), options)
 
 

@@ -9,7 +9,7 @@ from app.cli.options import read_gait, read_robot, whole
 from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS, Robot
-from app.experiments.cluster import Where
+from app.experiments.cluster import ClusterSpec
 from app.runs.config import SIMULATORS
 
 T = TypeVar("T")
@@ -56,13 +56,13 @@ def add_machine_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
 
 
-def where_from(options: argparse.Namespace) -> Where:
+def where_from(options: argparse.Namespace) -> ClusterSpec:
     """What `add_machine_options` read."""
     names = ("workers", "scheduler", "tls_ca", "tls_cert", "tls_key")
-    return Where(**{name: getattr(options, name) for name in names})
+    return ClusterSpec(**{name: getattr(options, name) for name in names})
 
 
-def tried_from(options: argparse.Namespace) -> dict[str, Any]:
+def trial_grid_from(options: argparse.Namespace) -> dict[str, Any]:
     """What `add_trial_options` read, as fields of an experiment; None where nothing was said."""
     return {
         "seeds": options.seeds,

@@ -12,7 +12,7 @@ from typing import Any
 
 from app.cli.terminal import progress, show_table
 from app.domain.errors import InvalidInput
-from app.experiments.cluster import Where
+from app.experiments.cluster import ClusterSpec
 from app.experiments.config import ExperimentConfig
 from app.experiments.engine import run_trials
 from app.experiments.folder import ResultsFolder, open_results
@@ -24,7 +24,9 @@ _RATE_WINDOW_S = 300.0  # trials of one experiment take from a second to half a 
 _HEAD = ("setting", "seeds", "total m", "95 %", "finished m", "of greedy")
 
 
-def run_experiment(config: ExperimentConfig, where: Where, options: argparse.Namespace) -> int:
+def run_experiment(
+    config: ExperimentConfig, where: ClusterSpec, options: argparse.Namespace
+) -> int:
     """Run what is not done yet, and write the report.
 
     Args:
@@ -65,7 +67,7 @@ def _undone(plan: Plan, folder: ResultsFolder, retry: bool) -> list[Trial]:
     return [trial for trial in plan.trials() if trial.key not in known]
 
 
-def _on(where: Where) -> str:
+def _on(where: ClusterSpec) -> str:
     if where.scheduler is not None:
         return f"on the cluster of {where.scheduler}"
     workers = where.workers or cores()
@@ -75,7 +77,7 @@ def _on(where: Where) -> str:
 def _run(
     undone: list[Trial],
     plan: Plan,
-    where: Where,
+    where: ClusterSpec,
     folder: ResultsFolder,
     go_on: Callable[[], bool],
 ) -> None:
@@ -88,7 +90,7 @@ def _run(
             bar.update(task, advance=1, description=f"trials{aside}")
 
 
-def _report(plan: Plan, where: Where, folder: ResultsFolder) -> dict[str, Any]:
+def _report(plan: Plan, where: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
     # SciPy and Matplotlib take a second to import, which other commands need not.
     from app.experiments.report.files import write_report  # noqa: PLC0415
     from app.experiments.summary import summarise  # noqa: PLC0415

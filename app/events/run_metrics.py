@@ -13,7 +13,7 @@ _WINDOW_S = 10.0
 _logger = logging.getLogger(__name__)
 
 
-class Witness(EventBus):
+class RunMetrics(EventBus):
     """The bus, noticing what it publishes of runs: their steps, and the changes of their states."""
 
     def __init__(self, now: Callable[[], float] = time.monotonic) -> None:

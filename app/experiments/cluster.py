@@ -36,7 +36,7 @@ class ClusterLost(HexapodError):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Where:
+class ClusterSpec:
     """On which machines trials run.
 
     Attributes:
@@ -80,7 +80,7 @@ class Where:
 
 
 @contextmanager
-def connect(where: Where) -> "Iterator[Client]":
+def connect(where: ClusterSpec) -> "Iterator[Client]":
     """A client of the cluster, which is started first where it is this machine's own.
 
     Whoever leaves drops what is still computed. Its processes end with this one, however it ends.
@@ -101,13 +101,13 @@ def connect(where: Where) -> "Iterator[Client]":
 
 
 @contextmanager
-def _foreign(where: Where) -> "Iterator[Client]":
+def _foreign(where: ClusterSpec) -> "Iterator[Client]":
     from distributed import Client  # noqa: PLC0415
 
     address = str(where.scheduler)
     security = _security(where)
     try:
-        _knock(address, security)
+        _probe(address, security)
         client = Client(address, security=security, timeout=ANSWER_S, set_as_default=False)
     except (OSError, OverflowError, ValueError, TypeError) as error:
         raise InvalidInput(
@@ -118,7 +118,7 @@ def _foreign(where: Where) -> "Iterator[Client]":
         yield client
 
 
-def _knock(address: str, security: "Security") -> None:
+def _probe(address: str, security: "Security") -> None:
     """Find out at once that nobody is there, and in time that it is no scheduler.
 
     Dask goes on trying where nobody listens, and waits forever for who does not answer.
@@ -139,7 +139,7 @@ def _knock(address: str, security: "Security") -> None:
         thread.submit(lambda: asyncio.run(knock())).result()
 
 
-def _security(where: Where) -> "Security":
+def _security(where: ClusterSpec) -> "Security":
     from distributed.security import Security  # noqa: PLC0415
 
     if where.tls_ca is None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from itertools import chain, islice
 from typing import TYPE_CHECKING, NamedTuple
 
-from app.experiments.cluster import ClusterLost, Where, connect
+from app.experiments.cluster import ClusterLost, ClusterSpec, connect
 from app.experiments.plan import Trial
 from app.experiments.trial import TrialResult
 from app.experiments.versions import versions
@@ -41,7 +41,7 @@ class Outcome(NamedTuple):
 
 
 def run_trials(
-    trials: Iterable[Trial], where: Where, go_on: Callable[[], bool] = lambda: True
+    trials: Iterable[Trial], where: ClusterSpec, go_on: Callable[[], bool] = lambda: True
 ) -> Generator[Outcome, None, None]:
     """Run trials, and tell of each as it ends, in whatever order that is.
 

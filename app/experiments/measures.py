@@ -23,7 +23,7 @@ REACHES = 0.95
 
 
 @dataclass(frozen=True)
-class Yardstick:
+class Reference:
     """How far greedy comes in the same place [m]; None where that is not known, or is no walk."""
 
     total_m: float | None = None
@@ -42,7 +42,7 @@ class Stratum:
 
     total_m: Points
     finished_m: Points
-    greedy: Yardstick
+    greedy: Reference
 
 
 def measures(strata: Sequence[Stratum], seed: int) -> dict[str, Any]:
@@ -81,7 +81,9 @@ def distances(points: Points, seed: int) -> dict[str, Any] | None:
     }
 
 
-def beside(cell: Published | None, total_m: Points, finished_m: Points) -> dict[str, Any] | None:
+def compare_with_published(
+    cell: Published | None, total_m: Points, finished_m: Points
+) -> dict[str, Any] | None:
     """What the paper has, and in which quantile of our seeds it falls."""
     if cell is None:
         return None
@@ -94,7 +96,7 @@ def beside(cell: Published | None, total_m: Points, finished_m: Points) -> dict[
 
 
 def curve(
-    blocks: Sequence[Points], steps: int, greedy: Yardstick, seed: int
+    blocks: Sequence[Points], steps: int, greedy: Reference, seed: int
 ) -> Mapping[str, list[Any]]:
     """Distance against practice.
 

@@ -41,7 +41,7 @@ def own_cluster(workers: int) -> "Iterator[Client]":
         stack.enter_context(folder)
         settings = {**_OWN_SETTINGS, "temporary-directory": folder.name}
         stack.enter_context(dask.config.set(settings))
-        with _deaf_to_ctrl_c():
+        with _sigint_blocked():
             # Anyone on the machine could otherwise send code to the ports.
             security = Security.temporary()
             anywhere = {"host": "127.0.0.1", "protocol": "tls://", "security": security}
@@ -94,7 +94,7 @@ _OWN_SETTINGS = {
 
 
 @contextmanager
-def _deaf_to_ctrl_c() -> Iterator[None]:
+def _sigint_blocked() -> Iterator[None]:
     """Ctrl-C reaches every process of a terminal; workers shall leave it to this one.
 
     Processes inherit what is blocked from the thread that starts them, also those started later

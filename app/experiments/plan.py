@@ -15,7 +15,7 @@ from app.domain.observation import Observation
 from app.domain.robot import Robot
 from app.experiments.config import GRID, MAX_TRIALS, ExperimentConfig
 from app.experiments.trial import TrialConfig
-from app.runs.config import TrainingConfig, Walk
+from app.runs.config import TrainingConfig, WalkingProblem
 
 Role = Literal["learner", "reference", "timed"]
 """`learner`: once a seed; `reference`: an agent that looks ahead, and so once; `timed`:
@@ -129,7 +129,7 @@ def _settings(config: ExperimentConfig) -> list[Setting]:
 class _Place(NamedTuple):
     """Where agents are compared with each other: the walking problem and how it is observed."""
 
-    walk: Walk
+    walk: WalkingProblem
     observation: Observation
     robot: str
     """Its label."""
@@ -139,7 +139,7 @@ def _places(config: ExperimentConfig) -> Iterator[_Place]:
     for gait, observation, (label, robot), divisions, side_m in product(
         config.gaits, config.observations, _labelled(config), config.divisions, config.grid_side_m
     ):
-        walk = Walk(
+        walk = WalkingProblem(
             gait=gait,
             robot=robot,
             simulator=config.simulator,
@@ -168,7 +168,7 @@ def _looking_ahead(config: ExperimentConfig) -> list[str]:
 
 def _rates(config: ExperimentConfig) -> list[dict[str, Any]]:
     """Every combination of what is not part of the walking problem."""
-    names = [name for name in GRID if name not in Walk.__dataclass_fields__]
+    names = [name for name in GRID if name not in WalkingProblem.__dataclass_fields__]
     return [
         dict(zip(names, values, strict=True))
         for values in product(*(getattr(config, name) for name in names))

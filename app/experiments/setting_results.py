@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from app.experiments.config import GRID
-from app.experiments.measures import Stratum, Yardstick
+from app.experiments.measures import Reference, Stratum
 from app.experiments.plan import Plan, Setting
 from app.experiments.statistics import Points
 from app.experiments.trial import TrialResult
@@ -13,7 +13,7 @@ _LEAST_WALK = 0.5
 """Of half a grid side: a greedy agent that does not come so far in 50 steps is no yardstick."""
 
 
-class Seen(NamedTuple):
+class SettingResults(NamedTuple):
     """A setting and the results that there are, by seed number."""
 
     setting: Setting
@@ -53,17 +53,17 @@ class Seen(NamedTuple):
         return tuple(metres for metres in found if metres is not None)
 
 
-def sorted_out(plan: Plan, results: Mapping[str, TrialResult]) -> list[Seen]:
+def sorted_out(plan: Plan, results: Mapping[str, TrialResult]) -> list[SettingResults]:
     """Every setting of a plan with its results; those of other plans are left out."""
     found: dict[str, dict[int, TrialResult]] = {setting.key: {} for setting in plan.settings}
     for key, result in results.items():
         setting, _, number = key.rpartition("#")
         if setting in found and int(number) < plan.config.seeds:
             found[setting][int(number)] = result
-    return [Seen(setting, found[setting.key]) for setting in plan.settings]
+    return [SettingResults(setting, found[setting.key]) for setting in plan.settings]
 
 
-def yardsticks_of(seen: Sequence[Seen]) -> dict[Any, Yardstick]:
+def yardsticks_of(seen: Sequence[SettingResults]) -> dict[Any, Reference]:
     """How far greedy comes, by place."""
     return {
         one.place: _yardstick(one)
@@ -72,19 +72,19 @@ def yardsticks_of(seen: Sequence[Seen]) -> dict[Any, Yardstick]:
     }
 
 
-def stratum(one: Seen, yardsticks: Mapping[Any, Yardstick]) -> Stratum:
+def stratum(one: SettingResults, yardsticks: Mapping[Any, Reference]) -> Stratum:
     """A setting's seeds beside greedy."""
-    return Stratum(one.total_m, one.finished_m, yardsticks.get(one.place, Yardstick()))
+    return Stratum(one.total_m, one.finished_m, yardsticks.get(one.place, Reference()))
 
 
-def _yardstick(greedy: Seen) -> Yardstick:
+def _yardstick(greedy: SettingResults) -> Reference:
     least_m = _LEAST_WALK * greedy.setting.training.grid_side_m / 2
     total = next((metres for metres in greedy.total_m if metres > least_m), None)
     finished = next((metres for metres in greedy.finished_m if metres > least_m), None)
-    return Yardstick(total, finished)
+    return Reference(total, finished)
 
 
-def named(one: Seen) -> dict[str, Any]:
+def named(one: SettingResults) -> dict[str, Any]:
     """What tells a setting from the others; an agent that looks ahead has no rates."""
     at = one.setting.training
     practises = one.setting.role == "learner"

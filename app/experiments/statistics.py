@@ -135,12 +135,12 @@ def share(hits: int, of: int, ties: int = 0) -> Interval:
     return Interval(value, _wilson(hits, of).low, _wilson(hits + ties, of).high)
 
 
-def ahead(points: Sequence[float], rival: float) -> Interval:
+def ahead(points: Sequence[float], baseline: float) -> Interval:
     """How likely a seed comes further than a rival who always comes as far; a tie counts half."""
     return share(
-        sum(point > rival for point in points),
+        sum(point > baseline for point in points),
         len(points),
-        sum(point == rival for point in points),
+        sum(point == baseline for point in points),
     )
 
 

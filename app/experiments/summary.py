@@ -11,11 +11,17 @@ from typing import Any
 from app.experiments.claims import CLAIMS_OF
 from app.experiments.claims.judging import judge
 from app.experiments.config import ExperimentConfig, as_json
-from app.experiments.measures import Yardstick, beside, curve, distances, measures
+from app.experiments.measures import Reference, compare_with_published, curve, distances, measures
 from app.experiments.narrative.narrative import tell
 from app.experiments.plan import Plan
 from app.experiments.published import published
-from app.experiments.setting_results import Seen, named, sorted_out, stratum, yardsticks_of
+from app.experiments.setting_results import (
+    SettingResults,
+    named,
+    sorted_out,
+    stratum,
+    yardsticks_of,
+)
 from app.experiments.statistics import decided, improvement
 from app.experiments.trial import TrialResult
 
@@ -74,12 +80,12 @@ def _plan(config: ExperimentConfig) -> Plan:
 
 
 def _setting(
-    one: Seen, yardsticks: Mapping[Any, Yardstick], config: ExperimentConfig
+    one: SettingResults, yardsticks: Mapping[Any, Reference], config: ExperimentConfig
 ) -> dict[str, Any]:
     seeds = stratum(one, yardsticks)
     practised = one.setting.training.steps if one.setting.role == "learner" else 0
     cell = published(one.setting.gait, one.setting.training.agent, practised)
-    printed = beside(cell, seeds.total_m, seeds.finished_m)
+    printed = compare_with_published(cell, seeds.total_m, seeds.finished_m)
     elapsed = [result.elapsed_s for result in one.good if result.elapsed_s is not None]
     return {
         "key": one.setting.key,
@@ -96,7 +102,7 @@ def _setting(
 
 
 def _pooled(
-    seen: Sequence[Seen], yardsticks: Mapping[Any, Yardstick], config: ExperimentConfig
+    seen: Sequence[SettingResults], yardsticks: Mapping[Any, Reference], config: ExperimentConfig
 ) -> list[dict[str, Any]]:
     """Learners over their gaits, which are the strata of the bootstrap.
 
@@ -116,31 +122,31 @@ def _pooled(
     return found
 
 
-def _is_compared(one: Seen, config: ExperimentConfig) -> bool:
+def _is_compared(one: SettingResults, config: ExperimentConfig) -> bool:
     agent = one.setting.training.agent
     return one.setting.role == "learner" or (config.experiment != "table1" and agent != "greedy")
 
 
-def _grouped(seen: Iterable[Seen]) -> list[list[Seen]]:
+def _grouped(seen: Iterable[SettingResults]) -> list[list[SettingResults]]:
     """Settings that are alike in all but the gait."""
-    groups: dict[Any, list[Seen]] = {}
+    groups: dict[Any, list[SettingResults]] = {}
     for one in seen:
         alike = (one.place[1:], one.setting.training.agent, one.rates)
         groups.setdefault(alike, []).append(one)
     return list(groups.values())
 
 
-def _curve(one: Seen, yardsticks: Mapping[Any, Yardstick], seed: int) -> dict[str, Any]:
-    greedy = yardsticks.get(one.place, Yardstick())
+def _curve(one: SettingResults, yardsticks: Mapping[Any, Reference], seed: int) -> dict[str, Any]:
+    greedy = yardsticks.get(one.place, Reference())
     blocks = list(zip(*(result.distances_m for result in one.good), strict=True))
     block = one.setting.training.steps
     shown = curve(blocks, block, greedy, seed)
     return {"key": one.setting.key, **named(one), **shown, "greedy_m": greedy.total_m}
 
 
-def _versus(seen: Sequence[Seen], seed: int) -> list[dict[str, Any]]:
+def _versus(seen: Sequence[SettingResults], seed: int) -> list[dict[str, Any]]:
     """Every two agents that learn, after the same practice in the same place."""
-    groups: dict[Any, list[Seen]] = {}
+    groups: dict[Any, list[SettingResults]] = {}
     for one in seen:
         if one.setting.role == "learner" and one.total_m:
             groups.setdefault((one.place, one.rates), []).append(one)
@@ -163,13 +169,15 @@ def _versus(seen: Sequence[Seen], seed: int) -> list[dict[str, Any]]:
     return found
 
 
-def _timed(one: Seen) -> dict[str, Any]:
+def _timed(one: SettingResults) -> dict[str, Any]:
     lanes = [dict(lane) for lane in one.good[0].wall or ()]
     shown = named(one)
     return {**{k: shown[k] for k in ("gait", "observation", "robot")}, "lanes": lanes}
 
 
-def _count(plan: Plan, seen: Sequence[Seen], set_aside: Mapping[str, str]) -> dict[str, Any]:
+def _count(
+    plan: Plan, seen: Sequence[SettingResults], set_aside: Mapping[str, str]
+) -> dict[str, Any]:
     broken = [
         {"key": f"{one.setting.key}#{number}", "reason": result.failure}
         for one in seen

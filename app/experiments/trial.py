@@ -10,7 +10,7 @@ from typing import Any
 from app.assembly import build_learner, build_walkers
 from app.domain.errors import Diverged
 from app.runs.clocks import Timetable, distance_at
-from app.runs.config import RACE_STEPS, LaneConfig, RaceConfig, TrainingConfig, Walk
+from app.runs.config import RACE_STEPS, LaneConfig, RaceConfig, TrainingConfig, WalkingProblem
 from app.runs.racing import record_race
 from app.runs.recording import LaneRecording
 from app.runs.results import race_result
@@ -131,7 +131,7 @@ def _race(
     config: TrialConfig, table: Checkpoint | None, timer: Callable[[], float]
 ) -> list[LaneRecording]:
     training = config.training
-    walk = {name: getattr(training, name) for name in Walk.__dataclass_fields__}
+    walk = {name: getattr(training, name) for name in WalkingProblem.__dataclass_fields__}
     lanes = tuple(
         LaneConfig(agent=agent, observation=training.observation)
         for agent in (training.agent, *config.rivals)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from app.experiments.plan import Plan, Trial
 from app.experiments.trial import TrialResult
-from app.jobs.messages import Began, Ended, ExperimentOrder, Message, Reported, Tried, Word
+from app.jobs.messages import Began, Command, Ended, ExperimentTask, Message, Reported, TrialsDone
 from app.storage.store import SUMMARY
 from app.storage.stored_trials import results_of
 
@@ -27,7 +27,7 @@ _SUMMARY_SHARE = 0.15
 
 
 def experiment(
-    order: ExperimentOrder, send: Callable[[Message], None], words: "queue.SimpleQueue[Word]"
+    order: ExperimentTask, send: Callable[[Message], None], words: "queue.SimpleQueue[Command]"
 ) -> None:
     """Run an experiment to its end, or until someone says stop or leave.
 
@@ -40,7 +40,7 @@ def experiment(
         HexapodError: if it cannot go on.
     """
     send(Began((), len(order.rows)))
-    listener, book = _Listener(words), _Book(order, send)
+    listener, book = _Listener(words), _Progress(order, send)
     book.summarise()
     while listener.wait():
         for outcome in book.tried(listener.go_on):
@@ -66,7 +66,7 @@ class _Listener:
         held: whether the trials were told not to go on; they are until somebody waits.
     """
 
-    def __init__(self, words: "queue.SimpleQueue[Word]") -> None:
+    def __init__(self, words: "queue.SimpleQueue[Command]") -> None:
         self.paused = self.stopped = self.leaving = self.held = False
         self._words = words
 
@@ -87,17 +87,17 @@ class _Listener:
             self._obey(self._words.get())
         return False
 
-    def _obey(self, word: Word) -> None:
+    def _obey(self, word: Command) -> None:
         if word.verb in ("pause", "resume"):
             self.paused = word.verb == "pause"
         self.stopped |= word.verb == "stop"
         self.leaving |= word.verb == "leave"
 
 
-class _Book:
+class _Progress:
     """What came of the trials, and what the server knows of it."""
 
-    def __init__(self, order: ExperimentOrder, send: Callable[[Message], None]) -> None:
+    def __init__(self, order: ExperimentTask, send: Callable[[Message], None]) -> None:
         self._order, self._send_now = order, send
         self._sending = threading.Lock()
         self._summariser = ThreadPoolExecutor(1, "summary")
@@ -120,7 +120,7 @@ class _Book:
     def tried(self, go_on: Callable[[], bool]) -> "Iterator[Outcome]":
         """Try what is left."""
         # The server imports this module, and has no use for what a cluster needs.
-        from app.experiments.cluster import Where  # noqa: PLC0415
+        from app.experiments.cluster import ClusterSpec  # noqa: PLC0415
         from app.experiments.engine import run_trials  # noqa: PLC0415
 
         # It would tell of each start and end of a cluster, and of tasks that a pause drops.
@@ -134,7 +134,7 @@ class _Book:
             self._keep_up()
             return go_on()
 
-        yield from run_trials(list(self._left()), Where(workers=self._workers), attentive)
+        yield from run_trials(list(self._left()), ClusterSpec(workers=self._workers), attentive)
         self._wall_s = before_s + time.monotonic() - began_s
 
     def take(self, outcome: "Outcome") -> None:
@@ -151,7 +151,7 @@ class _Book:
     def flush(self) -> None:
         """Send what was not sent yet."""
         if self._pending:
-            self._send(Tried(tuple(self._pending), self.done))
+            self._send(TrialsDone(tuple(self._pending), self.done))
         self._pending = []
         self._sent_s = time.monotonic()
 

@@ -19,15 +19,15 @@ from app.jobs.messages import (
     Began,
     Changed,
     Checkpointed,
+    Command,
     Ended,
     Failed,
     Message,
-    Order,
-    RaceOrder,
+    RaceTask,
     Reported,
     Saved,
-    Tried,
-    Word,
+    Task,
+    TrialsDone,
 )
 from app.jobs.worker_process import Exit, WorkerProcess
 from app.runs.config import RaceConfig
@@ -72,7 +72,7 @@ class Job:
     def __init__(
         self,
         run: Run,
-        order: Order,
+        order: Task,
         store: RunStore,
         recordings: Recordings,
         bus: EventBus,
@@ -98,26 +98,26 @@ class Job:
     def pause(self) -> None:
         """Wait after the present step."""
         self.paused = True
-        self.process.send(Word("pause"))
+        self.process.send(Command("pause"))
 
     def resume(self) -> None:
         """Go on."""
         self.paused = False
         self._progress.clear()
-        self.process.send(Word("resume"))
+        self.process.send(Command("resume"))
 
     def stop(self) -> None:
         """End after the present step, with what has come of it so far."""
         self.stopping = True
         if self._has_begun:
-            self.process.send(Word("stop"))
+            self.process.send(Command("stop"))
         else:
             self.process.kill()
 
     def leave(self) -> None:
         """End after the present step with a checkpoint, if it is a training that has begun."""
         if self._has_begun and not self.is_race:
-            self.process.send(Word("leave"))
+            self.process.send(Command("leave"))
         else:
             self.process.kill()
 
@@ -130,7 +130,7 @@ class Job:
         """
         token, answer = next(self._tokens), threading.Event()
         self._answers[token] = answer
-        self.process.send(Word("tune", token, changes, time.monotonic() + within_s))
+        self.process.send(Command("tune", token, changes, time.monotonic() + within_s))
         return answer
 
     @property
@@ -262,7 +262,7 @@ class Job:
 
     def _take_end(self, ended: Ended) -> None:
         lanes = self._recordings.race(self.run_id)
-        if lanes is None or not isinstance(self._order, RaceOrder):
+        if lanes is None or not isinstance(self._order, RaceTask):
             self.end(ended.outcome, result=ended.result)
             return
         result = self._race_result(lanes, self._order)
@@ -272,7 +272,7 @@ class Job:
         else:
             self.end(ended.outcome, result=result)
 
-    def _race_result(self, lanes: list[LaneRecording], order: RaceOrder) -> dict[str, Any]:
+    def _race_result(self, lanes: list[LaneRecording], order: RaceTask) -> dict[str, Any]:
         result = race_result(lanes, order.config.steps)
         robots = _trained_robots(order)
         numbered = zip(result["lanes"], self._run.lane_training_ids, robots, strict=True)
@@ -301,7 +301,7 @@ class Job:
         self._bus.publish("run", run_view(run), self.run_id)
 
 
-def _trained_robots(order: RaceOrder) -> list[Any]:
+def _trained_robots(order: RaceTask) -> list[Any]:
     """For each lane the robot that its table was learned on, where that is another one."""
     here = as_mapping(order.config.robot)
     learned = [table and table.meta["config"]["robot"] for table in order.tables]
@@ -319,7 +319,7 @@ class ExperimentJob(Job):
     eta_window_s = 60.0
 
     def _take(self, message: Message) -> None:
-        if isinstance(message, Tried):
+        if isinstance(message, TrialsDone):
             self._take_trials(message)
         elif isinstance(message, Reported):
             self._store.put_artifact(self.run_id, message.name, message.data)
@@ -329,7 +329,7 @@ class ExperimentJob(Job):
         else:
             super()._take(message)
 
-    def _take_trials(self, tried: Tried) -> None:
+    def _take_trials(self, tried: TrialsDone) -> None:
         self._store.append_trials(self.run_id, tried.rows)
         run = self._store.update_progress(self.run_id, tried.done, self._eta_s(tried.done))
         if time.monotonic() - self._published_s >= 1 / EVENTS_PER_S:

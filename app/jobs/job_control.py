@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from app.agents.protocol import Agent, AgentState, Transition, Tunable
 from app.domain.types import Action, Cells
-from app.jobs.messages import Batch, Changed, Checkpointed, Message, Word
+from app.jobs.messages import Batch, Changed, Checkpointed, Command, Message
 from app.runs.recording import NEWEST_STEPS
 from app.runs.records import RaceRecord, StepTaken, TrainingRecord
 
@@ -20,7 +20,7 @@ class Stopped(Exception):
     """The job was told to stop, in the middle of something that is not worth finishing."""
 
 
-class Desk:
+class JobControl:
     """Stands between a loop and the server.
 
     Attributes:
@@ -29,7 +29,9 @@ class Desk:
         changes: what was changed while it ran, each with the steps that were done before.
     """
 
-    def __init__(self, send: Callable[[Message], None], words: "queue.SimpleQueue[Word]") -> None:
+    def __init__(
+        self, send: Callable[[Message], None], words: "queue.SimpleQueue[Command]"
+    ) -> None:
         self.stopped = self.leaving = False
         self.changes: list[dict[str, Any]] = []
         self.send = send
@@ -153,7 +155,7 @@ class Desk:
             self.checkpoint()
             self._saved = state
 
-    def _next_word(self, wait_s: float | None) -> Word:
+    def _next_word(self, wait_s: float | None) -> Command:
         if wait_s is not None and wait_s <= 0:
             return self._words.get_nowait()
         return self._words.get(timeout=wait_s)
@@ -171,7 +173,7 @@ class Desk:
             began = max(self._due_s, time.monotonic() - self._step_s / self._pace)
             self._due_s = began + self._step_s / self._pace
 
-    def _obey(self, word: Word, step: int, agent: object) -> None:
+    def _obey(self, word: Command, step: int, agent: object) -> None:
         if word.verb == "stop":
             self.stopped = True
         elif word.verb == "leave":
@@ -182,7 +184,7 @@ class Desk:
             self._paused = word.verb == "pause"
             self._due_s = time.monotonic()
 
-    def _tune(self, word: Word, step: int, agent: object) -> None:
+    def _tune(self, word: Command, step: int, agent: object) -> None:
         if time.monotonic() > word.expires_s:
             return  # its sender was told that nothing was changed
         self._change(word.changes, step, agent)
@@ -212,7 +214,7 @@ def _worth_sending(
     return (*early, *records[-NEWEST_STEPS:])
 
 
-class ListeningAgent:
+class InterruptibleAgent:
     """Implements `Agent` by another one, and calls `listen` before it acts."""
 
     def __init__(self, agent: Agent, listen: Callable[[], None]) -> None:

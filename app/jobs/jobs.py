@@ -10,16 +10,16 @@ from app.domain.errors import HexapodError, InvalidInput
 from app.events.bus import EventBus
 from app.events.run_view import run_view
 from app.jobs.job import Job
-from app.jobs.queue import WaitingRuns
-from app.jobs.resume import resumed_entries
+from app.jobs.queue import RunQueue
+from app.jobs.resume import resumed_runs
 from app.jobs.submissions import (
-    Entry,
     ExperimentStart,
+    QueuedRun,
     RaceStart,
     TrainingStart,
-    experiment_entry,
-    race_entries,
-    training_entry,
+    queued_experiment,
+    queued_race,
+    queued_training,
 )
 from app.jobs.supervisor import STUCK_S, Supervisor
 from app.storage.errors import Busy, Conflict, NotAnswering, StorageFailed
@@ -79,7 +79,7 @@ class Jobs:
         self._store, self._recordings, self._bus = store, recordings, bus
         self._on_queued = on_queued
         self.new_id = RunIds.of(store)
-        self._waiting = WaitingRuns(store, self._publish)
+        self._waiting = RunQueue(store, self._publish)
         self._supervisor = Supervisor(
             store,
             recordings,
@@ -134,7 +134,7 @@ class Jobs:
             InvalidInput, Conflict: if it cannot be.
             Busy: if too many runs are waiting.
         """
-        return self._enqueue([training_entry(start, self._store, self.new_id)], key)
+        return self._enqueue([queued_training(start, self._store, self.new_id)], key)
 
     def race(self, start: RaceStart, key: IdempotencyKey | None = None) -> Run:
         """Queue a race, and before it the trainings that it brings along.
@@ -147,7 +147,7 @@ class Jobs:
             InvalidInput, Conflict: if it cannot be.
             Busy: if too many runs are waiting.
         """
-        return self._enqueue(race_entries(start, self._store, self.new_id), key)
+        return self._enqueue(queued_race(start, self._store, self.new_id), key)
 
     def experiment(self, start: ExperimentStart, key: IdempotencyKey | None = None) -> Run:
         """Queue an experiment.
@@ -160,7 +160,7 @@ class Jobs:
             InvalidInput: if it cannot be.
             Busy: if too many runs are waiting.
         """
-        return self._enqueue([experiment_entry(start, self.new_id)], key)
+        return self._enqueue([queued_experiment(start, self.new_id)], key)
 
     def keep(self, run: Run, table: bytes, key: IdempotencyKey | None = None) -> Run:
         """Add a training that ended elsewhere, with its table."""
@@ -197,7 +197,7 @@ class Jobs:
         with self._changed:
             run = self._store.get(run_id)
             if run.state in RESUMABLE[run.kind]:
-                return self._enqueue(resumed_entries(run, self._store))
+                return self._enqueue(resumed_runs(run, self._store))
             try:
                 resumed = self._resume_paused(run)
             except Conflict as conflict:
@@ -285,7 +285,7 @@ class Jobs:
         self._recordings.discard(run_id)
         self._bus.publish("run-deleted", {"id": run_id}, run_id)
 
-    def _enqueue(self, entries: list[Entry], key: IdempotencyKey | None = None) -> Run:
+    def _enqueue(self, entries: list[QueuedRun], key: IdempotencyKey | None = None) -> Run:
         with self._changed:
             free = max(0, self.cores - self._supervisor.running)
             self._waiting.add(entries, free, key)

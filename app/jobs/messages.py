@@ -17,7 +17,7 @@ from app.runs.tables import Checkpoint
 
 
 @dataclass(frozen=True)
-class TrainingOrder:
+class TrainingTask:
     """Train, from what a table holds if one is given.
 
     Attributes:
@@ -34,7 +34,7 @@ class TrainingOrder:
 
 
 @dataclass(frozen=True)
-class RaceOrder:
+class RaceTask:
     """Race, each lane with its table if it has one."""
 
     config: RaceConfig
@@ -42,7 +42,7 @@ class RaceOrder:
 
 
 @dataclass(frozen=True)
-class ExperimentOrder:
+class ExperimentTask:
     """Try what has not been tried yet, and report.
 
     Attributes:
@@ -58,10 +58,10 @@ class ExperimentOrder:
     wall_s: float = 0.0
 
 
-Order = TrainingOrder | RaceOrder | ExperimentOrder
+Task = TrainingTask | RaceTask | ExperimentTask
 
 
-class Word(NamedTuple):
+class Command(NamedTuple):
     """Something to obey between two steps."""
 
     verb: Literal["pause", "resume", "stop", "tune", "leave"]
@@ -118,7 +118,7 @@ class Saved(NamedTuple):
     table: bytes
 
 
-class Tried(NamedTuple):
+class TrialsDone(NamedTuple):
     """Trials since the last of these, as the store takes them, and how many are done now."""
 
     rows: tuple[Mapping[str, Any], ...]
@@ -145,4 +145,4 @@ class Failed(NamedTuple):
     reason: str
 
 
-Message = Began | Batch | Changed | Checkpointed | Saved | Tried | Reported | Ended | Failed
+Message = Began | Batch | Changed | Checkpointed | Saved | TrialsDone | Reported | Ended | Failed

@@ -9,7 +9,7 @@ from contextlib import suppress
 _PR_SET_PDEATHSIG = 1
 
 
-def be_modest(niceness: int) -> None:
+def set_up_process(niceness: int) -> None:
     """Lower this process's priority, ignore SIGINT, and die with the thread that started it."""
     with suppress(OSError):
         os.nice(niceness)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 
 from app.domain.errors import HexapodError
-from app.jobs.submissions import Entry
+from app.jobs.submissions import QueuedRun
 from app.storage.errors import Busy, StorageFailed, StorageFull
 from app.storage.store import (
     QUEUED,
@@ -20,7 +20,7 @@ MAX_QUEUED = 32
 RETRY_AFTER_S = 10
 
 
-class WaitingRuns:
+class RunQueue:
     """Runs that wait for a core or for their trainings. Its owner holds a lock around every call.
 
     Args:
@@ -30,11 +30,13 @@ class WaitingRuns:
 
     def __init__(self, store: RunStore, tell: Callable[[Run], None]) -> None:
         self._store, self._tell = store, tell
-        self._entries: list[Entry] = []
+        self._entries: list[QueuedRun] = []
         self._unsure: set[str] = set()
         """Runs that may be in the store although it failed to say so."""
 
-    def add(self, entries: Sequence[Entry], free: int, key: IdempotencyKey | None = None) -> None:
+    def add(
+        self, entries: Sequence[QueuedRun], free: int, key: IdempotencyKey | None = None
+    ) -> None:
         """Store runs and let them wait, all or none.
 
         Args:
@@ -94,7 +96,7 @@ class WaitingRuns:
         """Whether a run waits for nothing but a core; from any thread."""
         return any(not entry.waits_for for entry in list(self._entries))
 
-    def take(self) -> Entry | None:
+    def take(self) -> QueuedRun | None:
         """The first that waits for nothing but a core; it does not wait any more."""
         ready = (entry for entry in self._entries if not entry.waits_for)
         entry = next(ready, None)
@@ -102,7 +104,7 @@ class WaitingRuns:
             self._entries.remove(entry)
         return entry
 
-    def put_back(self, entry: Entry) -> None:
+    def put_back(self, entry: QueuedRun) -> None:
         """It could not be started after all, and is the first again."""
         self._entries.insert(0, entry)
 

@@ -10,15 +10,15 @@ from dataclasses import replace
 
 from app.domain.errors import DamagedFile
 from app.experiments.config import ExperimentConfig
-from app.jobs.messages import ExperimentOrder, RaceOrder, TrainingOrder
-from app.jobs.submissions import Entry, load_table, wall_s_of
+from app.jobs.messages import ExperimentTask, RaceTask, TrainingTask
+from app.jobs.submissions import QueuedRun, load_table, wall_s_of
 from app.runs.config import RaceConfig, TrainingConfig
 from app.runs.tables import Checkpoint, check_fits, from_bytes
 from app.storage.errors import Conflict, NotFound
 from app.storage.store import CHECKPOINT, RESUMABLE, UNENDED, Run, RunStore
 
 
-def resumed_entries(run: Run, store: RunStore) -> list[Entry]:
+def resumed_runs(run: Run, store: RunStore) -> list[QueuedRun]:
     """A run that can go on, ready to be queued again, after the trainings that it waits for.
 
     Raises:
@@ -38,16 +38,16 @@ def resumed_entries(run: Run, store: RunStore) -> list[Entry]:
     return [_training(run, run.config, store)]
 
 
-def _training(run: Run, config: TrainingConfig, store: RunStore) -> Entry:
+def _training(run: Run, config: TrainingConfig, store: RunStore) -> QueuedRun:
     checkpoint = _checkpoint(run, config, store)
     if checkpoint is None:
         table = None if run.continued_from is None else load_table(store, run.continued_from)
-        order, step = TrainingOrder(config, table, changes=run.changes), 0
+        order, step = TrainingTask(config, table, changes=run.changes), 0
     else:
         since = run.changes[len(checkpoint.meta["changes"]) :]
-        order = TrainingOrder(config, checkpoint=checkpoint, changes=since)
+        order = TrainingTask(config, checkpoint=checkpoint, changes=since)
         step = checkpoint.meta["step"]
-    return Entry(_again(run, step), lambda: order, set(), goes_on=True)
+    return QueuedRun(_again(run, step), lambda: order, set(), goes_on=True)
 
 
 def _checkpoint(run: Run, config: TrainingConfig, store: RunStore) -> Checkpoint | None:
@@ -70,8 +70,8 @@ def _checkpoint(run: Run, config: TrainingConfig, store: RunStore) -> Checkpoint
     return checkpoint
 
 
-def _race(run: Run, config: RaceConfig, store: RunStore) -> list[Entry]:
-    before: list[Entry] = []
+def _race(run: Run, config: RaceConfig, store: RunStore) -> list[QueuedRun]:
+    before: list[QueuedRun] = []
     waits_for = []
     for training_id in dict.fromkeys(filter(None, run.lane_training_ids)):
         try:
@@ -80,26 +80,26 @@ def _race(run: Run, config: RaceConfig, store: RunStore) -> list[Entry]:
             why = f"training {training_id}, whose table it needs, was deleted"
             raise Conflict(f"race {run.id} cannot go on: {why}", run.state) from error
         if training.state in RESUMABLE[training.kind]:
-            before += resumed_entries(training, store)
+            before += resumed_runs(training, store)
         elif training.state not in UNENDED:
             load_table(store, training_id)
             continue
         waits_for.append(training_id)
 
-    def make_order() -> RaceOrder:
+    def make_task() -> RaceTask:
         ids = run.lane_training_ids
-        return RaceOrder(config, tuple(None if i is None else load_table(store, i) for i in ids))
+        return RaceTask(config, tuple(None if i is None else load_table(store, i) for i in ids))
 
     again = replace(_again(run, 0), waiting_for=tuple(waits_for))
-    return [*before, Entry(again, make_order, set(waits_for), goes_on=True)]
+    return [*before, QueuedRun(again, make_task, set(waits_for), goes_on=True)]
 
 
-def _experiment(run: Run, config: ExperimentConfig, store: RunStore) -> Entry:
-    def make_order() -> ExperimentOrder:
+def _experiment(run: Run, config: ExperimentConfig, store: RunStore) -> QueuedRun:
+    def make_task() -> ExperimentTask:
         rows = tuple(store.trials(run.id))
-        return ExperimentOrder(config, run.workers, rows, wall_s_of(store, run.id))
+        return ExperimentTask(config, run.workers, rows, wall_s_of(store, run.id))
 
-    return Entry(_again(run, len(store.trials(run.id))), make_order, set(), goes_on=True)
+    return QueuedRun(_again(run, len(store.trials(run.id))), make_task, set(), goes_on=True)
 
 
 def _again(run: Run, step: int) -> Run:

@@ -15,8 +15,8 @@ from app.domain.kinematics import check_reach
 from app.domain.observation import Observation
 from app.experiments.config import GRID, ExperimentConfig
 from app.experiments.plan import Plan
-from app.jobs.messages import ExperimentOrder, Order, RaceOrder, TrainingOrder
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, Walk
+from app.jobs.messages import ExperimentTask, RaceTask, Task, TrainingTask
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, WalkingProblem
 from app.runs.table_file import TableFile
 from app.runs.tables import Checkpoint, check_fits, from_bytes
 from app.storage.artifact_file import ArtifactFile, ReadableArtifact
@@ -56,7 +56,7 @@ class LaneStart:
 class RaceStart:
     """A race as it was asked for."""
 
-    walk: Walk
+    walk: WalkingProblem
     lanes: Sequence[LaneStart]
     steps: int
     seed: int
@@ -64,7 +64,7 @@ class RaceStart:
 
 
 @dataclass
-class Entry:
+class QueuedRun:
     """A run that waits for its turn.
 
     Attributes:
@@ -75,12 +75,12 @@ class Entry:
     """
 
     run: Run
-    make_order: Callable[[], Order]
+    make_task: Callable[[], Task]
     waits_for: set[str]
     goes_on: bool = False
 
 
-def training_entry(start: TrainingStart, store: RunStore, new_id: Callable[[], str]) -> Entry:
+def queued_training(start: TrainingStart, store: RunStore, new_id: Callable[[], str]) -> QueuedRun:
     """A training, ready to be queued.
 
     Raises:
@@ -104,10 +104,10 @@ def training_entry(start: TrainingStart, store: RunStore, new_id: Callable[[], s
         continued_from=start.continue_from,
         total=config.steps,
     )
-    return Entry(run, lambda: TrainingOrder(config, table), set())
+    return QueuedRun(run, lambda: TrainingTask(config, table), set())
 
 
-def race_entries(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> list[Entry]:
+def queued_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> list[QueuedRun]:
     """A race, ready to be queued, after the trainings that it brings along.
 
     Raises:
@@ -119,7 +119,7 @@ def race_entries(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -
             f"a race records every step, so steps times lanes must be at most "
             f"{MAX_RECORDED_STEPS:,}, not {start.steps * len(start.lanes):,}"
         )
-    before: dict[int, Entry] = {}
+    before: dict[int, QueuedRun] = {}
     tables: list[Checkpoint | None] = []
     lanes: list[LaneConfig] = []
     observation: Observation
@@ -127,7 +127,7 @@ def race_entries(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -
         table = _lane_table(lane, number, start.walk, store)
         tables.append(table)
         if lane.training is not None:
-            before[number] = training_entry(lane.training, store, new_id)
+            before[number] = queued_training(lane.training, store, new_id)
             lanes.append(LaneConfig(agent=lane.agent, observation=lane.training.config.observation))
         else:
             observation = table.meta["observation"] if table else "measured"
@@ -144,14 +144,14 @@ def race_entries(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -
         total=config.steps * len(lanes),
     )
 
-    def make_order() -> RaceOrder:
+    def make_task() -> RaceTask:
         practised = {number: load_table(store, training) for number, training in ids.items()}
-        return RaceOrder(config, tuple(practised.get(n, t) for n, t in enumerate(tables)))
+        return RaceTask(config, tuple(practised.get(n, t) for n, t in enumerate(tables)))
 
-    return [*before.values(), Entry(run, make_order, set(ids.values()))]
+    return [*before.values(), QueuedRun(run, make_task, set(ids.values()))]
 
 
-def check_walk(walk: Walk) -> None:
+def check_walk(walk: WalkingProblem) -> None:
     """Make sure that the robot can walk so, and that a table of it would fit into memory.
 
     Raises:
@@ -229,7 +229,9 @@ def _training(store: RunStore, training_id: str) -> Run:
     return run
 
 
-def _lane_table(lane: LaneStart, number: int, walk: Walk, store: RunStore) -> Checkpoint | None:
+def _lane_table(
+    lane: LaneStart, number: int, walk: WalkingProblem, store: RunStore
+) -> Checkpoint | None:
     """The table that a lane brings along, None if it has none (yet)."""
     can_learn = learns(lane.agent)
     has_practice = lane.training_id is not None or lane.training is not None
@@ -279,7 +281,7 @@ class ExperimentStart:
     workers: int | None = None
 
 
-def experiment_entry(start: ExperimentStart, new_id: Callable[[], str]) -> Entry:
+def queued_experiment(start: ExperimentStart, new_id: Callable[[], str]) -> QueuedRun:
     """An experiment, ready to be queued.
 
     Raises:
@@ -299,7 +301,7 @@ def experiment_entry(start: ExperimentStart, new_id: Callable[[], str]) -> Entry
         workers=workers,
         total=plan.total,
     )
-    return Entry(run, lambda: ExperimentOrder(config, workers), set())
+    return QueuedRun(run, lambda: ExperimentTask(config, workers), set())
 
 
 def plan_of(config: ExperimentConfig) -> Plan:
@@ -341,5 +343,7 @@ def _settings(config: ExperimentConfig) -> int:
     return math.prod(len(getattr(config, name)) for name in lists)
 
 
-def _walk(walk: Walk) -> Walk:
-    return Walk(**{name: getattr(walk, name) for name in Walk.__dataclass_fields__})
+def _walk(walk: WalkingProblem) -> WalkingProblem:
+    return WalkingProblem(
+        **{name: getattr(walk, name) for name in WalkingProblem.__dataclass_fields__}
+    )

@@ -15,9 +15,9 @@ from datetime import UTC, datetime
 from app.domain.errors import HexapodError
 from app.events.bus import EventBus
 from app.jobs.job import ExperimentJob, Job
-from app.jobs.messages import ExperimentOrder, Order
-from app.jobs.queue import WaitingRuns
-from app.jobs.submissions import Entry
+from app.jobs.messages import ExperimentTask, Task
+from app.jobs.queue import RunQueue
+from app.jobs.submissions import QueuedRun
 from app.jobs.worker_process import Exit
 from app.storage.errors import Conflict, NotFound, OwnershipLost, StorageFailed, StorageFull
 from app.storage.recordings import Recordings
@@ -47,7 +47,7 @@ class Supervisor:
         store: RunStore,
         recordings: Recordings,
         bus: EventBus,
-        waiting: WaitingRuns,
+        waiting: RunQueue,
         *,
         publish: Callable[[Run], None],
         cores: int | None,
@@ -179,7 +179,7 @@ class Supervisor:
             _logger.warning("places in the queue cannot be told now", exc_info=True)
         return True
 
-    def _start(self, entry: Entry) -> None:
+    def _start(self, entry: QueuedRun) -> None:
         """Let a process take over a run that has waited."""
         # The clock may have been put back since.
         run_id, now = entry.run.id, max(datetime.now(UTC), entry.run.created_at)
@@ -189,7 +189,7 @@ class Supervisor:
             run_id, QUEUED | RUNNING, "running", started_at=began_at, waiting_for=()
         )
         try:
-            job = self._job(run, entry.make_order())
+            job = self._job(run, entry.make_task())
             job.process.start(lambda end: self._process_ended(job, end))
         except _NO_STORE:
             raise
@@ -205,8 +205,8 @@ class Supervisor:
         self.mark_shared()
         self._publish(run)
 
-    def _job(self, run: Run, order: Order) -> Job:
-        kind = ExperimentJob if isinstance(order, ExperimentOrder) else Job
+    def _job(self, run: Run, order: Task) -> Job:
+        kind = ExperimentJob if isinstance(order, ExperimentTask) else Job
         given = self._store, self._recordings, self._bus
         return kind(run, order, *given, shutdown=self._shutdown, niceness=self._niceness)
 

@@ -20,22 +20,22 @@ from app.assembly import build_learner, build_walkers, finish_training
 from app.domain.errors import HexapodError
 from app.events import logs
 from app.jobs.experiment_worker import experiment
-from app.jobs.job_control import Desk, ListeningAgent, Stopped
+from app.jobs.job_control import InterruptibleAgent, JobControl, Stopped
 from app.jobs.messages import (
     Began,
     Checkpointed,
+    Command,
     Ended,
-    ExperimentOrder,
+    ExperimentTask,
     Failed,
     Heartbeat,
     Message,
-    Order,
-    RaceOrder,
+    RaceTask,
     Saved,
-    TrainingOrder,
-    Word,
+    Task,
+    TrainingTask,
 )
-from app.jobs.process_setup import be_modest
+from app.jobs.process_setup import set_up_process
 from app.runs.racing import race
 from app.runs.records import LaneStep, StepTaken
 from app.runs.tables import restore, snapshot, to_bytes
@@ -48,18 +48,18 @@ _logger = logging.getLogger(__name__)
 
 def main(pipe: Connection, niceness: int) -> None:
     """Work on the order that comes first through the pipe, and end the process."""
-    be_modest(niceness)
+    set_up_process(niceness)
     logs.install("warning")
-    order: Order = pipe.recv()
-    words: queue.SimpleQueue[Word] = queue.SimpleQueue()
+    order: Task = pipe.recv()
+    words: queue.SimpleQueue[Command] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(pipe, words), daemon=True).start()
     send = _one_at_a_time(pipe)
     threading.Thread(target=_send_heartbeats, args=(send,), daemon=True).start()
-    desk = Desk(send, words)
+    desk = JobControl(send, words)
     try:
-        if isinstance(order, TrainingOrder):
+        if isinstance(order, TrainingTask):
             _train(order, desk)
-        elif isinstance(order, ExperimentOrder):
+        elif isinstance(order, ExperimentTask):
             experiment(order, desk.send, words)
         else:
             _race(order, desk)
@@ -74,7 +74,7 @@ def main(pipe: Connection, niceness: int) -> None:
     os._exit(0)
 
 
-def _train(order: TrainingOrder, desk: Desk) -> None:
+def _train(order: TrainingTask, desk: JobControl) -> None:
     config = order.config
     learner = build_learner(config, order.table, threads=0)
     walker, rest_qpos = learner.walker, _pose(learner.walker)
@@ -105,28 +105,28 @@ def _train(order: TrainingOrder, desk: Desk) -> None:
     desk.send(Ended("stopped" if desk.stopped else "finished", result))
 
 
-def _saved(learner: Learner, order: TrainingOrder, desk: Desk) -> bytes:
+def _saved(learner: Learner, order: TrainingTask, desk: JobControl) -> bytes:
     return to_bytes(snapshot(learner, order.config, changes=desk.changes))
 
 
-def _attentive(learner: Learner, desk: Desk) -> Learner:
+def _attentive(learner: Learner, desk: JobControl) -> Learner:
     """The same learner, whose evaluations obey between two steps as its practice does."""
-    contender, rival = learner.contender, learner.rival
+    evaluator, baseline = learner.evaluator, learner.baseline
 
     def listening(walker: Walker) -> Walker:
         # Once it was stopped, what is left is the last evaluation.
         if not desk.stopped:
-            walker.agent = ListeningAgent(
+            walker.agent = InterruptibleAgent(
                 walker.agent, lambda: desk.listen(learner.step, learner.walker.agent)
             )
         return walker
 
-    learner.contender = lambda rng: listening(contender(rng))
-    learner.rival = lambda: listening(rival())
+    learner.evaluator = lambda rng: listening(evaluator(rng))
+    learner.baseline = lambda: listening(baseline())
     return learner
 
 
-def _race(order: RaceOrder, desk: Desk) -> None:
+def _race(order: RaceTask, desk: JobControl) -> None:
     walkers = build_walkers(order.config, order.tables)
     desk.send(Began(tuple(_pose(walker) for walker in walkers)))
     done = 0
@@ -162,7 +162,7 @@ def _send_heartbeats(send: Callable[[Message | Heartbeat], None]) -> None:
             time.sleep(HEARTBEAT_EVERY_S)
 
 
-def _listen(pipe: Connection, words: "queue.SimpleQueue[Word]") -> None:
+def _listen(pipe: Connection, words: "queue.SimpleQueue[Command]") -> None:
     """Take in words until there is nobody to send any."""
     try:
         while True:

@@ -12,7 +12,7 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from app.jobs import worker
-from app.jobs.messages import Heartbeat, Message, Order, Word
+from app.jobs.messages import Command, Heartbeat, Message, Task
 
 _EXIT_S = 5.0
 _logger = logging.getLogger(__name__)
@@ -35,7 +35,7 @@ class WorkerProcess:
     """
 
     def __init__(
-        self, name: str, order: Order, on_message: Callable[[Message], None], niceness: int
+        self, name: str, order: Task, on_message: Callable[[Message], None], niceness: int
     ) -> None:
         """Start nothing yet.
 
@@ -48,7 +48,7 @@ class WorkerProcess:
         context = multiprocessing.get_context("spawn")
         self._pipe, self._its_pipe = context.Pipe()
         # A pipe holds little, and a process takes a while to read from it: nobody waits for that.
-        self._to_send: queue.SimpleQueue[Order | Word | None] = queue.SimpleQueue()
+        self._to_send: queue.SimpleQueue[Task | Command | None] = queue.SimpleQueue()
         self._to_send.put(order)
         # Not a daemon: multiprocessing ends daemons from atexit, which a killed server never runs.
         self._process = context.Process(
@@ -86,7 +86,7 @@ class WorkerProcess:
         except ValueError:
             return None
 
-    def send(self, word: Word) -> None:
+    def send(self, word: Command) -> None:
         """Tell it something; nothing happens if it is gone."""
         self._to_send.put(word)
 

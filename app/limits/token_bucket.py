@@ -8,7 +8,7 @@ from collections.abc import Callable
 MAX_CALLERS = 10_000
 
 
-class Buckets:
+class RateLimiter:
     """One allowance for each caller. Safe to use from any thread.
 
     Callers that did nothing for the longest are forgotten, so that nothing grows.

@@ -20,7 +20,7 @@ RACE_STEPS = 50
 
 
 @dataclass(frozen=True, kw_only=True)
-class Walk:
+class WalkingProblem:
     """Which robot walks how, on which foot grid, in which simulator."""
 
     gait: str | GaitSpec
@@ -47,7 +47,7 @@ class Walk:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrainingConfig(Walk):
+class TrainingConfig(WalkingProblem):
     """A training. The defaults are the paper's.
 
     Attributes:
@@ -102,7 +102,7 @@ class LaneConfig:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RaceConfig(Walk):
+class RaceConfig(WalkingProblem):
     """A race of one to six lanes, 50 steps each by default."""
 
     lanes: tuple[LaneConfig, ...]
@@ -136,7 +136,7 @@ def check_pace(pace: float | str) -> None:
         raise InvalidInput(f"pace must be max, or from 0.01 to 1000 times real time, not {pace}")
 
 
-def as_json(config: Walk) -> dict[str, Any]:
+def as_json(config: WalkingProblem) -> dict[str, Any]:
     """A config in plain types, as the API shows it and files keep it."""
     shown = asdict(config)
     shown["robot"] = as_mapping(config.robot)

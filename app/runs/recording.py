@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from app.domain.simulator import Motion
 from app.domain.types import Action, FloatArray
-from app.runs.records import Evaluated, Knowledge, LaneStep, StepTaken
+from app.runs.records import ActionValues, Evaluated, LaneStep, StepTaken
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -150,7 +150,7 @@ def _lane_step(arrays: Arrays, key: str, lane: int, step: int, frames: slice) ->
     knowledge = None
     if key + "values" in arrays:
         values, visits = (arrays[key + name][step].astype(float) for name in ("values", "visits"))
-        knowledge = Knowledge(values, visits)
+        knowledge = ActionValues(values, visits)
     return LaneStep(
         lane,
         step + 1,

@@ -7,7 +7,7 @@ from app.domain.types import Action, Cells, FloatArray
 
 
 @dataclass(frozen=True)
-class Knowledge:
+class ActionValues:
     """What a learner expects in the state in which it is about to act."""
 
     values: FloatArray
@@ -32,7 +32,7 @@ class StepTaken:
     distance_m: float
     """Along the track since the training started."""
     motion: Motion | None
-    knowledge: Knowledge | None
+    knowledge: ActionValues | None
     """Before the step."""
 
 
@@ -81,7 +81,7 @@ class LaneStep:
     decision_s: float
     """Measured by the timer that the race was given."""
     motion: Motion
-    knowledge: Knowledge | None
+    knowledge: ActionValues | None
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import numpy as np
 from app.domain.simulator import Motion
 from app.domain.types import Action
 from app.runs.recording import Arrays, PracticeRecording
-from app.runs.records import Evaluated, Knowledge, StepTaken
+from app.runs.records import ActionValues, Evaluated, StepTaken
 
 _SCALARS = ("step", "episode", "epsilon", "reward_m", "distance_m")
 
@@ -86,11 +86,11 @@ def _steps(arrays: Arrays) -> list[StepTaken]:
     return steps
 
 
-def _knowledge(arrays: Arrays) -> list[Knowledge]:
+def _knowledge(arrays: Arrays) -> list[ActionValues]:
     if "values" not in arrays:
         return []
     both = zip(arrays["values"].astype(float), arrays["visits"].astype(float), strict=True)
-    return [Knowledge(values, visits) for values, visits in both]
+    return [ActionValues(values, visits) for values, visits in both]
 
 
 def _evaluations(arrays: Arrays) -> list[Evaluated]:

@@ -22,7 +22,7 @@ from app.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
 from app.domain.errors import DamagedFile, TableMismatch
 from app.domain.grid import FootGrid
 from app.runs import seeding
-from app.runs.config import TrainingConfig, Walk, as_json
+from app.runs.config import TrainingConfig, WalkingProblem, as_json
 from app.runs.recording import Arrays
 from app.runs.training import Learner
 
@@ -150,7 +150,9 @@ def table_of(checkpoint: Checkpoint) -> TableRows:
     return TableRows(pairs, cells, parts)
 
 
-def check_fits(checkpoint: Checkpoint, walk: Walk, observation: str | None = None) -> None:
+def check_fits(
+    checkpoint: Checkpoint, walk: WalkingProblem, observation: str | None = None
+) -> None:
     """Make sure that a table was learned for this walking problem; its robot may differ.
 
     Raises:

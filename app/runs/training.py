@@ -32,8 +32,8 @@ class Learner:
 
     walker: Walker
     rng: np.random.Generator
-    contender: Callable[[np.random.Generator], Walker]
-    rival: Callable[[], Walker]
+    evaluator: Callable[[np.random.Generator], Walker]
+    baseline: Callable[[], Walker]
     step: int = 0
     episode_reward_m: float = 0.0
     greedy_distance_m: float | None = None
@@ -78,7 +78,7 @@ def _evaluate_if_due(
     if learner.due_epsilon is None:
         return
     if learner.greedy_distance_m is None:
-        yield refer(learner)
+        yield measure_baseline(learner)
     evaluated = evaluate(learner, config, learner.due_epsilon, record)
     learner.due_epsilon = None
     yield evaluated
@@ -107,9 +107,9 @@ def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> S
     )
 
 
-def refer(learner: Learner) -> Reference:
+def measure_baseline(learner: Learner) -> Reference:
     """Walk the one-step look-ahead agent once, and remember how far it came."""
-    distance, _ = walk(learner.rival(), record=False)
+    distance, _ = walk(learner.baseline(), record=False)
     learner.greedy_distance_m = distance
     return Reference(distance)
 
@@ -122,8 +122,8 @@ def evaluate(
     Chance comes from a generator of this step's own, so a result does not depend on how many
     evaluations came before it.
     """
-    contender = learner.contender(generator(config.seed, EVALUATION, learner.step))
-    distance, motion = walk(contender, record)
+    evaluator = learner.evaluator(generator(config.seed, EVALUATION, learner.step))
+    distance, motion = walk(evaluator, record)
     return Evaluated(learner.step, epsilon, distance, motion)
 
 

@@ -9,13 +9,13 @@ from app.domain.errors import IllegalAction
 from app.domain.observation import Observation, legal_actions, observe
 from app.domain.simulator import Simulator, Step, WalkState
 from app.domain.types import Action, Cells, FloatArray
-from app.runs.records import Knowledge
+from app.runs.records import ActionValues
 
 
 class FutureNode:
     """A simulated future; what is legal there is found only when asked for."""
 
-    def __init__(self, foresight: "Foresight", state: WalkState) -> None:
+    def __init__(self, foresight: "SimulatorExpand", state: WalkState) -> None:
         self.state, self._foresight = state, foresight
 
     @cached_property
@@ -24,7 +24,7 @@ class FutureNode:
         return self._foresight.legal(self.state)
 
 
-class Foresight:
+class SimulatorExpand:
     """Implements `Expand` for one walker: its simulator, its way to observe, and a count."""
 
     def __init__(self, simulator: Simulator[Any], observation: Observation) -> None:
@@ -59,7 +59,7 @@ class Walker:
         simulator: Simulator[Any],
         agent: Agent,
         observation: Observation,
-        foresight: Foresight | None = None,
+        foresight: SimulatorExpand | None = None,
     ) -> None:
         self.simulator, self.agent, self.observation = simulator, agent, observation
         self._foresight = foresight
@@ -99,8 +99,8 @@ class Walker:
         self.place(step.state)
         return step
 
-    def knowledge(self) -> Knowledge | None:
+    def knowledge(self) -> ActionValues | None:
         """What the agent expects of each action here, if it is one that can say."""
         if not isinstance(self.agent, Valuing):
             return None
-        return Knowledge(self.agent.values(self.seen), self.agent.visits(self.seen))
+        return ActionValues(self.agent.values(self.seen), self.agent.visits(self.seen))

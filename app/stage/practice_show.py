@@ -21,13 +21,13 @@ from app.runs.recording import PracticeRecording, pose_at
 from app.runs.records import StepTaken
 from app.stage.race_lane import MARCHING_M, MARCHING_STEPS, ValueRange
 from app.stage.scene_spec import rest_pose
-from app.stage.show import Billing
+from app.stage.show import RunLabel
 from app.stage.stage_frame import (
-    Cast,
+    ActionValuesView,
     Ghost,
-    KnowledgeView,
     LaneView,
     Phase,
+    SceneSpec,
     StageFrame,
     turned,
     yaw_rad,
@@ -56,7 +56,7 @@ class PracticeShow:
 
     def __init__(
         self,
-        cast: Cast,
+        cast: SceneSpec,
         steps: int,
         step_s: float,
         pace: Callable[[], float | str],
@@ -117,13 +117,13 @@ class PracticeShow:
     def retime(self, clock: str) -> None:
         """Practice has no other clock."""
 
-    def frame(self, billing: Billing) -> StageFrame:
+    def frame(self, run_label: RunLabel) -> StageFrame:
         """What is to be seen now."""
         number = self._number()
-        label = f"{billing.name}, step {number} of {self.steps}" if number else billing.name
+        label = f"{run_label.name}, step {number} of {self.steps}" if number else run_label.name
         return StageFrame(
             cast=self.cast,
-            run_id=billing.run_id,
+            run_id=run_label.run_id,
             phase=self._phase,
             label=label,
             lanes=(self._lane(),),
@@ -131,8 +131,8 @@ class PracticeShow:
             time_s=self.time_s,
             duration_s=self.steps * self._step_s,
             shown_speed=self._rate,
-            playing=billing.playing,
-            replay=billing.replay,
+            playing=run_label.playing,
+            replay=run_label.replay,
         )
 
     @property
@@ -227,12 +227,14 @@ class PracticeShow:
         gained = sum(kept.taken.reward_m for kept in self._kept[before:index])
         return gained < MARCHING_M
 
-    def _knowledge(self, step: StepTaken) -> KnowledgeView | None:
+    def _knowledge(self, step: StepTaken) -> ActionValuesView | None:
         known = step.knowledge
         if known is None:
             return None
         low, high = self._range.including(known.values)
-        return KnowledgeView(known.values, known.visits, step.observation, step.action, low, high)
+        return ActionValuesView(
+            known.values, known.visits, step.observation, step.action, low, high
+        )
 
 
 class _Kept(NamedTuple):

@@ -5,7 +5,7 @@ import numpy as np
 from app.domain.types import FloatArray
 from app.runs.clocks import Clock, Moment, Timetable, crossing_s, distance_at
 from app.runs.recording import LaneRecording, pose_at
-from app.stage.stage_frame import KnowledgeView, LaneView
+from app.stage.stage_frame import ActionValuesView, LaneView
 
 MARCHING_STEPS, MARCHING_M = 10, 0.01
 
@@ -122,13 +122,15 @@ class RaceLane:
         start = steps[before - 1].distance_m if before else 0.0
         return steps[taken - 1].distance_m - start < MARCHING_M
 
-    def _knowledge(self, step: int) -> KnowledgeView | None:
+    def _knowledge(self, step: int) -> ActionValuesView | None:
         taken = self.recording.steps[step] if 0 <= step < len(self.recording.steps) else None
         if taken is None or taken.knowledge is None:
             return None
         known = taken.knowledge
         low, high = self._range.including(known.values)
-        return KnowledgeView(known.values, known.visits, taken.observation, taken.action, low, high)
+        return ActionValuesView(
+            known.values, known.visits, taken.observation, taken.action, low, high
+        )
 
 
 class ValueRange:

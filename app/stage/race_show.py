@@ -7,8 +7,8 @@ from app.runs.clocks import Clock
 from app.runs.recording import LaneRecording
 from app.stage.race_lane import RaceLane
 from app.stage.scene_spec import rest_pose
-from app.stage.show import Billing
-from app.stage.stage_frame import Cast, LaneView, Phase, StageFrame
+from app.stage.show import RunLabel
+from app.stage.stage_frame import LaneView, Phase, SceneSpec, StageFrame
 
 SPEED, LAST_LANE_SPEED = 2.0, 8.0
 PHOTO_FINISH_S = 3.0
@@ -29,7 +29,7 @@ class RaceShow:
 
     def __init__(
         self,
-        cast: Cast,
+        cast: SceneSpec,
         steps: int,
         clock: Clock,
         recording: Callable[[], Sequence[LaneRecording] | None],
@@ -115,7 +115,7 @@ class RaceShow:
         elif leader and moment:
             self._time_s = min(leader.time_of(moment), self._horizon_s)
 
-    def frame(self, billing: Billing) -> StageFrame:
+    def frame(self, run_label: RunLabel) -> StageFrame:
         """What is to be seen now."""
         lanes = tuple(lane.view(self._time_s, self._complete(lane)) for lane in self._lanes)
         standing = LaneView(rest_pose(self.cast), 0, self.steps, 0.0)
@@ -123,16 +123,16 @@ class RaceShow:
         step = max(lane.step for lane in lanes)
         return StageFrame(
             cast=self.cast,
-            run_id=billing.run_id,
+            run_id=run_label.run_id,
             phase=self._phase,
-            label=f"{billing.name}, step {step} of {self.steps}" if step else billing.name,
+            label=f"{run_label.name}, step {step} of {self.steps}" if step else run_label.name,
             lanes=self._ranked(lanes),
             time_s=self._time_s,
             duration_s=self.duration_s,
             shown_speed=0.0 if self._photo_left_s else self._rate,
-            playing=billing.playing,
+            playing=run_label.playing,
             clock=self.clock,
-            replay=billing.replay,
+            replay=run_label.replay,
         )
 
     @property

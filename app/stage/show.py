@@ -3,13 +3,13 @@
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from app.stage.stage_frame import Cast, StageFrame
+from app.stage.stage_frame import SceneSpec, StageFrame
 
 TIME_LAPSE = "time-lapse"
 
 
 @dataclass(frozen=True)
-class Billing:
+class RunLabel:
     """What the stage knows of a show, for its frames."""
 
     run_id: str | None
@@ -21,7 +21,7 @@ class Billing:
 class Show(Protocol):
     """One run, or none, on stage. Not thread-safe; the stage sees to that."""
 
-    cast: Cast
+    cast: SceneSpec
 
     @property
     def time_s(self) -> float:
@@ -46,7 +46,7 @@ class Show(Protocol):
     def retime(self, clock: str) -> None:
         """Show the same under another clock, at the corresponding place."""
 
-    def frame(self, billing: Billing) -> StageFrame:
+    def frame(self, run_label: RunLabel) -> StageFrame:
         """What is to be seen now."""
 
 
@@ -56,7 +56,7 @@ class IdleShow:
     time_s = 0.0
     ended = True
 
-    def __init__(self, cast: Cast, still: StageFrame) -> None:
+    def __init__(self, cast: SceneSpec, still: StageFrame) -> None:
         self.cast, self._still = cast, still
 
     def advance(self, elapsed_s: float, speed: float | None, over: bool) -> None:
@@ -68,6 +68,6 @@ class IdleShow:
     def retime(self, clock: str) -> None:
         """It takes no time."""
 
-    def frame(self, billing: Billing) -> StageFrame:
+    def frame(self, run_label: RunLabel) -> StageFrame:
         """Always the same poses."""
-        return replace(self._still, playing=billing.playing)
+        return replace(self._still, playing=run_label.playing)

@@ -12,8 +12,8 @@ from app.runs.clocks import Clock, check_clock
 from app.runs.config import RaceConfig, TrainingConfig
 from app.stage.practice_show import PracticeShow
 from app.stage.race_show import RaceShow
-from app.stage.scene_spec import idle_cast, race_cast, rest_pose, training_cast
-from app.stage.show import TIME_LAPSE, Billing, IdleShow, Show
+from app.stage.scene_spec import idle_scene, race_scene, rest_pose, training_scene
+from app.stage.show import TIME_LAPSE, IdleShow, RunLabel, Show
 from app.stage.stage_frame import LaneView, StageFrame
 from app.storage.errors import Damaged, NotFound
 from app.storage.recordings import Recordings
@@ -169,9 +169,9 @@ class Stage:
     def _run_id(self) -> str | None:
         return self._bill[0].id if self._bill else None
 
-    def _billing(self) -> Billing:
+    def _billing(self) -> RunLabel:
         name = self._bill[0].name if self._bill else "On the start line"
-        return Billing(self._run_id, name, self._playing, self._replay)
+        return RunLabel(self._run_id, name, self._playing, self._replay)
 
     def _is_live(self) -> bool:
         return any(run.state in UNENDED for run in self._fresh_bill())
@@ -229,12 +229,12 @@ class Stage:
     def _show_of(self, run: Run) -> Show:
         config, recordings = run.config, self._recordings
         if isinstance(config, RaceConfig):
-            cast = race_cast(config)
+            cast = race_scene(config)
             return RaceShow(cast, config.steps, self._clock, lambda: recordings.race(run.id))
         if not isinstance(config, TrainingConfig):
             raise InvalidInput(f"{run.id!r} is an {run.kind}; on stage are trainings and races")
         return PracticeShow(
-            training_cast(config),
+            training_scene(config),
             config.steps,
             config.robot.step_s,
             lambda: self._pace(run.id),
@@ -251,7 +251,7 @@ class Stage:
 
     def _clear(self) -> None:
         """Nobody's show: three robots on the start line."""
-        cast = idle_cast()
+        cast = idle_scene()
         lanes = tuple(LaneView(rest_pose(cast), 0, 0, 0.0) for _ in cast.roles)
         still = StageFrame(cast, None, "start-line", "On the start line", lanes)
         self._show, self._bill = IdleShow(cast, still), []

@@ -19,7 +19,7 @@ Phase = Literal[
 
 
 @dataclass(frozen=True)
-class Role:
+class LaneSpec:
     """Who walks on a lane."""
 
     agent: str
@@ -30,19 +30,19 @@ class Role:
 
 
 @dataclass(frozen=True)
-class Cast:
+class SceneSpec:
     """Who is on stage. The scene is built anew when this changes, and only then."""
 
     kind: Kind
     robot: Robot
     gait: Gait
     grid: FootGrid
-    roles: tuple[Role, ...]
+    roles: tuple[LaneSpec, ...]
     """One for each lane, from left to right."""
 
 
 @dataclass(frozen=True, eq=False)
-class KnowledgeView:
+class ActionValuesView:
     """What a learner expects of each move from where it is."""
 
     values_m: FloatArray
@@ -79,7 +79,7 @@ class LaneView:
     marching: bool = False
     """Whether it gained less than a centimetre in ten steps."""
     failure: str | None = None
-    knowledge: KnowledgeView | None = None
+    knowledge: ActionValuesView | None = None
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class Ghost:
 class StageFrame:
     """Everything that is on stage at one moment."""
 
-    cast: Cast
+    cast: SceneSpec
     run_id: str | None
     phase: Phase
     label: str

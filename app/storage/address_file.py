@@ -7,14 +7,14 @@ from pathlib import Path
 ADDRESS_FILE = "server.address"
 
 
-def note_address(folder: Path, address: str) -> None:
+def write_address_file(folder: Path, address: str) -> None:
     """Write down where this folder's server is; it counts only while that has the folder."""
     # Who does not find it is told to ask for a server, so that a full disk is no reason to end.
     with suppress(OSError):
         (folder / ADDRESS_FILE).write_text(json.dumps({"address": address}), "utf-8")
 
 
-def noted_address(folder: Path) -> str | None:
+def read_address_file(folder: Path) -> str | None:
     """Where the last server of this folder was; None if it did not say."""
     try:
         noted = json.loads((folder / ADDRESS_FILE).read_text("utf-8"))

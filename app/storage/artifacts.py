@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from app.domain.errors import DamagedFile
 from app.storage.artifact_file import ArtifactFile, SharedFile
-from app.storage.disk_space import Room
+from app.storage.disk_space import DiskSpace
 from app.storage.errors import StorageFailed, StorageFull
 
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
@@ -37,7 +37,7 @@ class Stored(NamedTuple):
 class ArtifactFiles:
     """The files of one database, in a folder of their own."""
 
-    def __init__(self, folder: Path, room: Room) -> None:
+    def __init__(self, folder: Path, room: DiskSpace) -> None:
         """Use a folder, which is made if it is not there."""
         folder.mkdir(parents=True, exist_ok=True)
         sync_folder(folder.parent)

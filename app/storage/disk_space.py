@@ -18,7 +18,7 @@ RESERVE_BYTES = 1 * MB
 _RESERVE = "reserve"
 
 
-class Room:
+class DiskSpace:
     """The room that is left in a folder. Safe to use from any thread."""
 
     def __init__(self, folder: Path, quota_mb: int | None = None) -> None:

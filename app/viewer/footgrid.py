@@ -7,7 +7,7 @@ import viser
 from numpy.typing import NDArray
 
 from app.domain.types import FloatArray, IntArray
-from app.stage.stage_frame import Cast, KnowledgeView, LaneView, yaw_rad
+from app.stage.stage_frame import ActionValuesView, LaneView, SceneSpec, yaw_rad
 from app.viewer.colormap import Rgb, batched, rgb, value_colors
 from app.viewer.shapes import Shape
 
@@ -29,7 +29,7 @@ class FootGridDrawing:
     choice.
     """
 
-    def __init__(self, server: viser.ViserServer, root: str, cast: Cast, x_m: float) -> None:
+    def __init__(self, server: viser.ViserServer, root: str, cast: SceneSpec, x_m: float) -> None:
         self._x_m = x_m
         self._forward_rad = math.radians(90 - cast.gait.forward_deg)
         self._frame = server.scene.add_frame(root, show_axes=False)
@@ -50,7 +50,7 @@ class FootGridDrawing:
                 rim=_HOME,
             ),
         ]
-        self._known: KnowledgeView | None = None
+        self._known: ActionValuesView | None = None
         self._pose: tuple[float, float, float] | None = None
 
     def draw(self, lane: LaneView) -> None:
@@ -120,7 +120,7 @@ def _tile(outline: FloatArray) -> Shape:
     return Shape(corners, np.array([[0, 1, 2], [0, 2, 3]], np.uint32))
 
 
-def _places(cast: Cast) -> FloatArray:
+def _places(cast: SceneSpec) -> FloatArray:
     """Every cell of every leg in the robot frame, x right and y forward, (legs, cells, 3)."""
     azimuth = np.radians(cast.gait.azimuths_deg)
     homes = cast.robot.home_radius_m * np.stack([-np.sin(azimuth), np.cos(azimuth)], axis=1)
@@ -132,7 +132,7 @@ def _places(cast: Cast) -> FloatArray:
     return places
 
 
-def _same(known: KnowledgeView, before: KnowledgeView | None) -> bool:
+def _same(known: ActionValuesView, before: ActionValuesView | None) -> bool:
     if before is None:
         return False
     scale = (known.low_m, known.high_m) == (before.low_m, before.high_m)

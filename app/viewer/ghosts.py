@@ -6,7 +6,7 @@ import numpy as np
 import viser
 
 from app.stage.scene_spec import rest_pose
-from app.stage.stage_frame import Cast, Ghost, StageFrame
+from app.stage.stage_frame import Ghost, SceneSpec, StageFrame
 from app.viewer.colormap import batched, rgb
 from app.viewer.robot_mesh import RobotMesh
 from app.viewer.shapes import strip
@@ -19,7 +19,7 @@ class PhotoFinish:
     """A bar from the start line to each robot with its distance, while the picture is frozen."""
 
     def __init__(
-        self, server: viser.ViserServer, root: str, cast: Cast, xs: Sequence[float]
+        self, server: viser.ViserServer, root: str, cast: SceneSpec, xs: Sequence[float]
     ) -> None:
         self._server, self._root, self._cast, self._xs = server, root, cast, xs
         self._shown: tuple[tuple[int, float], ...] = ()
@@ -63,7 +63,7 @@ class Ghosts:
     """Evaluations on a lane of their own: a line for each, a pale robot for the newest."""
 
     def __init__(
-        self, server: viser.ViserServer, root: str, cast: Cast, mesh: RobotMesh, x_m: float
+        self, server: viser.ViserServer, root: str, cast: SceneSpec, mesh: RobotMesh, x_m: float
     ) -> None:
         self._server, self._root, self._x_m, self._mesh = server, root, x_m, mesh
         self._width = 2 * cast.robot.home_radius_m

@@ -3,7 +3,7 @@
 import numpy as np
 import viser
 
-from app.stage.stage_frame import LaneView, Role
+from app.stage.stage_frame import LaneSpec, LaneView
 from app.viewer.colormap import rgb
 from app.viewer.robot_mesh import ANTENNA_M
 from app.viewer.shapes import flag
@@ -13,7 +13,7 @@ TEXT_SCALE = 1.35
 """Of 12 px, on every screen."""
 
 
-def plate_text(role: Role, lane: LaneView) -> str:
+def plate_text(role: LaneSpec, lane: LaneView) -> str:
     """Who, how far, and what it does; lines so short that three plates fit on a phone."""
     if lane.failure is not None:
         return f"{role.name}\ncannot go on"
@@ -32,7 +32,7 @@ def plate_text(role: Role, lane: LaneView) -> str:
 class Plate:
     """Of one lane."""
 
-    def __init__(self, server: viser.ViserServer, root: str, role: Role, x_m: float) -> None:
+    def __init__(self, server: viser.ViserServer, root: str, role: LaneSpec, x_m: float) -> None:
         self._role, self._x_m = role, x_m
         self._label = server.scene.add_label(
             f"{root}/plate", role.name, anchor="bottom-center", font_screen_scale=TEXT_SCALE

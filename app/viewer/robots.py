@@ -7,7 +7,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.stage.stage_frame import Cast, StageFrame
+from app.stage.stage_frame import SceneSpec, StageFrame
 from app.viewer.colormap import Rgb, batched, mixed, rgb
 from app.viewer.robot_mesh import RobotMesh
 
@@ -22,7 +22,7 @@ class Robots:
         self,
         server: viser.ViserServer,
         root: str,
-        cast: Cast,
+        cast: SceneSpec,
         mesh: RobotMesh,
         xs: Sequence[float],
     ) -> None:

@@ -4,7 +4,7 @@ import math
 
 import viser
 
-from app.stage.stage_frame import Cast, StageFrame
+from app.stage.stage_frame import SceneSpec, StageFrame
 from app.viewer.footgrid import FootGridDrawing
 from app.viewer.ghosts import Ghosts, PhotoFinish
 from app.viewer.name_labels import Plate
@@ -95,7 +95,7 @@ class StageScene:
 class _Drawing:
     """Everything that belongs to one cast."""
 
-    def __init__(self, server: viser.ViserServer, cast: Cast) -> None:
+    def __init__(self, server: viser.ViserServer, cast: SceneSpec) -> None:
         self.cast = cast
         self._root = server.scene.add_frame(CAST, show_axes=False)
         width = 2 * cast.robot.home_radius_m + cast.grid.side_m + 0.08

@@ -21,12 +21,12 @@ from app.viewer.client_page import ViewerPage, clean_query
 from app.viewer.follow import Position
 from app.viewer.hub import Hub
 from app.viewer.in_process import in_process_viser
-from app.viewer.recorded_stream import film
+from app.viewer.recorded_stream import recorded_stream
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop
 
 
-class Theatre:
+class ViewerService:
     """`async with theatre:` lets the show go on; viser listens nowhere."""
 
     def __init__(
@@ -76,12 +76,12 @@ class Theatre:
         await self.hub.stop()
         await asyncio.to_thread(self._running.close)
 
-    def film(
+    def recorded_stream(
         self, config: RaceConfig, lanes: Sequence[LaneRecording], name: str, clock: Clock
     ) -> bytes:
         """A race as a file that viser's client plays; one is made at a time."""
         with self._filming:
-            return film(config, lanes, name, clock)
+            return recorded_stream(config, lanes, name, clock)
 
     def _open(self) -> None:
         server = self._running.enter_context(in_process_viser())

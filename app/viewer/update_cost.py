@@ -10,8 +10,8 @@ from app.assembly import build_walkers
 from app.runs.config import LaneConfig, RaceConfig
 from app.runs.racing import record_race
 from app.stage.race_show import RaceShow
-from app.stage.scene_spec import PAPERS_LANES, race_cast
-from app.stage.show import Billing
+from app.stage.scene_spec import PAPERS_LANES, race_scene
+from app.stage.show import RunLabel
 from app.viewer.in_process import InProcessViser, in_process_viser
 from app.viewer.scene import StageScene
 
@@ -31,13 +31,13 @@ def measure_stage_update(updates: int = 200) -> tuple[float, float]:
     show = _walking_show()
     with in_process_viser() as server, _Receiver(server) as receiver:
         scene = StageScene(server)
-        scene.draw(show.frame(Billing(None, "Race")), now=0.0)
+        scene.draw(show.frame(RunLabel(None, "Race")), now=0.0)
         receiver.wait_until_quiet()
         spent_ms = []
         for number in range(1, updates + 1):
             began = time.perf_counter()
             show.seek(1.0 + 10.0 * number / updates)
-            scene.draw(show.frame(Billing(None, "Race")), now=number * _BETWEEN_S)
+            scene.draw(show.frame(RunLabel(None, "Race")), now=number * _BETWEEN_S)
             spent_ms.append(1000 * (time.perf_counter() - began))
             time.sleep(_BETWEEN_S)
         receiver.wait_until_quiet()
@@ -51,7 +51,7 @@ def _walking_show() -> RaceShow:
     config = RaceConfig(gait="left-right-origin", simulator="kinematic", lanes=lanes)
     walkers = build_walkers(config, [None] * len(lanes))
     recorded = list(record_race(walkers, config, time.perf_counter))[-1]
-    show = RaceShow(race_cast(config), config.steps, "free", lambda: recorded)
+    show = RaceShow(race_scene(config), config.steps, "free", lambda: recorded)
     show.advance(0.0, None, over=True)
     return show
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from app.domain.errors import HexapodError, InvalidInput
 from app.experiments.trial import TrialConfig, TrialResult, run_trial
-from app.jobs.process_setup import be_modest
+from app.jobs.process_setup import set_up_process
 from app.storage.errors import Busy
 
 IDLE_S = 60.0
@@ -184,7 +184,7 @@ def _received(pipe: Connection) -> _Answer:
 
 def main(pipe: Connection) -> None:
     """Answer questions until nobody asks any more; this is one of the processes."""
-    be_modest(NICENESS)
+    set_up_process(NICENESS)
     with suppress(EOFError, OSError):
         while True:
             pipe.send(_answer(pipe.recv()))

@@ -13,18 +13,18 @@ from app.domain.grid import FootGrid
 from app.domain.kinematic import KinematicSimulator
 from app.domain.robot import Robot
 from app.domain.types import Action, FloatArray
-from app.runs.walker import Foresight, Walker
+from app.runs.walker import SimulatorExpand, Walker
 
 HOME, FRONT_LEFT, FRONT_RIGHT, BACK_LEFT, BACK_RIGHT = range(5)
 
 
 def walker(
     depth: int, gait: str = "left-right-origin", divisions: int = 2
-) -> tuple[Walker, Foresight]:
+) -> tuple[Walker, SimulatorExpand]:
     simulator = KinematicSimulator(
         Robot(), resolve(gait, Robot().azimuths_deg), FootGrid(divisions=divisions)
     )
-    foresight = Foresight(simulator, "measured")
+    foresight = SimulatorExpand(simulator, "measured")
     return Walker(simulator, LookAhead(foresight, depth), "measured", foresight), foresight
 
 

@@ -4,7 +4,7 @@ import asyncio
 
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api.concurrency_limit import TURNS, FairSemaphore, Turns
+from app.api.concurrency_limit import TURNS, ConcurrencyLimit, FairSemaphore
 
 
 def scope(role: str, address: str) -> Scope:
@@ -48,7 +48,7 @@ def test_strangers_keep_no_operator_waiting() -> None:
             working[scope["state"]["role"]] += 1
             await asyncio.Event().wait()
 
-        app = Turns(work)
+        app = ConcurrencyLimit(work)
         tasks = [
             asyncio.ensure_future(app(scope(role, "a"), nothing, ignore))
             for role in ["spectator"] * 50 + ["operator"] * 2
@@ -85,7 +85,7 @@ def test_who_does_not_read_and_who_streams_has_no_turn() -> None:
             await asyncio.Event().wait()
             raise AssertionError
 
-        app = Turns(answer)
+        app = ConcurrencyLimit(answer)
         tasks = [
             asyncio.ensure_future(app(scope("spectator", who), never, stall))
             for who in ["stream", "unread"] * 10 * TURNS["spectator"]
@@ -117,7 +117,7 @@ def test_a_turn_is_taken_once_though_two_tasks_of_a_request_wait() -> None:
         async def slowly(message: Message) -> None:
             await asyncio.sleep(0)
 
-        app = Turns(answer)
+        app = ConcurrencyLimit(answer)
         for _ in range(10 * TURNS["spectator"]):
             await asyncio.wait_for(app(scope("spectator", "a"), later, slowly), 1)
 

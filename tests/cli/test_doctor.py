@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from app.storage.address_file import note_address
+from app.storage.address_file import write_address_file
 from app.storage.database.folder_lock import lock_folder
 from app.storage.database.opening import DATABASE_FILE
 from tests.cli.running import hexapods
@@ -67,7 +67,7 @@ def test_an_address_that_is_taken_is_told_from_the_servers_own(tmp_path: Path) -
         port = other.getsockname()[1]
         found = trouble(examined(tmp_path, HEXAPODS_PORT=str(port)))
         assert "something else listens" in found["address"]
-        note_address(folder, f"http://127.0.0.1:{port}/")
+        write_address_file(folder, f"http://127.0.0.1:{port}/")
         assert "address" in trouble(examined(tmp_path, HEXAPODS_PORT=str(port)))
         with lock_folder(folder):
             found = examined(tmp_path, HEXAPODS_PORT=str(port))

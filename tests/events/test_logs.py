@@ -10,7 +10,7 @@ import pytest
 
 from app.events import logs
 from app.events.logs import LineFormatter
-from app.events.run_metrics import Witness
+from app.events.run_metrics import RunMetrics
 from app.events.run_view import run_view
 from tests.storage.stores import training
 
@@ -63,7 +63,7 @@ def test_a_job_s_process_and_thread_say_which_run_it_is() -> None:
 
 def test_runs_are_counted_and_told_to_the_log(written: io.StringIO) -> None:
     clock = [0.0]
-    bus = Witness(lambda: clock[0])
+    bus = RunMetrics(lambda: clock[0])
 
     def publish(state: str, done: int, error: str | None = None) -> None:
         run = training("abc", state=state, done=done, error=error)

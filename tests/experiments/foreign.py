@@ -13,7 +13,7 @@ from typing import Any
 import psutil
 from distributed.security import Security
 
-from app.experiments.cluster import Where
+from app.experiments.cluster import ClusterSpec
 
 _START_S = 30.0
 _OPTIONS = {"tls_ca": "--tls-ca-file", "tls_cert": "--tls-cert", "tls_key": "--tls-key"}
@@ -42,9 +42,9 @@ class Foreign:
         return self._start("worker", self.address, "--nthreads", "1", **variables)
 
     @property
-    def where(self) -> Where:
+    def where(self) -> ClusterSpec:
         """To run trials on it, with the certificates that it has."""
-        return Where(scheduler=self.address, **self._files)
+        return ClusterSpec(scheduler=self.address, **self._files)
 
     def _start(self, what: str, *arguments: str, **variables: str) -> subprocess.Popen[bytes]:
         # As `dask scheduler` and `dask worker` do.
@@ -74,7 +74,7 @@ def scheduler(folder: Path, tls: bool = False) -> Iterator[Foreign]:
 
 
 def _certificates(folder: Path) -> dict[str, Any]:
-    """PEM files that scheduler, workers and clients may all use, as fields of `Where`."""
+    """PEM files that scheduler, workers and clients may all use, as fields of `ClusterSpec`."""
     made = Security.temporary()
     files = {}
     for name, text in (

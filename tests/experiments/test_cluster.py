@@ -14,7 +14,7 @@ from distributed import Client
 
 from app.domain.errors import InvalidInput
 from app.experiments import cluster
-from app.experiments.cluster import ClusterLost, Where, connect
+from app.experiments.cluster import ClusterLost, ClusterSpec, connect
 from app.experiments.engine import run_trials
 from app.experiments.own_cluster import cores
 from tests.experiments.clusters import one_by_one, results, small, trials_of, workers_of
@@ -40,7 +40,7 @@ from tests.experiments.foreign import scheduler
 )
 def test_machines_that_cannot_be_are_refused(given: dict[str, Any], names: str) -> None:
     with pytest.raises(InvalidInput) as refused:
-        Where(**given)
+        ClusterSpec(**given)
     assert names in str(refused.value)
 
 
@@ -50,7 +50,7 @@ def test_ones_own_cluster_is_closed_to_others_and_leaves_nothing(
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     me = psutil.Process()
     before = {c.laddr for c in me.net_connections() if c.status == psutil.CONN_LISTEN}
-    with connect(Where()) as client:
+    with connect(ClusterSpec()) as client:
         assert len(client.nthreads()) == cores()
         address = str(client.scheduler_info()["address"])
         assert address.startswith("tls://127.0.0.1:")
@@ -126,7 +126,7 @@ def test_a_worker_that_would_compute_something_else_is_named(
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "tcp://127.0.0.1:99999", "tcp://[::1:9"])
 def test_a_scheduler_that_is_not_there_is_refused_by_name(address: str) -> None:
     with pytest.raises(InvalidInput) as refused:
-        list(run_trials(trials_of(small(seeds=1)), Where(scheduler=address)))
+        list(run_trials(trials_of(small(seeds=1)), ClusterSpec(scheduler=address)))
     for said in (address, "dask scheduler", "leave --scheduler out"):
         assert said in str(refused.value)
 
@@ -139,4 +139,4 @@ def test_who_listens_but_is_no_scheduler_is_refused_in_time(
     with socket.create_server(("127.0.0.1", 0)) as listening:
         address = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
         with pytest.raises(InvalidInput, match=f"no scheduler answers at {address}"):
-            list(run_trials(trials_of(small(seeds=1)), Where(scheduler=address)))
+            list(run_trials(trials_of(small(seeds=1)), ClusterSpec(scheduler=address)))

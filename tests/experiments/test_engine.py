@@ -8,7 +8,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from app.experiments.cluster import Where
+from app.experiments.cluster import ClusterSpec
 from app.experiments.config import experiment_config
 from app.experiments.engine import Outcome, run_trials
 from app.experiments.plan import Trial
@@ -23,7 +23,7 @@ from tests.experiments.clusters import (
     workers_of,
 )
 
-ONE, TWO = Where(workers=1), Where(workers=2)
+ONE, TWO = ClusterSpec(workers=1), ClusterSpec(workers=2)
 
 
 @pytest.fixture(scope="module")
@@ -126,7 +126,7 @@ def test_it_stops_soon_when_it_shall_not_go_on(trials: list[Trial]) -> None:
 
 
 def test_nothing_to_do_starts_nothing() -> None:
-    assert list(run_trials([], Where(scheduler="tcp://127.0.0.1:1"))) == []
+    assert list(run_trials([], ClusterSpec(scheduler="tcp://127.0.0.1:1"))) == []
 
 
 def test_a_consumer_that_leaves_takes_the_workers_with_it_and_their_files(

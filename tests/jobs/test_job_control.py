@@ -10,8 +10,8 @@ import pytest
 from app.agents.protocol import Problem
 from app.agents.q_learning import QLearning
 from app.domain.grid import FootGrid
-from app.jobs.job_control import CHECKPOINT_EVERY_S, Desk, Stopped
-from app.jobs.messages import Batch, Changed, Checkpointed, Message, Word
+from app.jobs.job_control import CHECKPOINT_EVERY_S, JobControl, Stopped
+from app.jobs.messages import Batch, Changed, Checkpointed, Command, Message
 from app.runs.records import EpisodeEnded
 from app.runs.seeding import generator
 
@@ -21,8 +21,8 @@ class Wire:
 
     def __init__(self) -> None:
         self.sent: list[Message] = []
-        self.words: queue.SimpleQueue[Word] = queue.SimpleQueue()
-        self.desk = Desk(self.sent.append, self.words)
+        self.words: queue.SimpleQueue[Command] = queue.SimpleQueue()
+        self.desk = JobControl(self.sent.append, self.words)
 
     @property
     def records(self) -> int:
@@ -54,17 +54,17 @@ def test_fast_records_are_sent_together_and_all(wire: Wire) -> None:
 
 def test_a_paused_job_goes_on_when_told(wire: Wire) -> None:
     wire.desk.report(record(0), 0)
-    wire.words.put(Word("pause"))
+    wire.words.put(Command("pause"))
     began = time.monotonic()
-    later(lambda: wire.words.put(Word("resume")))
+    later(lambda: wire.words.put(Command("resume")))
     assert wire.desk.go_on(1)
     assert time.monotonic() - began >= 0.09
     assert wire.records == 1, "what there is was sent before"
 
 
 def test_a_paused_job_can_be_stopped(wire: Wire) -> None:
-    wire.words.put(Word("pause"))
-    later(lambda: wire.words.put(Word("stop")))
+    wire.words.put(Command("pause"))
+    later(lambda: wire.words.put(Command("stop")))
     assert not wire.desk.go_on(1)
     assert wire.desk.stopped
 
@@ -77,7 +77,7 @@ def test_pace_is_kept_and_can_be_left(wire: Wire) -> None:
     assert time.monotonic() - began >= 4 * 0.05 - 0.01
     wire.desk.keep_pace(0.01, step_s=0.3)
     assert wire.desk.go_on(5)
-    later(lambda: wire.words.put(Word("tune", 7, {"pace": "max"})))
+    later(lambda: wire.words.put(Command("tune", 7, {"pace": "max"})))
     assert wire.desk.go_on(6), "half a minute, were it not for the new pace"
     assert wire.sent == [Changed(7, 6, {"pace": "max"})]
     assert time.monotonic() - began < 20
@@ -86,7 +86,7 @@ def test_pace_is_kept_and_can_be_left(wire: Wire) -> None:
 def test_rates_are_changed_and_noted(wire: Wire) -> None:
     grid = FootGrid()
     agent = QLearning(generator(0), Problem(((1, 4), (2, 5), (3, 6)), grid.cells))
-    wire.words.put(Word("tune", 1, {"alpha": 0.7, "epsilon": 0.25}))
+    wire.words.put(Command("tune", 1, {"alpha": 0.7, "epsilon": 0.25}))
     assert wire.desk.go_on(12, agent)
     assert agent.epsilon == 0.25
     assert wire.desk.changes == [{"step": 12, "alpha": 0.7, "epsilon": 0.25}]
@@ -121,15 +121,15 @@ def test_before_a_long_wait_there_is_one_and_then_no_more(wire: Wire) -> None:
     step = keep_safe(wire)
     for number in range(1, 3):
         step[0] = number
-        wire.words.put(Word("pause"))
-        wire.words.put(Word("pause"))
-        later(lambda: wire.words.put(Word("resume")))
+        wire.words.put(Command("pause"))
+        wire.words.put(Command("pause"))
+        later(lambda: wire.words.put(Command("resume")))
         assert wire.desk.go_on(number)
     assert checkpoints(wire) == [1, 2]
 
 
 def test_who_is_to_leave_stops_without_being_stopped(wire: Wire) -> None:
-    wire.words.put(Word("leave"))
+    wire.words.put(Command("leave"))
     assert not wire.desk.go_on(1)
     assert wire.desk.leaving
     assert not wire.desk.stopped

@@ -12,17 +12,17 @@ import pytest
 from app.domain.errors import InvalidInput
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
-from app.jobs.queue import MAX_QUEUED, WaitingRuns
-from app.jobs.resume import resumed_entries
+from app.jobs.queue import MAX_QUEUED, RunQueue
+from app.jobs.resume import resumed_runs
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
-from app.runs.config import TrainingConfig, Walk
+from app.runs.config import TrainingConfig, WalkingProblem
 from app.storage.errors import Busy, Conflict, StorageFailed
 from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
 from app.storage.store import QUEUED, Run
 from tests.jobs.waiting import ended, moving, until
 
-WALK = Walk(gait="left-right-origin", simulator="kinematic")
+WALK = WalkingProblem(gait="left-right-origin", simulator="kinematic")
 
 
 def training(**fields: Any) -> TrainingStart:
@@ -89,7 +89,7 @@ def test_a_paused_job_gives_its_place_away(jobs: Jobs, store: MemoryStore) -> No
 
 
 def test_words_are_obeyed_between_two_steps(jobs: Jobs, store: MemoryStore) -> None:
-    mujoco = Walk(gait="left-right-origin")
+    mujoco = WalkingProblem(gait="left-right-origin")
     start = TrainingStart(TrainingConfig(**vars(mujoco), steps=1_000_000, evaluate_every=0))
     run = jobs.train(start)
     moving(store, run)
@@ -105,7 +105,7 @@ def test_words_are_obeyed_between_two_steps(jobs: Jobs, store: MemoryStore) -> N
 
 def test_an_evaluation_is_no_excuse(jobs: Jobs, store: MemoryStore) -> None:
     """Its look-ahead rival would take half a minute at eight divisions."""
-    slow = Walk(gait="left-right-origin", divisions=8, grid_side_m=0.03)
+    slow = WalkingProblem(gait="left-right-origin", divisions=8, grid_side_m=0.03)
     config = TrainingConfig(**vars(slow), steps=100, evaluate_every=1, steps_per_episode=1)
     run = jobs.train(TrainingStart(config))
     moving(store, run)
@@ -241,8 +241,8 @@ def test_a_start_that_fails_halfway_leaves_no_run_in_the_queue() -> None:
     for run_id in ids:
         store.create(Run(id=run_id, kind="training", name=run_id, config=config, total=10))
         store.change(run_id, QUEUED, "interrupted")
-    queue = WaitingRuns(store, lambda run: None)
-    entries = [entry for run_id in ids for entry in resumed_entries(store.get(run_id), store)]
+    queue = RunQueue(store, lambda run: None)
+    entries = [entry for run_id in ids for entry in resumed_runs(store.get(run_id), store)]
     store.fail_after = 1
     with pytest.raises(StorageFailed):
         queue.add(entries, 1)

@@ -1,11 +1,11 @@
 """An allowance is used up, and fills again with time."""
 
-from app.limits.token_bucket import MAX_CALLERS, Buckets
+from app.limits.token_bucket import MAX_CALLERS, RateLimiter
 
 
 def test_it_is_used_up_and_fills_again() -> None:
     clock = [1000.0]
-    buckets = Buckets(2, 0.5, lambda: clock[0])
+    buckets = RateLimiter(2, 0.5, lambda: clock[0])
     assert [buckets.take("a") for _ in range(3)] == [0, 0, 2]
     assert buckets.take("b") == 0
     clock[0] += 1
@@ -18,12 +18,12 @@ def test_it_is_used_up_and_fills_again() -> None:
 
 
 def test_looking_uses_nothing() -> None:
-    buckets = Buckets(1, 1.0, lambda: 0.0)
+    buckets = RateLimiter(1, 1.0, lambda: 0.0)
     assert [buckets.wait_s("a"), buckets.wait_s("a"), buckets.take("a")] == [0, 0, 0]
 
 
 def test_nothing_grows() -> None:
-    buckets = Buckets(1, 1e-9, lambda: 0.0)
+    buckets = RateLimiter(1, 1e-9, lambda: 0.0)
     buckets.take("first")
     for number in range(MAX_CALLERS):
         buckets.take(str(number))

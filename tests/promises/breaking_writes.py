@@ -29,9 +29,9 @@ from app.assembly import build_learner, finish_training
 from app.events.bus import EventBus
 from app.jobs.job import Job
 from app.jobs.jobs import Jobs
-from app.jobs.messages import Batch, Began, Checkpointed, Ended, Saved, TrainingOrder
+from app.jobs.messages import Batch, Began, Checkpointed, Ended, Saved, TrainingTask
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart, load_table
-from app.runs.config import TrainingConfig, Walk
+from app.runs.config import TrainingConfig, WalkingProblem
 from app.runs.records import Evaluated, StepTaken
 from app.runs.tables import snapshot, to_bytes
 from app.runs.training import train
@@ -118,7 +118,7 @@ def import_table(store: SqlStore, folder: Path) -> None:
 
 
 def start(store: SqlStore, folder: Path) -> None:
-    walk = Walk(gait=GAIT, simulator="kinematic")
+    walk = WalkingProblem(gait=GAIT, simulator="kinematic")
     lanes = [
         LaneStart("q-learning", training=TrainingStart(CONFIG, "Its practice")),
         LaneStart("greedy"),
@@ -130,7 +130,7 @@ def finish(store: SqlStore, folder: Path) -> None:
     """What a job's process says, taken in by its job: the last checkpoint, the table, the end."""
     run = store.get(LEARNING)
     recordings = Recordings(store)
-    order, shutdown = TrainingOrder(CONFIG, None), threading.Event()
+    order, shutdown = TrainingTask(CONFIG, None), threading.Event()
     job = Job(run, order, store, recordings, EventBus(), shutdown=shutdown, niceness=0)
     learner = build_learner(CONFIG)
     rest = learner.walker.simulator.pose(learner.walker.state).astype(np.float32)

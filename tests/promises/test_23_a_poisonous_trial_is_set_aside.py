@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from app.experiments.cluster import Where
+from app.experiments.cluster import ClusterSpec
 from app.experiments.config import ExperimentConfig, experiment_config
 from app.experiments.engine import run_trials
 from app.experiments.folder import ResultsFolder, open_results
@@ -36,7 +36,7 @@ def completed(folder: ResultsFolder) -> None:
     """Run what is not done, as the command does."""
     known = {**folder.results, **folder.set_aside}
     undone = [trial for trial in Plan(CONFIG).trials() if trial.key not in known]
-    for outcome in run_trials(undone, Where(workers=2)):
+    for outcome in run_trials(undone, ClusterSpec(workers=2)):
         folder.add(outcome)
 
 

@@ -17,7 +17,7 @@ import pytest
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import TrainingStart
-from app.runs.config import TrainingConfig, Walk
+from app.runs.config import TrainingConfig, WalkingProblem
 from app.storage.recordings import Recordings
 from tests.jobs.waiting import ended, moving, until
 from tests.postgresql import PostgresServer, postgres_server
@@ -99,7 +99,7 @@ def test_after_the_longest_wait_a_job_is_interrupted_and_can_be_resumed(
     own_postgresql: PostgresServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("app.jobs.job.MAX_OUTAGE_S", 1.0)
-    walk = Walk(gait="left-right-origin", simulator="kinematic")
+    walk = WalkingProblem(gait="left-right-origin", simulator="kinematic")
     config = TrainingConfig(**vars(walk), steps=300, pace=20, evaluate_every=0)
     with own_postgresql.database() as url, opened(tmp_path, url) as store:
         jobs = Jobs(store, Recordings(store), EventBus(), cores=1)

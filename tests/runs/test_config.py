@@ -13,7 +13,7 @@ from app.runs.config import (
     LaneConfig,
     RaceConfig,
     TrainingConfig,
-    Walk,
+    WalkingProblem,
     as_json,
     check_pace,
     config_from_json,
@@ -88,7 +88,7 @@ def test_a_wrong_race_says_what_is_valid(asked: dict[str, Any], message: str) ->
 
 def test_a_gait_that_the_robot_has_no_legs_for_is_refused() -> None:
     with pytest.raises(InvalidInput, match="no leg 6; this robot has legs 1 to 4"):
-        Walk(gait=GaitSpec(6, 1, "origin"), robot=robot({"n_legs": 4}))
+        WalkingProblem(gait=GaitSpec(6, 1, "origin"), robot=robot({"n_legs": 4}))
 
 
 def test_a_lane_reads_its_state_in_a_known_way() -> None:

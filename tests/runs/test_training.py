@@ -208,13 +208,13 @@ def test_saved_in_the_middle_of_an_evaluation_it_makes_that_again() -> None:
     unbroken, records = run(config)
     saved = []
     first = build_learner(config)
-    contender = first.contender
+    evaluator = first.evaluator
 
     def saving(rng: np.random.Generator) -> Walker:
         saved.append(to_bytes(snapshot(first, config)))
-        return contender(rng)
+        return evaluator(rng)
 
-    first.contender = saving
+    first.evaluator = saving
     list(train(first, config))
     for number, data in enumerate(saved):
         second = build_learner(config)

@@ -19,14 +19,14 @@ from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
 from app.storage.store import Run
 
-Walk = Callable[[], bool]
+WalkingProblem = Callable[[], bool]
 """Takes a run's next step; False at the end."""
 
 FRAME_S = 1 / 30
 GAIT = "left-right-origin"
 
 
-class Theatre:
+class StageParts:
     """Runs are made step by step, and the stage is watched frame by frame."""
 
     def __init__(self) -> None:
@@ -75,7 +75,7 @@ class Theatre:
 
     def racing(
         self, agents: tuple[str, ...] = ("greedy", "two-step"), steps: int = 12
-    ) -> tuple[Run, Walk]:
+    ) -> tuple[Run, WalkingProblem]:
         """A running race, and what takes its next step of one lane; that is False at the end."""
         lanes = tuple(LaneConfig(agent=agent) for agent in agents)
         config = RaceConfig(gait=GAIT, simulator="kinematic", lanes=lanes, steps=steps)
@@ -95,7 +95,7 @@ class Theatre:
 
         return run, walk
 
-    def _finish(self, run: Run, walk: Walk) -> Run:
+    def _finish(self, run: Run, walk: WalkingProblem) -> Run:
         while walk():
             pass
         self.set_state(run, "finished")
@@ -106,7 +106,7 @@ class Theatre:
         run, walk = self.practising(steps, **fields)
         return self._finish(run, walk)
 
-    def practising(self, steps: int = 100, **fields: Any) -> tuple[Run, Walk]:
+    def practising(self, steps: int = 100, **fields: Any) -> tuple[Run, WalkingProblem]:
         """A running training, and what takes its next step; that is False at the end."""
         config = TrainingConfig(gait=GAIT, simulator="kinematic", steps=steps, **fields)
         run = self.create(config, state="running")

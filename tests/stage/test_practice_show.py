@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 
 from app.stage.practice_show import SHOWN_GHOSTS
-from tests.stage.stage_parts import FRAME_S, Theatre
+from tests.stage.stage_parts import FRAME_S, StageParts
 
 
 @pytest.fixture
-def theatre() -> Theatre:
-    return Theatre()
+def parts() -> StageParts:
+    return StageParts()
 
 
-def test_a_time_lapse_begins_slowly_and_gets_faster(theatre: Theatre) -> None:
-    theatre.stage.show(theatre.training(500).id)
-    frames = theatre.watch_to_end()
+def test_a_time_lapse_begins_slowly_and_gets_faster(parts: StageParts) -> None:
+    parts.stage.show(parts.training(500).id)
+    frames = parts.watch_to_end()
     speeds = [frame.shown_speed for frame in frames]
     tenth = next(n for n, frame in enumerate(frames) if frame.lanes[0].step > 10)
 
@@ -26,9 +26,9 @@ def test_a_time_lapse_begins_slowly_and_gets_faster(theatre: Theatre) -> None:
     assert frames[-1].phase == "finished"
 
 
-def test_a_long_training_takes_hardly_longer_and_skips_what_is_not_kept(theatre: Theatre) -> None:
-    theatre.stage.show(theatre.training(3000, evaluate_every=0).id)
-    frames = theatre.watch_to_end()
+def test_a_long_training_takes_hardly_longer_and_skips_what_is_not_kept(parts: StageParts) -> None:
+    parts.stage.show(parts.training(3000, evaluate_every=0).id)
+    frames = parts.watch_to_end()
     steps = [frame.lanes[0].step for frame in frames]
 
     assert len(frames) * FRAME_S < 15
@@ -37,11 +37,11 @@ def test_a_long_training_takes_hardly_longer_and_skips_what_is_not_kept(theatre:
     assert steps[-1] == 3000
 
 
-def test_every_evaluation_leaves_a_ghost(theatre: Theatre) -> None:
-    run = theatre.training(200)
-    theatre.stage.show(run.id)
-    frames = theatre.watch_to_end()
-    recording = theatre.recordings.training(run.id)
+def test_every_evaluation_leaves_a_ghost(parts: StageParts) -> None:
+    run = parts.training(200)
+    parts.stage.show(run.id)
+    frames = parts.watch_to_end()
+    recording = parts.recordings.training(run.id)
     assert recording is not None
 
     assert frames[0].ghosts == ()
@@ -54,65 +54,65 @@ def test_every_evaluation_leaves_a_ghost(theatre: Theatre) -> None:
     assert {frame.phase for frame in frames} == {"practice", "evaluation", "finished"}
 
 
-def test_only_so_many_ghosts_as_can_be_told_apart(theatre: Theatre) -> None:
-    theatre.stage.show(theatre.training(60, evaluate_every=3).id)
+def test_only_so_many_ghosts_as_can_be_told_apart(parts: StageParts) -> None:
+    parts.stage.show(parts.training(60, evaluate_every=3).id)
 
-    ghosts = theatre.watch_to_end()[-1].ghosts
+    ghosts = parts.watch_to_end()[-1].ghosts
 
     assert len(ghosts) == SHOWN_GHOSTS
     assert ghosts[-1].step == 60
 
 
-def test_each_episode_is_drawn_from_the_start_line(theatre: Theatre) -> None:
-    run = theatre.training(400, steps_per_episode=20)
-    recording = theatre.recordings.training(run.id)
+def test_each_episode_is_drawn_from_the_start_line(parts: StageParts) -> None:
+    run = parts.training(400, steps_per_episode=20)
+    recording = parts.recordings.training(run.id)
     assert recording is not None
     assert abs(recording.steps[-1].distance_m) > 0.1, "it has wandered off"
-    theatre.stage.show(run.id)
-    theatre.stage.set(playing=False)
+    parts.stage.show(run.id)
+    parts.stage.set(playing=False)
 
     for episode in range(1, 20):
-        theatre.stage.set(time_s=(20 * episode + 0.01) * 0.32)
-        lane = theatre.look().lanes[0]
+        parts.stage.set(time_s=(20 * episode + 0.01) * 0.32)
+        lane = parts.look().lanes[0]
         assert np.abs(lane.qpos[:2]).max() < 0.005
         assert lane.distance_m == pytest.approx(0, abs=0.005)
 
 
-def test_poses_within_an_episode_go_without_a_jump(theatre: Theatre) -> None:
-    theatre.stage.show(theatre.training(60).id)
-    theatre.stage.set(speed=1)
-    frames = theatre.watch(10.0)
+def test_poses_within_an_episode_go_without_a_jump(parts: StageParts) -> None:
+    parts.stage.show(parts.training(60).id)
+    parts.stage.set(speed=1)
+    frames = parts.watch(10.0)
     poses = np.array([frame.lanes[0].qpos for frame in frames])
 
     assert np.abs(np.diff(poses[:, :3], axis=0)).max() < 0.01
     assert np.abs(np.diff(poses[:, 7:], axis=0)).max() < 0.4
 
 
-def test_live_at_full_pace_it_never_shows_what_is_not_yet_there(theatre: Theatre) -> None:
-    run, practise = theatre.practising(60)
-    theatre.stage.show(run.id)
-    assert theatre.look().phase == "start-line"
+def test_live_at_full_pace_it_never_shows_what_is_not_yet_there(parts: StageParts) -> None:
+    run, practise = parts.practising(60)
+    parts.stage.show(run.id)
+    assert parts.look().phase == "start-line"
     for _ in range(5):
         practise()
-    frame = theatre.watch(10.0)[-1]
+    frame = parts.watch(10.0)[-1]
 
     assert frame.lanes[0].step == 5
     assert frame.time_s == pytest.approx(5 * 0.32)
-    assert not theatre.stage.state()["ended"]
+    assert not parts.stage.state()["ended"]
 
     while practise():
         pass
-    theatre.set_state(run, "finished")
-    assert theatre.watch_to_end()[-1].lanes[0].step == 60
+    parts.set_state(run, "finished")
+    assert parts.watch_to_end()[-1].lanes[0].step == 60
 
 
-def test_at_a_numeric_pace_it_is_shown_as_it_happens(theatre: Theatre) -> None:
-    run, practise = theatre.practising(400, pace=2)
-    theatre.stage.show(run.id)
+def test_at_a_numeric_pace_it_is_shown_as_it_happens(parts: StageParts) -> None:
+    run, practise = parts.practising(400, pace=2)
+    parts.stage.show(run.id)
     behind = []
     for step in range(1, 60):
         practise()
-        frame = theatre.watch(0.16)[-1]
+        frame = parts.watch(0.16)[-1]
         if step > 20:
             behind.append(step - frame.time_s / 0.32)
 
@@ -121,30 +121,30 @@ def test_at_a_numeric_pace_it_is_shown_as_it_happens(theatre: Theatre) -> None:
     assert frame.shown_speed == pytest.approx(2, rel=0.3)
 
 
-def test_a_changed_pace_is_followed(theatre: Theatre) -> None:
-    run, practise = theatre.practising(400)
+def test_a_changed_pace_is_followed(parts: StageParts) -> None:
+    run, practise = parts.practising(400)
     for _ in range(200):
         practise()
-    theatre.stage.show(run.id)
-    theatre.watch(1.0)
-    theatre.store.update(run.id, changes=({"step": 200, "pace": 1.0},))
+    parts.stage.show(run.id)
+    parts.watch(1.0)
+    parts.store.update(run.id, changes=({"step": 200, "pace": 1.0},))
 
-    frame = theatre.watch(0.5)[-1]
+    frame = parts.watch(0.5)[-1]
 
     assert frame.lanes[0].step >= 198, "it goes to where the training is"
     assert frame.shown_speed <= 2.5
 
 
-def test_a_seek_into_a_gap_goes_to_what_is_kept(theatre: Theatre) -> None:
-    theatre.stage.show(theatre.training(1000, evaluate_every=0).id)
-    theatre.stage.set(playing=False, time_s=200 * 0.32)
+def test_a_seek_into_a_gap_goes_to_what_is_kept(parts: StageParts) -> None:
+    parts.stage.show(parts.training(1000, evaluate_every=0).id)
+    parts.stage.set(playing=False, time_s=200 * 0.32)
 
-    assert theatre.look().lanes[0].step == 501
+    assert parts.look().lanes[0].step == 501
 
 
-def test_the_colour_scale_only_grows(theatre: Theatre) -> None:
-    theatre.stage.show(theatre.training(200).id)
-    known = [frame.lanes[0].knowledge for frame in theatre.watch_to_end()]
+def test_the_colour_scale_only_grows(parts: StageParts) -> None:
+    parts.stage.show(parts.training(200).id)
+    known = [frame.lanes[0].knowledge for frame in parts.watch_to_end()]
     highs = [view.high_m for view in known if view]
 
     assert highs == sorted(highs)

@@ -15,7 +15,7 @@ from app.storage.artifact_file import (
     pieces,
 )
 from app.storage.artifacts import ArtifactFiles, Stored
-from app.storage.disk_space import Room
+from app.storage.disk_space import DiskSpace
 
 DATA = bytes(range(256)) * 1000
 
@@ -27,7 +27,7 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def files(folder: Path) -> ArtifactFiles:
-    return ArtifactFiles(folder, Room(folder.parent, None))
+    return ArtifactFiles(folder, DiskSpace(folder.parent, None))
 
 
 def open_descriptors(folder: Path) -> int:

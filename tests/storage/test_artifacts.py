@@ -9,14 +9,14 @@ import pytest
 from app.domain.errors import DamagedFile
 from app.storage.artifacts import ArtifactFiles, Stored
 from app.storage.database.store import SqlStore
-from app.storage.disk_space import MB, RESERVE_BYTES, Room
+from app.storage.disk_space import MB, RESERVE_BYTES, DiskSpace
 from app.storage.errors import NotFound, StorageFailed, StorageFull
 from tests.storage.stores import opened, training
 
 
 @pytest.fixture
 def files(tmp_path: Path) -> ArtifactFiles:
-    return ArtifactFiles(tmp_path / "files", Room(tmp_path))
+    return ArtifactFiles(tmp_path / "files", DiskSpace(tmp_path))
 
 
 def names(tmp_path: Path) -> list[str]:
@@ -73,7 +73,7 @@ def test_a_run_that_is_gone_gets_no_file(tmp_path: Path) -> None:
 
     with opened(tmp_path, None) as opened_store:
         folder = tmp_path / "slow"
-        files = Slow(folder, Room(tmp_path))
+        files = Slow(folder, DiskSpace(tmp_path))
         store = SqlStore(opened_store._database, files)
         store.create(training("a", state="finished"))
         with pytest.raises(NotFound, match="no run 'a'"):
@@ -82,7 +82,7 @@ def test_a_run_that_is_gone_gets_no_file(tmp_path: Path) -> None:
 
 
 def test_the_quota_is_kept(tmp_path: Path) -> None:
-    room = Room(tmp_path, quota_mb=10)
+    room = DiskSpace(tmp_path, quota_mb=10)
     files = ArtifactFiles(tmp_path / "files", room)
     kept = [files.write(bytes(3 * MB)) for _ in range(3)]
     with pytest.raises(StorageFull, match=r"10 MB.*3\.0 MB more.*HEXAPODS_QUOTA_MB"):
@@ -93,7 +93,7 @@ def test_the_quota_is_kept(tmp_path: Path) -> None:
 
 
 def test_the_reserve_is_given_up_once(tmp_path: Path) -> None:
-    room = Room(tmp_path)
+    room = DiskSpace(tmp_path)
     room.reserve()
     assert room.used_bytes() == RESERVE_BYTES
     room.reserve()

@@ -14,7 +14,7 @@ from app.runs.config import TrainingConfig
 from app.settings import Settings
 from app.storage.database.opening import open_store
 from app.storage.database.store import SqlStore
-from app.storage.disk_space import KEPT_FREE_BYTES, MB, START_BYTES, Room
+from app.storage.disk_space import KEPT_FREE_BYTES, MB, START_BYTES, DiskSpace
 from app.storage.errors import StorageFull
 from app.storage.recordings import Recordings
 from app.storage.store import QUEUED, TABLE
@@ -53,7 +53,7 @@ def test_a_start_is_refused_before_the_disk_is_full(
     class Usage(NamedTuple):
         free: int
 
-    room, needed = Room(tmp_path), START_BYTES + KEPT_FREE_BYTES
+    room, needed = DiskSpace(tmp_path), START_BYTES + KEPT_FREE_BYTES
     monkeypatch.setattr(shutil, "disk_usage", lambda folder: Usage(needed))
     room.check(START_BYTES)
     monkeypatch.setattr(shutil, "disk_usage", lambda folder: Usage(needed - 1))

@@ -6,8 +6,8 @@ import viser
 import zstandard
 
 from app.runs.config import RaceConfig
-from app.viewer.recorded_stream import LONGEST_S, film
-from tests.stage.stage_parts import Theatre
+from app.viewer.recorded_stream import LONGEST_S, recorded_stream
+from tests.stage.stage_parts import StageParts
 
 
 def opened(data: bytes) -> dict[str, object]:
@@ -19,12 +19,12 @@ def opened(data: bytes) -> dict[str, object]:
 
 
 def test_it_has_the_whole_race_and_names_its_version() -> None:
-    theatre = Theatre()
-    run = theatre.race(steps=6)
+    parts = StageParts()
+    run = parts.race(steps=6)
     assert isinstance(run.config, RaceConfig)
-    lanes = theatre.recordings.race(run.id) or []
+    lanes = parts.recordings.race(run.id) or []
 
-    data = film(run.config, lanes)
+    data = recorded_stream(run.config, lanes)
     inside = opened(data)
 
     assert inside["viserVersion"] == viser.__version__
@@ -37,11 +37,11 @@ def test_it_has_the_whole_race_and_names_its_version() -> None:
 
 
 def test_a_long_race_is_shown_faster() -> None:
-    theatre = Theatre()
-    run = theatre.race(("two-step",), steps=150)
+    parts = StageParts()
+    run = parts.race(("two-step",), steps=150)
     assert isinstance(run.config, RaceConfig)
 
-    data = film(run.config, theatre.recordings.race(run.id) or [])
+    data = recorded_stream(run.config, parts.recordings.race(run.id) or [])
     length_s = opened(data)["durationSeconds"]
 
     assert isinstance(length_s, float)

@@ -10,8 +10,8 @@ import pytest
 from app.domain.grid import FootGrid
 from app.domain.robot import Robot, ring
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
-from app.stage.scene_spec import idle_cast, race_cast, rest_pose, training_cast
-from app.stage.stage_frame import Cast, Ghost, KnowledgeView, LaneView, StageFrame
+from app.stage.scene_spec import idle_scene, race_scene, rest_pose, training_scene
+from app.stage.stage_frame import ActionValuesView, Ghost, LaneView, SceneSpec, StageFrame
 from app.viewer import wire
 from app.viewer.in_process import InProcessViser, in_process_viser
 from app.viewer.robot_mesh import RobotMesh
@@ -52,23 +52,23 @@ def plain(value: Any, frame: wire.Frame) -> Any:
     return value
 
 
-def race_of(lanes: int, robot: Robot | None = None) -> Cast:
+def race_of(lanes: int, robot: Robot | None = None) -> SceneSpec:
     agents = ("q-learning", "greedy", "two-step", "greedy", "greedy", "greedy")[:lanes]
     config = RaceConfig(
         gait=GAIT, robot=robot or Robot(), lanes=tuple(LaneConfig(agent=a) for a in agents)
     )
-    return race_cast(config)
+    return race_scene(config)
 
 
-def standing(cast: Cast) -> StageFrame:
+def standing(cast: SceneSpec) -> StageFrame:
     lane = LaneView(rest_pose(cast), 3, 50, 0.0)
     return StageFrame(cast, "run", "race", "Race", (lane,) * len(cast.roles))
 
 
-def knowing(cast: Cast, current: tuple[int, ...] = (0, 1, 2)) -> KnowledgeView:
+def knowing(cast: SceneSpec, current: tuple[int, ...] = (0, 1, 2)) -> ActionValuesView:
     values = np.linspace(-0.01, 0.06, 3 * len(cast.grid)).reshape(3, -1)
     values[range(3), current] = np.nan
-    return KnowledgeView(values, values, current, None, -0.01, 0.06)
+    return ActionValuesView(values, values, current, None, -0.01, 0.06)
 
 
 def test_everything_is_under_one_frame_and_no_robot_is_many_nodes(
@@ -159,11 +159,11 @@ def test_nothing_is_sent_while_nothing_moves(server: InProcessViser) -> None:
 
 def test_a_new_cast_leaves_nothing_of_the_old(server: InProcessViser) -> None:
     scene = StageScene(server)
-    practice = training_cast(TrainingConfig(gait=GAIT, divisions=3))
+    practice = training_scene(TrainingConfig(gait=GAIT, divisions=3))
     ghosts = (Ghost(50, 0.1), Ghost(100, 0.3))
 
     def show_all() -> None:
-        scene.draw(standing(idle_cast()))
+        scene.draw(standing(idle_scene()))
         scene.draw(replace(standing(practice), ghosts=ghosts))
         scene.draw(replace(standing(race_of(3)), phase="photo-finish"))
         scene.draw(standing(race_of(6, Robot(legs=ring(8)))))

@@ -16,7 +16,7 @@ from app.storage.recordings import Recordings
 from app.viewer.in_process import in_process_viser
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop
-from tests.stage.stage_parts import Theatre
+from tests.stage.stage_parts import StageParts
 from tests.viewer.serving import eventually
 
 
@@ -55,13 +55,13 @@ def test_a_fault_in_a_frame_does_not_end_the_show(caplog: pytest.LogCaptureFixtu
 
 
 def test_a_race_moves_and_the_page_is_told() -> None:
-    theatre = Theatre()
-    run = theatre.race()
-    stage = Stage(theatre.store, theatre.recordings, theatre.bus)
+    parts = StageParts()
+    run = parts.race()
+    stage = Stage(parts.store, parts.recordings, parts.bus)
     stage.show(run.id)
 
     async def hear() -> list[dict[str, Any]]:
-        heard, scenes = theatre.bus.subscribe(), []
+        heard, scenes = parts.bus.subscribe(), []
         async for event in heard:
             if event.event == "scene":
                 scenes.append(json.loads(event.data))
@@ -71,7 +71,7 @@ def test_a_race_moves_and_the_page_is_told() -> None:
 
     with in_process_viser() as server:
         scene = StageScene(server)
-        with StageLoop(stage, scene, theatre.bus):
+        with StageLoop(stage, scene, parts.bus):
             scenes = asyncio.run(hear())
             eventually(lambda: (scene.follow_position("1") or (0, 0))[1] > 0.001)
 

@@ -1,7 +1,7 @@
-"""The corners of an experiment: each reading of the state on each robot, seen on its own.
+"""The cases of an experiment: each reading of the state on each robot, seen on its own.
 
 The paper does not say which reading it used, and nothing of its servos; so each of its claims is
-judged once in each corner.
+judged once in each case.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ PAPERS_AGENT = "q-learning"
 
 
 @dataclass(frozen=True)
-class Corner:
+class Case:
     """What a summary has for one observation and one robot.
 
     Attributes:
@@ -49,12 +49,12 @@ class Corner:
         return next((one for one in found if one["steps"]), None)
 
 
-def corners(summary: Mapping[str, Any]) -> list[Corner]:
+def cases(summary: Mapping[str, Any]) -> list[Case]:
     """All of them, in the order of the experiment."""
     places = dict.fromkeys((one["observation"], one["robot"]) for one in summary["settings"])
     several = len({robot for _, robot in places}) > 1
     return [
-        Corner(
+        Case(
             observation=observation,
             robot=robot,
             label=label(observation, robot if several else None),

@@ -1,4 +1,4 @@
-"""Which of our corners comes nearest to the numbers that the paper printed."""
+"""Which of our cases comes nearest to the numbers that the paper printed."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.domain.types import FloatArray
-from app.experiments.claims.cases import PAPERS_AGENT, Corner
+from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.statistics import (
     CONFIDENCE,
     Interval,
@@ -27,7 +27,7 @@ class _Printed(NamedTuple):
 
 
 class Near(NamedTuple):
-    """A corner beside the printed total distances of Q-learning.
+    """A case beside the printed total distances of Q-learning.
 
     Attributes:
         inside: how many of the printed values lie in the central 95 % of our seeds.
@@ -35,24 +35,24 @@ class Near(NamedTuple):
         apart_m: from our middle to the printed value, averaged without sign.
     """
 
-    corner: Corner
+    case: Case
     inside: int
     of: int
     apart_m: float
 
 
-def near(corner: Corner) -> Near | None:
-    """How near a corner comes; None if nothing was printed of it, or a setting has no trials."""
-    printed = _printed(corner)
+def near(case: Case) -> Near | None:
+    """How near a case comes; None if nothing was printed of it, or a setting has no trials."""
+    printed = _printed(case)
     if not printed:
         return None
     tail = (1 - CONFIDENCE) / 2
     inside = sum(tail <= quantile_of(one.total_m, one.points) <= 1 - tail for one in printed)
     apart = _apart([np.asarray(one.points) for one in printed], printed, -1)
-    return Near(corner, inside, len(printed), float(apart))
+    return Near(case, inside, len(printed), float(apart))
 
 
-def nearer(a: Corner, b: Corner) -> tuple[Verdict, Interval] | None:
+def nearer(a: Case, b: Case) -> tuple[Verdict, Interval] | None:
     """Whether `a` comes nearer than `b`, and by how much [m]: yes, no, or not established.
 
     The interval is of our seeds only; that each printed value is one run it cannot know.
@@ -69,9 +69,9 @@ def nearer(a: Corner, b: Corner) -> tuple[Verdict, Interval] | None:
     return decided(found, 0, min(len(one.points) for one in (*ours, *others))), found
 
 
-def _printed(corner: Corner) -> list[_Printed]:
+def _printed(case: Case) -> list[_Printed]:
     """Q-learning's settings that the paper has too, if all of them have trials."""
-    learners = [one for one in corner.settings if one["agent"] == PAPERS_AGENT and one["published"]]
+    learners = [one for one in case.settings if one["agent"] == PAPERS_AGENT and one["published"]]
     if not all(one["n"] for one in learners):
         return []
     return [

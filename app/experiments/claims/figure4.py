@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from app.domain.types import FloatArray
-from app.experiments.claims.cases import PAPERS_AGENT, Corner
-from app.experiments.claims.gaits import ODD, gaits
+from app.experiments.claims.cases import PAPERS_AGENT, Case
+from app.experiments.claims.gaits import ODD_GAIT, gaits
 from app.experiments.claims.judging import Claim, Finding
 from app.experiments.formatting import gait_name, metres, percent, shares
 from app.experiments.measures import WALKS
@@ -21,16 +21,16 @@ FIRST, MIDDLE, LAST = 250, 1000, 2000
 class _Curve:
     """Q-learning's curve over all gaits at 250, 1,000 and 2,000 steps, as shares of greedy."""
 
-    def __init__(self, corner: Corner) -> None:
+    def __init__(self, case: Case) -> None:
         curves = [
             one
-            for one in corner.curves
+            for one in case.curves
             if one["agent"] == PAPERS_AGENT
             and one["greedy_m"]
             and {FIRST, MIDDLE, LAST} <= set(one["steps"])
         ]
         self._strata = [_shares(one) for one in curves]
-        self._seed = corner.seed
+        self._seed = case.seed
         self.fewest = min((one.shape[1] for one in self._strata), default=0)
 
     def over(self, number: Callable[[FloatArray], FloatArray]) -> Interval:
@@ -49,9 +49,9 @@ def _shares(curve: Mapping[str, Any]) -> FloatArray:
     return np.asarray(at, dtype=np.float64) / float(curve["greedy_m"])
 
 
-def _judging(find: Callable[[_Curve], Finding]) -> Callable[[Corner], Finding | None]:
-    def find_in(corner: Corner) -> Finding | None:
-        curve = _Curve(corner)
+def _judging(find: Callable[[_Curve], Finding]) -> Callable[[Case], Finding | None]:
+    def find_in(case: Case) -> Finding | None:
+        curve = _Curve(case)
         return find(curve) if curve.fewest else None
 
     return find_in
@@ -99,8 +99,8 @@ def _approaches(curve: _Curve) -> Finding:
     )
 
 
-def _satisfies(corner: Corner) -> Finding | None:
-    curve = corner.curve(ODD)
+def _satisfies(case: Case) -> Finding | None:
+    curve = case.curve(ODD_GAIT)
     if curve is None or curve["greedy_m"] is None:
         return None
     walkers = at_least(curve["points_m"][-1], WALKS * curve["greedy_m"])
@@ -140,7 +140,7 @@ FIGURE4_CLAIMS: Sequence[Claim] = (
     *gaits(alike_after=2000, slow_after=500),
     Claim(
         "odd-gait-satisfies",
-        f"{gait_name(ODD)} “eventually Q-Learns its way to a satisfactory gait” (§5.1)",
+        f"{gait_name(ODD_GAIT)} “eventually Q-Learns its way to a satisfactory gait” (§5.1)",
         "After 2,000 steps more than half of the seeds cover half of greedy's distance.",
         _satisfies,
     ),

@@ -5,14 +5,14 @@ from functools import partial
 import numpy as np
 
 from app.domain.types import FloatArray
-from app.experiments.claims.cases import Corner
+from app.experiments.claims.cases import Case
 from app.experiments.claims.judging import Claim, Finding
 from app.experiments.formatting import metres, percent, shares, span
 from app.experiments.published import GAITS
 from app.experiments.statistics import Interval, Points, decided, interval, iqm, iqm_of_all
 
-ODD = "left-right-vertical"
-OTHERS = tuple(gait for gait in GAITS if gait != ODD)
+ODD_GAIT = "left-right-vertical"
+OTHERS = tuple(gait for gait in GAITS if gait != ODD_GAIT)
 ALIKE = 0.8
 """Of the best gait: the worst comes at least so far, where gaits are alike."""
 SLOW = 0.9
@@ -40,35 +40,35 @@ def gaits(alike_after: int, slow_after: int) -> tuple[Claim, Claim]:
     )
 
 
-def odd_against_others(corner: Corner, steps: int) -> Interval | None:
+def odd_against_others(case: Case, steps: int) -> Interval | None:
     """How far LeftRight-Vertical comes as a share of the other three gaits together."""
-    odd, others = walked(corner, ODD, steps), _others(corner, steps)
+    odd, others = walked(case, ODD_GAIT, steps), _others(case, steps)
     if not odd or others is None or iqm_of_all(*map(np.asarray, others)) <= 0:
         return None
 
     def ratio(odd: FloatArray, *others: FloatArray, axis: int = -1) -> FloatArray:
         return iqm(odd, axis) / iqm_of_all(*others, axis=axis)
 
-    return interval((odd, *others), ratio, corner.seed)
+    return interval((odd, *others), ratio, case.seed)
 
 
-def walked(corner: Corner, gait: str, steps: int) -> Points:
+def walked(case: Case, gait: str, steps: int) -> Points:
     """Every seed's total distance after this practice, in one go or in blocks [m]."""
-    curve = corner.curve(gait)
+    curve = case.curve(gait)
     if curve is not None and steps in curve["steps"]:
         return tuple(curve["points_m"][curve["steps"].index(steps)])
-    setting = corner.setting(gait, steps)
+    setting = case.setting(gait, steps)
     once = setting is not None and setting["blocks"] == 1
     return tuple(setting["total"]["points_m"]) if setting is not None and once else ()
 
 
-def _others(corner: Corner, steps: int) -> list[Points] | None:
-    found = [walked(corner, gait, steps) for gait in OTHERS]
+def _others(case: Case, steps: int) -> list[Points] | None:
+    found = [walked(case, gait, steps) for gait in OTHERS]
     return found if all(found) else None
 
 
-def _alike(corner: Corner, steps: int) -> Finding | None:
-    others = _others(corner, steps)
+def _alike(case: Case, steps: int) -> Finding | None:
+    others = _others(case, steps)
     if others is None:
         return None
 
@@ -76,7 +76,7 @@ def _alike(corner: Corner, steps: int) -> Finding | None:
         middles = np.stack([iqm(one, axis) for one in walks])
         return np.asarray(middles.min(axis=0) / middles.max(axis=0), dtype=np.float64)
 
-    found = interval(others, worst_of_best, corner.seed)
+    found = interval(others, worst_of_best, case.seed)
     middles = [float(iqm(np.asarray(points))) for points in others]
     return Finding.of(
         decided(found, ALIKE, min(map(len, others))),
@@ -85,12 +85,12 @@ def _alike(corner: Corner, steps: int) -> Finding | None:
     )
 
 
-def _slow(corner: Corner, steps: int) -> Finding | None:
-    found = odd_against_others(corner, steps)
+def _slow(case: Case, steps: int) -> Finding | None:
+    found = odd_against_others(case, steps)
     if found is None:
         return None
-    odd = walked(corner, ODD, steps)
-    fewest = min(len(odd), *(len(walked(corner, gait, steps)) for gait in OTHERS))
+    odd = walked(case, ODD_GAIT, steps)
+    fewest = min(len(odd), *(len(walked(case, gait, steps)) for gait in OTHERS))
     return Finding.of(
         decided(-found, -SLOW, fewest),
         f"It covers {metres(float(iqm(np.asarray(odd))))} after {steps:,} steps, "

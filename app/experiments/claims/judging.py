@@ -3,12 +3,12 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
-from app.experiments.claims.cases import Corner, corners
+from app.experiments.claims.cases import Case, cases
 from app.experiments.formatting import listed
 from app.experiments.statistics import Verdict
 
 Judgement = Literal["holds", "does not hold", "not established", "depends"]
-"""`depends`: one thing in one corner, another in another."""
+"""`depends`: one thing in one case, another in another."""
 _AS_JUDGEMENT: Mapping[Verdict, Judgement] = {
     "yes": "holds",
     "no": "does not hold",
@@ -24,7 +24,7 @@ _SAID: Mapping[Judgement, str] = {
 
 
 class Finding(NamedTuple):
-    """What one corner says of a claim."""
+    """What one case says of a claim."""
 
     verdict: Judgement
     evidence: str
@@ -42,32 +42,32 @@ class Claim(NamedTuple):
         id: for links.
         claim: the paper's words, and where they stand.
         criterion: what we take them to mean, so that a number can decide.
-        find: None where the corner has no trials that could answer.
+        find: None where the case has no trials that could answer.
     """
 
     id: str
     claim: str
     criterion: str
-    find: Callable[[Corner], Finding | None]
+    find: Callable[[Case], Finding | None]
 
 
 def judge(summary: Mapping[str, Any], claims: Sequence[Claim]) -> list[dict[str, Any]]:
-    """Every claim that these trials can answer, over all corners and in each.
+    """Every claim that these trials can answer, over all cases and in each.
 
-    Where the corners disagree it depends, since the paper does not say which of them is its own;
+    Where the cases disagree it depends, since the paper does not say which of them is its own;
     the evidence then says where what holds.
     """
-    places = corners(summary)
+    places = cases(summary)
     judged = []
     for one in claims:
-        found = [(corner, one.find(corner)) for corner in places]
-        where = [(corner, finding) for corner, finding in found if finding is not None]
+        found = [(case, one.find(case)) for case in places]
+        where = [(case, finding) for case, finding in found if finding is not None]
         if where:
             judged.append(_judged(one, where))
     return judged
 
 
-def _judged(claim: Claim, where: Sequence[tuple[Corner, Finding]]) -> dict[str, Any]:
+def _judged(claim: Claim, where: Sequence[tuple[Case, Finding]]) -> dict[str, Any]:
     verdicts = {finding.verdict for _, finding in where}
     overall = verdicts.pop() if len(verdicts) == 1 else "depends"
     return {
@@ -78,21 +78,21 @@ def _judged(claim: Claim, where: Sequence[tuple[Corner, Finding]]) -> dict[str, 
         "evidence": _together(where),
         "where": [
             {
-                "observation": corner.observation,
-                "robot": corner.robot,
-                "label": corner.label,
+                "observation": case.observation,
+                "robot": case.robot,
+                "label": case.label,
                 **finding._asdict(),
             }
-            for corner, finding in where
+            for case, finding in where
         ],
     }
 
 
-def _together(where: Sequence[tuple[Corner, Finding]]) -> str:
-    """One or two sentences for all corners: the numbers if they agree, else who says what."""
+def _together(where: Sequence[tuple[Case, Finding]]) -> str:
+    """One or two sentences for all cases: the numbers if they agree, else who says what."""
     said: dict[Judgement, list[str]] = {}
-    for corner, finding in where:
-        said.setdefault(finding.verdict, []).append(corner.label)
+    for case, finding in where:
+        said.setdefault(finding.verdict, []).append(case.label)
     first, finding = where[0]
     if len(said) > 1:
         parts = (f"{_SAID[verdict]} with {listed(labels)}" for verdict, labels in said.items())

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from app.experiments.claims.cases import PAPERS_AGENT, Corner
+from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.claims.judging import Claim, Finding
 from app.experiments.formatting import RATES as WORDS
 from app.experiments.formatting import percent, shares
@@ -14,14 +14,14 @@ RATES = ("alpha", "gamma", "epsilon_start", "epsilon_end", "steps_per_episode")
 _REST = ("steps", "divisions", "grid_side_m", "blocks")
 
 
-def _tuning(corner: Corner) -> Finding | None:
+def _tuning(case: Case) -> Finding | None:
     """The best of many is compared once, at a confidence that pays for having picked it."""
     ours = [
         one
-        for one in corner.pooled
+        for one in case.pooled
         if one["agent"] == PAPERS_AGENT
         and one["relative"]
-        and len(_seeds(corner, one)) == len(one["gaits"])
+        and len(_seeds(case, one)) == len(one["gaits"])
     ]
     papers = [one for one in ours if _is_papers(one)]
     rivals = [one for one in ours if any(_comparable(one, own) for own in papers)]
@@ -29,8 +29,8 @@ def _tuning(corner: Corner) -> Finding | None:
         return None
     best = max(rivals, key=lambda one: float(one["relative"]["iqm"]))
     own = next(one for one in papers if _comparable(best, one))
-    a, b = _seeds(corner, best), _seeds(corner, own)
-    chance = improvement(a, b, corner.seed, 1 - (1 - CONFIDENCE) / len(rivals))
+    a, b = _seeds(case, best), _seeds(case, own)
+    chance = improvement(a, b, case.seed, 1 - (1 - CONFIDENCE) / len(rivals))
     told = ", ".join(WORDS[name].format(best[name]) for name in RATES if best[name] != own[name])
     return Finding.of(
         decided(chance, 0.5, min(len(points) for points in (*a, *b))),
@@ -49,12 +49,12 @@ def _comparable(one: Mapping[str, Any], own: Mapping[str, Any]) -> bool:
     return same and not _is_papers(one)
 
 
-def _seeds(corner: Corner, pool: Mapping[str, Any]) -> tuple[Points, ...]:
+def _seeds(case: Case, pool: Mapping[str, Any]) -> tuple[Points, ...]:
     """The distances of a pool's settings [m], gait by gait."""
     named = (*RATES, *_REST, "agent")
     return tuple(
         tuple(one["total"]["points_m"])
-        for one in corner.settings
+        for one in case.settings
         if one["total"] and all(one[name] == pool[name] for name in named)
     )
 

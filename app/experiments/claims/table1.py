@@ -5,7 +5,7 @@ from functools import partial
 from statistics import fmean, median
 from typing import Any
 
-from app.experiments.claims.cases import PAPERS_AGENT, Corner
+from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.claims.gaits import gaits
 from app.experiments.claims.judging import Claim, Finding
 from app.experiments.formatting import (
@@ -24,10 +24,10 @@ from app.experiments.statistics import Interval, Verdict, decided
 AFTER = (500, 1000)
 
 
-def _dominates(corner: Corner) -> Finding | None:
+def _dominates(case: Case) -> Finding | None:
     raced = [
         one
-        for one in corner.settings
+        for one in case.settings
         if one["agent"] == PAPERS_AGENT and one["n"] and one["beats_greedy_total"]
     ]
     if not raced:
@@ -36,7 +36,7 @@ def _dominates(corner: Corner) -> Finding | None:
     found: Verdict = (
         "no" if "yes" in verdicts else "yes" if verdicts == {"no"} else ("not established")
     )
-    pools = [(steps, corner.pool(steps)) for steps in AFTER]
+    pools = [(steps, case.pool(steps)) for steps in AFTER]
     shown = [
         f"{shares(pool['relative'])} of greedy's total after {steps:,} steps"
         for steps, pool in pools
@@ -50,13 +50,13 @@ def _dominates(corner: Corner) -> Finding | None:
     )
 
 
-def _real_time(corner: Corner, steps: int) -> Finding | None:
-    pool = corner.pool(steps)
+def _real_time(case: Case, steps: int) -> Finding | None:
+    pool = case.pool(steps)
     if pool is None or pool["relative_finished"] is None:
         return None
     shown = pool["relative_finished"]
     middle = Interval(shown["iqm"], shown["low"], shown["high"])
-    fewest = min(one["n"] for one in corner.settings if one["steps"] == steps)
+    fewest = min(one["n"] for one in case.settings if one["steps"] == steps)
     return Finding.of(
         decided(middle, REACHES, fewest),
         f"When Q-learning has taken its 50 steps it has come {shares(shown)} as far as greedy, "
@@ -71,8 +71,8 @@ def _papers_share(steps: int) -> float:
     return fmean(q.finished_m / greedy.finished_m for q, greedy in pairs if q and greedy)
 
 
-def _beats(corner: Corner, gait: str) -> Finding | None:
-    q, greedy = corner.setting(gait, AFTER[1]), corner.setting(gait, 0, "greedy")
+def _beats(case: Case, gait: str) -> Finding | None:
+    q, greedy = case.setting(gait, AFTER[1]), case.setting(gait, 0, "greedy")
     if q is None or greedy is None or q["beats_greedy"] is None:
         return None
     return Finding.of(
@@ -90,8 +90,8 @@ def _papers_race(gait: str) -> str:
     return f"The paper's table has {q.finished_m:g} against {greedy.finished_m:g}."
 
 
-def _on_par(corner: Corner) -> Finding | None:
-    pool = corner.pool(AFTER[0])
+def _on_par(case: Case) -> Finding | None:
+    pool = case.pool(AFTER[0])
     if pool is None or pool["reaches_greedy"] is None:
         return None
     found = pool["reaches_greedy"]
@@ -108,8 +108,8 @@ def _on_par(corner: Corner) -> Finding | None:
     )
 
 
-def _two_step(corner: Corner) -> Finding | None:
-    thinks = [_thinking(one["lanes"]) for one in corner.timed]
+def _two_step(case: Case) -> Finding | None:
+    thinks = [_thinking(one["lanes"]) for one in case.timed]
     if not thinks:
         return None
     slowest, fastest = max(share for share, _ in thinks), min(share for share, _ in thinks)
@@ -120,7 +120,7 @@ def _two_step(corner: Corner) -> Finding | None:
         f"On this machine two-step thought {seconds:.2g} s in 50 steps, between "
         f"{percent(fastest)} and {percent(slowest)} of the time that it walked, in "
         f"{counted(len(thinks), 'timed race')}."
-        f"{_by_the_paper(corner)}",
+        f"{_by_the_paper(case)}",
     )
 
 
@@ -130,9 +130,9 @@ def _thinking(lanes: list[Mapping[str, Any]]) -> tuple[float, float]:
     return lane["decision_s"] / (lane["elapsed_s"] - lane["decision_s"]), lane["decision_s"]
 
 
-def _by_the_paper(corner: Corner) -> str:
+def _by_the_paper(case: Case) -> str:
     times = {
-        agent: [one["elapsed_s"] for one in corner.settings if one["agent"] == agent and one["n"]]
+        agent: [one["elapsed_s"] for one in case.settings if one["agent"] == agent and one["n"]]
         for agent in ("greedy", "two-step")
     }
     if not all(times.values()):

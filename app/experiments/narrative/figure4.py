@@ -3,16 +3,16 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from app.experiments.claims.cases import PAPERS_AGENT, Corner
+from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.formatting import agent_name, counted, gait_name, listed, metres, percent
 from app.experiments.narrative.gaits import odd_gait
 
 Curve = Mapping[str, Any]
 
 
-def one_seed(places: Sequence[Corner]) -> str | None:
+def one_seed(places: Sequence[Case]) -> str | None:
     """The spread at the end of a curve, and how often a seed's own curve falls."""
-    curves = [one for corner in places for one in corner.curves if one["steps"]]
+    curves = [one for case in places for one in case.curves if one["steps"]]
     if not curves or len(curves[0]["points_m"][0]) < 2:
         return None
     one, at = curves[0], next(c.label for c in places if curves[0] in c.curves)
@@ -38,9 +38,9 @@ def _falls(curve: Curve) -> tuple[int, int]:
     return sum(after < before for before, after in pairs), max(1, len(pairs))
 
 
-def readings(places: Sequence[Corner]) -> str | None:
+def readings(places: Sequence[Case]) -> str | None:
     """How the two readings differ, and which has the shape that the paper describes."""
-    told = [_rise(corner) for corner in places]
+    told = [_rise(case) for case in places]
     said = [one for one in told if one]
     if not said:
         return None
@@ -52,11 +52,11 @@ def readings(places: Sequence[Corner]) -> str | None:
     )
 
 
-def _rise(corner: Corner) -> str | None:
+def _rise(case: Case) -> str | None:
     """The middle of the gaits' curves at a few places, as shares of greedy."""
     curves = [
         one
-        for one in corner.curves
+        for one in case.curves
         if one["steps"] and one["greedy_m"] and one["agent"] == PAPERS_AGENT
     ]
     if not curves:
@@ -65,7 +65,7 @@ def _rise(corner: Corner) -> str | None:
     chosen = dict.fromkeys((steps[0], steps[(len(steps) - 1) // 2], steps[-1]))
     shown = [f"{percent(_mean_share(curves, steps.index(at)))} after {at:,}" for at in chosen]
     return (
-        f"With {corner.label} the curves stand, as a share of greedy and averaged over the gaits, "
+        f"With {case.label} the curves stand, as a share of greedy and averaged over the gaits, "
         f"at {listed(shown)} steps."
     )
 
@@ -74,22 +74,22 @@ def _mean_share(curves: Sequence[Curve], block: int) -> float:
     return sum(float(one["iqm_m"][block] / one["greedy_m"]) for one in curves) / len(curves)
 
 
-def rivals(places: Sequence[Corner]) -> str | None:
+def rivals(places: Sequence[Case]) -> str | None:
     """Where several agents learn: how far each comes in the end."""
     said = []
-    for corner in places:
-        pools = [one for one in corner.pooled if one["relative"]]
+    for case in places:
+        pools = [one for one in case.pooled if one["relative"]]
         if len({one["agent"] for one in pools}) > 1:
             shown = [
                 f"{agent_name(one['agent'])} {percent(one['relative']['iqm'])}" for one in pools
             ]
-            said.append(f"With {corner.label}: {listed(shown)}.")
+            said.append(f"With {case.label}: {listed(shown)}.")
     if not said:
         return None
     return f"At the end of the curves, as a share of greedy over all gaits. {' '.join(said)}"
 
 
-FIGURE4_STORY: Sequence[tuple[str, Callable[[Sequence[Corner]], str | None]]] = (
+FIGURE4_STORY: Sequence[tuple[str, Callable[[Sequence[Case]], str | None]]] = (
     ("One seed misleads", one_seed),
     ("Two readings of the same robot", readings),
     ("The agents", rivals),

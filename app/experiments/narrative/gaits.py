@@ -2,17 +2,17 @@
 
 from collections.abc import Sequence
 
-from app.experiments.claims.cases import PAPERS_AGENT, Corner
-from app.experiments.claims.gaits import ODD, OTHERS, SLOW, odd_against_others
+from app.experiments.claims.cases import PAPERS_AGENT, Case
+from app.experiments.claims.gaits import ODD_GAIT, OTHERS, SLOW, odd_against_others
 from app.experiments.formatting import listed, metres, shares, span
 from app.experiments.published import published
 
 AFTER = 500
 
 
-def odd_gait(places: Sequence[Corner]) -> str | None:
+def odd_gait(places: Sequence[Case]) -> str | None:
     """LeftRight-Vertical on each robot; nothing to say where the simulator knows no servos."""
-    told = [_told(corner) for corner in places if corner.simulator == "mujoco"]
+    told = [_told(case) for case in places if case.simulator == "mujoco"]
     said = [one for one in told if one]
     if not said:
         return None
@@ -23,25 +23,25 @@ def odd_gait(places: Sequence[Corner]) -> str | None:
     )
 
 
-def _told(corner: Corner) -> str | None:
-    greedy, rest = corner.setting(ODD, 0, "greedy"), _greedy_elsewhere(corner)
-    ratio = odd_against_others(corner, AFTER)
+def _told(case: Case) -> str | None:
+    greedy, rest = case.setting(ODD_GAIT, 0, "greedy"), _greedy_elsewhere(case)
+    ratio = odd_against_others(case, AFTER)
     if greedy is None or not rest or ratio is None:
         return None
     return (
-        f"With {corner.label}, greedy covers {metres(greedy['total']['iqm_m'])} in this gait and "
+        f"With {case.label}, greedy covers {metres(greedy['total']['iqm_m'])} in this gait and "
         f"{span(rest)} in the other three; Q-learning after {AFTER} "
         f"steps covers {shares(ratio)} of what it does in the other three."
     )
 
 
-def _greedy_elsewhere(corner: Corner) -> list[float]:
-    found = [corner.setting(gait, 0, "greedy") for gait in OTHERS]
+def _greedy_elsewhere(case: Case) -> list[float]:
+    found = [case.setting(gait, 0, "greedy") for gait in OTHERS]
     return [float(one["total"]["iqm_m"]) for one in found if one]
 
 
 def _printed() -> str:
-    learner, greedy = published(ODD, PAPERS_AGENT, AFTER), published(ODD, "greedy", 0)
+    learner, greedy = published(ODD_GAIT, PAPERS_AGENT, AFTER), published(ODD_GAIT, "greedy", 0)
     if learner is None or greedy is None:
         return ""
     return (
@@ -50,13 +50,13 @@ def _printed() -> str:
     )
 
 
-def _slowed(places: Sequence[Corner]) -> str:
+def _slowed(places: Sequence[Case]) -> str:
     """Where greedy loses in this gait too, our robot is not quite the paper's."""
     both = []
-    for corner in places:
-        greedy, rest = corner.setting(ODD, 0, "greedy"), _greedy_elsewhere(corner)
+    for case in places:
+        greedy, rest = case.setting(ODD_GAIT, 0, "greedy"), _greedy_elsewhere(case)
         if greedy and rest and greedy["total"]["iqm_m"] < SLOW * min(rest):
-            both.append(corner.robot)
+            both.append(case.robot)
     if not both:
         return ""
     robots = listed(dict.fromkeys(both))

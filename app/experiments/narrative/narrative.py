@@ -3,13 +3,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from app.experiments.claims.cases import Corner, corners
+from app.experiments.claims.cases import Case, cases
 from app.experiments.formatting import counted, listed
 from app.experiments.narrative.figure4 import FIGURE4_STORY
 from app.experiments.narrative.sweep import SWEEP_STORY
 from app.experiments.narrative.table1 import TABLE1_STORY
 
-Telling = Callable[[Sequence[Corner]], str | None]
+Telling = Callable[[Sequence[Case]], str | None]
 FEW = 10
 _STORIES: Mapping[str, Sequence[tuple[str, Telling]]] = {
     "table1": TABLE1_STORY,
@@ -20,7 +20,7 @@ _STORIES: Mapping[str, Sequence[tuple[str, Telling]]] = {
 
 def tell(summary: Mapping[str, Any]) -> list[dict[str, str]]:
     """A few short texts under headings, a paragraph a line; what cannot be said yet is left out."""
-    places = corners(summary)
+    places = cases(summary)
     told = [(heading, telling(places)) for heading, telling in _STORIES[summary["experiment"]]]
     texts = [{"heading": heading, "text": text} for heading, text in told if text]
     caution = _caution(summary)

@@ -3,22 +3,22 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from app.experiments.claims.cases import Corner
+from app.experiments.claims.cases import Case
 from app.experiments.config import GRID
 from app.experiments.formatting import RATES, agent_name, counted, metres, percent, shares
 
 
-def extremes(places: Sequence[Corner]) -> str | None:
+def extremes(places: Sequence[Case]) -> str | None:
     """The best and the worst of the grid, and that the best was picked."""
-    pools = [(corner, one) for corner in places for one in corner.pooled if one["walkers"]]
+    pools = [(case, one) for case in places for one in case.pooled if one["walkers"]]
     if len(pools) < 2:
         return None
     ordered = sorted(pools, key=lambda found: float(found[1]["relative"]["iqm"]))
     told = [
-        f"The {word} is {named(one, [pool for _, pool in pools])} with {corner.label}: "
+        f"The {word} is {named(one, [pool for _, pool in pools])} with {case.label}: "
         f"{shares(one['relative'])} of greedy's distance, {percent(one['walkers']['share'])} of "
         "the seeds walk."
-        for word, (corner, one) in (("best", ordered[-1]), ("worst", ordered[0]))
+        for word, (case, one) in (("best", ordered[-1]), ("worst", ordered[0]))
     ]
     return (
         f"{len(pools)} combinations were tried, each over all gaits. {' '.join(told)} The best of "
@@ -36,13 +36,10 @@ def named(one: Mapping[str, Any], among: Sequence[Mapping[str, Any]]) -> str:
     return ", ".join(said)
 
 
-def one_seed(places: Sequence[Corner]) -> str | None:
+def one_seed(places: Sequence[Case]) -> str | None:
     """The spread of the setting that spreads most."""
     learners = [
-        one
-        for corner in places
-        for one in corner.settings
-        if one["role"] == "learner" and one["n"] > 1
+        one for case in places for one in case.settings if one["role"] == "learner" and one["n"] > 1
     ]
     if not learners:
         return None
@@ -55,7 +52,7 @@ def one_seed(places: Sequence[Corner]) -> str | None:
     )
 
 
-SWEEP_STORY: Sequence[tuple[str, Callable[[Sequence[Corner]], str | None]]] = (
+SWEEP_STORY: Sequence[tuple[str, Callable[[Sequence[Case]], str | None]]] = (
     ("Best and worst", extremes),
     ("One seed misleads", one_seed),
 )

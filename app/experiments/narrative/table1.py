@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from statistics import fmean, median
 from typing import Any
 
-from app.experiments.claims.cases import PAPERS_AGENT, Corner
+from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.claims.distance_to_paper import near, nearer
 from app.experiments.formatting import (
     counted,
@@ -21,14 +21,14 @@ from app.experiments.statistics import Points, improvement
 Settings = list[Any]
 
 
-def one_seed(places: Sequence[Corner]) -> str | None:
+def one_seed(places: Sequence[Case]) -> str | None:
     """The spread of one setting, and how often a single seed names the wrong winner."""
     learners = _learners(places)
     if not learners:
         return None
     one = max(learners, key=lambda s: max(s["total"]["points_m"]) - min(s["total"]["points_m"]))
     first = learners[0]
-    at = next(corner.label for corner in places if first in corner.settings)
+    at = next(case.label for case in places if first in case.settings)
     points = first["total"]["points_m"]
     said = [
         f"A printed number is one run of a learner that throws dice. {gait_name(first['gait'])} "
@@ -53,32 +53,32 @@ def one_seed(places: Sequence[Corner]) -> str | None:
     return "\n".join([*said, *_backwards(places)])
 
 
-def _backwards(places: Sequence[Corner]) -> list[str]:
-    corner = places[0]
-    gaits = dict.fromkeys(s["gait"] for s in corner.settings)
-    both = [(corner.setting(g, 500), corner.setting(g, 1000)) for g in gaits]
+def _backwards(places: Sequence[Case]) -> list[str]:
+    case = places[0]
+    gaits = dict.fromkeys(s["gait"] for s in case.settings)
+    both = [(case.setting(g, 500), case.setting(g, 1000)) for g in gaits]
     pairs = [(_points(a), _points(b)) for a, b in both if a and b]
     if not pairs:
         return []
-    chance = improvement(tuple(a for a, _ in pairs), tuple(b for _, b in pairs), corner.seed)
+    chance = improvement(tuple(a for a, _ in pairs), tuple(b for _, b in pairs), case.seed)
     return [
-        f"With {corner.label}, one run after 500 steps and one after 1,000 would show that more "
+        f"With {case.label}, one run after 500 steps and one after 1,000 would show that more "
         f"practice makes it worse with a probability of {shares(chance)}."
     ]
 
 
-def readings(places: Sequence[Corner]) -> str | None:
+def readings(places: Sequence[Case]) -> str | None:
     """How much the two readings differ, and which comes nearer to what was printed."""
-    by_robot: dict[str, list[Corner]] = {}
-    for corner in places:
-        by_robot.setdefault(corner.robot, []).append(corner)
+    by_robot: dict[str, list[Case]] = {}
+    for case in places:
+        by_robot.setdefault(case.robot, []).append(case)
     said = []
     for robot, pair in by_robot.items():
-        pools = [(corner, corner.pool(1000)) for corner in pair]
+        pools = [(case, case.pool(1000)) for case in pair]
         shown = [
-            f"{shares(pool['relative'])} with {_reading(corner)} "
+            f"{shares(pool['relative'])} with {_reading(case)} "
             f"({percent(pool['walkers']['share'])} of the seeds walk)"
-            for corner, pool in pools
+            for case, pool in pools
             if pool and pool["relative"]
         ]
         if len(shown) == 2:
@@ -96,18 +96,18 @@ def readings(places: Sequence[Corner]) -> str | None:
     )
 
 
-def _reading(corner: Corner) -> str:
-    return corner.label.partition(" (")[0]
+def _reading(case: Case) -> str:
+    return case.label.partition(" (")[0]
 
 
-def _which_is_nearer(pair: Sequence[Corner]) -> list[str]:
+def _which_is_nearer(pair: Sequence[Case]) -> list[str]:
     a, b = pair
     close, verdict = [near(one) for one in pair], nearer(a, b)
     if close[0] is None or close[1] is None or verdict is None:
         return []
     counts = [
         f"{one.inside} of the {one.of} printed distances lie within the central 95 % of the seeds "
-        f"with {_reading(one.corner)}, {metres(one.apart_m)} from our middle on average"
+        f"with {_reading(one.case)}, {metres(one.apart_m)} from our middle on average"
         for one in close
         if one
     ]
@@ -120,12 +120,12 @@ def _which_is_nearer(pair: Sequence[Corner]) -> list[str]:
     return [f"{'; '.join(counts)}. {last}"]
 
 
-def text_against_table(places: Sequence[Corner]) -> str | None:
+def text_against_table(places: Sequence[Case]) -> str | None:
     """Where the paper's text says that Q-learning beats greedy, and where its table does."""
     gaits = ("left-right-origin", "front-back-origin")
     said = []
-    for corner in places:
-        found = [corner.setting(gait, 1000) for gait in gaits]
+    for case in places:
+        found = [case.setting(gait, 1000) for gait in gaits]
         shown = [
             f"{shares(one['beats_greedy'])} in {gait_name(one['gait'])} "
             f"({_VERDICTS[one['beats_greedy']['verdict']]})"
@@ -133,7 +133,7 @@ def text_against_table(places: Sequence[Corner]) -> str | None:
             if one and one["beats_greedy"]
         ]
         if len(shown) == 2:
-            said.append(f"With {corner.label}: {listed(shown)}.")
+            said.append(f"With {case.label}: {listed(shown)}.")
     if not said:
         return None
     return (
@@ -144,14 +144,14 @@ def text_against_table(places: Sequence[Corner]) -> str | None:
     )
 
 
-def clocks(places: Sequence[Corner]) -> str | None:
+def clocks(places: Sequence[Case]) -> str | None:
     """The paper clock, the wall clock, and what each does to the race."""
-    timed = [one["lanes"] for corner in places for one in corner.timed]
+    timed = [one["lanes"] for case in places for one in case.timed]
     times = {
         agent: [
             one["elapsed_s"]
-            for corner in places
-            for one in corner.settings
+            for case in places
+            for one in case.settings
             if one["agent"] == agent and one["elapsed_s"]
         ]
         for agent in ("greedy", "two-step")
@@ -178,11 +178,11 @@ def clocks(places: Sequence[Corner]) -> str | None:
     )
 
 
-def _learners(places: Sequence[Corner]) -> Settings:
+def _learners(places: Sequence[Case]) -> Settings:
     return [
         one
-        for corner in places
-        for one in corner.settings
+        for case in places
+        for one in case.settings
         if one["agent"] == PAPERS_AGENT and one["n"] > 1
     ]
 
@@ -193,7 +193,7 @@ def _points(setting: Mapping[str, Any]) -> Points:
 
 _VERDICTS = {"yes": "more than half", "no": "fewer than half", "not established": "not established"}
 
-TABLE1_STORY: Sequence[tuple[str, Callable[[Sequence[Corner]], str | None]]] = (
+TABLE1_STORY: Sequence[tuple[str, Callable[[Sequence[Case]], str | None]]] = (
     ("One seed misleads", one_seed),
     ("Two readings of the same robot", readings),
     ("Why LeftRight-Vertical is the odd one", odd_gait),

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from app.experiments.claims.cases import Corner
+from app.experiments.claims.cases import Case
 from app.experiments.formatting import agent_name, gait_name, metres
 from app.experiments.report.drawing import INK, MUTED, Picture, colours, figure, quiet
 
@@ -16,56 +16,56 @@ Curve = Mapping[str, Any]
 PANEL_IN = (3.0, 2.7)
 
 
-def panels(corner: Corner, highest_m: float, name: str) -> list[Picture]:
+def panels(case: Case, highest_m: float, name: str) -> list[Picture]:
     """One picture a gait."""
     made = []
-    for number, gait in enumerate(_gaits(corner)):
+    for number, gait in enumerate(_gaits(case)):
         one = figure(*PANEL_IN)
         ax = one.subplots()
-        draw(ax, corner, gait, highest_m)
+        draw(ax, case, gait, highest_m)
         ax.set_title(gait_name(gait), pad=12)
-        made.append(Picture(f"{name}-{number + 1}", gait_name(gait), _alt(corner, gait), one))
+        made.append(Picture(f"{name}-{number + 1}", gait_name(gait), _alt(case, gait), one))
     return made
 
 
-def sheet(places: Sequence[Corner]) -> Picture:
-    """A row of gaits for each corner."""
-    columns = max(len(_gaits(corner)) for corner in places)
+def sheet(places: Sequence[Case]) -> Picture:
+    """A row of gaits for each case."""
+    columns = max(len(_gaits(case)) for case in places)
     width, height = PANEL_IN
     one = figure(columns * width * 0.85, len(places) * height + 0.9)
     rows = one.subfigures(len(places), 1, squeeze=False).ravel()
     limit = highest(places)
-    for row, corner in zip(rows, places, strict=True):
+    for row, case in zip(rows, places, strict=True):
         row.suptitle(
-            corner.label[:1].upper() + corner.label[1:], x=0.01, ha="left", weight="bold", color=INK
+            case.label[:1].upper() + case.label[1:], x=0.01, ha="left", weight="bold", color=INK
         )
         axes = row.subplots(1, columns, squeeze=False, sharey=True).ravel()
-        for ax, gait in zip(axes, _gaits(corner), strict=False):
-            draw(ax, corner, gait, limit)
+        for ax, gait in zip(axes, _gaits(case), strict=False):
+            draw(ax, case, gait, limit)
             ax.set_title(gait_name(gait), size=10, weight="normal", pad=12)
             if ax is not axes[0]:
                 ax.set_ylabel("")
     _key(one, places)
-    alt = " ".join(_alt(corner, gait) for corner in places for gait in _gaits(corner))
+    alt = " ".join(_alt(case, gait) for case in places for gait in _gaits(case))
     return Picture("figure4", "Distance against practice", alt, one)
 
 
-def highest(places: Sequence[Corner]) -> float:
+def highest(places: Sequence[Case]) -> float:
     """The top of all axes [m]."""
-    greedy = [one["greedy_m"] for corner in places for one in corner.curves if one["greedy_m"]]
+    greedy = [one["greedy_m"] for case in places for one in case.curves if one["greedy_m"]]
     points = [
         point
-        for corner in places
-        for one in corner.curves
+        for case in places
+        for one in case.curves
         for block in one["points_m"]
         for point in block
     ]
     return float(1.08 * max([0.05, *greedy, *points]))
 
 
-def draw(ax: Axes, corner: Corner, gait: str, highest_m: float) -> None:
+def draw(ax: Axes, case: Case, gait: str, highest_m: float) -> None:
     """The curves of all agents in one gait."""
-    curves = [one for one in corner.curves if one["gait"] == gait]
+    curves = [one for one in case.curves if one["gait"] == gait]
     colour = colours([one["agent"] for one in curves])
     for one in curves:
         _curve(ax, one, colour[one["agent"]], alone=len(curves) == 1)
@@ -97,12 +97,12 @@ def _lowest(curves: Sequence[Curve]) -> list[float]:
     return [0.0, *(min(block) * 1.1 for one in curves for block in one["points_m"])]
 
 
-def _gaits(corner: Corner) -> list[str]:
-    return list(dict.fromkeys(one["gait"] for one in corner.curves))
+def _gaits(case: Case) -> list[str]:
+    return list(dict.fromkeys(one["gait"] for one in case.curves))
 
 
-def _key(one: Figure, places: Sequence[Corner]) -> None:
-    agents = list(dict.fromkeys(c["agent"] for corner in places for c in corner.curves))
+def _key(one: Figure, places: Sequence[Case]) -> None:
+    agents = list(dict.fromkeys(c["agent"] for case in places for c in case.curves))
     colour, alone = colours(agents), len(agents) == 1
     handles: list[Any] = []
     for agent in agents:
@@ -118,7 +118,7 @@ def _key(one: Figure, places: Sequence[Corner]) -> None:
     one.legend(handles=handles, loc="outside lower center", ncols=3, labelcolor=MUTED)
 
 
-def _alt(corner: Corner, gait: str) -> str:
+def _alt(case: Case, gait: str) -> str:
     said = [
         f"{agent_name(one['agent'])}: "
         + ", ".join(
@@ -126,7 +126,7 @@ def _alt(corner: Corner, gait: str) -> str:
             for steps, middle in zip(one["steps"], one["iqm_m"], strict=True)
         )
         + (f"; greedy {metres(one['greedy_m'])}." if one["greedy_m"] else ".")
-        for one in corner.curves
+        for one in case.curves
         if one["gait"] == gait and one["steps"]
     ]
-    return f"{gait_name(gait)} with {corner.label}. {' '.join(said) or 'No trials yet.'}"
+    return f"{gait_name(gait)} with {case.label}. {' '.join(said) or 'No trials yet.'}"

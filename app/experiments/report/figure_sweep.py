@@ -5,7 +5,7 @@ from typing import Any
 
 from matplotlib.axes import Axes
 
-from app.experiments.claims.cases import Corner
+from app.experiments.claims.cases import Case
 from app.experiments.formatting import agent_name, percent
 from app.experiments.narrative.sweep import named
 from app.experiments.report.drawing import INK, MUTED, Picture, colours, figure, quiet
@@ -15,27 +15,27 @@ MOST = 40
 _ROW_IN = 0.27
 
 
-def panel(corner: Corner, name: str) -> Picture:
+def panel(case: Case, name: str) -> Picture:
     """One row a combination, in the order of the grid."""
-    rows, left_out = chosen(corner)
+    rows, left_out = chosen(case)
     one = figure(4.8, 1.0 + _ROW_IN * max(1, len(rows)))
     ax = one.subplots()
-    _draw(ax, rows, corner)
-    title = corner.label
+    _draw(ax, rows, case)
+    title = case.label
     if left_out:
         title += f", the best {MOST} of {MOST + left_out}"
-    return Picture(name, title, _alt(rows, corner), one)
+    return Picture(name, title, _alt(rows, case), one)
 
 
-def chosen(corner: Corner) -> tuple[list[Mapping[str, Any]], int]:
+def chosen(case: Case) -> tuple[list[Mapping[str, Any]], int]:
     """Combinations that have trials, and how many more there are than fit."""
-    found = [one for one in corner.pooled if one["relative"]]
+    found = [one for one in case.pooled if one["relative"]]
     best = sorted(found, key=lambda one: -float(one["relative"]["iqm"]))[:MOST]
     return [one for one in found if one in best], len(found) - len(best)
 
 
-def _draw(ax: Axes, rows: Sequence[Mapping[str, Any]], corner: Corner) -> None:
-    shade = colours([one["agent"] for one in corner.pooled])
+def _draw(ax: Axes, rows: Sequence[Mapping[str, Any]], case: Case) -> None:
+    shade = colours([one["agent"] for one in case.pooled])
     for place, one in enumerate(rows):
         middle = one["relative"]
         if middle["low"] is not None:
@@ -43,9 +43,7 @@ def _draw(ax: Axes, rows: Sequence[Mapping[str, Any]], corner: Corner) -> None:
         ax.plot([middle["iqm"]], [-place], "o", ms=7, color=shade[one["agent"]], mec=INK, mew=0.8)
     ax.axvline(1, color=shade["greedy"], lw=2, ls=(0, (4, 2)))
     ax.text(0.99, 0.75, "greedy", size=9, color=MUTED, ha="right", va="center")
-    ax.set_yticks(
-        [-place for place in range(len(rows))], [named(one, corner.pooled) for one in rows]
-    )
+    ax.set_yticks([-place for place in range(len(rows))], [named(one, case.pooled) for one in rows])
     ax.set_ylim(-len(rows) + 0.4, 1.1)
     lowest = min((one["relative"]["low"] or one["relative"]["iqm"] for one in rows), default=0)
     ax.set_xlim(min(0, lowest) - 0.02, 1.05)
@@ -54,9 +52,9 @@ def _draw(ax: Axes, rows: Sequence[Mapping[str, Any]], corner: Corner) -> None:
     quiet(ax, "x")
 
 
-def _alt(rows: Sequence[Mapping[str, Any]], corner: Corner) -> str:
+def _alt(rows: Sequence[Mapping[str, Any]], case: Case) -> str:
     said = [
-        f"{agent_name(one['agent'])} {named(one, corner.pooled)}: {percent(one['relative']['iqm'])}"
+        f"{agent_name(one['agent'])} {named(one, case.pooled)}: {percent(one['relative']['iqm'])}"
         for one in rows
     ]
-    return f"Share of greedy's distance with {corner.label}. {'; '.join(said) or 'No trials yet'}."
+    return f"Share of greedy's distance with {case.label}. {'; '.join(said) or 'No trials yet'}."

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from app.experiments.claims.cases import Corner
+from app.experiments.claims.cases import Case
 from app.experiments.formatting import agent_name, gait_name, metres
 from app.experiments.report.drawing import (
     INK,
@@ -27,46 +27,46 @@ _POINTS = 0.28
 """How far points lie over and under their row."""
 
 
-def panels(places: Sequence[Corner]) -> list[Picture]:
-    """One picture a corner."""
+def panels(places: Sequence[Case]) -> list[Picture]:
+    """One picture a case."""
     made = []
     limits = _limits(places)
-    for number, corner in enumerate(places):
-        one = figure(*_size(corner))
-        draw(one.subplots(), corner, limits)
-        made.append(Picture(f"table1-{number + 1}", corner.label, _alt(corner), one))
+    for number, case in enumerate(places):
+        one = figure(*_size(case))
+        draw(one.subplots(), case, limits)
+        made.append(Picture(f"table1-{number + 1}", case.label, _alt(case), one))
     return made
 
 
-def sheet(places: Sequence[Corner]) -> Picture:
-    """All corners on one sheet, two beside each other."""
+def sheet(places: Sequence[Case]) -> Picture:
+    """All cases on one sheet, two beside each other."""
     columns = min(2, len(places))
     rows = -(-len(places) // columns)
     width, height = _size(places[0])
     one = figure(columns * width, rows * height + 0.5)
     axes = one.subplots(rows, columns, squeeze=False).ravel()
     limits = _limits(places)
-    for ax, corner in zip(axes, places, strict=False):
-        draw(ax, corner, limits)
-        ax.set_title(corner.label[:1].upper() + corner.label[1:], pad=10)
+    for ax, case in zip(axes, places, strict=False):
+        draw(ax, case, limits)
+        ax.set_title(case.label[:1].upper() + case.label[1:], pad=10)
     for ax in axes[len(places) :]:
         ax.set_visible(False)
     one.get_layout_engine().set(hspace=0.05, wspace=0.04)  # type: ignore[union-attr,call-arg]
     _key(one)
-    alt = " ".join(_alt(corner) for corner in places)
+    alt = " ".join(_alt(case) for case in places)
     return Picture("table1", "Total distance, every seed", alt, one)
 
 
-def draw(ax: Axes, corner: Corner, limits: tuple[float, float]) -> None:
+def draw(ax: Axes, case: Case, limits: tuple[float, float]) -> None:
     """A block of rows a gait, from top to bottom."""
-    learners = [one for one in corner.settings if one["role"] == "learner"]
+    learners = [one for one in case.settings if one["role"] == "learner"]
     colour = colours([one["agent"] for one in learners])
     y, ticks, names = 0.0, [], []
     for gait in dict.fromkeys(one["gait"] for one in learners):
         rows = [one for one in learners if one["gait"] == gait]
         ax.text(0, y, gait_name(gait), va="center", weight="bold", color=INK)
         bottom = y - _HEAD - _ROW * (len(rows) - 1)
-        _greedy(ax, corner.setting(gait, 0, "greedy"), y - 0.35, bottom - 0.45)
+        _greedy(ax, case.setting(gait, 0, "greedy"), y - 0.35, bottom - 0.45)
         for place, one in enumerate(rows):
             at = y - _HEAD - _ROW * place
             ticks.append(at)
@@ -120,25 +120,25 @@ def _key(one: Figure) -> None:
     one.legend(handles=key_lines(), loc="outside lower center", ncols=3, labelcolor=MUTED)
 
 
-def _size(corner: Corner) -> tuple[float, float]:
-    gaits = {one["gait"] for one in corner.settings}
-    rows = sum(one["role"] == "learner" for one in corner.settings)
+def _size(case: Case) -> tuple[float, float]:
+    gaits = {one["gait"] for one in case.settings}
+    rows = sum(one["role"] == "learner" for one in case.settings)
     return PANEL_IN[0], 0.8 + 0.3 * (rows + len(gaits) * (_HEAD + _GAP))
 
 
-def _limits(places: Sequence[Corner]) -> tuple[float, float]:
+def _limits(places: Sequence[Case]) -> tuple[float, float]:
     """One axis for all panels, from zero or what lies under it."""
-    totals = [s["total"] for corner in places for s in corner.settings if s["total"]]
+    totals = [s["total"] for case in places for s in case.settings if s["total"]]
     points = [point for one in totals for point in one["points_m"]] or [0.5]
     return min(0.0, *points) - 0.015, max(0.05, *points) * 1.04
 
 
-def _alt(corner: Corner) -> str:
+def _alt(case: Case) -> str:
     said = [
         f"{gait_name(one['gait'])}, {agent_name(one['agent'])} after {one['steps']:,} steps: "
         f"{one['n']} seeds from {metres(min(one['total']['points_m']))} to "
         f"{metres(max(one['total']['points_m']))}, middle {metres(one['total']['iqm_m'])}."
-        for one in corner.settings
+        for one in case.settings
         if one["role"] == "learner" and one["total"]
     ]
-    return f"Distances with {corner.label}. {' '.join(said) or 'No trials yet.'}"
+    return f"Distances with {case.label}. {' '.join(said) or 'No trials yet.'}"

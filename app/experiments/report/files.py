@@ -47,7 +47,7 @@ def write_report(
     for name, content in report_files(summary, results):
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        beside = path.with_name(f".{path.name}.part")
-        beside.write_bytes(content)
-        beside.replace(path)
+        compare_with_published = path.with_name(f".{path.name}.part")
+        compare_with_published.write_bytes(content)
+        compare_with_published.replace(path)
     return folder / PAGE

@@ -11,7 +11,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from app.experiments.claims.cases import Corner, corners
+from app.experiments.claims.cases import Case, cases
 from app.experiments.config import GRID, as_json, experiment_config
 from app.experiments.formatting import agent_name, counted, gait_name, listed
 from app.experiments.report import tables
@@ -36,7 +36,7 @@ _OPTIONS = {
 
 def page(summary: Mapping[str, Any]) -> str:
     """The whole page as HTML; every name in it is text."""
-    places = corners(summary)
+    places = cases(summary)
     shown: Mapping[str, Any] = {
         "summary": summary,
         "title": TITLES[summary["experiment"]],
@@ -44,7 +44,7 @@ def page(summary: Mapping[str, Any]) -> str:
         "lead": _lead(summary),
         "in_short": _in_short(summary["claims"]),
         "figures": [(heading, _inlined(group)) for heading, group in panels(summary)],
-        "corners": places,
+        "cases": places,
         "agents": _agents(places),
         "units": tables.UNITS,
         "table1": _of("table1", tables.table1, summary, places),
@@ -88,9 +88,9 @@ def _plain(value: Any) -> str | None:
 
 
 def _of(
-    experiment: str, table: Any, summary: Mapping[str, Any], places: Sequence[Corner]
+    experiment: str, table: Any, summary: Mapping[str, Any], places: Sequence[Case]
 ) -> list[Any]:
-    return [table(corner) for corner in places] if summary["experiment"] == experiment else []
+    return [table(case) for case in places] if summary["experiment"] == experiment else []
 
 
 def _lead(summary: Mapping[str, Any]) -> str:
@@ -135,9 +135,9 @@ def _in_short(claims: Sequence[Mapping[str, Any]]) -> str:
     return f"Of {counted(len(claims), 'claim')} of the paper, {listed(parts)}."
 
 
-def _agents(places: Sequence[Corner]) -> list[tuple[str, str]]:
+def _agents(places: Sequence[Case]) -> list[tuple[str, str]]:
     """Who learns, and in which colour."""
-    agents = dict.fromkeys(one["agent"] for corner in places for one in corner.curves)
+    agents = dict.fromkeys(one["agent"] for case in places for one in case.curves)
     shade = colours(list(agents))
     return [(agent_name(agent), shade[agent]) for agent in agents]
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from app.experiments.claims.cases import Corner
+from app.experiments.claims.cases import Case
 from app.experiments.formatting import agent_name, gait_name, number, percent, shares
 from app.experiments.narrative.sweep import named
 from app.experiments.published import COLUMNS, DISTANCES, published
@@ -39,13 +39,13 @@ class Cell(NamedTuple):
     """Whether the printed value lies outside the central 95 % of our seeds."""
 
 
-def table1(corner: Corner) -> dict[str, Any]:
-    """The paper's Table 1 for a corner: gaits, and in each a row a distance."""
-    steps = {one["steps"] for one in corner.settings if one["role"] == "learner"}
+def table1(case: Case) -> dict[str, Any]:
+    """The paper's Table 1 for a case: gaits, and in each a row a distance."""
+    steps = {one["steps"] for one in case.settings if one["role"] == "learner"}
     columns = [one for one in COLUMNS if one[1] in steps or not one[1]]
-    gaits = dict.fromkeys(one["gait"] for one in corner.settings)
+    gaits = dict.fromkeys(one["gait"] for one in case.settings)
     return {
-        "label": corner.label,
+        "label": case.label,
         "columns": [name for _, _, name in columns],
         "gaits": [
             {
@@ -53,7 +53,7 @@ def table1(corner: Corner) -> dict[str, Any]:
                 "rows": [
                     {
                         "name": kind.capitalize(),
-                        "cells": [_cell(corner, gait, kind, agent, n) for agent, n, _ in columns],
+                        "cells": [_cell(case, gait, kind, agent, n) for agent, n, _ in columns],
                     }
                     for kind in DISTANCES
                 ],
@@ -63,10 +63,10 @@ def table1(corner: Corner) -> dict[str, Any]:
     }
 
 
-def _cell(corner: Corner, gait: str, kind: str, agent: str, steps: int) -> Cell:
-    one, greedy = corner.setting(gait, steps, agent), corner.setting(gait, 0, "greedy")
+def _cell(case: Case, gait: str, kind: str, agent: str, steps: int) -> Cell:
+    one, greedy = case.setting(gait, steps, agent), case.setting(gait, 0, "greedy")
     found = one[kind] if one else None
-    half_m = next(s["half_side_m"] for s in corner.settings)
+    half_m = next(s["half_side_m"] for s in case.settings)
     papers = _papers(gait, kind, agent, steps)
     numbers = []
     for unit, by, papers_by in (
@@ -123,14 +123,14 @@ def _middle(one: Mapping[str, Any] | None, kind: str) -> float | None:
     return float(one[kind]["iqm_m"]) if one and one[kind] else None
 
 
-def curves(corner: Corner) -> dict[str, Any]:
+def curves(case: Case) -> dict[str, Any]:
     """Figure 4 in numbers: a row a curve, at a few places."""
-    shown = [one for one in corner.curves if one["steps"]]
+    shown = [one for one in case.curves if one["steps"]]
     steps = shown[0]["steps"] if shown else []
     chosen = [at for at in (250, 500, 1000, 2000) if at in steps] or steps
     several = len({one["agent"] for one in shown}) > 1
     return {
-        "label": corner.label,
+        "label": case.label,
         "columns": [f"{at:,} steps" for at in chosen] + ["Walk", "Greedy"],
         "rows": [
             {
@@ -153,16 +153,16 @@ def _at(curve: Mapping[str, Any], block: int) -> tuple[str, str]:
     return number(value), "" if low is None else _between(number(low), number(high))
 
 
-def sweep(corner: Corner) -> dict[str, Any]:
+def sweep(case: Case) -> dict[str, Any]:
     """Every combination over all gaits, the best first."""
-    found = [one for one in corner.pooled if one["relative"]]
+    found = [one for one in case.pooled if one["relative"]]
     best = sorted(found, key=lambda one: -float(one["relative"]["iqm"]))
     return {
-        "label": corner.label,
+        "label": case.label,
         "columns": ["Of greedy's distance", "Walk", "Ahead at the finish", "Seeds"],
         "rows": [
             {
-                "name": named(one, corner.pooled),
+                "name": named(one, case.pooled),
                 "cells": [
                     _share(one["relative"], "iqm"),
                     _share(one["walkers"]),

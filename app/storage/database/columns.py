@@ -10,7 +10,7 @@ from sqlalchemy.types import TypeDecorator
 _NON_FINITE = "$float"
 
 
-class Words(TypeDecorator[str]):
+class PortableText(TypeDecorator[str]):
     """Any text. What no database takes, NUL and halves of surrogate pairs, becomes a mark.
 
     It sorts by code point everywhere, so that ids are in the order in which they were made.
@@ -51,7 +51,7 @@ class UtcTime(TypeDecorator[datetime]):
         return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
 
 
-class Plain(TypeDecorator[Any]):
+class JsonWithNan(TypeDecorator[Any]):
     """Plain types as JSON; NaN and the infinities, which JSON lacks, come back as they were."""
 
     impl = JSON(none_as_null=True)
@@ -77,7 +77,7 @@ def _encoded(value: Any) -> Any:
 
 
 def decoded(value: Any) -> Any:
-    """Plain types of JSON as they were before `Plain` encoded them."""
+    """Plain types of JSON as they were before `JsonWithNan` encoded them."""
     if isinstance(value, dict):
         if value.keys() == {_NON_FINITE}:
             return float(value[_NON_FINITE])

@@ -12,7 +12,7 @@ from app.storage.database.migration import migrate
 from app.storage.database.ownership import Ownership, claim
 from app.storage.database.sqlite_file import begin_file, check_file
 from app.storage.database.store import SqlStore
-from app.storage.disk_space import Room
+from app.storage.disk_space import DiskSpace
 
 DATABASE_FILE = "hexapods.db"
 ARTIFACTS_FOLDER = "artifacts"
@@ -40,7 +40,7 @@ def open_store(
     """
     settings.prepare_data()
     with lock_folder(settings.data):
-        room = Room(settings.data, settings.quota_mb)
+        room = DiskSpace(settings.data, settings.quota_mb)
         with closing(_database(settings, room)) as database:
             ownership = Ownership(database, on_lost)
             with _locked(ownership):
@@ -73,7 +73,7 @@ def _tidy(store: SqlStore) -> None:
         )
 
 
-def _database(settings: Settings, room: Room) -> Database:
+def _database(settings: Settings, room: DiskSpace) -> Database:
     if settings.database_url is not None:
         return Database(postgresql_engine(settings.database_url))
     room.reserve()

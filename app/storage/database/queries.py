@@ -22,7 +22,7 @@ from sqlalchemy import (
     type_coerce,
 )
 
-from app.storage.database.columns import Plain, UtcTime, Words
+from app.storage.database.columns import JsonWithNan, PortableText, UtcTime
 from app.storage.database.schema import RUNS
 from app.storage.errors import NotFound
 
@@ -42,9 +42,9 @@ def _undecoded(column: ColumnElement[Any], name: str) -> ColumnElement[Any]:
     """A column as the database has it: JSON and times as text, text cut where it is too long."""
     if name == "id":
         return type_coerce(column, String).label(name)
-    if isinstance(column.type, Plain | UtcTime):
+    if isinstance(column.type, JsonWithNan | UtcTime):
         return func.substr(cast(column, String), 1, MAX_CELL + 1).label(name)
-    if isinstance(column.type, Words):
+    if isinstance(column.type, PortableText):
         return func.substr(type_coerce(column, String), 1, MAX_CELL + 1).label(name)
     return column.label(name)
 

@@ -17,13 +17,13 @@ from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
 from app.storage.database.schema import ABOUT
 from app.storage.database.sqlite_file import check_file
 from app.storage.database.store import SqlStore
-from app.storage.disk_space import Room
+from app.storage.disk_space import DiskSpace
 from app.storage.memory_store import MemoryStore
 from app.storage.store import RunStore
 
 
 @contextmanager
-def look_into_store(settings: Settings) -> Iterator[RunStore]:
+def open_read_only(settings: Settings) -> Iterator[RunStore]:
     """The store as it is, for who only reads; empty where no server has ever been.
 
     Raises:
@@ -41,7 +41,7 @@ def look_into_store(settings: Settings) -> Iterator[RunStore]:
             yield MemoryStore()
             return
         folder = settings.data / ARTIFACTS_FOLDER / found
-        yield SqlStore(database, ArtifactFiles(folder, Room(settings.data)))
+        yield SqlStore(database, ArtifactFiles(folder, DiskSpace(settings.data)))
 
 
 def _engine(settings: Settings) -> Engine | None:

@@ -1,4 +1,4 @@
-"""Claims: each verdict follows from the interval, in each corner and over all of them."""
+"""Claims: each verdict follows from the interval, in each case and over all of them."""
 
 from collections.abc import Callable
 
@@ -8,7 +8,7 @@ from app.experiments.plan import Setting
 from app.experiments.summary import summarise
 from tests.experiments.made import ROBOTS, around, claim, config, made_up, summary_of
 
-ODD = "left-right-vertical"
+ODD_GAIT = "left-right-vertical"
 Far = Callable[[Setting], Callable[[int], float]]
 
 
@@ -33,7 +33,7 @@ def everywhere(middle_m: float, spread_m: float = 0.02) -> Far:
         (everywhere(0.6), "does not hold"),
         (everywhere(0.5), "not established"),
         # One gait in which greedy loses is enough against "dominates".
-        (lambda one: around(0.6 if one.gait == ODD else 0.4), "does not hold"),
+        (lambda one: around(0.6 if one.gait == ODD_GAIT else 0.4), "does not hold"),
     ],
 )
 def test_greedy_dominates_in_total_distance(far: Far, verdict: str) -> None:
@@ -77,23 +77,25 @@ def test_two_step_is_slow_if_it_thinks_longer_than_it_walks() -> None:
     [(0.2, "holds"), (0.4, "does not hold"), (0.36, "not established")],
 )
 def test_the_odd_gait_is_slow_if_it_stays_behind_the_others(odd_m: float, verdict: str) -> None:
-    found = table1(lambda one: around(odd_m if one.gait == ODD else 0.4), name="odd-gait-slow")
+    found = table1(lambda one: around(odd_m if one.gait == ODD_GAIT else 0.4), name="odd-gait-slow")
     assert found["verdict"] == verdict
 
 
 def test_the_other_gaits_are_alike_unless_one_is_far_behind() -> None:
     def uneven(one: Setting) -> Callable[[int], float]:
-        return around({ODD: 0.1, "front-back-origin": 0.2}.get(one.gait, 0.4))
+        return around({ODD_GAIT: 0.1, "front-back-origin": 0.2}.get(one.gait, 0.4))
 
     assert (
-        table1(lambda one: around(0.1 if one.gait == ODD else 0.4), name="gaits-alike")["verdict"]
+        table1(lambda one: around(0.1 if one.gait == ODD_GAIT else 0.4), name="gaits-alike")[
+            "verdict"
+        ]
         == "holds"
     )
     assert table1(uneven, name="gaits-alike")["verdict"] == "does not hold"
 
 
 def test_without_all_four_gaits_nothing_is_said_of_the_odd_one() -> None:
-    summary = summary_of("table1", everywhere(0.3), seeds=6, gaits=("left-right-origin", ODD))
+    summary = summary_of("table1", everywhere(0.3), seeds=6, gaits=("left-right-origin", ODD_GAIT))
     assert "odd-gait-slow" not in [one["id"] for one in summary["claims"]]
 
 
@@ -104,7 +106,7 @@ def test_few_seeds_establish_nothing_of_a_learner(seeds: int) -> None:
     assert {one["verdict"] for one in learners} == {"not established"}
 
 
-def test_where_the_corners_disagree_it_depends_and_says_on_what() -> None:
+def test_where_the_cases_disagree_it_depends_and_says_on_what() -> None:
     summary = summary_of(
         "table1",
         lambda one: around(0.42 if one.training.observation == "measured" else 0.1),

@@ -7,7 +7,7 @@ import pytest
 from app.experiments.plan import Setting
 from tests.experiments.made import ROBOTS, around, summary_of
 
-ODD = "left-right-vertical"
+ODD_GAIT = "left-right-vertical"
 
 
 def told(summary: dict[str, list[dict[str, str]]], heading: str) -> str:
@@ -55,7 +55,7 @@ def test_two_readings_alike_are_not_told_apart() -> None:
 
 def test_the_odd_gait_is_explained_only_where_there_are_servos() -> None:
     def far(one: Setting) -> Callable[[int], float]:
-        return around(0.15 if one.gait == ODD and one.robot == "compliant" else 0.4)
+        return around(0.15 if one.gait == ODD_GAIT and one.robot == "compliant" else 0.4)
 
     heading = "Why LeftRight-Vertical is the odd one"
     assert heading not in headings(summary_of("table1", far, seeds=6))

@@ -13,7 +13,7 @@ from playwright.sync_api import Page
 
 from app.cli import experiment as experiment_command
 from app.cli import sweep as sweep_command
-from app.cli.trial_options import tried_from
+from app.cli.trial_options import trial_grid_from
 from app.domain.gait import GaitSpec
 from app.domain.robot import robot
 from app.experiments.config import GRID, ExperimentConfig, as_json, experiment_config, from_json
@@ -30,7 +30,7 @@ LRO = "left-right-origin"
 
 
 def small(experiment: str = "table1", **given: Any) -> tuple[Any, Results]:
-    """One gait in one corner, three seeds."""
+    """One gait in one case, three seeds."""
     only = {"gaits": (LRO,), "observations": ("measured",), "robots": ROBOTS[:1], **given}
     tried = config(experiment, seeds=3, **only)
     results = made_up(tried, lambda _: around(0.3))
@@ -155,7 +155,7 @@ def _understood(typed: list[str]) -> ExperimentConfig:
     grid = {n: getattr(options, n) for n in GRID} if options.command == "sweep" else {}
     agents = experiment_command.agents_from(options.agent)
     name = "sweep" if options.command == "sweep" else options.experiment
-    return experiment_config(name, {**tried_from(options), **grid, "agents": agents})
+    return experiment_config(name, {**trial_grid_from(options), **grid, "agents": agents})
 
 
 @pytest.fixture

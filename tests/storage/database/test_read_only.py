@@ -9,7 +9,7 @@ from sqlalchemy import create_engine, text
 from app.domain.errors import InvalidInput
 from app.settings import Settings
 from app.storage.database.opening import DATABASE_FILE
-from app.storage.database.read_only import look_into_store
+from app.storage.database.read_only import open_read_only
 from app.storage.errors import NotFound, StorageFailed
 from app.storage.store import RUNNING, TABLE
 from tests.storage.stores import BACKENDS, database_url, opened, training
@@ -27,7 +27,7 @@ def test_a_store_is_looked_into_while_its_server_runs(settings: Settings) -> Non
         store.create(training("a", state="running"), training("b"))
         store.put_artifact("a", TABLE, b"learned")
         store.append_evaluations("a", [{"step": 5, "distance_m": 0.5, "epsilon": 0.5}])
-        with look_into_store(settings) as seen, look_into_store(settings) as seen_too:
+        with open_read_only(settings) as seen, open_read_only(settings) as seen_too:
             assert [run.id for run in seen.list().items] == ["b", "a"]
             # Nobody has taken its server for dead.
             assert seen_too.get("a").state == "running"
@@ -35,14 +35,14 @@ def test_a_store_is_looked_into_while_its_server_runs(settings: Settings) -> Non
             assert seen.evaluations("a") == store.evaluations("a")
             store.change("a", RUNNING, "finished")
             assert seen.get("a").state == "finished"
-    with look_into_store(settings) as seen:
+    with open_read_only(settings) as seen:
         assert seen.get("b").state == "queued"
 
 
 def test_nothing_can_be_changed(settings: Settings) -> None:
     with opened(settings.data, settings.database_url) as store:
         store.create(training("a", state="finished"))
-        with look_into_store(settings) as seen:
+        with open_read_only(settings) as seen:
             for change in (
                 lambda: seen.delete("a"),
                 lambda: seen.create(training("b")),
@@ -54,7 +54,7 @@ def test_nothing_can_be_changed(settings: Settings) -> None:
 
 
 def test_where_no_server_has_been_there_is_nothing(settings: Settings) -> None:
-    with look_into_store(settings) as seen:
+    with open_read_only(settings) as seen:
         assert seen.list().items == []
         with pytest.raises(NotFound):
             seen.get("a")
@@ -68,12 +68,12 @@ def test_another_versions_database_is_not_guessed_at(tmp_path: Path) -> None:
     for version, said in (("9999", "newer version"), ("0000", "newer version")):
         with engine.begin() as connection:
             connection.execute(text(f"UPDATE alembic_version SET version_num = '{version}'"))
-        with pytest.raises(InvalidInput, match=said), look_into_store(Settings(data=tmp_path)):
+        with pytest.raises(InvalidInput, match=said), open_read_only(Settings(data=tmp_path)):
             pass
     engine.dispose()
 
 
 def test_a_file_that_is_no_database_is_refused(tmp_path: Path) -> None:
     (tmp_path / DATABASE_FILE).write_text("milk" * 1000)
-    with pytest.raises(InvalidInput, match="damaged"), look_into_store(Settings(data=tmp_path)):
+    with pytest.raises(InvalidInput, match="damaged"), open_read_only(Settings(data=tmp_path)):
         pass

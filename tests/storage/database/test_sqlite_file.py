@@ -11,7 +11,7 @@ from app.domain.errors import DamagedFile
 from app.settings import Settings
 from app.storage.database import sqlite_file
 from app.storage.database.opening import DATABASE_FILE
-from app.storage.database.read_only import look_into_store
+from app.storage.database.read_only import open_read_only
 from tests.cli.running import hexapods
 from tests.storage.stores import opened, training
 
@@ -20,7 +20,7 @@ def refused(folder: Path, names: str) -> None:
     before = (folder / DATABASE_FILE).read_bytes()
     with pytest.raises(DamagedFile, match=names), opened(folder, None):
         pass
-    with pytest.raises(DamagedFile, match=names), look_into_store(Settings(data=folder)):
+    with pytest.raises(DamagedFile, match=names), open_read_only(Settings(data=folder)):
         pass
     assert (folder / DATABASE_FILE).read_bytes() == before
 
