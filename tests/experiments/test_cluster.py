@@ -69,12 +69,12 @@ def test_ones_own_cluster_is_closed_to_others_and_leaves_nothing(
 def test_workers_end_with_whoever_started_them(tmp_path: Path) -> None:
     script = tmp_path / "endless.py"
     script.write_text(
-        "from app.experiments.cluster import Where\n"
+        "from app.experiments.cluster import ClusterSpec\n"
         "from app.experiments.engine import run_trials\n"
         "from tests.experiments.clusters import small, trials_of\n"
         "if __name__ == '__main__':\n"
         "    trials = trials_of(small(seeds=1)) + trials_of(small(seeds=9, steps=9_000_000))\n"
-        "    for outcome in run_trials(trials, Where(workers=2)):\n"
+        "    for outcome in run_trials(trials, ClusterSpec(workers=2)):\n"
         "        print(outcome.key, flush=True)\n",
         "utf-8",
     )
