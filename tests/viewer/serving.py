@@ -17,6 +17,7 @@ from starlette.routing import BaseRoute
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
+from app.server import GRACE_S
 from app.viewer import wire
 from app.viewer.hub import Hub
 from app.viewer.in_process import InProcessViser
@@ -200,7 +201,13 @@ def serving(hub: Hub, *, more_routes: Sequence[BaseRoute] = (), **config: Any) -
             yield
 
     app = Starlette(routes=[*viewer_routes(hub), *more_routes], lifespan=lifespan)
-    options = {**websocket_options(), "log_level": "warning", **config}
+    # A client that was stopped in a closing handshake must not keep the server up.
+    options = {
+        **websocket_options(),
+        "log_level": "warning",
+        "timeout_graceful_shutdown": GRACE_S,
+        **config,
+    }
     server = uvicorn.Server(uvicorn.Config(app, host="127.0.0.1", port=0, **options))
     thread = threading.Thread(target=server.run, daemon=True)
     thread.start()
