@@ -71,8 +71,12 @@ function Older({ count }) {
     { training: "", race: "", experiment: "" }
   ));
   const [note, setNote] = useState("");
+  const [isLoading, setIsLoading] = useState(false);
   if (count < SNAPSHOT_RUNS || Object.values(cursors).every((cursor) => cursor === null)) return null;
   const load = async () => {
+    // A second click would request the same pages again.
+    if (isLoading) return;
+    setIsLoading(true);
     setNote("");
     try {
       const next = { ...cursors };
@@ -83,11 +87,14 @@ function Older({ count }) {
       setCursors(next);
     } catch (error) {
       setNote(/** @type {RequestError} */ (error).message);
+    } finally {
+      setIsLoading(false);
     }
   };
   return html`
     <div class="older">
-      <button class="secondary" onClick=${load}>Show older runs</button><p role="alert">${note}</p>
+      <button class="secondary" aria-disabled=${isLoading ? "true" : undefined} onClick=${load}>Show older runs</button>
+      <p role="alert">${note}</p>
     </div>
   `;
 }
