@@ -35,7 +35,7 @@ class ThreeStep(LookAhead):
         super().__init__(expand, depth=3)
 
 
-class JsonWithNan(Restless):
+class Plain(Restless):
     """Writes its action as a plain tuple of NumPy numbers, which is as good."""
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:

@@ -2,12 +2,73 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from annotated_types import Ge, Gt, Le, Lt
 
 from app.agents.protocol import AgentState, Problem, Transition
 from app.agents.q_table import QTable
+from app.domain.settings import Setting
 from app.domain.types import Action, Cells, FloatArray
+
+Alpha = Annotated[
+    float,
+    Gt(0),
+    Le(1),
+    Setting(
+        title="Learning rate",
+        symbol="α",
+        help="How much one experience counts against all before.",
+        live=True,
+        examples=(0.1, 0.3, 0.6),
+    ),
+]
+Gamma = Annotated[
+    float,
+    Ge(0),
+    Lt(1),
+    Setting(
+        title="Discount",
+        symbol="γ",
+        help="How much the steps to come count against the next one.",
+        live=True,
+        examples=(0.5, 0.9),
+    ),
+]
+Epsilon = Annotated[
+    float,
+    Ge(0),
+    Le(1),
+    Setting(
+        title="Exploration now",
+        symbol="ε",
+        help="Share of random steps from now on, in place of the falling schedule.",
+        live=True,
+    ),
+]
+EpsilonStart = Annotated[
+    float,
+    Ge(0),
+    Le(1),
+    Setting(
+        title="Exploration, first episode",
+        symbol="ε",
+        help="Share of random steps at the beginning of practice.",
+        examples=(0.5, 1),
+    ),
+]
+EpsilonEnd = Annotated[
+    float,
+    Ge(0),
+    Le(1),
+    Setting(
+        title="Exploration, last episode",
+        symbol="ε",
+        help="Share of random steps at the end of practice.",
+        examples=(0, 0.1),
+    ),
+]
 
 
 @dataclass(frozen=True)
@@ -31,8 +92,8 @@ class QLearning:
         rng: decides when to explore, where to, and between equals.
         problem: sizes the table.
         explore: if False the policy is greedy in the table, whatever the schedule says.
-        alpha: learning rate in (0, 1].
-        gamma: discount in [0, 1).
+        alpha: learning rate.
+        gamma: discount.
         epsilon_start, epsilon_end: of the schedule over the episodes.
         steps: how many steps it will learn, which gives the number of episodes.
         steps_per_episode: ε stays the same so long.
@@ -44,10 +105,10 @@ class QLearning:
         problem: Problem,
         *,
         explore: bool = True,
-        alpha: float = 0.3,
-        gamma: float = 0.9,
-        epsilon_start: float = 1.0,
-        epsilon_end: float = 0.0,
+        alpha: Alpha = 0.3,
+        gamma: Gamma = 0.9,
+        epsilon_start: EpsilonStart = 1.0,
+        epsilon_end: EpsilonEnd = 0.0,
         steps: int = 500,
         steps_per_episode: int = 50,
     ) -> None:
@@ -90,9 +151,9 @@ class QLearning:
 
     def tune(
         self,
-        alpha: float | None = None,
-        gamma: float | None = None,
-        epsilon: float | None = None,
+        alpha: Alpha | None = None,
+        gamma: Gamma | None = None,
+        epsilon: Epsilon | None = None,
     ) -> None:
         """Change rates from the next step on; a given epsilon replaces the schedule."""
         self._alpha = self._alpha if alpha is None else alpha

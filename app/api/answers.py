@@ -452,6 +452,22 @@ class DefaultsView(Answer):
     what_if: dict[str, int]
 
 
+class SettingOption(Answer):
+    """A setting as it is declared: labels and limits of its control."""
+
+    title: str
+    symbol: str | None
+    unit: str | None
+    help: str
+    valid: str = Field(description="the valid values, in words")
+    minimum: float | None
+    maximum: float | None
+    excludes_minimum: bool = Field(description="whether the minimum itself is not valid")
+    excludes_maximum: bool = Field(description="whether the maximum itself is not valid")
+    is_whole: bool
+    is_live: bool = Field(description="whether it may change while a training runs")
+
+
 class OptionsView(Answer):
     """All that a form needs."""
 
@@ -464,6 +480,7 @@ class OptionsView(Answer):
     clocks: list[Described]
     experiments: list[ExperimentOption]
     defaults: DefaultsView
+    settings: dict[str, SettingOption]
     limits: dict[str, tuple[float | None, float | None]]
     help: dict[str, str]
 

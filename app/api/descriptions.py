@@ -4,13 +4,13 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from app.domain.gait import NAMED_GAITS
-from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS
+from app.domain.settings import DeclaredSetting, declared_fields
 from app.domain.text import NAMES
 from app.experiments.config import EXPERIMENTS, MAX_SEEDS
 from app.runs.clocks import CLOCKS
-from app.runs.config import MAX_LANES, MAX_STEPS, SIMULATORS
+from app.runs.config import CHANGEABLE, MAX_LANES, SIMULATORS, TrainingConfig
 from app.storage.store import STATES
 
 MAX_PAGE = 100
@@ -20,31 +20,20 @@ def _one_of(names: Iterable[str]) -> str:
     return f"one of {', '.join(names)}"
 
 
-_STEPS = f"a whole number from 1 to {MAX_STEPS:,}"
+SETTINGS: Mapping[str, DeclaredSetting] = {**declared_fields(TrainingConfig), **CHANGEABLE}
+"""Every setting of a training, by the name of its field."""
 
 VALID: Mapping[str, str] = {
+    **{name: setting.valid for name, setting in SETTINGS.items()},
     "name": NAMES,
     "gait": f"{_one_of(NAMED_GAITS)}, or {{right_leg, left_leg, and symmetry or pairs}}",
     "right_leg": "a leg's number, from 1 on",
     "left_leg": "a leg's number, from 1 on",
     "symmetry": "origin or vertical",
     "pairs": "a list of [leader, partner], two legs' numbers each",
-    "steps": _STEPS,
-    "seed": "a whole number, 0 or more",
     "observation": _one_of(OBSERVATIONS),
-    "alpha": "a number over 0 and at most 1",
-    "gamma": "a number from 0 to under 1",
-    "epsilon": "a number from 0 to 1",
-    "epsilon_start": "a number from 0 to 1",
-    "epsilon_end": "a number from 0 to 1",
-    "steps_per_episode": _STEPS,
-    "divisions": f"a whole number from {MIN_DIVISIONS} to {MAX_DIVISIONS}",
-    "grid_side_m": f"a number of metres from {MIN_SIDE_M} to {MAX_SIDE_M:g}, that every leg can "
-    "reach",
     "robot": f"{_one_of(PRESETS)}, or an object that says what differs from a preset",
     "simulator": _one_of(SIMULATORS),
-    "evaluate_every": f"a whole number from 0 (never) to {MAX_STEPS:,}",
-    "pace": "max, or a number from 0.01 to 1000 times real time",
     "agent": "the name of an agent; GET /api/v1/options lists them",
     "continue_from": "the id of a training that is finished or stopped",
     "training_id": "the id of a training that is finished or stopped",
@@ -90,6 +79,8 @@ def _sentence(field: str, error: Mapping[str, Any], place: list[Any]) -> str:
     if error["type"] in ("unknown_field", "says_all"):
         where = f"{field}: " if field else ""
         return f"{where}{error['msg']}."
+    if error["type"] == "setting":
+        return f"{field} {error['msg']}."
     if error["type"] == "json_invalid":
         return "The request's body is not valid JSON."
     if not named:

@@ -13,13 +13,15 @@ from app.api.fields import (
     Alpha,
     Body,
     Divisions,
-    Epsilon,
+    EpsilonEnd,
+    EpsilonStart,
     Gamma,
+    GridSide,
     Name,
     RobotBody,
     Seed,
-    Side,
     Steps,
+    StepsPerEpisode,
 )
 from app.api.schemas import Gait, GaitBody, check_agent
 from app.domain.observation import Observation
@@ -85,11 +87,11 @@ class ExperimentBody(Body):
     steps: Some[Steps] = None
     alpha: Some[Alpha] = None
     gamma: Some[Gamma] = None
-    epsilon_start: Some[Epsilon] = None
-    epsilon_end: Some[Epsilon] = None
-    steps_per_episode: Some[Steps] = None
+    epsilon_start: Some[EpsilonStart] = None
+    epsilon_end: Some[EpsilonEnd] = None
+    steps_per_episode: Some[StepsPerEpisode] = None
     divisions: Some[Divisions] = None
-    grid_side_m: Some[Side] = None
+    grid_side_m: Some[GridSide] = None
     workers: Annotated[
         int | None,
         Field(strict=True, ge=1, le=MAX_WORKERS, description=VALID["workers"]),

@@ -8,17 +8,22 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ValidationError,
     WithJsonSchema,
     model_validator,
 )
-from pydantic_core import PydanticCustomError
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import PydanticCustomError, core_schema
 
-from app.api.descriptions import VALID
+from app.agents import q_learning
+from app.api.descriptions import SETTINGS, VALID
 from app.domain.errors import InvalidInput, UnknownName
-from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M
 from app.domain.robot import AZIMUTH, MAX_LEGS, MIN_LEGS, MOUNT_RADIUS, PRESETS, RANGES
+from app.domain.settings import DeclaredSetting, declared_fields
 from app.domain.text import MAX_NAME, check_name, invisible_ranges
-from app.runs.config import MAX_STEPS
+from app.runs import config
 
 
 def _name(text: str) -> str:
@@ -44,6 +49,35 @@ def number(**limits: Any) -> Any:
     return Field(strict=True, allow_inf_nan=False, **limits)
 
 
+_whole = Field(strict=True)
+
+
+class _Valid:
+    """Describes a setting's field by its declaration: in the schema, and where it is refused."""
+
+    def __init__(self, setting: DeclaredSetting) -> None:
+        self._setting = setting
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_wrap_validator_function(self._validate, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        about = self._setting.about
+        described = f"{about.help} It must be {self._setting.valid}."
+        return {**handler(schema), "title": about.title, "description": described}
+
+    def _validate(self, value: Any, handler: core_schema.ValidatorFunctionWrapHandler) -> Any:
+        try:
+            return handler(value)
+        except ValidationError as error:
+            valid = {"valid": self._setting.valid}
+            raise PydanticCustomError("setting", "must be {valid}", valid) from error
+
+
 def _integral(value: Any) -> Any:
     """To JSON 2.0 is the same number as 2."""
     return int(value) if isinstance(value, float) and value.is_integer() else value
@@ -61,14 +95,25 @@ Name = Annotated[
     AfterValidator(_name),
 ]
 RunId = Annotated[str, Field(min_length=1, max_length=64)]
-Steps = Annotated[int, Field(strict=True, ge=1, le=MAX_STEPS, description=VALID["steps"]), INTEGRAL]
-Seed = Annotated[int, Field(strict=True, ge=0, description=VALID["seed"]), INTEGRAL]
-Alpha = Annotated[float, number(gt=0, le=1, description=VALID["alpha"])]
-Gamma = Annotated[float, number(ge=0, lt=1, description=VALID["gamma"])]
-Epsilon = Annotated[float, number(ge=0, le=1, description=VALID["epsilon"])]
-Divisions = Annotated[int, Field(strict=True, ge=MIN_DIVISIONS, le=MAX_DIVISIONS), INTEGRAL]
-Side = Annotated[float, number(ge=MIN_SIDE_M, le=MAX_SIDE_M)]
-Pace = Literal["max"] | Annotated[float, number(ge=0.01, le=1000)]
+
+RACE_STEPS = declared_fields(config.RaceConfig)["steps"]
+Steps = Annotated[config.PracticeSteps, _whole, INTEGRAL, _Valid(SETTINGS["steps"])]
+RaceSteps = Annotated[config.RaceSteps, _whole, INTEGRAL, _Valid(RACE_STEPS)]
+StepsPerEpisode = Annotated[
+    config.StepsPerEpisode, _whole, INTEGRAL, _Valid(SETTINGS["steps_per_episode"])
+]
+EvaluateEvery = Annotated[
+    config.EvaluateEvery, _whole, INTEGRAL, _Valid(SETTINGS["evaluate_every"])
+]
+Seed = Annotated[config.Seed, _whole, INTEGRAL, _Valid(SETTINGS["seed"])]
+Divisions = Annotated[config.Divisions, _whole, INTEGRAL, _Valid(SETTINGS["divisions"])]
+GridSide = Annotated[config.GridSide, number(), _Valid(SETTINGS["grid_side_m"])]
+Alpha = Annotated[q_learning.Alpha, number(), _Valid(SETTINGS["alpha"])]
+Gamma = Annotated[q_learning.Gamma, number(), _Valid(SETTINGS["gamma"])]
+Epsilon = Annotated[q_learning.Epsilon, number(), _Valid(SETTINGS["epsilon"])]
+EpsilonStart = Annotated[q_learning.EpsilonStart, number(), _Valid(SETTINGS["epsilon_start"])]
+EpsilonEnd = Annotated[q_learning.EpsilonEnd, number(), _Valid(SETTINGS["epsilon_end"])]
+Pace = Annotated[Literal["max"] | Annotated[config.PaceFactor, number()], _Valid(SETTINGS["pace"])]
 
 
 def _numbers(ranges: dict[str, tuple[float, float]]) -> dict[str, Any]:

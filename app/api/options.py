@@ -10,9 +10,11 @@ from app import __version__
 from app.agents.registry import learns
 from app.api.answers import OptionsView
 from app.api.deps import ServicesDep
+from app.api.descriptions import SETTINGS
 from app.domain.gait import NAMED_GAITS, resolve
-from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M
 from app.domain.robot import PRESETS, Robot, as_mapping
+from app.domain.settings import DeclaredSetting, declared_fields
+from app.domain.text import MAX_NAME
 from app.experiments.config import (
     EXPERIMENTS,
     GRID,
@@ -25,8 +27,8 @@ from app.experiments.config import as_json as experiment_as_json
 from app.jobs.submissions import MAX_SETTINGS, TITLES
 from app.runs.config import (
     MAX_LANES,
-    MAX_STEPS,
     RACE_STEPS,
+    RaceConfig,
     TrainingConfig,
     as_json,
 )
@@ -144,27 +146,16 @@ _SIMULATORS = {
 }
 _HELP = {
     "gait": "Which way is forward, and which two legs move together.",
-    "steps": "How many steps it practises; the paper uses 500 and 1,000.",
-    "race_steps": "How many steps each robot has in the race.",
     "what_if_steps": "How many steps of practice a what-if may have.",
-    "seed": "Everything that is random follows from this number: the same seed, the same run.",
     "observation": "How the robot knows where its feet are.",
-    "alpha": "Learning rate: how much one experience counts against all before.",
-    "gamma": "Discount: how much the steps to come count against the next one.",
-    "epsilon": "Share of random steps from now on, in place of the falling schedule.",
-    "epsilon_start": "Share of random steps at the beginning of practice.",
-    "epsilon_end": "Share of random steps at the end of practice.",
-    "steps_per_episode": "The share of random steps falls after every so many steps.",
-    "evaluate_every": "After every so many steps it shows what it can; 0 is never.",
-    "pace": "How fast it practises: max, or a number of times real time.",
     "robot": "Which robot walks; it differs in servos and friction.",
     "simulator": "What computes the walking.",
-    "divisions": "Points along each side of the foot grid: more choices, more to learn.",
-    "grid_side_m": "Side of the square in which each foot may be put, in metres.",
-    "lanes": "Who races.",
+    "lanes": "Which agents race.",
     "clock": "What thinking costs in the race; it can change who wins.",
     "name": "What the run is called in the list.",
 }
+_SETTINGS = {**SETTINGS, "race_steps": declared_fields(RaceConfig)["steps"]}
+"""Every declared setting, by the name of the form's field."""
 
 
 def catalogue(agents: Collection[str]) -> dict[str, Any]:
@@ -177,7 +168,7 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
         "version": __version__,
         "gaits": [_gait(name) for name in NAMED_GAITS],
         "robots": [
-            {"name": name, "description": _ROBOTS[name], "robot": as_mapping(robot)}
+            {"name": name, "description": _ROBOTS.get(name, ""), "robot": as_mapping(robot)}
             for name, robot in PRESETS.items()
         ],
         "agents": _agents(agents),
@@ -190,8 +181,9 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
             "race": _race_defaults(),
             "what_if": {"seeds": WHAT_IF_SEEDS},
         },
+        "settings": {name: _setting(setting) for name, setting in _SETTINGS.items()},
         "limits": _limits() | experiment_limits(),
-        "help": _HELP | HELP,
+        "help": {name: setting.about.help for name, setting in _SETTINGS.items()} | _HELP | HELP,
     }
 
 
@@ -241,23 +233,26 @@ def _race_defaults() -> dict[str, Any]:
 
 
 def _limits() -> dict[str, list[float | None]]:
-    steps: list[float | None] = [1, MAX_STEPS]
-    unit: list[float | None] = [0, 1]
     return {
-        "steps": steps,
-        "race_steps": [1, 10_000],
+        **{n: [one.low, one.high] for n, one in _SETTINGS.items() if one.is_number},
         "what_if_steps": [1, MAX_WHAT_IF_STEPS],
-        "seed": [0, None],
-        "alpha": unit,
-        "gamma": unit,
-        "epsilon": unit,
-        "epsilon_start": unit,
-        "epsilon_end": unit,
-        "steps_per_episode": steps,
-        "evaluate_every": [0, MAX_STEPS],
-        "pace": [0.01, 1000],
-        "divisions": [MIN_DIVISIONS, MAX_DIVISIONS],
-        "grid_side_m": [MIN_SIDE_M, MAX_SIDE_M],
         "lanes": [1, MAX_LANES],
-        "name": [0, 100],
+        "name": [0, MAX_NAME],
+    }
+
+
+def _setting(setting: DeclaredSetting) -> dict[str, Any]:
+    about = setting.about
+    return {
+        "title": about.title,
+        "symbol": about.symbol,
+        "unit": about.unit,
+        "help": about.help,
+        "valid": setting.valid,
+        "minimum": setting.low,
+        "maximum": setting.high,
+        "excludes_minimum": setting.excludes_low,
+        "excludes_maximum": setting.excludes_high,
+        "is_whole": setting.is_whole,
+        "is_live": about.live,
     }

@@ -13,14 +13,19 @@ from app.api.fields import (
     Body,
     Divisions,
     Epsilon,
+    EpsilonEnd,
+    EpsilonStart,
+    EvaluateEvery,
     Gamma,
+    GridSide,
     Name,
     Pace,
+    RaceSteps,
     RobotBody,
     RunId,
     Seed,
-    Side,
     Steps,
+    StepsPerEpisode,
     number,
 )
 from app.domain.errors import InvalidInput, UnknownName
@@ -30,8 +35,8 @@ from app.domain.robot import MAX_LEGS, robot
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
 from app.runs.clocks import Clock
 from app.runs.config import (
+    CHANGEABLE,
     MAX_LANES,
-    MAX_STEPS,
     RACE_STEPS,
     SimulatorName,
     TrainingConfig,
@@ -86,7 +91,7 @@ class WalkBody(Body):
     robot: RobotBody = "stiff"
     simulator: SimulatorName = WalkingProblem.simulator
     divisions: Divisions = WalkingProblem.divisions
-    grid_side_m: Side = WalkingProblem.grid_side_m
+    grid_side_m: GridSide = WalkingProblem.grid_side_m
 
     def walk(self) -> WalkingProblem:
         """As the loops know it.
@@ -112,12 +117,10 @@ class PracticeBody(Body):
     observation: Observation = TrainingConfig.observation
     alpha: Alpha = TrainingConfig.alpha
     gamma: Gamma = TrainingConfig.gamma
-    epsilon_start: Epsilon = TrainingConfig.epsilon_start
-    epsilon_end: Epsilon = TrainingConfig.epsilon_end
-    steps_per_episode: Steps = TrainingConfig.steps_per_episode
-    evaluate_every: Annotated[int, Field(strict=True, ge=0, le=MAX_STEPS), INTEGRAL] = (
-        TrainingConfig.evaluate_every
-    )
+    epsilon_start: EpsilonStart = TrainingConfig.epsilon_start
+    epsilon_end: EpsilonEnd = TrainingConfig.epsilon_end
+    steps_per_episode: StepsPerEpisode = TrainingConfig.steps_per_episode
+    evaluate_every: EvaluateEvery = TrainingConfig.evaluate_every
     pace: Pace = TrainingConfig.pace
     continue_from: Annotated[RunId | None, Field(description=VALID["continue_from"])] = None
 
@@ -179,7 +182,7 @@ class RaceBody(WalkBody):
     """A race, by default of the paper's three lanes; the learner practises first."""
 
     name: Name | None = None
-    steps: Steps = RACE_STEPS
+    steps: RaceSteps = RACE_STEPS
     seed: Seed = 0
     lanes: Annotated[
         list[LaneBody], Field(min_length=1, max_length=MAX_LANES, description=VALID["lanes"])
@@ -203,7 +206,7 @@ class ChangeBody(Body):
         json_schema_extra={
             "anyOf": [
                 {"required": [name], "properties": {name: {"not": {"type": "null"}}}}
-                for name in ("pace", "alpha", "gamma", "epsilon")
+                for name in CHANGEABLE
             ]
         }
     )
@@ -216,7 +219,7 @@ class ChangeBody(Body):
     @model_validator(mode="after")
     def _say_something(self) -> "ChangeBody":
         if not self.changes():
-            raise PydanticCustomError("says_all", "Give one of pace, alpha, gamma, epsilon")
+            raise PydanticCustomError("says_all", f"Give one of {', '.join(CHANGEABLE)}")
         return self
 
     def changes(self) -> dict[str, Any]:

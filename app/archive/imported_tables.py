@@ -9,7 +9,7 @@ import numpy as np
 from app.archive.untrusted_input import Metres, Name, Share, Step
 from app.domain.errors import DamagedFile, HexapodError
 from app.runs import seeding, tables
-from app.runs.config import TrainingConfig, check_pace, check_rates, config_from_json
+from app.runs.config import CHANGEABLE, TrainingConfig, config_from_json
 from app.runs.tables import Checkpoint
 
 
@@ -62,14 +62,11 @@ def check_change(change: Mapping[str, Any]) -> None:
     Raises:
         ValueError, InvalidInput: if it is none.
     """
-    rates = {"alpha": 1.0, "gamma": 0.0, "epsilon": 0.0}
-    if set(change) - {"step", "pace", *rates}:
-        raise ValueError(f"{', '.join(change)} is no change of rates or pace")
+    if unknown := set(change) - {"step", *CHANGEABLE}:
+        raise ValueError(f"{', '.join(unknown)} cannot change while a training runs")
     msgspec.convert(change["step"], Step)
-    if "pace" in change:
-        check_pace(change["pace"])
-    given = [msgspec.convert(change.get(name, rate), float) for name, rate in rates.items()]
-    check_rates(*given)
+    for name in set(change) - {"step"}:
+        CHANGEABLE[name].check(change[name])
 
 
 def _training(shown: Any, said: str) -> TrainingConfig:
@@ -92,6 +89,10 @@ def _check_agent(checkpoint: Checkpoint) -> None:
         return
     tables.table_of(checkpoint)
     alpha, gamma, epsilon = state["rates"].tolist()
-    check_rates(alpha, gamma, 0.0 if np.isnan(epsilon) else epsilon)
+    CHANGEABLE["alpha"].check(alpha)
+    CHANGEABLE["gamma"].check(gamma)
+    # NaN as long as the schedule is in force.
+    if not np.isnan(epsilon):
+        CHANGEABLE["epsilon"].check(epsilon)
     if state["learned"].dtype.kind != "i" or state["learned"][0] < 0:
         raise ValueError("it has learned for less than no step")

@@ -3,22 +3,22 @@
 import argparse
 import json
 import tomllib
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from app.domain.errors import InvalidInput
 from app.domain.gait import NAMED_GAITS, GaitSpec
-from app.domain.grid import FootGrid
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS, Robot, robot
-from app.runs.config import SIMULATORS, gait_from_json
+from app.domain.settings import DeclaredSetting, Value, declared_fields
+from app.runs.config import SIMULATORS, WalkingProblem, gait_from_json
 
 _GAIT_FIELDS = ("right_leg", "left_leg", "symmetry", "pairs")
 
 
 def add_walk_options(parser: argparse.ArgumentParser) -> None:
     """The walking problem: gait, robot, simulator, foot grid."""
-    grid = FootGrid()
     parser.add_argument(
         "--gait",
         required=True,
@@ -31,10 +31,40 @@ def add_walk_options(parser: argparse.ArgumentParser) -> None:
         help=f"{', '.join(PRESETS)}, a TOML file, or JSON of what differs from a preset",
     )
     parser.add_argument("--simulator", default="mujoco", help=" or ".join(SIMULATORS))
-    parser.add_argument("--divisions", default=grid.divisions, type=whole, help="of the foot grid")
-    parser.add_argument(
-        "--grid-side-m", default=grid.side_m, type=number, help="side of the foot grid, in metres"
-    )
+    add_settings(parser, declared_fields(WalkingProblem))
+
+
+def add_settings(
+    parser: argparse.ArgumentParser,
+    settings: Mapping[str, DeclaredSetting],
+    names: Iterable[str] | None = None,
+) -> None:
+    """Add an option for each declared setting, or for those that are named."""
+    for name in settings if names is None else names:
+        setting = settings[name]
+        about = f"{setting.about.help} Valid: {setting.valid} (default {setting.default})"
+        symbol = f"{setting.about.symbol}: " if setting.about.symbol else ""
+        parser.add_argument(
+            flag(name), type=parser_of(setting), default=setting.default, help=symbol + about
+        )
+
+
+def flag(name: str) -> str:
+    """The option of a setting."""
+    return f"--{name.replace('_', '-')}"
+
+
+def parser_of(setting: DeclaredSetting) -> Callable[[str], Value]:
+    """Parses a setting's value for argparse, which reports what is valid."""
+
+    def parse(text: str) -> Value:
+        try:
+            return setting.parse(text)
+        except InvalidInput as error:
+            message = f"must be {setting.valid}, not {text!r}"
+            raise argparse.ArgumentTypeError(message) from error
+
+    return parse
 
 
 def add_observation(parser: argparse.ArgumentParser, help_text: str) -> None:
@@ -98,14 +128,6 @@ def whole(text: str) -> int:
         return int(text)
     except ValueError:
         raise argparse.ArgumentTypeError(f"must be a whole number, not {text!r}") from None
-
-
-def number(text: str) -> float:
-    """A number, or a clear refusal."""
-    try:
-        return float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"must be a number, not {text!r}") from None
 
 
 def _json(option: str, text: str) -> dict[str, Any]:

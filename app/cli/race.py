@@ -8,11 +8,12 @@ from typing import Any
 
 from app.assembly import build_walkers
 from app.cli.files import read_table
-from app.cli.options import add_observation, add_walk_options, walk_from, whole
+from app.cli.options import add_observation, add_settings, add_walk_options, walk_from
 from app.cli.terminal import progress, show_table
 from app.domain.errors import InvalidInput
+from app.domain.settings import declared_fields
 from app.runs.clocks import CLOCKS, check_clock
-from app.runs.config import RACE_STEPS, LaneConfig, RaceConfig, as_json
+from app.runs.config import LaneConfig, RaceConfig, as_json
 from app.runs.racing import record_race
 from app.runs.recording import LaneRecording
 from app.runs.results import race_result
@@ -32,8 +33,7 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
         metavar="AGENT[=Q.NPZ]",
         help="once for each lane: greedy, two-step, q-learning=q.npz, my.module:Agent[=q.npz]",
     )
-    parser.add_argument("--steps", type=whole, default=RACE_STEPS, help="default 50")
-    parser.add_argument("--seed", type=whole, default=0, help="default 0")
+    add_settings(parser, declared_fields(RaceConfig), ("steps", "seed"))
     parser.add_argument("--clock", default="paper", help=f"to show: {', '.join(CLOCKS)}")
     parser.add_argument("--json", action="store_true", help="print config and result as JSON")
     parser.set_defaults(run=run)

@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Callable
 
 from app.cli.experiment import agents_from
-from app.cli.options import number, whole
+from app.cli.options import flag, parser_of
 from app.cli.trial_options import (
     add_machine_options,
     add_trial_options,
@@ -13,21 +13,9 @@ from app.cli.trial_options import (
     where_from,
 )
 from app.cli.trials import run_experiment
+from app.domain.settings import Value, declared_fields
 from app.experiments.config import GRID, experiment_config
 from app.runs.config import TrainingConfig
-
-Read = Callable[[str], float]
-
-_SUCH_AS = {
-    "steps": "500,1000",
-    "alpha": "0.1,0.3,0.6",
-    "gamma": "0.5,0.9",
-    "epsilon_start": "0.5,1",
-    "epsilon_end": "0,0.1",
-    "steps_per_episode": "25,50",
-    "divisions": "2,3",
-    "grid_side_m": "0.03,0.04",
-}
 
 
 def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -39,14 +27,15 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
         action="append",
         help="once for each, or with commas; my.module:Agent too (default q-learning)",
     )
+    settings = declared_fields(TrainingConfig)
     for name in GRID:
-        default = getattr(TrainingConfig, name)
-        read: Read = whole if isinstance(default, int) else number
+        setting = settings[name]
+        examples = ",".join(f"{value:g}" for value in setting.about.examples)
         parser.add_argument(
-            f"--{name.replace('_', '-')}",
-            type=_list_of(read),
+            flag(name),
+            type=_list_of(parser_of(setting)),
             metavar="LIST",
-            help=f"such as {_SUCH_AS[name]} (default {default:g})",
+            help=f"such as {examples}; each {setting.valid} (default {setting.default:g})",
         )
     add_machine_options(parser)
     parser.set_defaults(run=run)
@@ -64,5 +53,5 @@ def run(options: argparse.Namespace) -> int:
     return run_experiment(config, where_from(options), options)
 
 
-def _list_of(read: Read) -> Callable[[str], tuple[float, ...]]:
+def _list_of(read: Callable[[str], Value]) -> Callable[[str], tuple[Value, ...]]:
     return lambda text: tuple(read(part) for part in split(text))

@@ -6,15 +6,21 @@ from typing import Any
 
 from app.assembly import build_learner, finish_training
 from app.cli.files import check_writable, read_table, write_whole
-from app.cli.options import add_observation, add_walk_options, number, walk_from, whole
+from app.cli.options import add_observation, add_settings, add_walk_options, walk_from
 from app.cli.terminal import progress
 from app.domain.errors import InvalidInput
-from app.runs.config import TrainingConfig, as_json
+from app.domain.settings import declared_fields
+from app.runs.config import TrainingConfig, WalkingProblem, as_json
 from app.runs.records import Evaluated, StepTaken
 from app.runs.tables import Checkpoint, snapshot, to_bytes
 from app.runs.training import Learner, train
 
-_RATES = ("alpha", "gamma", "epsilon_start", "epsilon_end")
+_SETTINGS = tuple(
+    name
+    for name in declared_fields(TrainingConfig)
+    # A command practises as fast as it can; the walking problem has its own options.
+    if name not in (*declared_fields(WalkingProblem), "pace")
+)
 
 
 def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -22,16 +28,9 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
     parser = commands.add_parser("train", help="learn to walk", description=__doc__)
     add_walk_options(parser)
     add_observation(parser, "how the agent reads the state")
-    parser.add_argument("--steps", type=whole, default=500, help="to learn for (default 500)")
-    parser.add_argument("--seed", type=whole, help="of all chance in the run (default 0)")
-    for name in _RATES:
-        default = getattr(TrainingConfig, name)
-        flag = f"--{name.replace('_', '-')}"
-        parser.add_argument(flag, type=number, default=default, help=f"default {default:g}")
-    parser.add_argument("--steps-per-episode", type=whole, default=50, help="default 50")
-    parser.add_argument(
-        "--evaluate-every", type=whole, default=50, help="steps; 0 is never (default 50)"
-    )
+    add_settings(parser, declared_fields(TrainingConfig), _SETTINGS)
+    # Not given with a table, whose generator goes on.
+    parser.set_defaults(seed=None)
     parser.add_argument("--agent", default="q-learning", help="a name, or my.module:Agent")
     parser.add_argument("--from", dest="table", metavar="Q.NPZ", help="go on with this table")
     parser.add_argument("--out", metavar="Q.NPZ", help="keep the table here")
@@ -70,11 +69,10 @@ def _config(options: argparse.Namespace, table: Checkpoint | None) -> TrainingCo
     return TrainingConfig(
         **walk_from(options),
         observation=options.observation,
-        steps=options.steps,
-        seed=0 if seed is None else seed,
-        **{name: getattr(options, name) for name in _RATES},
-        steps_per_episode=options.steps_per_episode,
-        evaluate_every=options.evaluate_every,
+        **{
+            **{name: getattr(options, name) for name in _SETTINGS},
+            "seed": TrainingConfig.seed if seed is None else seed,
+        },
         agent=options.agent,
     )
 

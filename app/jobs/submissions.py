@@ -24,8 +24,6 @@ from app.storage.errors import Conflict, NotFound
 from app.storage.store import SUMMARY, TABLE, Run, RunStore
 
 T = TypeVar("T")
-MAX_RECORDED_STEPS = 300_000
-"""Of all lanes of a race together: every one is recorded, in about 3 kB."""
 
 
 @dataclass(frozen=True)
@@ -114,11 +112,6 @@ def queued_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) ->
         InvalidInput, TableMismatch, NotFound, Conflict: if it cannot be.
     """
     check_walk(start.walk)
-    if start.steps * len(start.lanes) > MAX_RECORDED_STEPS:
-        raise InvalidInput(
-            f"a race records every step, so steps times lanes must be at most "
-            f"{MAX_RECORDED_STEPS:,}, not {start.steps * len(start.lanes):,}"
-        )
     before: dict[int, QueuedRun] = {}
     tables: list[Checkpoint | None] = []
     lanes: list[LaneConfig] = []

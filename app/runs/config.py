@@ -1,15 +1,27 @@
-"""What a user asks for: a training or a race, complete and checked."""
+"""Configs of trainings and races: complete, checked, and immutable.
 
-import math
+Fields that a person may choose are declared as settings (`app.domain.settings`).
+"""
+
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any, Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
+from annotated_types import Ge, Le
+
+from app.agents.q_learning import Alpha, Epsilon, EpsilonEnd, EpsilonStart, Gamma, QLearning
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import Gait, GaitSpec, resolve
-from app.domain.grid import FootGrid
+from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M, FootGrid
 from app.domain.observation import Observation, check_observation
 from app.domain.robot import Robot, as_mapping, robot
+from app.domain.settings import (
+    DeclaredSetting,
+    Setting,
+    declare,
+    declared_fields,
+    declared_parameters,
+)
 
 SimulatorName = Literal["mujoco", "kinematic"]
 SIMULATORS: tuple[SimulatorName, ...] = get_args(SimulatorName)
@@ -17,6 +29,87 @@ MAX_STEPS = 10_000_000
 MAX_LANES = 6
 RACE_STEPS = 50
 """Steps of a race, and of an evaluation (paper §5)."""
+MAX_RACE_STEPS = 300_000
+"""Of all lanes of a race together: every step is recorded, in about 3 kB."""
+
+Divisions = Annotated[
+    int,
+    Ge(MIN_DIVISIONS),
+    Le(MAX_DIVISIONS),
+    Setting(
+        title="Grid divisions",
+        help="Points along each side of the foot grid: more choices, more to learn.",
+        examples=(2, 3),
+    ),
+]
+GridSide = Annotated[
+    float,
+    Ge(MIN_SIDE_M),
+    Le(MAX_SIDE_M),
+    Setting(
+        title="Grid side",
+        unit="m",
+        help="Side of the square in which each foot may be put, in metres.",
+        examples=(0.03, 0.04),
+    ),
+]
+Seed = Annotated[
+    int,
+    Ge(0),
+    Setting(
+        title="Seed",
+        help="Everything that is random follows from this number: the same seed, the same run.",
+    ),
+]
+PracticeSteps = Annotated[
+    int,
+    Ge(1),
+    Le(MAX_STEPS),
+    Setting(
+        title="Practice",
+        unit="steps",
+        help="How many steps it practises; the paper uses 500 and 1,000.",
+        examples=(500, 1000),
+    ),
+]
+StepsPerEpisode = Annotated[
+    int,
+    Ge(1),
+    Le(MAX_STEPS),
+    Setting(
+        title="Steps per episode",
+        unit="steps",
+        help="The share of random steps falls after every so many steps.",
+        examples=(25, 50),
+    ),
+]
+EvaluateEvery = Annotated[
+    int,
+    Ge(0),
+    Le(MAX_STEPS),
+    Setting(
+        title="Evaluate every",
+        unit="steps",
+        help="After every so many steps it shows what it can; 0 is never.",
+    ),
+]
+PaceFactor = Annotated[float, Ge(0.01), Le(1000)]
+Pace = Annotated[
+    Literal["max"] | PaceFactor,
+    Setting(
+        title="Pace",
+        help="How fast it practises: max, or a number of times real time.",
+        live=True,
+    ),
+]
+RaceSteps = Annotated[
+    int,
+    Ge(1),
+    Le(MAX_RACE_STEPS),
+    Setting(title="Race", unit="steps", help="How many steps each robot has in the race."),
+]
+
+_Q_LEARNING = declared_parameters(QLearning)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,12 +119,15 @@ class WalkingProblem:
     gait: str | GaitSpec
     robot: Robot = field(default_factory=Robot)
     simulator: SimulatorName = "mujoco"
-    divisions: int = 2
-    grid_side_m: float = 0.04
+    divisions: Divisions = FootGrid.divisions
+    grid_side_m: GridSide = FootGrid.side_m
 
     def __post_init__(self) -> None:
         if self.simulator not in SIMULATORS:
             raise UnknownName("simulator", self.simulator, SIMULATORS)
+        own = declared_fields(type(self))  # type: ignore[arg-type]  # of a class, not of an instance
+        for setting in own.values():
+            setting.check(getattr(self, setting.name))
         resolve(self.gait, self.robot.azimuths_deg)
         FootGrid(self.grid_side_m, self.divisions)
 
@@ -51,38 +147,39 @@ class TrainingConfig(WalkingProblem):
     """A training. The defaults are the paper's.
 
     Attributes:
-        steps: how many steps to learn for.
+        steps: number of learning steps.
         seed: of every generator of the run.
         observation: how the agent reads the state.
-        alpha, gamma: learning rate in (0, 1] and discount in [0, 1).
-        epsilon_start, epsilon_end: exploration falls linearly over the episodes.
+        alpha, gamma, epsilon_start, epsilon_end: as the agent's constructor declares them.
         steps_per_episode: exploration stays the same so long.
         evaluate_every: steps between two evaluations; 0 is never.
         pace: `max`, or how many times real time.
         agent: a registered name or `my.module:Agent`.
     """
 
-    steps: int = 500
-    seed: int = 0
+    steps: PracticeSteps = 500
+    seed: Seed = 0
     observation: Observation = "measured"
-    alpha: float = 0.3
-    gamma: float = 0.9
-    epsilon_start: float = 1.0
-    epsilon_end: float = 0.0
-    steps_per_episode: int = 50
-    evaluate_every: int = 50
-    pace: float | Literal["max"] = "max"
+    alpha: Alpha = _Q_LEARNING["alpha"].default
+    gamma: Gamma = _Q_LEARNING["gamma"].default
+    epsilon_start: EpsilonStart = _Q_LEARNING["epsilon_start"].default
+    epsilon_end: EpsilonEnd = _Q_LEARNING["epsilon_end"].default
+    steps_per_episode: StepsPerEpisode = 50
+    evaluate_every: EvaluateEvery = 50
+    pace: Pace = "max"
     agent: str = "q-learning"
 
     def __post_init__(self) -> None:
         super().__post_init__()
         check_observation(self.observation)
-        check_whole("steps", self.steps, 1, MAX_STEPS)
-        check_whole("seed", self.seed, 0, None)
-        check_whole("steps_per_episode", self.steps_per_episode, 1, MAX_STEPS)
-        check_whole("evaluate_every", self.evaluate_every, 0, MAX_STEPS)
-        check_rates(self.alpha, self.gamma, self.epsilon_start, self.epsilon_end)
-        check_pace(self.pace)
+
+
+CHANGEABLE: Mapping[str, DeclaredSetting] = {
+    **{name: one for name, one in declared_fields(TrainingConfig).items() if one.about.live},
+    # Not of the config: it replaces the schedule.
+    "epsilon": declare("epsilon", Epsilon),
+}
+"""The settings of a training that may change while it runs."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,34 +203,18 @@ class RaceConfig(WalkingProblem):
     """A race of one to six lanes, 50 steps each by default."""
 
     lanes: tuple[LaneConfig, ...]
-    steps: int = RACE_STEPS
-    seed: int = 0
+    steps: RaceSteps = RACE_STEPS
+    seed: Seed = 0
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_whole("steps", self.steps, 1, MAX_STEPS)
-        check_whole("seed", self.seed, 0, None)
         if not 1 <= len(self.lanes) <= MAX_LANES:
             raise InvalidInput(f"a race has 1 to {MAX_LANES} lanes, not {len(self.lanes)}")
-
-
-def check_rates(alpha: float, gamma: float, *epsilons: float) -> None:
-    """Raise `InvalidInput` unless alpha is in (0, 1], gamma in [0, 1), each epsilon in [0, 1]."""
-    if not 0 < alpha <= 1:
-        raise InvalidInput(f"alpha must be over 0 and at most 1, not {alpha}")
-    if not 0 <= gamma < 1:
-        raise InvalidInput(f"gamma must be at least 0 and under 1, not {gamma}")
-    for epsilon in epsilons:
-        if not 0 <= epsilon <= 1:
-            raise InvalidInput(f"epsilon must be from 0 to 1, not {epsilon}")
-
-
-def check_pace(pace: float | str) -> None:
-    """Raise `InvalidInput` unless pace is `max` or a positive number of times real time."""
-    if pace == "max":
-        return
-    if not isinstance(pace, int | float) or not math.isfinite(pace) or not 0.01 <= pace <= 1000:
-        raise InvalidInput(f"pace must be max, or from 0.01 to 1000 times real time, not {pace}")
+        if self.steps * len(self.lanes) > MAX_RACE_STEPS:
+            raise InvalidInput(
+                f"a race records every step, so steps times lanes must be at most "
+                f"{MAX_RACE_STEPS:,}, not {self.steps * len(self.lanes):,}"
+            )
 
 
 def as_json(config: WalkingProblem) -> dict[str, Any]:

@@ -38,7 +38,7 @@ WRONG_TRAININGS: list[tuple[dict[str, Any], tuple[str, ...]]] = [
     ({"steps": "500"}, ("steps", "whole number")),
     ({"steps": True}, ("steps", "whole number")),
     ({"steps": None}, ("steps", "whole number")),
-    ({"seed": -1}, ("seed", "0 or more")),
+    ({"seed": -1}, ("seed", "at least 0")),
     ({"seed": 0.5}, ("seed", "whole number")),
     ({"alpha": 0}, ("alpha", "over 0 and at most 1")),
     ({"alpha": 1.1}, ("alpha", "over 0 and at most 1")),
