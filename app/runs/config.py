@@ -37,7 +37,7 @@ Divisions = Annotated[
     Ge(MIN_DIVISIONS),
     Le(MAX_DIVISIONS),
     Setting(
-        title="Grid divisions",
+        title="Foot grid, divisions",
         help="Points along each side of the foot grid: more choices, more to learn.",
         examples=(2, 3),
     ),
@@ -47,7 +47,7 @@ GridSide = Annotated[
     Ge(MIN_SIDE_M),
     Le(MAX_SIDE_M),
     Setting(
-        title="Grid side",
+        title="Foot grid, side",
         unit="m",
         help="Side of the square in which each foot may be put, in metres.",
         examples=(0.03, 0.04),
@@ -78,7 +78,6 @@ StepsPerEpisode = Annotated[
     Le(MAX_STEPS),
     Setting(
         title="Steps per episode",
-        unit="steps",
         help="The share of random steps falls after every so many steps.",
         examples=(25, 50),
     ),
@@ -97,7 +96,7 @@ PaceFactor = Annotated[float, Ge(0.01), Le(1000)]
 Pace = Annotated[
     Literal["max"] | PaceFactor,
     Setting(
-        title="Pace",
+        title="Pace of practice",
         help="How fast it practises: max, or a number of times real time.",
         live=True,
     ),
@@ -106,7 +105,7 @@ RaceSteps = Annotated[
     int,
     Ge(1),
     Le(MAX_RACE_STEPS),
-    Setting(title="Race", unit="steps", help="How many steps each robot has in the race."),
+    Setting(title="Steps of the race", help="How many steps each robot has in the race."),
 ]
 
 _Q_LEARNING = declared_parameters(QLearning)

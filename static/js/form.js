@@ -17,24 +17,19 @@ const number = {
   write: String,
 };
 /** @type {FieldType} */
-const integer = { ...number };
-/** @type {FieldType} */
 const pace = { read: (given) => (given === "max" ? "max" : number.read(given)), write: String };
 /** @type {FieldType} */
 const names = { read: (given) => given.split(",").filter(Boolean), write: (list) => list.join(",") };
 
 /** Every field, in the order of the query string. @satisfies {Record<keyof FormValues, FieldType>} */
 const FIELD_TYPES = {
-  gait: text, steps: integer, seed: integer, observation: text,
+  gait: text, steps: number, seed: number, observation: text,
   alpha: number, gamma: number, epsilon_start: number, epsilon_end: number,
-  steps_per_episode: integer, evaluate_every: integer, pace,
-  robot: text, simulator: text, divisions: integer, grid_side_m: number,
-  race_steps: integer, lanes: names, name: text,
+  steps_per_episode: number, evaluate_every: number, pace,
+  robot: text, simulator: text, divisions: number, grid_side_m: number,
+  race_steps: number, lanes: names, name: text,
 };
 const FIELDS = /** @type {(keyof FormValues)[]} */ (Object.keys(FIELD_TYPES));
-
-/** @param {string} field */
-export const isInteger = (field) => /** @type {Record<string, FieldType>} */ (FIELD_TYPES)[field] === integer;
 
 /** Empty until the server's options have come; no component shows the form before. */
 const UNKNOWN = /** @type {FormValues} */ ({});

@@ -1,31 +1,49 @@
-// Checks a number against the limits that the server states.
+// Settings as the server declares them, and checks of numbers against their limits.
 import { whole } from "./format.js";
-import { options } from "./store.js";
+import { options, served } from "./store.js";
 
-/** @import { Limits } from "./types.js" */
+/** @import { Limits, SettingOption } from "./types.js" */
 
 /** @type {(value: number) => string} */
 const shown = (value) => (Number.isInteger(value) ? whole(value) : String(value));
+
+/**
+ * The declaration of a setting, for components: they are shown once the server has answered.
+ * @type {(field: string) => SettingOption}
+ */
+export const settingOf = (field) => served().settings[field];
+
+/** @param {string} field */
+export const isWhole = (field) => options.value?.settings[field]?.is_whole ?? false;
 
 /**
  * The limits of a field; none where the server states none.
  * @param {string} field
  * @returns {Limits}
  */
-export const limitsOf = (field) => options.value?.limits[field] ?? [null, null];
+export function limitsOf(field) {
+  const setting = options.value?.settings[field];
+  if (setting) return setting;
+  const [minimum, maximum] = options.value?.limits[field] ?? [null, null];
+  return { minimum, maximum, excludes_minimum: false, excludes_maximum: false };
+}
 
 /**
- * Limits in words: "from 0 to 1", "at least 0"; empty without limits.
+ * Limits in words: "from 0 to 1", "over 0 and at most 1", "at least 0"; empty without limits.
  * @param {Limits} limits
  */
-export function rangeOf([low, high]) {
-  if (low !== null && high !== null) return `from ${shown(low)} to ${shown(high)}`;
-  if (low !== null) return `at least ${shown(low)}`;
-  return high === null ? "" : `at most ${shown(high)}`;
+export function rangeOf({ minimum, maximum, excludes_minimum, excludes_maximum }) {
+  const lower = minimum === null ? "" : `${excludes_minimum ? "over" : "at least"} ${shown(minimum)}`;
+  const upper = maximum === null ? "" : `${excludes_maximum ? "under" : "at most"} ${shown(maximum)}`;
+  if (minimum === null || maximum === null) return lower || upper;
+  if (excludes_minimum) return `${lower} and ${upper}`;
+  return `from ${shown(minimum)} to ${excludes_maximum ? "under " : ""}${shown(maximum)}`;
 }
 
 /** @type {(value: number, limits: Limits) => boolean} */
-const isWithin = (value, [low, high]) => (low === null || value >= low) && (high === null || value <= high);
+const isWithin = (value, { minimum, maximum, excludes_minimum, excludes_maximum }) =>
+  (minimum === null || value > minimum || (value === minimum && !excludes_minimum)) &&
+  (maximum === null || value < maximum || (value === maximum && !excludes_maximum));
 
 /**
  * The reason why a number is not valid; null if it is.

@@ -5,7 +5,26 @@ export type State = "queued" | "running" | "paused" | "finished" | "stopped" | "
 export type Verb = "stop" | "pause" | "resume";
 export type Clock = string;
 /** [lowest, highest]; null where the server sets no bound. */
-export type Limits = [number | null, number | null];
+export interface Limits {
+  minimum: number | null;
+  maximum: number | null;
+  /** Whether the minimum itself is not valid. */
+  excludes_minimum: boolean;
+  excludes_maximum: boolean;
+}
+
+/** A setting as the server declares it. */
+export interface SettingOption extends Limits {
+  title: string;
+  symbol: string | null;
+  unit: string | null;
+  help: string;
+  /** The valid values in words. */
+  valid: string;
+  is_whole: boolean;
+  /** Whether it may change while a training runs. */
+  is_live: boolean;
+}
 
 // ---- GET /options
 
@@ -56,7 +75,8 @@ export interface Options {
     race: { steps: number; lanes: { agent: string }[] };
     what_if: { seeds: number };
   };
-  limits: Record<string, Limits>;
+  settings: Record<string, SettingOption>;
+  limits: Record<string, [number | null, number | null]>;
   help: Record<string, string>;
 }
 

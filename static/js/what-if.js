@@ -24,7 +24,7 @@ export const isComputing = signal(false);
 
 const settings = computed(() => JSON.stringify(whatIfBody(form.value)));
 /** The most steps of practice that the server tries; null without a limit. */
-export const mostSteps = computed(() => limitsOf("what_if_steps")[1]);
+export const mostSteps = computed(() => limitsOf("what_if_steps").maximum);
 export const isTooLong = computed(() => mostSteps.value !== null && form.value.steps > mostSteps.value);
 /** How many seeds an answer is of. */
 export const seeds = computed(() => options.value?.defaults.what_if.seeds ?? 0);

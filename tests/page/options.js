@@ -1,9 +1,16 @@
 // A small answer of GET /options, and runs to put into the store.
 
-/** @import { Options, Run } from "../../static/js/types.js" */
+/** @import { Options, Run, SettingOption } from "../../static/js/types.js" */
 
 /** @type {(name: string, title?: string) => { name: string, title: string, description: string }} */
 const described = (name, title = name) => ({ name, title, description: `About ${name}.` });
+
+const SETTING = {
+  title: "", symbol: null, unit: null, help: "", valid: "a number", minimum: null, maximum: null,
+  excludes_minimum: false, excludes_maximum: false, is_whole: false, is_live: false,
+};
+/** @type {(title: string, changes: object) => SettingOption} */
+const setting = (title, changes) => ({ ...SETTING, title, ...changes });
 
 const TRAINING = {
   agent: "learner", gait: "tripod", steps: 500, seed: 0, observation: "measured", alpha: 0.3, gamma: 0.9,
@@ -44,7 +51,11 @@ export const OPTIONS = {
     race: { steps: 50, lanes: [{ agent: "learner" }, { agent: "greedy" }] },
     what_if: { seeds: 30 },
   },
-  limits: { steps: [1, 10_000_000], alpha: [0, 1], seed: [0, null], what_if_steps: [1, 2000] },
+  settings: {
+    steps: setting("Practice", { minimum: 1, maximum: 10_000_000, is_whole: true }),
+    alpha: setting("Learning rate", { minimum: 0, maximum: 1, excludes_minimum: true, is_live: true, symbol: "α" }),
+  },
+  limits: { seeds: [1, null], what_if_steps: [1, 2000] },
   help: { alpha: "Learning rate." },
 };
 

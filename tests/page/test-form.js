@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  applyDefaults, form, fromQuery, isInteger, link, mistakes, raceBody, readAddress, setField, setMistake, toQuery,
+  applyDefaults, form, fromQuery, link, mistakes, raceBody, readAddress, setField, setMistake, toQuery,
   trainingBody, whatIfBody,
 } from "../../static/js/form.js";
 import { visit } from "./browser.js";
@@ -56,11 +56,6 @@ test("a mistake is kept until it is corrected", () => {
   assert.deepEqual(mistakes.value, { alpha: "Enter a number" });
   setMistake("alpha", null);
   assert.deepEqual(mistakes.value, {});
-});
-
-test("counts are whole numbers, rates are not", () => {
-  assert.ok(isInteger("steps") && isInteger("divisions"));
-  assert.ok(!isInteger("alpha") && !isInteger("pace") && !isInteger("unknown"));
 });
 
 test("a training that continues another has no seed", () => {

@@ -2,7 +2,7 @@
 import { tune } from "../actions.js";
 import { form, setField } from "../form.js";
 import { html } from "../html.js";
-import { limitsOf } from "../limits.js";
+import { limitsOf, settingOf } from "../limits.js";
 import { agentOf } from "../selectors.js";
 import { options } from "../store.js";
 import { choicesOf, robotTitle, simulatorTitle } from "../titles.js";
@@ -23,12 +23,12 @@ export const MoreSettings = () => html`
       <${Choice} field="simulator" label="Simulator"
         choices=${choicesOf(options.value?.simulators, simulatorTitle)} />
       <${Pace} />
-      <${Figure} field="divisions" label="Foot grid, divisions" />
-      <${Figure} field="grid_side_m" label="Foot grid, side" unit="m" step=${0.005} />
-      <${Figure} field="epsilon_end" label="Exploration ε, last episode" step=${0.01} />
-      <${Figure} field="steps_per_episode" label="Steps per episode" />
-      <${Figure} field="evaluate_every" label="Evaluate every" unit="steps" />
-      <${Figure} field="race_steps" label="Steps of the race" />
+      <${Figure} field="divisions" />
+      <${Figure} field="grid_side_m" step=${0.005} />
+      <${Figure} field="epsilon_end" step=${0.01} />
+      <${Figure} field="steps_per_episode" />
+      <${Figure} field="evaluate_every" />
+      <${Figure} field="race_steps" />
       <${Lanes} />
       <${Name} />
     </div>
@@ -47,14 +47,17 @@ const Choice = ({ field, ...rest }) => html`
   </div>
 `;
 
-const Figure = ({ field, label, unit, step }) => html`
-  <div class="field">
-    <label for=${`field-${field}`}>${label}${unit && ` (${unit})`}</label>
-    <${NumberField} field=${field} value=${form.value[field]} step=${step}
-      onValue=${(value) => setField(field, value)} />
-    <${Sentence} field=${field} />
-  </div>
-`;
+function Figure({ field, step }) {
+  const { title, symbol, unit } = settingOf(field);
+  return html`
+    <div class="field">
+      <label for=${`field-${field}`}>${title}${symbol && ` ${symbol}`}${unit && ` (${unit})`}</label>
+      <${NumberField} field=${field} value=${form.value[field]} step=${step}
+        onValue=${(value) => setField(field, value)} />
+      <${Sentence} field=${field} />
+    </div>
+  `;
+}
 
 function Pace() {
   const { pace } = form.value;
@@ -63,18 +66,18 @@ function Pace() {
     setField("pace", value);
     tune({ pace: value });
   };
-  return html`<${Choice} field="pace" label="Pace of practice" choices=${choices} onValue=${onValue} />`;
+  return html`<${Choice} field="pace" label=${settingOf("pace").title} choices=${choices} onValue=${onValue} />`;
 }
 
 function Lanes() {
   const { lanes } = form.value;
-  const [fewest, most] = limitsOf("lanes");
+  const { minimum, maximum } = limitsOf("lanes");
   const names = (options.value?.agents ?? []).map(({ name }) => name);
   const toggle = (name) => {
     const chosen = lanes.includes(name)
       ? lanes.filter((one) => one !== name)
       : names.filter((one) => one === name || lanes.includes(one));
-    const isAllowed = chosen.length >= (fewest ?? 0) && chosen.length <= (most ?? Infinity);
+    const isAllowed = chosen.length >= (minimum ?? 0) && chosen.length <= (maximum ?? Infinity);
     // A copy draws the refused check box again.
     setField("lanes", isAllowed ? chosen : [...lanes]);
   };
@@ -97,7 +100,7 @@ function Lanes() {
 const Name = () => html`
   <div class="field wide">
     <label for="field-name">Name</label>
-    <input type="text" id="field-name" maxlength=${limitsOf("name")[1]} value=${form.value.name}
+    <input type="text" id="field-name" maxlength=${limitsOf("name").maximum} value=${form.value.name}
       placeholder="optional" aria-describedby="help-name"
       onInput=${({ target }) => setField("name", target.value)} />
     <${Sentence} field="name" />

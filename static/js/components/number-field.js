@@ -1,9 +1,9 @@
 // A number to type. It takes effect as soon as it is valid; until then the reason is shown.
 import { useState } from "preact/hooks";
 import { refusedFields } from "../actions.js";
-import { isInteger, mistakes, setMistake } from "../form.js";
+import { mistakes, setMistake } from "../form.js";
 import { html } from "../html.js";
-import { limitsOf, mistakeIn } from "../limits.js";
+import { isWhole, limitsOf, mistakeIn } from "../limits.js";
 
 const SHOWN_DIGITS = 8;
 const shownAs = (value) => String(Number(value.toPrecision(SHOWN_DIGITS)));
@@ -16,7 +16,7 @@ export function NumberField({ field, value, onValue, step = 1, label }) {
 
   const onInput = ({ target }) => {
     const typed = target.value.trim() === "" ? NaN : Number(target.value);
-    const found = mistakeIn(typed, limitsOf(field), isInteger(field));
+    const found = mistakeIn(typed, limitsOf(field), isWhole(field));
     setDraft(target.value);
     setMistake(field, found);
     if (!found) onValue(typed);

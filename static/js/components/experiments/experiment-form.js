@@ -128,7 +128,7 @@ const SimulatorField = () => html`
 const NameField = () => html`
   <div class="field" onFocusIn=${help("name")}>
     <label for="experiment-name">Name</label>
-    <input type="text" id="experiment-name" maxlength=${limitsOf("name")[1]} placeholder="optional"
+    <input type="text" id="experiment-name" maxlength=${limitsOf("name").maximum} placeholder="optional"
       value=${values.value.name} onInput=${({ target }) => setField("name", target.value.trim())} />
   </div>
 `;

@@ -1,9 +1,8 @@
 // Text fields of the experiment form: a whole number, or numbers with commas. A mistake disables the start.
 import { useState } from "preact/hooks";
 import { refusedFields } from "../../actions.js";
-import { isInteger } from "../../form.js";
 import { html } from "../../html.js";
-import { limitsOf, mistakeIn, parseNumbers } from "../../limits.js";
+import { isWhole, limitsOf, mistakeIn, parseNumbers } from "../../limits.js";
 import { helpFor } from "../setting-help.js";
 import { help } from "./experiment-help.js";
 import { mistakes, setField, setMistake, values } from "../../experiments/form.js";
@@ -49,7 +48,7 @@ export function CountField({ field, label }) {
 
 /** One number, or several with commas between. */
 export function NumbersField({ field, label }) {
-  const parse = (typed) => parseNumbers(typed, limitsOf(field), isInteger(field));
+  const parse = (typed) => parseNumbers(typed, limitsOf(field), isWhole(field));
   const text = /** @type {number[]} */ (values.value[field]).join(", ");
   return html`<${TypedField} field=${field} label=${label} text=${text} parse=${parse} />`;
 }
