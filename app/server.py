@@ -150,7 +150,7 @@ def _trouble(jobs: Jobs, store: RunStore) -> str | None:
     if (trouble := jobs.trouble()) is not None:
         return trouble
     try:
-        store.check_room()
+        store.check_disk_space()
         store.list(limit=1)
     except HexapodError as error:
         return f"No run can be started, and what is kept may be looked at: {error}."

@@ -54,7 +54,7 @@ class RunQueue:
                 "to end, or stop one",
                 RETRY_AFTER_S,
             )
-        self._store.check_room()
+        self._store.check_disk_space()
         new = [entry.run for entry in entries if not entry.goes_on]
         try:
             self._store.create(*new, key=key)

@@ -14,7 +14,7 @@ from app.storage.artifact_file import (
     closing_after,
     pieces,
 )
-from app.storage.artifacts import ArtifactFiles, Stored
+from app.storage.artifacts import ArtifactFiles, StoredFile
 from app.storage.disk_space import DiskSpace
 
 DATA = bytes(range(256)) * 1000
@@ -93,7 +93,7 @@ def test_what_is_not_what_was_written_is_refused(
 
 
 def test_a_closed_reader_reads_no_more(files: ArtifactFiles) -> None:
-    stored: Stored = files.write(DATA)
+    stored: StoredFile = files.write(DATA)
     reader = files.open(stored, "it")
     reader.close()
     reader.close()

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.domain.errors import DamagedFile
-from app.storage.artifacts import ArtifactFiles, Stored
+from app.storage.artifacts import ArtifactFiles, StoredFile
 from app.storage.database.store import SqlStore
 from app.storage.disk_space import MB, RESERVE_BYTES, DiskSpace
 from app.storage.errors import NotFound, StorageFailed, StorageFull
@@ -66,7 +66,7 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
 
 def test_a_run_that_is_gone_gets_no_file(tmp_path: Path) -> None:
     class Slow(ArtifactFiles):
-        def write(self, data: bytes) -> Stored:
+        def write(self, data: bytes) -> StoredFile:
             stored = super().write(data)
             store.delete("a")
             return stored

@@ -37,7 +37,7 @@ def test_a_start_is_refused_before_the_quota_is_used_up(store: SqlStore) -> None
     with pytest.raises(StorageFull, match="raise HEXAPODS_QUOTA_MB"):
         jobs.train(START)
     with pytest.raises(StorageFull, match="delete runs"):
-        store.check_room()
+        store.check_disk_space()
     assert [run.id for run in store.list().items] == ["0old"]
     # What goes on has what is left, and all can be read.
     store.put_artifact("0old", "race.npz", bytes(1 * MB))

@@ -64,7 +64,7 @@ def _locked(ownership: Ownership) -> Iterator[None]:
 
 def _tidy(store: SqlStore) -> None:
     """Make whole what a dead server left behind."""
-    left_behind, interrupted = store.sweep(), store.interrupt_all()
+    left_behind, interrupted = store.delete_orphans(), store.interrupt_all()
     if left_behind or interrupted:
         _logger.warning(
             "The last server died: %d runs are interrupted, %d unfinished files are gone",

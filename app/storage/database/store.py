@@ -20,7 +20,7 @@ from sqlalchemy import (
 
 from app.domain.errors import DamagedFile
 from app.storage.artifact_file import ArtifactFile
-from app.storage.artifacts import ArtifactFiles, Stored
+from app.storage.artifacts import ArtifactFiles, StoredFile
 from app.storage.database.columns import UtcTime
 from app.storage.database.curves import Curves
 from app.storage.database.engine import Database
@@ -76,8 +76,8 @@ class SqlStore:
         self._curves, self._trials, self._keys = Curves(database), Trials(database), Keys(database)
         self.sessions = SqlSessionRows(database)
 
-    def check_room(self) -> None:
-        self._files.check_room(START_BYTES)
+    def check_disk_space(self) -> None:
+        self._files.check_disk_space(START_BYTES)
 
     def create(self, *runs: Run, key: IdempotencyKey | None = None) -> None:
         if not runs:
@@ -97,7 +97,7 @@ class SqlStore:
         new_id: Callable[[], str],
         key: IdempotencyKey | None = None,
     ) -> Run:
-        stored: dict[str, Stored] = {}
+        stored: dict[str, StoredFile] = {}
         was_asked = False
 
         def work(connection: Connection) -> Run:
@@ -282,9 +282,9 @@ class SqlStore:
     def open_artifact(self, run_id: str, name: str) -> ArtifactFile | None:
         return self._found(run_id, name, self._files.open)
 
-    def _found(self, run_id: str, name: str, read: Callable[[Stored, str], T]) -> T | None:
+    def _found(self, run_id: str, name: str, read: Callable[[StoredFile, str], T]) -> T | None:
         said = f"{name} of run {run_id}"
-        missing: Stored | None = None
+        missing: StoredFile | None = None
         while (stored := self._stored(run_id, name)) is not None:
             try:
                 return read(stored, said)
@@ -314,21 +314,21 @@ class SqlStore:
             lambda connection: connection.execute(statement).scalars().all()
         )
 
-    def sweep(self) -> int:
-        """Remove the files that no run has; to be called before anyone writes.
+    def delete_orphans(self) -> int:
+        """Delete the artifact files that no run references; only safe before the first write.
 
         Returns:
-            how many files that were.
+            the number of deleted files.
         """
-        known = select(ARTIFACTS.c.file)
-        files = self._database.read(lambda connection: connection.execute(known).scalars().all())
-        return self._files.sweep(files)
+        names = select(ARTIFACTS.c.file)
+        files = self._database.read(lambda connection: connection.execute(names).scalars().all())
+        return self._files.delete_orphans(files)
 
     def _note_written(self, run_id: str, fields: Mapping[str, Any]) -> None:
         if "done" in fields:
             self._progress.forget(run_id)
 
-    def _stored(self, run_id: str, name: str) -> Stored | None:
+    def _stored(self, run_id: str, name: str) -> StoredFile | None:
         wanted = select(*_FILE).where(ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name)
 
         def work(connection: Connection) -> Sequence[Row]:
@@ -336,7 +336,7 @@ class SqlStore:
             return found(connection, wanted)
 
         rows = self._database.read(work)
-        return Stored(**rows[0]) if rows else None
+        return StoredFile(**rows[0]) if rows else None
 
 
 def _is_of_kind(connection: Connection, kind: Kind) -> ColumnElement[bool]:
@@ -345,7 +345,7 @@ def _is_of_kind(connection: Connection, kind: Kind) -> ColumnElement[bool]:
     return or_(RUNS.c.kind == kind, RUNS.c.kind.not_in(KINDS)) if odd else RUNS.c.kind == kind
 
 
-def _rows_of(run_id: str, stored: Mapping[str, Stored]) -> list[Row]:
+def _rows_of(run_id: str, stored: Mapping[str, StoredFile]) -> list[Row]:
     now = datetime.now(UTC)
     return [
         {"run_id": run_id, "name": name, "written_at": now, **one._asdict()}
