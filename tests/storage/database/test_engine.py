@@ -43,16 +43,16 @@ def test_places_are_handed_over_in_the_order_in_which_threads_came() -> None:
     semaphore, order = FairSemaphore(1), []
 
     def take(number: int) -> None:
-        with semaphore.taken(60.0, AssertionError):
+        with semaphore.acquired(60.0, AssertionError):
             order.append(number)
 
-    with semaphore.taken(1.0, AssertionError):
+    with semaphore.acquired(1.0, AssertionError):
         threads = []
         for number in range(5):
             threads.append(threading.Thread(target=take, args=(number,)))
             threads[-1].start()
             until(lambda: semaphore.waiting == len(threads))
-        with pytest.raises(TimeoutError), semaphore.taken(0.01, TimeoutError):
+        with pytest.raises(TimeoutError), semaphore.acquired(0.01, TimeoutError):
             pass
     for thread in threads:
         thread.join()
