@@ -22,5 +22,5 @@ def client_group(host: str) -> str:
 
 
 def caller(scope: Scope) -> str:
-    """Return the client group of a request, by the address that a trusted proxy forwarded, if any."""
+    """Return the client group of a request; behind a trusted proxy, of the forwarded address."""
     return client_group(scope["client"][0] if scope.get("client") else "")
