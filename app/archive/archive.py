@@ -19,7 +19,9 @@ from app.domain.errors import DamagedFile, InvalidInput
 MANIFEST = "manifest.json"
 MEDIA_TYPE = "application/zip"
 MAX_BYTES = 1 << 30
+"""Maximum size of an archive."""
 MAX_MEMBERS = 128
+"""Maximum of members, with the manifest."""
 _MAX_MANIFEST_BYTES = 64_000
 _MAX_DIRECTORY_BYTES = 64_000
 _END = struct.Struct("<4s4H2LH")  # end of central directory record, without a comment

@@ -118,7 +118,7 @@ def import_run(
     run, curve = read_run_json(members.pop(RUN), f"{RUN} of {label}", agents)
     trials = _trials(run, members, label)
     check_files(run, members, label)
-    if not ids.may_have_made(run.id):
+    if not ids.is_plausible(run.id):
         run = replace(run, id=ids())
     content = Content(evaluations=curve, trials=trials, artifacts=members)
     return store.add(run, content, ids, key)

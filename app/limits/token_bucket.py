@@ -6,6 +6,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 
 MAX_CALLERS = 10_000
+"""Buckets kept at most."""
 
 
 class RateLimiter:

@@ -14,7 +14,7 @@ from app.storage.errors import StorageFailed, StorageFull
 MB = 1_000_000
 START_BYTES = 5 * MB
 """Space required to start a run: the size of a typical run's files."""
-KEPT_FREE_BYTES = 1 * MB
+MIN_FREE_BYTES = 1 * MB
 """Free space that artifacts must leave on the disk for the database."""
 RESERVE_BYTES = 1 * MB
 """Size of the reserve file, which is deleted when the disk is full."""
@@ -50,7 +50,7 @@ class DiskSpace:
                 "over that; delete runs, or raise HEXAPODS_QUOTA_MB"
             )
         free = shutil.disk_usage(self._folder).free
-        if free < size + KEPT_FREE_BYTES:
+        if free < size + MIN_FREE_BYTES:
             raise StorageFull(
                 f"the disk of the data folder has {_mb(free)} left, too little for {_mb(size)} "
                 "more; delete runs, or make room there"
@@ -75,7 +75,7 @@ class DiskSpace:
             if self._reserve.exists():
                 return
             try:
-                if shutil.disk_usage(self._folder).free > RESERVE_BYTES + KEPT_FREE_BYTES:
+                if shutil.disk_usage(self._folder).free > RESERVE_BYTES + MIN_FREE_BYTES:
                     # Written zeros: a sparse file would not allocate any disk blocks.
                     self._reserve.write_bytes(bytes(RESERVE_BYTES))
             except OSError:

@@ -58,19 +58,19 @@ class Idempotency:
             return start(None)
         digest = hashlib.sha256(request).hexdigest()
         with self._locked(key):
-            started = self._store.started_by(key)
-            if started is None:
+            record = self._store.find_key(key)
+            if record is None:
                 return start(IdempotencyKey(key, digest))
-            if started.digest != digest:
+            if record.digest != digest:
                 raise InvalidInput(
                     "this Idempotency-Key came with another request before; send a new key with "
                     "each new request, and the same only to repeat one"
                 )
             try:
-                return self._store.get(started.run_id)
+                return self._store.get(record.run_id)
             except NotFound as error:
                 raise Gone(
-                    f"run {started.run_id}, which this Idempotency-Key started, was deleted; send "
+                    f"run {record.run_id}, which this Idempotency-Key started, was deleted; send "
                     "a new key to start another"
                 ) from error
 

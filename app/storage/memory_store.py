@@ -16,10 +16,10 @@ from app.storage.store import (
     AnyRun,
     Content,
     IdempotencyKey,
+    KeyRecord,
     Kind,
     Page,
     Run,
-    Started,
     State,
 )
 
@@ -32,7 +32,7 @@ class MemoryStore:
         self._curves: dict[str, list[Mapping[str, Any]]] = {}
         self._trials: dict[str, dict[str, Mapping[str, Any]]] = {}
         self._artifacts: dict[str, dict[str, bytes]] = {}
-        self._keys: dict[str, Started] = {}
+        self._keys: dict[str, KeyRecord] = {}
         self._lock = threading.Lock()
         self.sessions = MemorySessionRows()
 
@@ -43,7 +43,7 @@ class MemoryStore:
         with self._lock:
             self._runs |= {run.id: run for run in runs}
             if key is not None:
-                self._keys[key.key] = Started(key.digest, runs[-1].id)
+                self._keys[key.key] = KeyRecord(key.digest, runs[-1].id)
 
     def add(
         self,
@@ -61,7 +61,7 @@ class MemoryStore:
             self.put_artifact(run.id, name, data)
         return run
 
-    def started_by(self, key: str) -> Started | None:
+    def find_key(self, key: str) -> KeyRecord | None:
         with self._lock:
             return self._keys.get(key)
 
@@ -137,7 +137,7 @@ class MemoryStore:
             self._run(run_id)
             return [*self._curves.get(run_id, ())]
 
-    def forget_evaluations(self, run_id: str, after_step: int) -> None:
+    def delete_evaluations(self, run_id: str, after_step: int) -> None:
         with self._lock:
             curve = self._curves.get(run_id, [])
             self._curves[run_id] = [row for row in curve if row["step"] <= after_step]

@@ -103,16 +103,16 @@ class Recordings:
             return
         training, race = self._trainings.get(run_id), self._races.get(run_id)
         if training is not None:
-            self._stored.remember_training(run_id, training)
+            self._stored.cache_training(run_id, training)
         if race is not None:
-            self._stored.remember_race(run_id, race)
+            self._stored.cache_race(run_id, race)
         self._drop(run_id)
 
     def discard(self, run_id: str) -> None:
         """Drop a run's recording from memory, and from the cache of stored recordings."""
         self._drop(run_id)
         if self._stored is not None:
-            self._stored.forget(run_id)
+            self._stored.invalidate(run_id)
 
     def _drop(self, run_id: str) -> None:
         with self._lock:

@@ -48,7 +48,7 @@ class RunIds:
             time_ms = self._last_ms
         return _id(time_ms, secrets.randbits(5 * _RANDOM_DIGITS))
 
-    def may_have_made(self, run_id: str) -> bool:
+    def is_plausible(self, run_id: str) -> bool:
         """Whether an id is well-formed and not in the future, so that all new ids sort after it."""
         time_ms = _time_ms(run_id)
         with self._lock:

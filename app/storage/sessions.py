@@ -8,7 +8,9 @@ from datetime import UTC, datetime, timedelta
 from typing import NamedTuple, Protocol
 
 SESSION_S = 30 * 24 * 3600
+"""Lifetime of a session [s]."""
 MAX_SESSIONS = 1000
+"""Open sessions at most; the oldest are closed first."""
 
 
 class SessionRow(NamedTuple):

@@ -41,7 +41,7 @@ SUMMARY = "summary.json"
 """Artifact of an experiment: statistics and claims computed from its trials so far."""
 REPORT = "report.html"
 """Artifact of an ended experiment: its report as one self-contained HTML file."""
-KEY_KEPT = timedelta(days=1)
+KEY_LIFETIME = timedelta(days=1)
 """Lifetime of an idempotency key."""
 MAX_KEYS = 10_000
 """Idempotency keys stored at most; the oldest are dropped first."""
@@ -128,7 +128,7 @@ class IdempotencyKey(NamedTuple):
     digest: str
 
 
-class Started(NamedTuple):
+class KeyRecord(NamedTuple):
     """A used idempotency key's record: digest of its request and id of the run it created."""
 
     digest: str
@@ -198,7 +198,7 @@ class RunStore(Protocol):
             StorageFull: if there is too little disk space; nothing is left behind then.
         """
 
-    def started_by(self, key: str) -> Started | None:
+    def find_key(self, key: str) -> KeyRecord | None:
         """Look up an idempotency key; None if it was not used within its lifetime."""
 
     def get(self, run_id: str) -> Run:
@@ -288,7 +288,7 @@ class RunStore(Protocol):
     def evaluations(self, run_id: str) -> Sequence[Mapping[str, Any]]:
         """Return a training's curve so far, by step: `step`, `distance_m`, `epsilon`."""
 
-    def forget_evaluations(self, run_id: str, after_step: int) -> None:
+    def delete_evaluations(self, run_id: str, after_step: int) -> None:
         """Delete the rows of a training's curve after this step."""
 
     def append_trials(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:

@@ -24,9 +24,9 @@ from app.storage.errors import NotFound
 from app.storage.store import RunStore
 
 RACE, PRACTICE = "race.npz", "practice.npz"
-EVALUATIONS_A_FILE = 20
+EVALUATIONS_PER_FILE = 20
 """Evaluations per file: a growing training rewrites only its last file."""
-KEPT_IN_MEMORY, KEPT_BYTES = 4, 100_000_000
+CACHE_RECORDINGS, CACHE_BYTES = 4, 100_000_000
 """Capacity of each cache in recordings and in bytes; the newest entry is kept whatever its size."""
 _MISS_TTL_S = 1.0
 """How long a cached miss is valid before the store is read again."""
@@ -64,9 +64,9 @@ class StoredRecordings:
             StorageFull, StorageFailed: if it cannot be stored.
         """
         evaluations = recording.evaluations
-        first = self._evaluations.get(run_id, 0) // EVALUATIONS_A_FILE
-        for number in range(first, -(-len(evaluations) // EVALUATIONS_A_FILE)):
-            batch = evaluations[number * EVALUATIONS_A_FILE :][:EVALUATIONS_A_FILE]
+        first = self._evaluations.get(run_id, 0) // EVALUATIONS_PER_FILE
+        for number in range(first, -(-len(evaluations) // EVALUATIONS_PER_FILE)):
+            batch = evaluations[number * EVALUATIONS_PER_FILE :][:EVALUATIONS_PER_FILE]
             self._write(run_id, evaluations_file(number), evaluation_arrays(batch))
         # Written last, since it holds the number of evaluations.
         self._write(run_id, PRACTICE, practice_arrays(recording))
@@ -80,16 +80,16 @@ class StoredRecordings:
         """
         self._write(run_id, RACE, race_arrays(lanes))
 
-    def remember_training(self, run_id: str, recording: PracticeRecording) -> None:
+    def cache_training(self, run_id: str, recording: PracticeRecording) -> None:
         """Cache a stored recording that is complete."""
         self._evaluations.pop(run_id, None)
         self._trainings.put(run_id, recording)
 
-    def remember_race(self, run_id: str, lanes: list[LaneRecording]) -> None:
+    def cache_race(self, run_id: str, lanes: list[LaneRecording]) -> None:
         """Cache the stored recordings of a race that are complete."""
         self._races.put(run_id, lanes)
 
-    def forget(self, run_id: str) -> None:
+    def invalidate(self, run_id: str) -> None:
         """Invalidate the cache entries of a run."""
         self._evaluations.pop(run_id, None)
         self._trainings.drop(run_id)
@@ -141,7 +141,7 @@ class _LruCache(Generic[T]):
 
     def _is_over_capacity(self) -> bool:
         size = sum(entry.size for entry in self._entries.values())
-        return len(self._entries) > KEPT_IN_MEMORY or size > KEPT_BYTES
+        return len(self._entries) > CACHE_RECORDINGS or size > CACHE_BYTES
 
     def _entry(self, value: T | None, now: float) -> _Entry[T]:
         return _Entry(value, now, 0 if value is None else self._size_of(value))

@@ -14,7 +14,7 @@ from app.runs.config import TrainingConfig
 from app.settings import Settings
 from app.storage.database.opening import open_store
 from app.storage.database.store import SqlStore
-from app.storage.disk_space import KEPT_FREE_BYTES, MB, START_BYTES, DiskSpace
+from app.storage.disk_space import MB, MIN_FREE_BYTES, START_BYTES, DiskSpace
 from app.storage.errors import StorageFull
 from app.storage.recordings import Recordings
 from app.storage.store import QUEUED, TABLE
@@ -53,7 +53,7 @@ def test_start_is_refused_if_the_disk_leaves_too_little(
     class Usage(NamedTuple):
         free: int
 
-    disk_space, needed = DiskSpace(tmp_path), START_BYTES + KEPT_FREE_BYTES
+    disk_space, needed = DiskSpace(tmp_path), START_BYTES + MIN_FREE_BYTES
     monkeypatch.setattr(shutil, "disk_usage", lambda folder: Usage(needed))
     disk_space.check(START_BYTES)
     monkeypatch.setattr(shutil, "disk_usage", lambda folder: Usage(needed - 1))

@@ -13,7 +13,7 @@ from app.storage.database import keys
 from app.storage.errors import Busy, Gone
 from app.storage.idempotency import Idempotency
 from app.storage.run_ids import RunIds
-from app.storage.store import KEY_KEPT, Content, IdempotencyKey, Run, RunStore
+from app.storage.store import KEY_LIFETIME, Content, IdempotencyKey, Run, RunStore
 from tests.storage.stores import BACKENDS, database_url, opened, training
 
 new_id = RunIds()
@@ -118,12 +118,12 @@ def test_keys_expire_after_a_day_or_beyond_the_maximum(
     monkeypatch.setattr(keys, "MAX_KEYS", 5)
     idempotency, start = Idempotency(store), Starts(store)
     first = idempotency.run("key", b"x", start)
-    monkeypatch.setattr(Clock, "ahead", KEY_KEPT - timedelta(minutes=1))
+    monkeypatch.setattr(Clock, "ahead", KEY_LIFETIME - timedelta(minutes=1))
     assert idempotency.run("key", b"x", start) == first
-    monkeypatch.setattr(Clock, "ahead", KEY_KEPT + timedelta(minutes=1))
+    monkeypatch.setattr(Clock, "ahead", KEY_LIFETIME + timedelta(minutes=1))
     assert idempotency.run("key", b"y", start) != first
     for number in range(10):
         monkeypatch.setattr(Clock, "ahead", Clock.ahead + timedelta(seconds=1))
         idempotency.run(f"key {number}", b"x", start)
-    kept = [n for n in range(10) if store.started_by(f"key {n}") is not None]
+    kept = [n for n in range(10) if store.find_key(f"key {n}") is not None]
     assert kept == [5, 6, 7, 8, 9]

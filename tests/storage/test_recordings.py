@@ -10,7 +10,7 @@ from app.runs.recording import LaneRecording, PracticeRecording
 from app.storage import stored_recordings
 from app.storage.database.store import SqlStore
 from app.storage.recordings import Recordings
-from app.storage.stored_recordings import KEPT_IN_MEMORY
+from app.storage.stored_recordings import CACHE_RECORDINGS
 from tests.runs.made_up import lane, step
 from tests.runs.test_stored_practice import assert_same, practise
 from tests.storage.stores import opened, race, training
@@ -94,7 +94,7 @@ def test_saving_again_writes_only_new_files(
         put_artifact(run_id, name, data)
 
     monkeypatch.setattr(store, "put_artifact", spy)
-    monkeypatch.setattr(stored_recordings, "EVALUATIONS_A_FILE", 2)
+    monkeypatch.setattr(stored_recordings, "EVALUATIONS_PER_FILE", 2)
     store.create(training("a"))
     practised = practise(60)
     recordings = Recordings(store)
@@ -115,7 +115,7 @@ def test_saving_again_writes_only_new_files(
 def test_cache_evicts_the_least_recently_used_recording(store: SqlStore) -> None:
     recordings = Recordings(store)
     practised = practise(10)
-    ids = [f"t{number}" for number in range(KEPT_IN_MEMORY + 1)]
+    ids = [f"t{number}" for number in range(CACHE_RECORDINGS + 1)]
     for run_id in ids:
         store.create(training(run_id))
         record(recordings, run_id, practised)

@@ -354,6 +354,6 @@ def test_evaluations_after_a_step_are_deleted(store: RunStore) -> None:
     for one in (run, other):
         rows = [{"step": step, "distance_m": 0.1, "epsilon": 0.0} for step in (50, 100, 150)]
         store.append_evaluations(one.id, rows)
-    store.forget_evaluations(run.id, after_step=100)
+    store.delete_evaluations(run.id, after_step=100)
     assert [row["step"] for row in store.evaluations(run.id)] == [50, 100]
     assert [row["step"] for row in store.evaluations(other.id)] == [50, 100, 150]

@@ -51,7 +51,7 @@ class Curves:
         ]
 
     def delete_after(self, run_id: str, after_step: int) -> None:
-        """See `RunStore.forget_evaluations`."""
+        """See `RunStore.delete_evaluations`."""
         later = EVALUATIONS.c.run_id == run_id, EVALUATIONS.c.step > after_step
         self._database.write(
             lambda connection: connection.execute(delete(EVALUATIONS).where(*later))

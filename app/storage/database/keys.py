@@ -7,7 +7,7 @@ from sqlalchemy import Connection, delete, insert, select
 from app.storage.database.engine import Database
 from app.storage.database.queries import fetch_rows
 from app.storage.database.schema import IDEMPOTENCY_KEYS
-from app.storage.store import KEY_KEPT, MAX_KEYS, IdempotencyKey, Started
+from app.storage.store import KEY_LIFETIME, MAX_KEYS, IdempotencyKey, KeyRecord
 
 _KEYS = IDEMPOTENCY_KEYS
 
@@ -27,15 +27,17 @@ class Keys:
         # NULL if there are fewer keys; a comparison with it deletes none.
         nth = select(created).order_by(created.desc()).offset(MAX_KEYS - 2).limit(1)
         oldest_kept = nth.scalar_subquery()
-        is_expired = (created < now - KEY_KEPT) | (created < oldest_kept) | (_KEYS.c.key == key.key)
+        is_expired = (
+            (created < now - KEY_LIFETIME) | (created < oldest_kept) | (_KEYS.c.key == key.key)
+        )
         connection.execute(delete(_KEYS).where(is_expired))
         connection.execute(insert(_KEYS), [{**key._asdict(), "run_id": run_id, "created_at": now}])
 
-    def find(self, key: str) -> Started | None:
-        """See `RunStore.started_by`."""
-        since = datetime.now(UTC) - KEY_KEPT
+    def find(self, key: str) -> KeyRecord | None:
+        """See `RunStore.find_key`."""
+        since = datetime.now(UTC) - KEY_LIFETIME
         query = select(_KEYS.c.digest, _KEYS.c.run_id).where(
             _KEYS.c.key == key, _KEYS.c.created_at >= since
         )
         rows = self._database.read(lambda connection: fetch_rows(connection, query))
-        return Started(**rows[0]) if rows else None
+        return KeyRecord(**rows[0]) if rows else None

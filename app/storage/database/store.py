@@ -51,10 +51,10 @@ from app.storage.store import (
     Content,
     DamagedRun,
     IdempotencyKey,
+    KeyRecord,
     Kind,
     Page,
     Run,
-    Started,
     State,
 )
 
@@ -126,7 +126,7 @@ class SqlStore:
                 self._files.remove(*(one.file for one in stored.values()))
             raise
 
-    def started_by(self, key: str) -> Started | None:
+    def find_key(self, key: str) -> KeyRecord | None:
         return self._keys.find(key)
 
     def get(self, run_id: str) -> Run:
@@ -247,7 +247,7 @@ class SqlStore:
     def evaluations(self, run_id: str) -> Sequence[Mapping[str, Any]]:
         return self._curves.get(run_id)
 
-    def forget_evaluations(self, run_id: str, after_step: int) -> None:
+    def delete_evaluations(self, run_id: str, after_step: int) -> None:
         self._curves.delete_after(run_id, after_step)
 
     def append_trials(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
