@@ -44,7 +44,7 @@ from app.events.run_metrics import RunMetrics
 from app.jobs.jobs import Jobs
 from app.limits.addresses import caller
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
-from app.limits.listener import ACCEPTS_AT_ONCE, WAITING, Listener, listen
+from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
 from app.limits.places import Places
 from app.settings import Settings
@@ -150,7 +150,7 @@ def _trouble(jobs: Jobs, store: RunStore) -> str | None:
     if (trouble := jobs.trouble()) is not None:
         return trouble
     try:
-        store.check_room()
+        store.check_disk_space()
         store.list(limit=1)
     except HexapodError as error:
         return f"No run can be started, and what is kept may be looked at: {error}."
@@ -234,7 +234,7 @@ class _Server(uvicorn.Server):
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
         if self.started:
-            self._listener.listen(WAITING)
+            self._listener.listen(BACKLOG)
             write_address_file(self._settings.data, _local_address(self._listener))
             address = self._settings.public_url or _local_address(self._listener, "localhost")
             sys.stdout.write(f"Racing Hexapods is at {address} (Ctrl-C stops it)\n")

@@ -1,6 +1,9 @@
-"""Archives: a run with all it has as one file, out of one store and into another.
+"""Export and import of runs as zip archives, and import of single Q-tables.
 
-`transfer` moves a run; `archive` is the zip; `archived_run`, `archived_files` and `archived_trials`
-check what is in it. `table_import` takes in a Q-table alone. Everything from outside is read with
-`untrusted_input`.
+`transfer` exports a run from a store to an archive, and imports one after validating it.
+`archive` packs and unpacks the zip container, with a manifest of SHA-256 hashes.
+`archived_run`, `archived_trials` and `archived_files` encode and validate its members: `run.json`,
+`trials.json`, and tables, recordings and reports.
+`table_import` imports a Q-table as a finished training; `imported_tables` validates tables.
+`untrusted_input` has the base class and field types with which all of this input is parsed.
 """

@@ -1,4 +1,4 @@
-"""The files of a run in its archive: which there are, and that each is what it should be."""
+"""Artifact files of a run in its archive: select them for export, validate them on import."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.archive.archive import Member
-from app.archive.archived_trials import check_reported, is_reported, reported_files
+from app.archive.archived_trials import check_report_files, is_report_file, report_files
 from app.archive.imported_tables import checked_table
 from app.archive.untrusted_input import Large, Metres, PortableText, Seconds, Share, Step
 from app.domain.errors import DamagedFile, HexapodError
@@ -30,72 +30,77 @@ _EVALUATIONS = re.compile(r"evaluations-\d{4}\.npz", re.ASCII)
 
 
 def is_file_of(name: str, kind: str) -> bool:
-    """Whether a run of this kind may have a file of this name. Films are made anew."""
+    """Whether a run of this kind may have a file of this name; films are not archived."""
     if kind == "experiment":
-        return is_reported(name)
+        return is_report_file(name)
     if kind == "race":
         return name == RACE
     return name in (TABLE, CHECKPOINT, PRACTICE) or _EVALUATIONS.fullmatch(name) is not None
 
 
-def files_of(store: RunStore, run: Run) -> dict[str, Member]:
-    """All files of a run that go with it, each found whole now, and read when its turn comes.
+def members_of(store: RunStore, run: Run) -> dict[str, Member]:
+    """Return the files of a run to export; each is verified now, and read when it is packed.
 
     Raises:
-        DamagedFile: if one is damaged, or missing.
+        DamagedFile: if one is damaged or missing.
     """
     names = [RACE]
     if run.kind == "experiment":
-        names = reported_files(run)
+        names = report_files(run)
     if run.kind == "training":
         names = [TABLE, PRACTICE, *map(evaluations_file, range(MAX_EVALUATION_FILES))]
         if run.state in RESUMABLE[run.kind]:
             names.append(CHECKPOINT)
-    found = {}
+    members = {}
     for name in names:
         file = store.open_artifact(run.id, name)
         if file is not None:
-            found[name] = Member(file.size, partial(_pieces_of, store, run.id, name))
+            members[name] = Member(file.size, partial(_chunks_of, store, run.id, name))
             file.close()
-    return found
+    return members
 
 
-def _pieces_of(store: RunStore, run_id: str, name: str) -> Iterator[bytes]:
+def _chunks_of(store: RunStore, run_id: str, name: str) -> Iterator[bytes]:
     file = store.open_artifact(run_id, name)
     if file is None:
         raise DamagedFile(f"{name} of run {run_id} is not there any more")
     return pieces(file)
 
 
-def check_files(run: Run, files: Mapping[str, bytes], said: str) -> None:
-    """Make sure that everything in the files can be shown, and gone on with.
+def check_files(run: Run, files: Mapping[str, bytes], label: str) -> None:
+    """Check that an imported run's files are consistent with its config and can be displayed.
+
+    Args:
+        run: the imported run.
+        files: contents of its files by name.
+        label: name of the archive for error messages.
 
     Raises:
-        DamagedFile: if something cannot be.
-        TableMismatch: if a table was learned for another problem.
+        DamagedFile: if a file is unexpected, malformed or inconsistent.
+        TableMismatch: if a Q-table was learned for another problem.
     """
     if isinstance(run.config, ExperimentConfig):
-        check_reported(run, files, said)
+        check_report_files(run, files, label)
         return
     for name, data in files.items():
         if not is_file_of(name, run.kind):
-            raise DamagedFile(f"{said} has {name}, which no {run.kind} has")
+            raise DamagedFile(f"{label} has {name}, which no {run.kind} has")
         if name in (TABLE, CHECKPOINT):
-            _check_table(run, name, data, f"{name} of {said}")
+            _check_table(run, name, data, f"{name} of {label}")
     try:
         if isinstance(run.config, RaceConfig):
             _check_race(run.config, files)
         else:
             _check_practice(run.config, files)
-    except Exception as error:  # NumPy does not say all that strange arrays make it raise
-        raise DamagedFile(f"{said} has a recording that cannot be shown: {error}") from error
+    except Exception as error:  # NumPy documents no complete list of exceptions
+        raise DamagedFile(f"{label} has a recording that cannot be shown: {error}") from error
 
 
-def _check_table(run: Run, name: str, data: bytes, said: str) -> None:
+def _check_table(run: Run, name: str, data: bytes, label: str) -> None:
     config = run.config
     if not isinstance(config, TrainingConfig):
         return
-    checkpoint, meta, _ = checked_table(data, said)
+    checkpoint, meta, _ = checked_table(data, label)
     try:
         tables.check_fits(checkpoint, config, config.observation)
         if meta.agent != config.agent:
@@ -108,8 +113,8 @@ def _check_table(run: Run, name: str, data: bytes, said: str) -> None:
                 raise ValueError("its values are not those of the run's result")
     except HexapodError:
         raise
-    except Exception as error:  # NumPy does not say all that strange arrays make it raise
-        raise DamagedFile(f"{said} does not hold together: {error}") from error
+    except Exception as error:  # NumPy documents no complete list of exceptions
+        raise DamagedFile(f"{label} does not hold together: {error}") from error
 
 
 def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
@@ -133,10 +138,10 @@ def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
 def _check_practice(config: WalkingProblem, files: Mapping[str, bytes]) -> None:
     if PRACTICE not in files:
         return
-    later = sorted(name for name in files if _EVALUATIONS.fullmatch(name))
-    if later != [evaluations_file(number) for number in range(len(later))]:
+    names = sorted(name for name in files if _EVALUATIONS.fullmatch(name))
+    if names != [evaluations_file(number) for number in range(len(names))]:
         raise ValueError("an evaluation is missing")
-    evaluations = [tables.read_arrays(files[name]) for name in later]
+    evaluations = [tables.read_arrays(files[name]) for name in names]
     recording = practice_recording(tables.read_arrays(files[PRACTICE]), evaluations)
     _check_poses(recording.rest_qpos[None], config)
     for step in recording.steps:
@@ -163,7 +168,7 @@ def _check_motion(motion: Motion | None, walk: WalkingProblem) -> None:
 
 
 def _check_poses(qpos: NDArray[np.float32], walk: WalkingProblem) -> None:
-    """(frames, 7 + joints): a position, a quaternion, three joints a leg."""
+    """Check poses, (frames, 7 + joints): position, unit quaternion, three joint angles per leg."""
     if qpos.shape[1:] != (7 + 3 * len(walk.robot.legs),) or not len(qpos):
         raise ValueError("its robot has other joints")
     if qpos.dtype.kind != "f" or not np.isfinite(qpos).all():
@@ -182,7 +187,7 @@ def _check_choice(
         shapes = {np.shape(knowledge.values), np.shape(knowledge.visits)}
         if shapes != {(pairs, cells)}:
             raise ValueError("what it knew is of another problem")
-        # NaN stands where an action is not possible.
+        # NaN marks impossible actions.
         if np.isinf(knowledge.values).any() or np.isinf(knowledge.visits).any():
             raise ValueError("what it knew is no number")
 

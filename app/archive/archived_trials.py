@@ -1,4 +1,4 @@
-"""The trials of an experiment as the `trials.json` of its archive, and its files beside that."""
+"""Trials and report files of an experiment in its archive: encode and validate them."""
 
 import csv
 import io
@@ -18,10 +18,10 @@ from app.jobs.submissions import plan_of
 from app.storage.store import SUMMARY, Run
 
 TRIALS = "trials.json"
-_REPORTED = re.compile(
+_REPORT_FILE = re.compile(
     r"report\.html|summary\.json|trials\.csv|figures/[a-z0-9_-]{1,80}\.(png|svg|pdf)", re.ASCII
 )
-_BEGINS = {"png": b"\x89PNG\r\n\x1a\n", "pdf": b"%PDF-"}
+_SIGNATURES = {"png": b"\x89PNG\r\n\x1a\n", "pdf": b"%PDF-"}
 
 
 class _Counts(UntrustedInput, frozen=True):
@@ -37,7 +37,7 @@ class _Claim(UntrustedInput, frozen=True):
 
 
 class ExperimentResult(UntrustedInput, frozen=True):
-    """The result of an experiment's run."""
+    """Result of an experiment's run."""
 
     trials: _Counts
     claims: Annotated[list[_Claim], Meta(max_length=1_000)]
@@ -74,7 +74,7 @@ class _Cost(msgspec.Struct):
 
 
 class _Summary(msgspec.Struct):
-    """What the server and the page rely on in a summary; the rest is for readers of it."""
+    """Fields of a summary that the server and the page rely on; others are not validated."""
 
     experiment: Name
     trials: dict[str, Any]
@@ -85,61 +85,64 @@ class _Summary(msgspec.Struct):
 
 
 def trials_json(rows: Sequence[Mapping[str, Any]]) -> bytes:
-    """The trials of an experiment, as `RunStore.trials` has them."""
+    """Encode the trials of an experiment, as returned by `RunStore.trials`, as `trials.json`."""
     return json.dumps(list(rows), indent=0, allow_nan=False).encode()
 
 
-def read_trials_json(data: bytes, config: ExperimentConfig, said: str) -> list[dict[str, Any]]:
-    """The trials.
+def read_trials_json(data: bytes, config: ExperimentConfig, label: str) -> list[dict[str, Any]]:
+    """Parse and validate `trials.json`.
 
     Args:
-        data: what `trials_json` wrote.
-        config: the experiment that they are of.
-        said: what to call the file in messages.
+        data: as written by `trials_json`.
+        config: of the experiment.
+        label: name of the file for error messages.
+
+    Returns:
+        rows for `RunStore.append_trials`.
 
     Raises:
-        DamagedFile: if `trials_json` did not write it, or of another experiment.
+        DamagedFile: if it is malformed, or has trials that are not in the experiment's plan.
     """
     try:
         rows = msgspec.json.decode(data, type=list[_Row])
     except (ValueError, RecursionError) as error:
-        raise DamagedFile(f"{said} does not hold trials as it should: {error}") from error
+        raise DamagedFile(f"{label} does not hold trials as it should: {error}") from error
     keys = {row.key for row in rows}
     if len(keys) < len(rows):
-        raise DamagedFile(f"{said} has a trial twice")
+        raise DamagedFile(f"{label} has a trial twice")
     if keys - {trial.key for trial in plan_of(config).trials()}:
-        raise DamagedFile(f"{said} has a trial that is none of this experiment's")
+        raise DamagedFile(f"{label} has a trial that is none of this experiment's")
     if any((row.result is None) == (row.set_aside is None) for row in rows):
-        raise DamagedFile(f"{said} has a trial with neither or both of result and set_aside")
-    shown: list[dict[str, Any]] = msgspec.to_builtins(rows)
-    return shown
+        raise DamagedFile(f"{label} has a trial with neither or both of result and set_aside")
+    trials: list[dict[str, Any]] = msgspec.to_builtins(rows)
+    return trials
 
 
-def is_reported(name: str) -> bool:
+def is_report_file(name: str) -> bool:
     """Whether an experiment may have a file of this name."""
-    return _REPORTED.fullmatch(name) is not None
+    return _REPORT_FILE.fullmatch(name) is not None
 
 
-def reported_files(run: Run) -> list[str]:
-    """The files that an experiment may have left behind."""
+def report_files(run: Run) -> list[str]:
+    """Return the names of an experiment's files: its summary and those listed in its result."""
     files: list[str] = (run.result or {}).get("files", [])
     return list(dict.fromkeys([SUMMARY, *files]))
 
 
-def check_reported(run: Run, files: Mapping[str, bytes], said: str) -> None:
-    """Make sure that files are what their names say; nothing is believed of what they show.
+def check_report_files(run: Run, files: Mapping[str, bytes], label: str) -> None:
+    """Check that report files have the type of their names; their content is not trusted.
 
     Raises:
-        DamagedFile: if one is not.
+        DamagedFile: if a file is unexpected or malformed.
     """
     for name, data in files.items():
         suffix = name.rpartition(".")[2]
-        if not is_reported(name) or name not in reported_files(run):
-            raise DamagedFile(f"{said} has {name}, which this experiment has not")
-        if not data.startswith(_BEGINS.get(suffix, b"")):
-            raise DamagedFile(f"{said} has {name}, which is no {suffix.upper()}")
+        if not is_report_file(name) or name not in report_files(run):
+            raise DamagedFile(f"{label} has {name}, which this experiment has not")
+        if not data.startswith(_SIGNATURES.get(suffix, b"")):
+            raise DamagedFile(f"{label} has {name}, which is no {suffix.upper()}")
         if suffix == "csv":
-            _check_cells(data, f"{name} of {said}")
+            _check_cells(data, f"{name} of {label}")
     if SUMMARY not in files:
         return
     try:
@@ -147,21 +150,21 @@ def check_reported(run: Run, files: Mapping[str, bytes], said: str) -> None:
         if summary.experiment != run.config.experiment:  # type: ignore[union-attr]
             raise ValueError("it is of another experiment")
     except (ValueError, RecursionError) as error:
-        raise DamagedFile(f"{SUMMARY} of {said} is no summary ({error})") from error
+        raise DamagedFile(f"{SUMMARY} of {label} is no summary ({error})") from error
 
 
-def _check_cells(data: bytes, said: str) -> None:
-    """Make sure that a spreadsheet takes nothing in a table for a formula.
+def _check_cells(data: bytes, label: str) -> None:
+    """Check that no cell of a CSV file would be a formula in a spreadsheet (CSV injection).
 
     Raises:
-        DamagedFile: if it is no table, or it would.
+        DamagedFile: if it is no CSV file, or has such a cell.
     """
     try:
         rows = list(csv.reader(io.StringIO(data.decode(), newline="")))
     except (ValueError, csv.Error) as error:
-        raise DamagedFile(f"{said} is no table ({error})") from error
+        raise DamagedFile(f"{label} is no table ({error})") from error
     cell = next((cell for row in rows for cell in row if is_formula(cell)), None)
     if cell is not None:
         raise DamagedFile(
-            f"{said} has a cell that a spreadsheet takes for a formula: {cell[:40]!r}"
+            f"{label} has a cell that a spreadsheet takes for a formula: {cell[:40]!r}"
         )

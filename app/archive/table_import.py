@@ -1,4 +1,4 @@
-"""Tables from elsewhere: checked, and then trainings like any other."""
+"""Import of a Q-table file as a finished training."""
 
 from collections.abc import Collection
 from datetime import UTC, datetime
@@ -19,19 +19,22 @@ def adopt(
     name: str | None = None,
     key: IdempotencyKey | None = None,
 ) -> Run:
-    """Keep a table as a finished training.
+    """Validate a Q-table, and store it as a finished training.
 
     Args:
-        jobs: where the training is to be found afterwards.
-        data: the table's `.npz` file.
-        agents: the names that are known here.
-        name: of the training.
-        key: of the request, remembered with the training.
+        jobs: job control, which stores the training.
+        data: content of the table's `.npz` file.
+        agents: names of the registered agents.
+        name: of the training; None for a generated one.
+        key: idempotency key of the request, stored with the training.
+
+    Returns:
+        the training as stored.
 
     Raises:
-        DamagedFile: if it is no table, or does not hold together.
-        InvalidInput: if it was learned by an agent, or on a robot, that cannot be here.
-        StorageFull: if there is no room for it; nothing of it is left then.
+        DamagedFile: if it is no table, or is inconsistent.
+        InvalidInput: if its agent or robot is not supported here.
+        StorageFull: if there is too little disk space; nothing is left behind then.
     """
     checkpoint, meta, config = checked_table(data, "the file")
     check_walk(config)

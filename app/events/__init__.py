@@ -1,5 +1,8 @@
-"""The event bus and what listens to it on the server: run views, metrics, the log.
+"""The event bus, and the JSON views, metrics and logs of runs.
 
-`bus` carries events from any thread to every subscriber; `run_view` is a run as JSON; `run_metrics`
-counts and logs what happens to runs; `damage` finds stored runs that cannot be read.
+`bus` publishes events from any thread to asyncio subscribers, with replay and coalescing.
+`run_view` serialises a run to the JSON of the API and the events.
+`run_metrics` is a bus that counts computed steps and logs changes of the runs' states.
+`damage` finds and counts stored runs that cannot be decoded or shown.
+`logs` configures logging: JSON lines or key=value lines, with run ids.
 """

@@ -1,4 +1,8 @@
-"""The event bus: from whatever thread something happens in, to everyone who listens."""
+"""Event bus: publish from any thread, subscribe on an asyncio loop (server-sent events).
+
+Slow subscribers are handled by coalescing: state events replace pending ones with the same key. A
+ring buffer replays the other events to subscribers that reconnect with `Last-Event-ID`.
+"""
 
 import asyncio
 import itertools
@@ -11,31 +15,40 @@ from typing import Any, NamedTuple
 from app.storage.json_text import json_text
 
 RING_EVENTS = 4096
+"""Capacity of the replay buffer in events."""
 MAX_PENDING = 2048
-_NEWEST_ONLY = frozenset({"run", "scene", "stage", "summary", "viewers"})
-"""Events that say how something *is*: an older one is worth nothing once there is a newer."""
+"""Pending events beyond which a slow subscription is closed."""
+_STATE_EVENTS = frozenset({"run", "scene", "stage", "summary", "viewers"})
+"""Names of events that carry a full state: a newer one supersedes pending older ones."""
 
 
 class Event(NamedTuple):
-    """Something that happened."""
+    """A published event.
+
+    Attributes:
+        id: increasing number, for `Last-Event-ID`.
+        event: its name.
+        data: JSON, encoded once for all subscribers.
+        run_id: the run that it is about, or None.
+    """
 
     id: int
     event: str
     data: str
-    """JSON, encoded once for all listeners."""
     run_id: str | None
 
     @property
     def key(self) -> Any:
-        """Pending events of the same key replace each other."""
-        return (self.event, self.run_id) if self.event in _NEWEST_ONLY else self.id
+        """Coalescing key: a new event replaces a pending one with the same key."""
+        return (self.event, self.run_id) if self.event in _STATE_EVENTS else self.id
 
 
 class Subscription:
-    """One listener: `async for event in subscription`, on the loop that it was made on.
+    """One subscriber: `async for event in subscription`, on the loop that created it.
 
-    A slow listener gets the newest of each `run`, `scene`, `stage`, `summary` and `viewers`; one
-    that is too slow even for the others is let go, and comes back with `Last-Event-ID`.
+    A slow subscriber receives only the newest of each `run`, `scene`, `stage`, `summary` and
+    `viewers` event. With more than `MAX_PENDING` pending events it is closed; the client then
+    reconnects with `Last-Event-ID`.
     """
 
     def __init__(self, bus: "EventBus", run_id: str | None) -> None:
@@ -47,7 +60,7 @@ class Subscription:
         self._closed = False
 
     def push(self, event: Event) -> None:
-        """Take in an event; from any thread."""
+        """Queue an event for the subscriber, coalescing by key; callable from any thread."""
         if self._run_id is not None and event.run_id != self._run_id:
             return
         with self._lock:
@@ -57,44 +70,44 @@ class Subscription:
             if len(self._pending) > MAX_PENDING:
                 self._closed = True
         if was_empty or self._closed:
-            self._call_loop()
+            self._wake_loop()
 
     def close(self) -> None:
-        """End the iteration after what is pending; from any thread."""
+        """End the iteration after the pending events; callable from any thread."""
         self._closed = True
         self._bus.remove(self)
-        self._call_loop()
+        self._wake_loop()
 
     async def __aiter__(self) -> AsyncIterator[Event]:
         try:
             while True:
                 await self._wake.wait()
                 self._wake.clear()
-                for event in self._take():
+                for event in self._drain():
                     yield event
                 if self._closed:
                     return
         finally:
             self._bus.remove(self)
 
-    def _take(self) -> list[Event]:
+    def _drain(self) -> list[Event]:
         with self._lock:
-            taken = list(self._pending.values())
+            events = list(self._pending.values())
             self._pending.clear()
-        return taken
+        return events
 
-    def _call_loop(self) -> None:
+    def _wake_loop(self) -> None:
         try:
             self._loop.call_soon_threadsafe(self._wake.set)
-        except RuntimeError:  # the loop is closed, so nobody listens
+        except RuntimeError:  # the loop is closed, and its subscribers with it
             self._bus.remove(self)
 
 
 class EventBus:
-    """Publishes to all subscribers, and remembers a bounded number of events."""
+    """Publishes events to all subscriptions, with a bounded replay buffer. Thread-safe."""
 
     def __init__(self) -> None:
-        # From the time of day, so that ids keep rising when the server is started again.
+        # Starts at the time [ms], so that ids keep increasing across restarts of the server.
         self._last_id = time.time_ns() // 1_000_000
         self._ids = itertools.count(self._last_id + 1)
         self._ring: deque[Event] = deque(maxlen=RING_EVENTS)
@@ -104,34 +117,36 @@ class EventBus:
 
     @property
     def last_id(self) -> int:
-        """Of the newest event; before the first, lower than that will be."""
+        """Id of the newest event; before the first one, a lower number."""
         return self._last_id
 
     def publish(self, event: str, data: Mapping[str, Any] | str, run_id: str | None = None) -> None:
-        """Tell everyone; from any thread, in the order of the calls.
+        """Send an event to all subscriptions, in the order of the calls; from any thread.
 
         Args:
             event: its name.
-            data: what is to be said, or the JSON of it. A NaN or an infinity is sent as null: one
-                run's number is no reason to end every stream.
-            run_id: the run that it is about.
+            data: plain types, or their JSON. A NaN or an infinity is sent as null, so that one
+                run's number does not break every stream.
+            run_id: the run that it is about, if any.
         """
         text = data if isinstance(data, str) else json_text(data)
         with self._lock:
-            made = Event(next(self._ids), event, text, run_id)
-            self._last_id = made.id
-            if event not in _NEWEST_ONLY:
-                self._ring.append(made)
+            published = Event(next(self._ids), event, text, run_id)
+            self._last_id = published.id
+            if event not in _STATE_EVENTS:
+                self._ring.append(published)
             for subscription in list(self._subscriptions):
-                subscription.push(made)
+                subscription.push(published)
 
     def subscribe(
         self, run_id: str | None = None, last_event_id: int | None = None
     ) -> Subscription:
-        """Listen from now on, to one run's events or to all.
+        """Create a subscription to one run's events or to all; call on its asyncio loop.
 
-        With `last_event_id`, what happened since then comes first, except what a snapshot says
-        better. An id that is yet to come counts as none.
+        Args:
+            run_id: only events about this run; None for all events.
+            last_event_id: replay buffered events after this id first, except state events, which
+                a snapshot supersedes. An id in the future counts as None.
         """
         subscription = Subscription(self, run_id)
         with self._lock:
@@ -145,12 +160,12 @@ class EventBus:
         return subscription
 
     def remove(self, subscription: Subscription) -> None:
-        """Tell it nothing any more."""
+        """Unsubscribe; does nothing if it is not subscribed."""
         with self._lock:
             self._subscriptions.discard(subscription)
 
     def close(self) -> None:
-        """End every subscription, now and to come."""
+        """Close all subscriptions, and future ones at once."""
         self._closed = True
         for subscription in list(self._subscriptions):
             subscription.close()

@@ -1,4 +1,4 @@
-"""Counts and names the stored runs that cannot be shown."""
+"""List and count the stored runs that are damaged: cannot be decoded or serialised."""
 
 import threading
 import time
@@ -6,16 +6,20 @@ import time
 from app.events.run_view import as_shown
 from app.storage.store import DamagedRun, RunStore
 
-_PAGE = 200
-_COUNT_AGAIN_S = 300.0
+_PAGE_SIZE = 200
+_CACHE_S = 300.0
 
 
 def damaged_runs(store: RunStore) -> list[DamagedRun]:
-    """All runs of a store that cannot be shown, newest first; every run is read for it."""
+    """Return all damaged runs of a store, newest first; reads every run.
+
+    Raises:
+        StorageFailed: if the store cannot be read.
+    """
     damaged: list[DamagedRun] = []
     cursor = None
     while True:
-        page = store.list(limit=_PAGE, cursor=cursor)
+        page = store.list(limit=_PAGE_SIZE, cursor=cursor)
         damaged += [run for run in map(as_shown, page.items) if isinstance(run, DamagedRun)]
         cursor = page.next_cursor
         if cursor is None:
@@ -23,9 +27,9 @@ def damaged_runs(store: RunStore) -> list[DamagedRun]:
 
 
 class DamageCount:
-    """How many runs of a store cannot be shown. Safe to use from any thread.
+    """Number of damaged runs of a store, cached for five minutes. Thread-safe.
 
-    All runs are read to know it, so that the number may be five minutes old.
+    Counting reads every run, which is too slow for each request of the metrics.
     """
 
     def __init__(self, store: RunStore) -> None:
@@ -33,13 +37,13 @@ class DamageCount:
         self._count, self._counted_s = 0, -float("inf")
 
     def __call__(self) -> int:
-        """The number.
+        """Return the cached number, counting again if it is too old.
 
         Raises:
             StorageFailed: if the store cannot be read.
         """
         with self._lock:
-            if time.monotonic() - self._counted_s > _COUNT_AGAIN_S:
+            if time.monotonic() - self._counted_s > _CACHE_S:
                 self._count = len(damaged_runs(self._store))
                 self._counted_s = time.monotonic()
             return self._count

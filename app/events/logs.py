@@ -1,6 +1,6 @@
-"""The log: one line a record on standard error, JSON for programs and key=value for people.
+"""Logging set-up: one line per record on standard error, as JSON or, on a terminal, key=value.
 
-Its size is limited: see `log_limit`.
+The rate of records and bytes is limited by `app.limits.log_limit`.
 """
 
 import json
@@ -12,28 +12,32 @@ from typing import Any, TextIO
 from app.limits.log_limit import LimitedHandler
 from app.storage.store import KINDS
 
-_KNOWN = frozenset(vars(logging.makeLogRecord({}))) | {"message", "asctime", "taskName"}
+_STANDARD_ATTRIBUTES = frozenset(vars(logging.makeLogRecord({}))) | {
+    "message",
+    "asctime",
+    "taskName",
+}
 
 
 def install(level: str, stream: TextIO | None = None) -> None:
-    """Let every logger of the process write there, and nowhere else.
+    """Install the only handler of the root logger.
 
     Args:
-        level: below which records are left out.
-        stream: standard error if None.
+        level: minimum level of records.
+        stream: where to write; standard error if None.
     """
     stream = stream or sys.stderr
     handler = LimitedHandler(stream)
     handler.setFormatter(LineFormatter(as_json=not stream.isatty()))
     logging.basicConfig(level=level.upper(), handlers=[handler], force=True)
-    # viser's, which speaks of an address that is for nobody.
+    # viser's websocket server logs its internal address, which users cannot open.
     logging.getLogger("websockets").setLevel(logging.WARNING)
 
 
 class LineFormatter(logging.Formatter):
-    """A record as one line: time, level, logger and message, then what was given as `extra`.
+    """Formats a record as one line: time, level, logger, message, then the fields of `extra`.
 
-    A record that is about a run, or comes from its job, has its id as `run_id`.
+    Records about a run, or from the process or thread of its job, have its id as `run_id`.
     """
 
     def __init__(self, as_json: bool) -> None:
@@ -41,26 +45,28 @@ class LineFormatter(logging.Formatter):
         self._as_json = as_json
 
     def format(self, record: logging.LogRecord) -> str:
-        """The line, whatever line breaks the message has."""
-        said: dict[str, Any] = {
+        """Return the record as one line, with line breaks in it escaped."""
+        fields: dict[str, Any] = {
             "time": datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds"),
             "level": record.levelname.lower(),
             "logger": record.name,
             "message": record.getMessage(),
         }
-        run_id = _run_of(record)
+        run_id = _run_id_of(record)
         if run_id is not None:
-            said["run_id"] = run_id
-        said |= {name: value for name, value in vars(record).items() if name not in _KNOWN}
+            fields["run_id"] = run_id
+        fields |= {
+            name: value for name, value in vars(record).items() if name not in _STANDARD_ATTRIBUTES
+        }
         if record.exc_info:
-            said["traceback"] = self.formatException(record.exc_info)
+            fields["traceback"] = self.formatException(record.exc_info)
         if self._as_json:
-            return json.dumps(said, default=str)
-        return " ".join(f"{name}={_quoted(value)}" for name, value in said.items())
+            return json.dumps(fields, default=str)
+        return " ".join(f"{name}={_quoted(value)}" for name, value in fields.items())
 
 
-def _run_of(record: logging.LogRecord) -> str | None:
-    """The run that a job's process or thread works on: both are named by it."""
+def _run_id_of(record: logging.LogRecord) -> str | None:
+    """Return the run id in the name of a job's process or thread, which is `<kind> <run id>`."""
     for name in (record.processName, record.threadName):
         kind, _, run_id = (name or "").partition(" ")
         if kind in KINDS and run_id:
@@ -70,7 +76,7 @@ def _run_of(record: logging.LogRecord) -> str | None:
 
 def _quoted(value: object) -> str:
     text = str(value)
-    # Bare where nothing in it could be taken for more than one word, or be obeyed by a terminal.
+    # Unquoted only without spaces, quotes, `=` and terminal control characters.
     return (
         text
         if text.isascii() and text.isprintable() and not set(text) & set(' "=')

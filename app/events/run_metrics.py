@@ -1,4 +1,4 @@
-"""What happens to runs, counted for the metrics and told to the log."""
+"""Metrics of runs: count computed steps, and log changes of the runs' states."""
 
 import logging
 import threading
@@ -14,63 +14,63 @@ _logger = logging.getLogger(__name__)
 
 
 class RunMetrics(EventBus):
-    """The bus, noticing what it publishes of runs: their steps, and the changes of their states."""
+    """Event bus that derives step counts and log records from the `run` events it publishes."""
 
     def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
-        """Count from zero.
+        """Start counting at zero.
 
         Args:
-            now: the clock that rates go by, in seconds.
+            now: monotonic clock for the step rate [s].
         """
         super().__init__()
         self._now = now
-        self._seen: dict[str, tuple[str, int]] = {}
-        """By run its last state, and the steps that were done."""
+        self._last_published: dict[str, tuple[str, int]] = {}
+        """By run id: last published state and number of steps done."""
         self._steps = 0
-        self._newest: deque[tuple[float, int]] = deque()
-        self._seeing = threading.Lock()
+        self._recent_steps: deque[tuple[float, int]] = deque()
+        self._metrics_lock = threading.Lock()
 
     @property
     def steps(self) -> int:
-        """Robots' steps that were computed since the server began, of all runs together."""
+        """Robot steps computed since the server started, summed over all runs."""
         return self._steps
 
     @property
     def steps_per_s(self) -> float:
-        """Of the last ten seconds."""
+        """Computed robot steps per second, averaged over the last ten seconds."""
         now = self._now()
-        with self._seeing:
-            self._forget(now)
-            return sum(steps for _, steps in self._newest) / _WINDOW_S
+        with self._metrics_lock:
+            self._drop_old(now)
+            return sum(steps for _, steps in self._recent_steps) / _WINDOW_S
 
     def publish(self, event: str, data: Mapping[str, Any] | str, run_id: str | None = None) -> None:
-        """Tell everyone, and take note."""
+        """Publish an event, and update the metrics and the log."""
         super().publish(event, data, run_id)
         if isinstance(data, str) or run_id is None:
             return
         if event == "run":
-            self._note(data)
+            self._record(data)
         elif event == "run-deleted":
-            with self._seeing:
-                self._seen.pop(run_id, None)
+            with self._metrics_lock:
+                self._last_published.pop(run_id, None)
             _logger.info("deleted", extra={"run_id": run_id})
 
-    def _note(self, run: Mapping[str, Any]) -> None:
+    def _record(self, run: Mapping[str, Any]) -> None:
         run_id, state, done = run["id"], run["state"], run["progress"]["done"]
-        with self._seeing:
-            # One that was there before the server counts from where it is.
-            state_before, done_before = self._seen.get(run_id, ("", done))
-            self._seen[run_id] = (state, done)
+        with self._metrics_lock:
+            # The first event of a run from before a restart sets the baseline of its steps.
+            state_before, done_before = self._last_published.get(run_id, ("", done))
+            self._last_published[run_id] = (state, done)
             now = self._now()
-            self._forget(now)
+            self._drop_old(now)
             if done > done_before and run["kind"] != "experiment":
                 self._steps += done - done_before
-                self._newest.append((now, done - done_before))
+                self._recent_steps.append((now, done - done_before))
         if state != state_before:
             level = logging.WARNING if state in ("failed", "interrupted") else logging.INFO
-            more = {"error": run["error"]} if run["error"] else {}
-            _logger.log(level, "%s is %s", run["kind"], state, extra={"run_id": run_id, **more})
+            error = {"error": run["error"]} if run["error"] else {}
+            _logger.log(level, "%s is %s", run["kind"], state, extra={"run_id": run_id, **error})
 
-    def _forget(self, now: float) -> None:
-        while self._newest and self._newest[0][0] <= now - _WINDOW_S:
-            self._newest.popleft()
+    def _drop_old(self, now: float) -> None:
+        while self._recent_steps and self._recent_steps[0][0] <= now - _WINDOW_S:
+            self._recent_steps.popleft()

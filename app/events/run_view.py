@@ -1,4 +1,4 @@
-"""Runs as the API and the events show them: plain types, fit for JSON."""
+"""Serialise runs to plain JSON types, as sent by the API and in `run` events."""
 
 from collections.abc import Mapping
 from datetime import UTC, datetime
@@ -14,7 +14,7 @@ from app.storage.store import PAUSED, RESUMABLE, AnyRun, DamagedRun, Kind, Run
 
 
 class _TrainingResult(msgspec.Struct):
-    """What readers of a training's result rely on; further fields are of no matter here."""
+    """Fields of a training's result that clients rely on; further fields are ignored."""
 
     distance_m: float | None
     greedy_distance_m: float | None = None
@@ -58,47 +58,49 @@ _RESULTS: Mapping[Kind, Any] = {
 
 
 def run_view(run: AnyRun, queue_position: int | None = None) -> dict[str, Any]:
-    """The resource of a run; of a damaged one what can be shown, and why that is not all.
+    """Serialise a run; a damaged one with the fields that can be read, and the reason.
 
     Times are ISO 8601 in UTC.
 
     Args:
-        run: as it is now.
-        queue_position: of a run that waits, 1 for the next.
+        run: in its present state.
+        queue_position: of a queued run, 1 for the next to start; None for others.
     """
-    shown = as_shown(run)
-    if isinstance(shown, DamagedRun):
-        return _damaged_view(shown)
-    return _whole_view(shown, queue_position)
+    checked = as_shown(run)
+    if isinstance(checked, DamagedRun):
+        return _damaged_view(checked)
+    return _whole_view(checked, queue_position)
 
 
 def as_shown(run: AnyRun) -> AnyRun:
-    """The run itself, or as damaged if it cannot be shown as what it is.
+    """Return the run, or a `DamagedRun` if clients could not use its JSON.
 
-    The store finds what it cannot read; here it is what readers of JSON could make nothing of.
+    The store detects rows that it cannot decode; this detects non-finite numbers and results that
+    lack fields.
     """
-    why = None if isinstance(run, DamagedRun) else _trouble(run)
-    if why is None:
+    damage = None if isinstance(run, DamagedRun) else _damage(run)
+    if damage is None:
         return run
-    known = {name: getattr(run, name) for name in ("id", "kind", "name", "state", "created_at")}
-    return DamagedRun(**known, damaged=why)
+    fields = {name: getattr(run, name) for name in ("id", "kind", "name", "state", "created_at")}
+    return DamagedRun(**fields, damaged=damage)
 
 
-def _trouble(run: Run) -> str | None:
+def _damage(run: Run) -> str | None:
+    """Return why clients could not use a run's JSON; None if they can."""
     try:
-        return _wrong_number(run) or _wrong_result(run)
+        return _non_finite_field(run) or _invalid_result(run)
     except RecursionError:
         return "its result is nested too deeply"
 
 
-def _wrong_number(run: Run) -> str | None:
+def _non_finite_field(run: Run) -> str | None:
     for name in ("eta_s", "greedy_distance_m", "changes", "result"):
         if not is_finite(getattr(run, name)):
             return f"its {name} has a number that is none"
     return None
 
 
-def _wrong_result(run: Run) -> str | None:
+def _invalid_result(run: Run) -> str | None:
     if run.result is None:
         return None
     try:
@@ -124,7 +126,7 @@ def _damaged_view(run: DamagedRun) -> dict[str, Any]:
 
 
 def _whole_view(run: Run, queue_position: int | None) -> dict[str, Any]:
-    shown: dict[str, Any] = {
+    view: dict[str, Any] = {
         "id": run.id,
         "kind": run.kind,
         "name": run.name,
@@ -141,26 +143,26 @@ def _whole_view(run: Run, queue_position: int | None) -> dict[str, Any]:
         "ended_at": _time(run.ended_at),
     }
     if run.kind == "race":
-        shown["waiting_for"] = list(run.waiting_for)
+        view["waiting_for"] = list(run.waiting_for)
     elif run.kind == "experiment":
-        shown["workers"] = run.workers
+        view["workers"] = run.workers
     else:
-        shown["greedy_distance_m"] = run.greedy_distance_m
-        shown["changes"] = [dict(change) for change in run.changes]
-    return shown
+        view["greedy_distance_m"] = run.greedy_distance_m
+        view["changes"] = [dict(change) for change in run.changes]
+    return view
 
 
 def _config(run: Run) -> dict[str, Any]:
-    shown = config_as_json(run.config)
+    config = config_as_json(run.config)
     if isinstance(run.config, RaceConfig):
-        lanes = zip(shown["lanes"], run.lane_training_ids, strict=True)
-        shown["lanes"] = [{**lane, "training_id": training} for lane, training in lanes]
+        lanes = zip(config["lanes"], run.lane_training_ids, strict=True)
+        config["lanes"] = [{**lane, "training_id": training} for lane, training in lanes]
     elif isinstance(run.config, TrainingConfig):
-        shown["continue_from"] = run.continued_from
-    return shown
+        config["continue_from"] = run.continued_from
+    return config
 
 
-def _time(moment: datetime | None) -> str | None:
-    if moment is None:
+def _time(time: datetime | None) -> str | None:
+    if time is None:
         return None
-    return moment.astimezone(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+    return time.astimezone(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")

@@ -54,7 +54,7 @@ class RunQueue:
                 "to end, or stop one",
                 RETRY_AFTER_S,
             )
-        self._store.check_room()
+        self._store.check_disk_space()
         new = [entry.run for entry in entries if not entry.goes_on]
         try:
             self._store.create(*new, key=key)
@@ -73,7 +73,7 @@ class RunQueue:
         fields = ("done", "waiting_for", "error", "result", "ended_at")
         changed = {field: getattr(run, field) for field in fields}
         queued = self._store.change(run.id, RESUMABLE[run.kind], "queued", **changed)
-        self._store.forget_evaluations(run.id, after_step=run.done)
+        self._store.delete_evaluations(run.id, after_step=run.done)
         return queued
 
     def reconcile(self) -> None:

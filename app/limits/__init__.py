@@ -1,6 +1,9 @@
-"""Limits on what clients may use of the server: connections, files, memory, starts, log lines.
+"""Resource limits against overload by clients, independent of what the server serves.
 
-Nothing here knows what the server serves. `listener`, `http_protocol` and `connections` bound
-sockets; `open_files` divides the process's files; `places`, `memory_budget` and `token_bucket`
-bound streams, bytes and rates; `log_limit` bounds the log.
+`connections` limits open connections in total and per address, and evicts to admit newcomers.
+`listener` applies that at `accept`; `http_protocol` adds timeouts against slow clients.
+`open_files` raises the limit of file descriptors and divides them.
+`places` limits concurrent streams and viewers; `memory_budget` bytes buffered for clients.
+`token_bucket` limits the rate of requests per client; `log_limit` that of log records.
+`addresses` groups client addresses, so that an IPv6 network counts as one client.
 """

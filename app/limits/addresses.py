@@ -1,4 +1,4 @@
-"""Client addresses, grouped so that one client cannot count as many."""
+"""Group client addresses, so that one client cannot pose as many by changing its address."""
 
 import ipaddress
 
@@ -6,7 +6,10 @@ from starlette.types import Scope
 
 
 def client_group(host: str) -> str:
-    """An IPv4 address as it is, a network of IPv6: whoever has one there has all of the network."""
+    """Return an IPv4 address unchanged, and the /64 network of an IPv6 address.
+
+    A /64 is usually assigned to one client, which can use all of its addresses.
+    """
     try:
         address = ipaddress.ip_address(host)
     except ValueError:
@@ -19,5 +22,5 @@ def client_group(host: str) -> str:
 
 
 def caller(scope: Scope) -> str:
-    """The client group of a request, as the proxy before the server says where it is believed."""
+    """Return the client group of a request; behind a trusted proxy, of the forwarded address."""
     return client_group(scope["client"][0] if scope.get("client") else "")

@@ -1,9 +1,9 @@
-"""Connection limits: how many may be open in all and by address, and how long each may stall.
+"""Connection limits: maximum of open connections in total and per address, and eviction.
 
-A connection is counted from `accept` until its socket is closed, whatever protocol it speaks by
-then. When there is no room, the address with the most connections loses one: the one that has been
-idle for longest, or else its oldest one with a request. So an address that comes anew gets in, and
-a crowd of silent connections only ever drives out its own kind.
+A connection counts from `accept` until its socket is closed, also after an upgrade to WebSocket.
+At a limit, a connection of the address with the most connections is evicted: the one idle for
+longest, or else the oldest with a request. So new addresses are admitted, and a flood of idle
+connections evicts only its own.
 """
 
 import time
@@ -14,34 +14,36 @@ from typing import Protocol
 from app.limits.addresses import client_group
 
 HEAD_S = 10.0
-"""For the whole head of a request, from the moment the server could take one."""
+"""Timeout for a whole request head, from the moment the connection is ready for a request."""
 BODY_S, BODY_BYTES_PER_S = 20.0, 500
-"""For a body: this long, and longer by a second for each so many bytes that came."""
+"""Timeout for a request body, extended by a second for each `BODY_BYTES_PER_S` received."""
 STALL_S, STALL_BYTES = 30.0, 32 << 10
-"""A client that has an answer to read must take so many bytes of it in so much time."""
+"""A client must read at least this many bytes of a pending response in this time."""
 OPERATOR_SLOTS = 16
-"""Connections beyond both caps, for addresses that an operator came from."""
+"""Connections beyond both limits, for addresses from which an operator was authenticated."""
 OPERATOR_S = 24 * 3600.0
+"""How long an address counts as an operator's after an authentication."""
 _MAX_OPERATOR_ADDRESSES = 1000
 
 
 class Peer(Protocol):
-    """The protocol of a connection, as far as its limits are concerned."""
+    """Interface of a connection's protocol, as needed to enforce its limits."""
 
     def overdue(self, now_s: float) -> bool:
-        """Whether the client keeps the server waiting for longer than it may."""
+        """Whether the client has exceeded a timeout."""
 
     def abort(self) -> None:
-        """Close the connection at once, with whatever it still had to send."""
+        """Close the connection at once, discarding unsent data."""
 
 
 class Connection:
     """One open connection.
 
     Attributes:
-        address: of the client; for IPv6 its network.
-        file: descriptor of its socket.
-        is_operator: a request of it had a valid token or session; never closed to make room.
+        address: client group of its address (see `addresses`).
+        file: file descriptor of its socket.
+        is_operator: whether a request had a valid token or session; such connections are never
+            evicted.
     """
 
     __slots__ = ("_busy", "_peer", "_table", "address", "file", "is_operator")
@@ -55,30 +57,30 @@ class Connection:
         self._peer: Peer | None = None
 
     def attach(self, peer: Peer) -> None:
-        """Say by what it can be closed; before that it is not closed to make room."""
+        """Set the protocol that can close the connection; before that it is not evicted."""
         self._peer = peer
-        self._table._place(self)
+        self._table._reclassify(self)
 
     def set_busy(self, busy: bool) -> None:
-        """Say whether a request is being answered, or none is there."""
+        """Set whether a request is in progress."""
         if busy != self._busy:
             self._busy = busy
-            self._table._place(self)
+            self._table._reclassify(self)
 
     def authenticated(self) -> None:
-        """Take note that an operator is at the other end."""
+        """Mark the connection as an operator's, and its address for `OPERATOR_S`."""
         if not self.is_operator:
             self.is_operator = True
-            self._table._place(self)
+            self._table._reclassify(self)
         self._table._note_operator(self.address)
 
     def release(self) -> None:
-        """Count it no more: its socket is closed."""
+        """Remove the connection from the table, after its socket was closed."""
         self._table._remove(self)
 
 
 class _Address:
-    """The connections of one address: `idle` and `busy` with the oldest first."""
+    """Connections of one address; those that can be evicted in `idle` and `busy`, oldest first."""
 
     __slots__ = ("busy", "count", "idle")
 
@@ -89,14 +91,14 @@ class _Address:
 
 
 class ConnectionTable:
-    """All open connections of a server. To be used on its event loop only.
+    """Table of a server's open connections. Not thread-safe: use on its event loop only.
 
     Attributes:
-        limit: of connections in all.
-        limit_per_address: of connections of one address.
-        refused: how many were not let in.
-        evicted: how many were closed to make room.
-        timed_out: how many were closed because the client kept the server waiting.
+        limit: maximum of connections in total.
+        limit_per_address: maximum of connections of one address.
+        refused: connections refused so far.
+        evicted: connections closed so far to admit others.
+        timed_out: connections closed so far because of a timeout.
     """
 
     def __init__(
@@ -105,12 +107,12 @@ class ConnectionTable:
         limit_per_address: int,
         now: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Nothing is open yet.
+        """Create an empty table.
 
         Args:
-            limit: of connections in all.
-            limit_per_address: of connections of one address.
-            now: the clock, in seconds.
+            limit: maximum of connections in total.
+            limit_per_address: maximum of connections of one address.
+            now: monotonic clock [s].
         """
         self.limit, self.limit_per_address = limit, limit_per_address
         self.refused = self.evicted = self.timed_out = 0
@@ -124,25 +126,27 @@ class ConnectionTable:
         return len(self._open)
 
     def of_file(self, file: int) -> Connection | None:
-        """The connection with this descriptor; None if it is not counted (any more)."""
+        """Return the connection with this file descriptor; None if it is not in the table."""
         return self._files.get(file)
 
     def admit(self, host: str, file: int) -> Connection | None:
-        """Count a connection that was just accepted; None if there is no room for it.
+        """Add an accepted connection, evicting others if needed; None if it must be refused.
 
         Args:
-            host: its client's address.
-            file: descriptor of its socket.
+            host: address of its client.
+            file: file descriptor of its socket.
         """
         address = client_group(host)
-        mine = self._addresses.get(address)
-        count = 0 if mine is None else mine.count
+        same = self._addresses.get(address)
+        count = 0 if same is None else same.count
         extra = OPERATOR_SLOTS if self._has_operator(address) else 0
-        is_room = count < self.limit_per_address + extra or (
-            mine is not None and self._evict_from(mine)
+        is_admitted = count < self.limit_per_address + extra or (
+            same is not None and self._evict_from(same)
         )
-        is_room = is_room and (len(self._open) < self.limit + extra or self._make_room(count))
-        if not is_room:
+        is_admitted = is_admitted and (
+            len(self._open) < self.limit + extra or self._evict_for(count)
+        )
+        if not is_admitted:
             self.refused += 1
             return None
         connection = Connection(self, address, file)
@@ -152,7 +156,7 @@ class ConnectionTable:
         return connection
 
     def close_overdue(self) -> None:
-        """Close the connections whose clients keep the server waiting for too long."""
+        """Close the connections whose clients have exceeded a timeout; call once a second."""
         now_s = self._now()
         for connection in list(self._open):
             peer = connection._peer
@@ -160,13 +164,13 @@ class ConnectionTable:
                 self.timed_out += 1
                 peer.abort()
 
-    def _make_room(self, count: int) -> bool:
-        """Close one connection of the heaviest address, for one of an address with so many."""
+    def _evict_for(self, count: int) -> bool:
+        """Evict from the address with the most connections, for an address that has `count`."""
         heaviest = max(self._addresses.values(), key=lambda one: one.count if one.idle else 0)
         if heaviest.idle and heaviest.count >= count:
             return self._evict_from(heaviest)
         heaviest = max(self._addresses.values(), key=lambda one: one.count)
-        # Not where the newcomer would have as many then: they would only take turns.
+        # Only if the newcomer still has fewer afterwards; else the two would evict each other.
         return heaviest.count > count + 1 and self._evict_from(heaviest)
 
     def _evict_from(self, address: _Address) -> bool:
@@ -175,11 +179,11 @@ class ConnectionTable:
             return False
         self.evicted += 1
         victim._peer.abort()
-        # Its socket is closed a moment later, when the event loop comes to it.
+        # Removed now, since its socket is closed only in the next iteration of the event loop.
         self._remove(victim)
         return True
 
-    def _place(self, connection: Connection) -> None:
+    def _reclassify(self, connection: Connection) -> None:
         address = self._addresses.get(connection.address)
         if address is None or connection not in self._open:
             return

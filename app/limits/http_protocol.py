@@ -1,4 +1,4 @@
-"""HTTP/1.1 by uvicorn, with limits to how long a client may keep the server waiting."""
+"""HTTP/1.1 protocol of uvicorn (h11) with timeouts against slow clients ("slowloris")."""
 
 import time
 from asyncio import Transport
@@ -17,31 +17,32 @@ from app.limits.connections import (
 )
 
 KEEP_ALIVE_S = 5
-"""How long a connection without a request is kept."""
+"""Keep-alive timeout of a connection without a request."""
 
 
 class LimitedHttpProtocol(H11Protocol):
-    """One connection. Its requests find it in their scope's state as `connection`.
+    """Protocol of one connection, with timeouts for head, body and response.
 
-    What is overdue is found by `ConnectionTable.close_overdue`, once a second for all connections,
-    rather than by timers of each.
+    Requests find their `Connection` in the state of their ASGI scope as `connection`. Timeouts are
+    checked by `ConnectionTable.close_overdue`, once a second for all connections, rather than by a
+    timer per connection.
     """
 
     table: ConnectionTable
     """Set by a subclass for each server: see `limited_http`."""
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override] # as uvicorn
-        """Find the connection in the table, and be what it can be closed by."""
+        """Look the connection up in the table, and attach this protocol to it."""
         super().connection_made(transport)
         file = transport.get_extra_info("socket").fileno()
         self._connection: Connection | None = self.table.of_file(file)
         self._upgraded = False
         self._since_s = time.monotonic()
-        """When the server began to wait for the head or the body of a request."""
+        """When the server started to wait for the head or the body of a request."""
         self._body_bytes = 0
         self._stalled: tuple[float, int] | None = None
-        """Since when the client has read too little, and the most left to send since [bytes]."""
-        # Closed before it was begun, to make room for others.
+        """Start of the present stall, and the maximum of unsent bytes since; None if none."""
+        # Evicted between `accept` and this call.
         if self._connection is None:
             transport.abort()
             return
@@ -49,13 +50,13 @@ class LimitedHttpProtocol(H11Protocol):
         self.app_state = {**self.app_state, "connection": self._connection}
 
     def data_received(self, data: bytes) -> None:
-        """Take in what the client sends, and count what is of a body."""
+        """Process received data, and count the bytes of a body."""
         if self._is_answering():
             self._body_bytes += len(data)
         super().data_received(data)
 
     def handle_events(self) -> None:
-        """Begin requests, and note that there is one."""
+        """Process parsed events; when a request begins, mark the connection as busy."""
         was_answering = self._is_answering()
         super().handle_events()
         if not was_answering and self._is_answering():
@@ -63,51 +64,51 @@ class LimitedHttpProtocol(H11Protocol):
             self._set_busy(True)
 
     def handle_websocket_upgrade(self, event: h11.Request) -> None:
-        """Leave the connection to the websocket's protocol, which has limits of its own."""
+        """Hand the connection over to the WebSocket protocol, which has limits of its own."""
         self._upgraded = True
         self._set_busy(True)
         super().handle_websocket_upgrade(event)
 
     def on_response_complete(self) -> None:
-        """Wait for the next request, from now on."""
+        """Mark the connection as idle, and start the timeout for the next request's head."""
         self._since_s, self._body_bytes = time.monotonic(), 0
         self._set_busy(False)
         super().on_response_complete()
 
     def resume_writing(self) -> None:
-        """Go on: the client has read most of what waited for it."""
+        """Continue sending after back-pressure: the client has read most of the buffer."""
         self._stalled = None
         super().resume_writing()
 
     def overdue(self, now_s: float) -> bool:
-        """Whether the client keeps the server waiting for longer than it may."""
-        if self._reads_too_little(now_s):
+        """Whether the client has exceeded a timeout."""
+        if self._is_stalled(now_s):
             return True
         if self._upgraded or self.transport.is_closing():
             return False
         if not self._is_answering():
             return now_s - self._since_s > HEAD_S
         if not self.cycle.more_body or self.flow.read_paused:
-            # The whole request is here, or it is the server that is not ready for more.
+            # The request is complete, or reading is paused by the server's own back-pressure.
             return False
         return now_s - self._since_s > BODY_S + self._body_bytes / BODY_BYTES_PER_S
 
     def abort(self) -> None:
-        """Close the connection at once, with whatever it still had to send."""
+        """Close the connection at once, discarding unsent data."""
         self.transport.abort()
 
-    def _reads_too_little(self, now_s: float) -> bool:
-        left = self.transport.get_write_buffer_size()
-        if left == 0:
+    def _is_stalled(self, now_s: float) -> bool:
+        unsent = self.transport.get_write_buffer_size()
+        if unsent == 0:
             self._stalled = None
-        elif self._stalled is None or self._stalled[1] - left >= STALL_BYTES:
-            self._stalled = (now_s, left)
+        elif self._stalled is None or self._stalled[1] - unsent >= STALL_BYTES:
+            self._stalled = (now_s, unsent)
         else:
-            self._stalled = (self._stalled[0], max(self._stalled[1], left))
+            self._stalled = (self._stalled[0], max(self._stalled[1], unsent))
         return self._stalled is not None and now_s - self._stalled[0] > STALL_S
 
     def _is_answering(self) -> bool:
-        # uvicorn declares it as never None, which it is before the first request.
+        # `cycle` is None before the first request, although uvicorn's type says otherwise.
         return bool(self.cycle) and not self.cycle.response_complete
 
     def _set_busy(self, busy: bool) -> None:
@@ -116,14 +117,14 @@ class LimitedHttpProtocol(H11Protocol):
 
 
 def limited_http(table: ConnectionTable) -> type[LimitedHttpProtocol]:
-    """The protocol for the connections in a table, as `uvicorn.Config` takes it.
+    """Create the protocol class of one server, for the `http` argument of `uvicorn.Config`.
 
     Args:
-        table: of the connections of one server.
+        table: of the server's connections.
     """
 
-    class _OfOneServer(LimitedHttpProtocol):
+    class _BoundHttpProtocol(LimitedHttpProtocol):
         pass
 
-    _OfOneServer.table = table
-    return _OfOneServer
+    _BoundHttpProtocol.table = table
+    return _BoundHttpProtocol

@@ -1,4 +1,4 @@
-"""The listening socket: counts what it accepts, and closes at once what there is no room for."""
+"""Listening socket that applies the connection limits at `accept`."""
 
 import errno
 import os
@@ -11,56 +11,58 @@ from app.limits.connections import Connection, ConnectionTable
 from app.settings import PREFIX, Settings
 
 ACCEPTS_AT_ONCE = 64
-"""In one round of the event loop; so many files may be open beyond the table's limit."""
-WAITING = 2048
-"""Connections that the system keeps until they are accepted."""
+"""Accepts per iteration of the event loop; evicted sockets are closed in the next iteration, so
+this many files may be open beyond the table's limit."""
+BACKLOG = 2048
+"""Length of the system's queue of connections that were not accepted yet."""
 _REFUSALS_AT_ONCE = 256
 _BUFFER_BYTES = 128 << 10
-"""What the system may hold of a connection's data, each way, for a client that does not read."""
+"""Size of a connection's socket buffers, which bounds kernel memory for clients that stall."""
 _NO_MORE_FILES = (errno.EMFILE, errno.ENFILE)
 
 
 class AdmittedSocket(socket.socket):
-    """An accepted socket, which is counted until it is closed."""
+    """An accepted socket that releases its slot in the connection table when it is closed."""
 
     connection: Connection | None = None
 
     def close(self) -> None:
-        """Close it, and count it no more."""
+        """Close the socket, and release its slot."""
         super().close()
         if self.connection is not None:
             self.connection.release()
 
 
 class Listener(socket.socket):
-    """Accepts connections as far as a table has room for them.
+    """Listening socket that accepts only connections admitted by a `ConnectionTable`.
 
-    asyncio's server calls `accept` as if it were any socket. What is refused here has cost one
-    system call more than being accepted, and neither a transport nor a line in the log.
+    asyncio's server calls `accept` as on any socket. Refusing here costs one further system call,
+    and neither a transport nor a log record.
 
     Attributes:
-        table: counts the connections.
+        table: table of the server's connections.
     """
 
     def __init__(self, family: int, kind: int, protocol: int, table: ConnectionTable) -> None:
-        """Listen to nothing yet.
+        """Create an unbound socket.
 
         Args:
-            family: as of `socket.socket`.
-            kind: as of `socket.socket`.
-            protocol: as of `socket.socket`.
-            table: counts the connections.
+            family: as for `socket.socket`.
+            kind: as for `socket.socket`.
+            protocol: as for `socket.socket`.
+            table: table of the server's connections.
         """
         super().__init__(family, kind, protocol)
         self.table = table
-        # Given up for a moment where files have run out all the same.
+        # Spare file descriptor, closed for a moment to refuse connections when none is left.
         self._spare: int | None = _open_spare()
 
     def accept(self) -> tuple[socket.socket, Any]:
-        """The next connection that there is room for.
+        """Accept the next connection that the table admits, closing those that it refuses.
 
         Raises:
-            BlockingIOError: if none waits, or many were refused and others shall have a turn.
+            BlockingIOError: if none is queued, or after `_REFUSALS_AT_ONCE` refusals, to return
+                to the event loop.
         """
         for _ in range(_REFUSALS_AT_ONCE):
             try:
@@ -78,14 +80,15 @@ class Listener(socket.socket):
         raise BlockingIOError
 
     def close(self) -> None:
-        """Close it, and its spare file."""
+        """Close the socket and the spare file descriptor."""
         super().close()
         self._close_spare()
 
     def _refuse_with_spare(self) -> bool:
-        """Take the connection that waits with the spare file, only to close it.
+        """Accept the queued connection with the spare file descriptor, and close it at once.
 
-        Otherwise it would wait on, and the event loop would be told so without an end.
+        Otherwise it would stay queued, and the event loop would poll the listener as readable in
+        a busy loop.
         """
         if self._spare is None:
             return False
@@ -105,10 +108,10 @@ class Listener(socket.socket):
 
 
 def listen(settings: Settings, table: ConnectionTable) -> Listener:
-    """Listen on the address in the settings.
+    """Create a socket that listens on the host and port in the settings.
 
     Raises:
-        InvalidInput: if that cannot be.
+        InvalidInput: if the host is unknown, or the port cannot be bound.
     """
     try:
         found = socket.getaddrinfo(
@@ -124,12 +127,12 @@ def listen(settings: Settings, table: ConnectionTable) -> Listener:
     try:
         if sys.platform != "win32":
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        # Connections inherit them.
+        # Accepted connections inherit the buffer sizes and keep-alive.
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _BUFFER_BYTES)
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER_BYTES)
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
         listener.bind(address)
-        listener.listen(WAITING)
+        listener.listen(BACKLOG)
     except OSError as error:
         listener.close()
         why = error.strerror or str(error)

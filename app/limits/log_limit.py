@@ -1,4 +1,4 @@
-"""Keeps the log small whatever happens: repeated records are counted, and bytes are rationed."""
+"""Log rate limit: suppress and count repeated records, and bound bytes with a token bucket."""
 
 import logging
 import threading
@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import TextIO
 
 REPEATS, WINDOW_S = 10, 60.0
-"""So many records of one kind are written in each window; the others are counted."""
+"""Records of one kind written per window [s]; further ones are only counted."""
 BURST_BYTES, BYTES_PER_S = 400_000, 500.0
-"""What may be written at once, and how fast that fills again."""
+"""Capacity and refill rate of the token bucket of bytes."""
 _MAX_KINDS = 1000
 _Kind = tuple[str, int, str, object]
 
@@ -20,46 +20,46 @@ _Kind = tuple[str, int, str, object]
 class _Window:
     ends_s: float
     written: int = 0
-    left_out: int = 0
+    suppressed: int = 0
 
 
 class LimitedHandler(logging.StreamHandler[TextIO]):
-    """Writes records to a stream, as far as there is room for them.
+    """Stream handler that limits repeated records and bytes.
 
-    Records are of one kind if logger, level, run and the first line of their message before its
-    arguments are the same. What was left out is said in one record a kind, when its window has
-    ended and anything is logged.
+    Records are of one kind if logger, level, run and the first line of their message template are
+    the same. A kind's suppressed records are reported in one summary record, at the first record
+    of any kind after its window has ended.
     """
 
     def __init__(self, stream: TextIO, now: Callable[[], float] = time.monotonic) -> None:
-        """Write to a stream.
+        """Create a handler with a full bucket.
 
         Args:
             stream: to write to.
-            now: the clock, in seconds.
+            now: monotonic clock [s].
         """
         super().__init__(stream)
         self._now = now
         self._windows: OrderedDict[_Kind, _Window] = OrderedDict()
-        """By kind, those that end first at the front."""
-        self._bytes, self._filled_s = float(BURST_BYTES), now()
-        self._lost = 0
-        self._counting = threading.Lock()
+        """By kind, in the order in which they end."""
+        self._tokens, self._refilled_s = float(BURST_BYTES), now()
+        self._dropped = 0
+        self._limit_lock = threading.Lock()
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Write a record, or count it."""
-        with self._counting:
+        """Write a record, or count it as suppressed."""
+        with self._limit_lock:
             summaries = self._ended_windows()
-            is_counted = self._is_repeated(record)
+            is_suppressed = self._is_repeated(record)
         for summary in summaries:
             self._write(summary)
-        if not is_counted:
+        if not is_suppressed:
             self._write(record)
 
     def close(self) -> None:
-        """Say what was left out, and close."""
-        with self._counting:
-            summaries = self._ended_windows(and_others=True)
+        """Write the summaries of all windows, and close the handler."""
+        with self._limit_lock:
+            summaries = self._ended_windows(including_open=True)
         for summary in summaries:
             self._write(summary)
         super().close()
@@ -72,36 +72,36 @@ class LimitedHandler(logging.StreamHandler[TextIO]):
             if len(self._windows) > _MAX_KINDS:
                 self._windows.popitem(last=False)
         if window.written >= REPEATS:
-            window.left_out += 1
+            window.suppressed += 1
             return True
         window.written += 1
         return False
 
-    def _ended_windows(self, and_others: bool = False) -> list[logging.LogRecord]:
-        """Forget the windows that have ended, and make a record of each that left something out."""
+    def _ended_windows(self, including_open: bool = False) -> list[logging.LogRecord]:
+        """Remove ended windows, and return a summary for each that suppressed records."""
         now_s, records = self._now(), []
         while self._windows:
             kind, window = next(iter(self._windows.items()))
-            if window.ends_s > now_s and not and_others:
+            if window.ends_s > now_s and not including_open:
                 break
             self._windows.popitem(last=False)
-            if window.left_out:
-                records.append(_summary(kind, window.left_out))
+            if window.suppressed:
+                records.append(_summary(kind, window.suppressed))
         return records
 
     def _write(self, record: logging.LogRecord) -> None:
         size = len(self.format(record).encode("utf-8", "replace")) + 1
-        with self._counting:
+        with self._limit_lock:
             now_s = self._now()
-            filled = self._bytes + (now_s - self._filled_s) * BYTES_PER_S
-            self._bytes, self._filled_s = min(float(BURST_BYTES), filled), now_s
-            if size > self._bytes:
-                self._lost += 1
+            refilled = self._tokens + (now_s - self._refilled_s) * BYTES_PER_S
+            self._tokens, self._refilled_s = min(float(BURST_BYTES), refilled), now_s
+            if size > self._tokens:
+                self._dropped += 1
                 return
-            self._bytes -= size
-            lost, self._lost = self._lost, 0
-        if lost:
-            record.records_left_out = lost
+            self._tokens -= size
+            dropped, self._dropped = self._dropped, 0
+        if dropped:
+            record.records_left_out = dropped
         super().emit(record)
 
 
@@ -110,13 +110,13 @@ def _kind_of(record: logging.LogRecord) -> _Kind:
     return record.name, record.levelno, first_line[:200], getattr(record, "run_id", None)
 
 
-def _summary(kind: _Kind, left_out: int) -> logging.LogRecord:
+def _summary(kind: _Kind, suppressed: int) -> logging.LogRecord:
     name, level, message, run_id = kind
-    said = {
+    fields = {
         "name": name,
         "levelno": level,
         "levelname": logging.getLevelName(level),
         "msg": "%d more like this were left out: %s",
-        "args": (left_out, message),
+        "args": (suppressed, message),
     }
-    return logging.makeLogRecord(said if run_id is None else {**said, "run_id": run_id})
+    return logging.makeLogRecord(fields if run_id is None else {**fields, "run_id": run_id})

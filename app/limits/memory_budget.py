@@ -1,7 +1,7 @@
-"""A memory budget: how many bytes may be held for clients that have yet to send or read the rest.
+"""Memory budget: bounds the bytes buffered for clients that upload or download slowly.
 
-Everyone together is held to a limit, and one client to a share of it, so that others always get
-some. Operators have a budget of their own.
+There is a limit for all clients together and a lower one per client, so that one client cannot
+use up the budget. Operators have a separate budget.
 """
 
 import threading
@@ -12,18 +12,18 @@ Refusal = Literal["all", "share"]
 
 
 class MemoryBudget:
-    """Counts bytes by client. Safe to use from any thread.
+    """Counts buffered bytes by client. Thread-safe.
 
     Attributes:
-        held: bytes, of all clients.
+        held: bytes buffered for all clients together.
     """
 
     def __init__(self, limit: int, share: int) -> None:
-        """Nothing is held.
+        """Create a budget with nothing taken.
 
         Args:
-            limit: bytes, of all clients together. What is larger alone gets in alone.
-            share: bytes, of one client.
+            limit: for all clients together [bytes]; a larger request is granted if it is alone.
+            share: for one client [bytes]; a larger request is granted if it is its only one.
         """
         self._limit, self._share = limit, share
         self.held = 0
@@ -31,19 +31,19 @@ class MemoryBudget:
         self._lock = threading.Lock()
 
     def take(self, client: str, size: int) -> Refusal | None:
-        """Hold so many bytes more for a client, or say what does not let it."""
+        """Reserve bytes for a client; return None, or which limit refuses them."""
         with self._lock:
-            mine = self._by_client[client]
-            if mine and mine + size > self._share:
+            client_held = self._by_client[client]
+            if client_held and client_held + size > self._share:
                 return "share"
             if self.held and self.held + size > self._limit:
                 return "all"
             self.held += size
-            self._by_client[client] = mine + size
+            self._by_client[client] = client_held + size
             return None
 
     def give_back(self, client: str, size: int) -> None:
-        """Hold them no more."""
+        """Release reserved bytes."""
         with self._lock:
             self.held -= size
             self._by_client[client] -= size

@@ -1,4 +1,4 @@
-"""How many files the process may have open, and how many of them are for connections."""
+"""Raise the limit of file descriptors, and divide them between connections and other uses."""
 
 import os
 import sys
@@ -8,14 +8,14 @@ from app.limits.listener import ACCEPTS_AT_ONCE
 from app.settings import Settings
 
 MOST_CONNECTIONS = 2000
-"""Unless the settings say more: each costs memory as well."""
+"""Default maximum of connections, which bounds their memory; the settings can raise it."""
 _MOST_FILES = 65_536
 _OWN_FILES, _OWN_FILES_PER_CORE = 224, 8
-"""Kept for the database, the threads that read artifacts, viser, and the pipes of jobs."""
+"""Reserved for the database, threads that read artifacts, viser, and pipes of job processes."""
 
 
 def raise_file_limit() -> int:
-    """Let the process open as many files as it may. Returns how many that are."""
+    """Raise the soft limit of open files (RLIMIT_NOFILE) to the hard one; return the new limit."""
     if sys.platform == "win32":
         return _MOST_FILES
     import resource  # noqa: PLC0415 - not on Windows
@@ -29,15 +29,15 @@ def raise_file_limit() -> int:
 
 
 def connection_table(settings: Settings, file_limit: int) -> ConnectionTable:
-    """A table that leaves the server the files that it needs for its own work.
+    """Create a connection table whose limit leaves the server the files that it needs itself.
 
     Args:
-        settings: may ask for fewer connections, or for more as far as there are files.
-        file_limit: how many files the process may have open.
+        settings: with the wanted limits, which the number of files may lower.
+        file_limit: maximum of files that the process may open.
     """
-    own = _OWN_FILES + _OWN_FILES_PER_CORE * (os.cpu_count() or 1) + OPERATOR_SLOTS
-    # With very few files everything is short of them; connections then have a quarter.
-    possible = max(file_limit - own - ACCEPTS_AT_ONCE, file_limit // 4, 1)
+    reserved = _OWN_FILES + _OWN_FILES_PER_CORE * (os.cpu_count() or 1) + OPERATOR_SLOTS
+    # With a very low file limit the reserve cannot be met; connections then get a quarter.
+    possible = max(file_limit - reserved - ACCEPTS_AT_ONCE, file_limit // 4, 1)
     limit = min(settings.max_connections or MOST_CONNECTIONS, possible)
     half = max(1, limit // 2)
     return ConnectionTable(limit, min(settings.max_connections_per_address or half, limit))

@@ -1,8 +1,8 @@
-"""Places for clients that stay: bounded in all and for each address, with room for who comes anew.
+"""Concurrency limit for long-lived clients (streams, viewers), in total and per address.
 
-An address alone gets a share of the places. When all are taken, the address with the most of them
-gives its newest up to one that has fewer, so that no crowd behind one address keeps others out. An
-operator takes the place of a spectator, or else of the operator who came first, and always gets in.
+When all places are taken, a newcomer from an address with fewer places evicts the newest client
+of the address with the most, so that many clients behind one address do not exclude others. An
+operator is always admitted: it evicts a spectator, or else the operator who came first.
 """
 
 from typing import Generic, Literal, NamedTuple, TypeVar
@@ -12,7 +12,7 @@ Refusal = Literal["full", "address full"]
 
 
 class NoPlace(Exception):
-    """There is none; `reason` says of what there is too much."""
+    """No place is free; `reason` tells which limit was reached."""
 
     def __init__(self, reason: Refusal) -> None:
         super().__init__(reason)
@@ -25,18 +25,18 @@ class _Holder(NamedTuple):
 
 
 class Places(Generic[T]):
-    """Who holds a place. To be used on one event loop."""
+    """Table of the clients that hold a place. Not thread-safe: use on one event loop."""
 
     def __init__(self, places: int, per_address: int) -> None:
-        """All are free.
+        """Create a table with all places free.
 
         Args:
-            places: in all.
-            per_address: of spectators at one address.
+            places: maximum of clients in total.
+            per_address: maximum of spectators of one address; operators are exempt.
         """
         self._places, self._per_address = places, per_address
         self._holders: dict[T, _Holder] = {}
-        """In the order in which they came."""
+        """In order of arrival."""
 
     def __len__(self) -> int:
         return len(self._holders)
@@ -45,45 +45,46 @@ class Places(Generic[T]):
         return holder in self._holders
 
     def take(self, holder: T, address: str, is_operator: bool) -> T | None:
-        """Give it a place.
+        """Give a client a place, evicting another if needed.
 
         Returns:
-            who lost its own for that, if anyone did.
+            the evicted client, which the caller must disconnect; None if there is none.
 
         Raises:
-            NoPlace: if it gets none.
+            NoPlace: if the client is refused.
         """
-        counts = self._spectators()
-        mine = counts.get(address, 0)
-        if not is_operator and mine >= self._per_address:
+        counts = self._spectator_counts()
+        same_address = counts.get(address, 0)
+        if not is_operator and same_address >= self._per_address:
             raise NoPlace("address full")
-        loser = None
+        evicted = None
         if len(self._holders) >= self._places:
-            loser = self._loser(counts, mine, is_operator)
-            if loser is None:
+            evicted = self._to_evict(counts, same_address, is_operator)
+            if evicted is None:
                 raise NoPlace("full")
-            del self._holders[loser]
+            del self._holders[evicted]
         self._holders[holder] = _Holder(address, is_operator)
-        return loser
+        return evicted
 
     def leave(self, holder: T) -> None:
-        """It has none any more; it may have lost it before."""
+        """Free a client's place; does nothing if it was evicted before."""
         self._holders.pop(holder, None)
 
-    def _spectators(self) -> dict[str, int]:
+    def _spectator_counts(self) -> dict[str, int]:
         counts: dict[str, int] = {}
         for address, is_operator in self._holders.values():
             if not is_operator:
                 counts[address] = counts.get(address, 0) + 1
         return counts
 
-    def _loser(self, counts: dict[str, int], mine: int, is_operator: bool) -> T | None:
+    def _to_evict(self, counts: dict[str, int], same_address: int, is_operator: bool) -> T | None:
+        """Return the client to evict for a newcomer; None if the newcomer must be refused."""
         heaviest = max(counts, key=counts.__getitem__, default=None)
         if heaviest is None:
-            # Operators only.
+            # All places are held by operators.
             return next(iter(self._holders), None) if is_operator else None
-        if not is_operator and counts[heaviest] <= mine + 1:
-            # It would have as many then: they would only take turns.
+        if not is_operator and counts[heaviest] <= same_address + 1:
+            # Both addresses would have as many then, and evict each other in turns.
             return None
-        at_it = _Holder(heaviest, is_operator=False)
-        return next(one for one, held in reversed(self._holders.items()) if held == at_it)
+        spectator = _Holder(heaviest, is_operator=False)
+        return next(one for one, held in reversed(self._holders.items()) if held == spectator)

@@ -1,4 +1,4 @@
-"""How often someone may do something: an allowance that is used up, and fills again with time."""
+"""Per-client token bucket, for rate limits."""
 
 import threading
 import time
@@ -6,44 +6,45 @@ from collections import OrderedDict
 from collections.abc import Callable
 
 MAX_CALLERS = 10_000
+"""Buckets kept at most."""
 
 
 class RateLimiter:
-    """One allowance for each caller. Safe to use from any thread.
+    """A token bucket per caller. Thread-safe.
 
-    Callers that did nothing for the longest are forgotten, so that nothing grows.
+    Beyond `MAX_CALLERS` the least recently used buckets are dropped, which bounds memory.
     """
 
     def __init__(self, size: int, per_s: float, now: Callable[[], float] = time.monotonic) -> None:
-        """Every caller may do all of it at once.
+        """Start with full buckets.
 
         Args:
-            size: how much can be done at once.
-            per_s: how fast it fills again.
-            now: the clock, in seconds.
+            size: capacity of a bucket in tokens, which is the largest burst.
+            per_s: refill rate [tokens/s].
+            now: monotonic clock [s].
         """
         self._size, self._per_s, self._now = size, per_s, now
-        self._callers: OrderedDict[str, tuple[float, float]] = OrderedDict()
-        """By caller what was left, and when."""
+        self._buckets: OrderedDict[str, tuple[float, float]] = OrderedDict()
+        """By caller: number of tokens, and when it was computed [s]."""
         self._lock = threading.Lock()
 
     def wait_s(self, caller: str) -> float:
-        """How long until there is something left; 0 if there is now."""
+        """Return the time until the bucket has a token [s]; 0 if it has one. Takes none."""
         with self._lock:
-            return max(0.0, (1 - self._left(caller)) / self._per_s)
+            return max(0.0, (1 - self._tokens(caller)) / self._per_s)
 
     def take(self, caller: str) -> float:
-        """Use some of it, if there is any; else say how long to wait [s]."""
+        """Take a token and return 0; if there is none, return the time until there is one [s]."""
         with self._lock:
-            left = self._left(caller)
-            if left < 1:
-                return (1 - left) / self._per_s
-            self._callers[caller] = (left - 1, self._now())
-            self._callers.move_to_end(caller)
-            if len(self._callers) > MAX_CALLERS:
-                self._callers.popitem(last=False)
+            tokens = self._tokens(caller)
+            if tokens < 1:
+                return (1 - tokens) / self._per_s
+            self._buckets[caller] = (tokens - 1, self._now())
+            self._buckets.move_to_end(caller)
+            if len(self._buckets) > MAX_CALLERS:
+                self._buckets.popitem(last=False)
             return 0.0
 
-    def _left(self, caller: str) -> float:
-        left, since_s = self._callers.get(caller, (float(self._size), 0.0))
-        return min(self._size, left + max(0.0, self._now() - since_s) * self._per_s)
+    def _tokens(self, caller: str) -> float:
+        tokens, since_s = self._buckets.get(caller, (float(self._size), 0.0))
+        return min(self._size, tokens + max(0.0, self._now() - since_s) * self._per_s)

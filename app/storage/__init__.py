@@ -1,7 +1,11 @@
-"""Runs and all that belongs to them, kept: rows in a database, files beside it.
+"""Persistent storage of runs: rows in a database, artifact files beside it.
 
-`store` is the interface (`RunStore`) and the shape of a run. `database` implements it for SQLite
-and PostgreSQL. `artifacts` keeps files whole or not at all, `disk_space` their quota,
-`recordings` and `stored_recordings` what the stage replays, `idempotency` and `sessions` what
-outlives a request.
+`store` defines the interface `RunStore` and the dataclass `Run`; `errors` its exceptions.
+`database` implements it for SQLite and PostgreSQL, `memory_store` in memory.
+`artifacts` writes files atomically and verifies their SHA-256; `artifact_file` reads them in
+chunks; `disk_space` enforces the quota of the data folder.
+`recordings` and `stored_recordings` hold the recorded motion that the stage replays.
+`idempotency`, `sessions` and `run_ids`: idempotency keys, operators' sessions, sortable ids.
+`configs`, `stored_trials` and `json_text` convert configs, trials and numbers to JSON and back.
+`address_file` records where the server of a data folder listens.
 """

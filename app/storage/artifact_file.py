@@ -1,4 +1,7 @@
-"""A file of a run, read piece by piece, so that no reader takes the memory of all of it."""
+"""Chunked reading of artifact files, so that memory use does not depend on their size.
+
+Concurrent readers of one file share a file descriptor, which is closed with the last reader.
+"""
 
 import io
 import threading
@@ -7,36 +10,36 @@ from typing import BinaryIO, Protocol, TypeVar
 
 T = TypeVar("T")
 PIECE_BYTES = 32 << 10
-"""What is read at once for a client; it is held while the client takes it."""
+"""Chunk size: the bytes held in memory for each client while it receives them."""
 
 
 class ArtifactFile(Protocol):
-    """An open file, immutable as all artifacts. Safe to use from any thread; `with` closes it."""
+    """Interface of an open, immutable artifact file. Thread-safe."""
 
     @property
     def size(self) -> int:
-        """Its length in bytes."""
+        """Length of the file [bytes]."""
 
     def read_at(self, offset: int, length: int) -> bytes:
-        """The bytes from an offset on; fewer than asked for at the end only."""
+        """Read `length` bytes from an offset on; fewer only at the end of the file."""
 
     def close(self) -> None:
-        """Let go of it. May be called twice."""
+        """Close the file; may be called repeatedly."""
 
 
 class BytesFile:
-    """Bytes in memory, read like a file."""
+    """Implements `ArtifactFile` for bytes in memory."""
 
     def __init__(self, data: bytes) -> None:
         self._data = data
 
     @property
     def size(self) -> int:
-        """Its length in bytes."""
+        """Length of the file [bytes]."""
         return len(self._data)
 
     def read_at(self, offset: int, length: int) -> bytes:
-        """The bytes from an offset on."""
+        """Read `length` bytes from an offset on; fewer only at the end of the file."""
         return self._data[offset : offset + length]
 
     def close(self) -> None:
@@ -44,43 +47,45 @@ class BytesFile:
 
 
 class SharedFile:
-    """One descriptor for all who read a file at the same time: a crowd must not use them up.
+    """Reference-counted file descriptor, shared by all concurrent readers of one file.
+
+    Sharing bounds the number of open descriptors when many clients download the same file.
 
     Attributes:
-        size: in bytes.
+        size: length of the file [bytes].
     """
 
     def __init__(self, file: BinaryIO, size: int) -> None:
-        """Own an open file, until its last reader is closed."""
+        """Take ownership of an open file, which is closed with its last reader."""
         self.size = size
         self._file = file
         self._readers = 0
-        # One that the garbage collector closes may be closed in the middle of another's read.
+        # Reentrant: the garbage collector may close a reader on a thread that is in `read_at`.
         self._lock = threading.RLock()
 
-    def reader(self, on_last: Callable[[], None]) -> "SharedReader | None":
-        """One more reader; None if the last one is gone, and the file is closed.
+    def reader(self, on_last_close: Callable[[], None]) -> "SharedReader | None":
+        """Return a further reader; None if the last one was closed, and the file with it.
 
         Args:
-            on_last: called when the last reader was closed, with the file.
+            on_last_close: called after the last reader and the file were closed.
         """
         with self._lock:
-            return None if self._file.closed else self.first_reader(on_last)
+            return None if self._file.closed else self.first_reader(on_last_close)
 
-    def first_reader(self, on_last: Callable[[], None]) -> "SharedReader":
-        """The reader of a file that was just opened; see `reader`."""
+    def first_reader(self, on_last_close: Callable[[], None]) -> "SharedReader":
+        """Return the first reader of a file that was just opened; see `reader`."""
         with self._lock:
             self._readers += 1
-        return SharedReader(self, on_last)
+        return SharedReader(self, on_last_close)
 
     def read_at(self, offset: int, length: int) -> bytes:
-        """The bytes from an offset on."""
+        """Read `length` bytes from an offset on; fewer only at the end of the file."""
         with self._lock:
             self._file.seek(offset)
             return self._file.read(length)
 
     def release(self) -> bool:
-        """Count one reader less; whether it was the last one, and the file is closed now."""
+        """Decrement the reference count; close the file and return True at zero."""
         with self._lock:
             self._readers -= 1
             if self._readers == 0:
@@ -89,43 +94,43 @@ class SharedFile:
 
 
 class SharedReader:
-    """One reader's share in a file."""
+    """Implements `ArtifactFile` for one reader of a `SharedFile`."""
 
-    def __init__(self, shared: SharedFile, on_last: Callable[[], None]) -> None:
+    def __init__(self, shared: SharedFile, on_last_close: Callable[[], None]) -> None:
         self._shared: SharedFile | None = shared
-        self._on_last = on_last
+        self._on_last_close = on_last_close
         self._size = shared.size
 
     @property
     def size(self) -> int:
-        """Its length in bytes."""
+        """Length of the file [bytes]."""
         return self._size
 
     def read_at(self, offset: int, length: int) -> bytes:
-        """The bytes from an offset on."""
+        """Read `length` bytes from an offset on; fewer only at the end of the file."""
         if self._shared is None:
             raise ValueError("the file is closed")
         return self._shared.read_at(offset, length)
 
     def close(self) -> None:
-        """Let go of it; the last reader closes the file."""
+        """Close this reader; the last one closes the file."""
         shared, self._shared = self._shared, None
         if shared is not None and shared.release():
-            self._on_last()
+            self._on_last_close()
 
     def __del__(self) -> None:
-        # A response that was never begun has nobody else to close its file.
+        # The generator of a response that was never started does not run its `finally`.
         self.close()
 
 
 def pieces(file: ArtifactFile) -> Iterator[bytes]:
-    """All of a file in pieces; it is closed at the end, or with the iterator."""
+    """Iterate over a file in chunks; it is closed at the end, or with the iterator."""
     offsets = range(0, file.size, PIECE_BYTES)
     return closing_after(file, (file.read_at(offset, PIECE_BYTES) for offset in offsets))
 
 
 def closing_after(file: ArtifactFile, parts: Iterable[T]) -> Iterator[T]:
-    """What is made of a file, which is closed at the end, or with the iterator."""
+    """Iterate over parts derived from a file, closing it at the end, or with the iterator."""
     try:
         yield from parts
     finally:
@@ -133,32 +138,32 @@ def closing_after(file: ArtifactFile, parts: Iterable[T]) -> Iterator[T]:
 
 
 class ReadableArtifact(io.RawIOBase):
-    """An artifact as a binary file object that can be read and sought in."""
+    """Adapter from `ArtifactFile` to a readable, seekable binary file object."""
 
     def __init__(self, file: ArtifactFile) -> None:
         super().__init__()
         self._artifact, self._offset = file, 0
 
     def readable(self) -> bool:
-        """It is."""
+        """Return True."""
         return True
 
     def seekable(self) -> bool:
-        """It is."""
+        """Return True."""
         return True
 
     def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
-        """Go to an offset."""
+        """Set the read position, and return it."""
         base = {io.SEEK_SET: 0, io.SEEK_CUR: self._offset, io.SEEK_END: self._artifact.size}
         self._offset = max(0, base[whence] + offset)
         return self._offset
 
     def tell(self) -> int:
-        """Where the next read begins."""
+        """Return the read position."""
         return self._offset
 
     def readinto(self, buffer: "bytearray | memoryview") -> int:  # type: ignore[override]
-        """Read into a buffer, as much as there is."""
+        """Read into a buffer, and return the number of bytes read; 0 at the end."""
         data = self._artifact.read_at(self._offset, len(buffer))
         buffer[: len(data)] = data
         self._offset += len(data)

@@ -1,7 +1,8 @@
-"""Files of runs on disk: whole or not there, checked when they are read.
+"""Artifact files of runs: written atomically, immutable, verified by SHA-256 on every read.
 
-Each is written once, under a name made of chance, and never changed; which run it belongs to is
-the database's to say. So a file that takes another's place is there before the other goes.
+A file is written to a `.part` file, synced and renamed to a random name (atomic rename); the
+database maps runs and artifact names to these files. Replacing an artifact therefore writes the
+new file before the old one is deleted, and a crash leaves at most orphaned files.
 """
 
 import errno
@@ -21,13 +22,19 @@ from app.storage.artifact_file import ArtifactFile, SharedFile
 from app.storage.disk_space import DiskSpace
 from app.storage.errors import StorageFailed, StorageFull
 
-_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
-_HASHED_AT_ONCE = 1 << 20
-_OURS = re.compile(r"[0-9a-f]{32}(\.part)?")
+_DISK_FULL_ERRNOS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+_HASH_CHUNK_BYTES = 1 << 20
+_ARTIFACT_NAME = re.compile(r"[0-9a-f]{32}(\.part)?")
 
 
-class Stored(NamedTuple):
-    """A file as the database remembers it."""
+class StoredFile(NamedTuple):
+    """An artifact file as recorded in the database.
+
+    Attributes:
+        file: its random name in the artifacts folder.
+        size: its length [bytes].
+        sha256: of its content, hexadecimal.
+    """
 
     file: str
     size: int
@@ -35,24 +42,29 @@ class Stored(NamedTuple):
 
 
 class ArtifactFiles:
-    """The files of one database, in a folder of their own."""
+    """Folder with the artifact files of one database. Thread-safe."""
 
-    def __init__(self, folder: Path, room: DiskSpace) -> None:
-        """Use a folder, which is made if it is not there."""
+    def __init__(self, folder: Path, disk_space: DiskSpace) -> None:
+        """Use a folder, creating it if it does not exist.
+
+        Args:
+            folder: for the artifact files alone.
+            disk_space: quota and free space to check before each write.
+        """
         folder.mkdir(parents=True, exist_ok=True)
         sync_folder(folder.parent)
-        self._folder, self._room = folder, room
+        self._folder, self._disk_space = folder, disk_space
         self._open: dict[str, SharedFile] = {}
-        self._opening = threading.RLock()
+        self._open_lock = threading.RLock()
 
-    def write(self, data: bytes) -> Stored:
-        """Keep data in a new file. When this returns, it lasts.
+    def write(self, data: bytes) -> StoredFile:
+        """Write data to a new file by atomic rename; it is durable (fsync) on return.
 
         Raises:
-            StorageFull: if there is no room; nothing is left behind then.
+            StorageFull: if the quota or the disk is full; nothing is left behind then.
             StorageFailed: if it cannot be written for another reason.
         """
-        self._room.check(len(data))
+        self._disk_space.check(len(data))
         name = secrets.token_hex(16)
         part = self._folder / f"{name}.part"
         try:
@@ -64,83 +76,84 @@ class ArtifactFiles:
             sync_folder(self._folder)
         except OSError as error:
             self.remove(name, part.name)
-            if error.errno in _FULL:
+            if error.errno in _DISK_FULL_ERRNOS:
                 raise StorageFull(
                     "the disk of the data folder is full; delete runs, or make room there"
                 ) from error
             raise StorageFailed(
                 f"a file cannot be written to the data folder ({error.strerror})"
             ) from error
-        return Stored(name, len(data), hashlib.sha256(data).hexdigest())
+        return StoredFile(name, len(data), hashlib.sha256(data).hexdigest())
 
-    def check_room(self, size: int) -> None:
-        """Make sure that there is room for so much more.
+    def check_disk_space(self, size: int) -> None:
+        """Check that `size` more bytes fit into the quota and onto the disk.
 
         Raises:
-            StorageFull: if there is not.
+            StorageFull: if they do not.
         """
-        self._room.check(size)
+        self._disk_space.check(size)
 
-    def read(self, stored: Stored, said: str) -> bytes:
-        """What was written.
+    def read(self, stored: StoredFile, label: str) -> bytes:
+        """Read a file and verify its size and SHA-256.
 
         Args:
-            stored: what is known of the file.
-            said: what to call it in messages.
+            stored: record of the file in the database.
+            label: name of the file for error messages.
 
         Raises:
-            FileNotFoundError: if it is not there.
-            DamagedFile: if it is not what was written.
+            FileNotFoundError: if the file does not exist.
+            DamagedFile: if its content is not what was written.
             StorageFailed: if it cannot be read.
         """
-        if not _is_ours(stored.file):
-            raise DamagedFile(f"{said} is damaged: the database names no file of ours")
+        if not _is_artifact_name(stored.file):
+            raise DamagedFile(f"{label} is damaged: the database names no file of ours")
         try:
             data = (self._folder / stored.file).read_bytes()
         except FileNotFoundError:
             raise
         except OSError as error:
-            raise StorageFailed(f"{said} cannot be read ({error.strerror})") from error
+            raise StorageFailed(f"{label} cannot be read ({error.strerror})") from error
         if len(data) != stored.size or hashlib.sha256(data).hexdigest() != stored.sha256:
-            raise DamagedFile(f"{said} is damaged: it is not what was written")
+            raise DamagedFile(f"{label} is damaged: it is not what was written")
         return data
 
-    def open(self, stored: Stored, said: str) -> ArtifactFile:
-        """Open a file, once it is found to be what was written.
+    def open(self, stored: StoredFile, label: str) -> ArtifactFile:
+        """Open a file for reading in chunks, after verifying its size and SHA-256.
 
         Args:
-            stored: what is known of the file.
-            said: what to call it in messages.
+            stored: record of the file in the database.
+            label: name of the file for error messages.
 
         Raises:
-            FileNotFoundError: if it is not there.
-            DamagedFile: if it is not what was written.
+            FileNotFoundError: if the file does not exist.
+            DamagedFile: if its content is not what was written.
             StorageFailed: if it cannot be read.
         """
-        reader = self._reader(stored, said)
+        reader = self._reader(stored, label)
         try:
             digest = hashlib.sha256()
-            for offset in range(0, reader.size, _HASHED_AT_ONCE):
-                digest.update(reader.read_at(offset, _HASHED_AT_ONCE))
+            for offset in range(0, reader.size, _HASH_CHUNK_BYTES):
+                digest.update(reader.read_at(offset, _HASH_CHUNK_BYTES))
         except OSError as error:
             reader.close()
-            raise StorageFailed(f"{said} cannot be read ({error.strerror})") from error
+            raise StorageFailed(f"{label} cannot be read ({error.strerror})") from error
         if reader.size != stored.size or digest.hexdigest() != stored.sha256:
             reader.close()
-            raise DamagedFile(f"{said} is damaged: it is not what was written")
+            raise DamagedFile(f"{label} is damaged: it is not what was written")
         return reader
 
-    def _reader(self, stored: Stored, said: str) -> ArtifactFile:
+    def _reader(self, stored: StoredFile, label: str) -> ArtifactFile:
+        """Return a reader that shares one descriptor with all other readers of this file."""
         name = stored.file
 
-        def forget() -> None:
-            with self._opening:
+        def on_last_close() -> None:
+            with self._open_lock:
                 if self._open.get(name) is shared:
                     del self._open[name]
 
-        with self._opening:
+        with self._open_lock:
             shared = self._open.get(name)
-            reader = None if shared is None else shared.reader(forget)
+            reader = None if shared is None else shared.reader(on_last_close)
             if reader is not None:
                 return reader
             try:
@@ -148,36 +161,39 @@ class ArtifactFiles:
             except FileNotFoundError:
                 raise
             except OSError as error:
-                raise StorageFailed(f"{said} cannot be read ({error.strerror})") from error
+                raise StorageFailed(f"{label} cannot be read ({error.strerror})") from error
             shared = self._open[name] = SharedFile(file, os.fstat(file.fileno()).st_size)
-            return shared.first_reader(forget)
+            return shared.first_reader(on_last_close)
 
     def remove(self, *names: str) -> None:
-        """Take files away; those that are not there do not matter."""
-        for name in filter(_is_ours, names):
-            # One that stays for now is swept up at the next start.
+        """Delete files, ignoring those that do not exist or cannot be deleted."""
+        for name in filter(_is_artifact_name, names):
+            # A file that cannot be deleted now is an orphan, which the next start deletes.
             with suppress(OSError):
                 (self._folder / name).unlink()
 
-    def sweep(self, known: Collection[str]) -> int:
-        """Remove what an interrupted write or delete left behind: all that is not known.
+    def delete_orphans(self, referenced: Collection[str]) -> int:
+        """Delete the files of interrupted writes and deletes: all that no run references.
+
+        Args:
+            referenced: names of the files that the database references.
 
         Returns:
-            how many files that were.
+            the number of orphaned files.
         """
-        found = [path.name for path in self._folder.iterdir() if _is_ours(path.name)]
-        left_behind = set(found) - set(known)
-        self.remove(*left_behind)
-        return len(left_behind)
+        existing = [path.name for path in self._folder.iterdir() if _is_artifact_name(path.name)]
+        orphans = set(existing) - set(referenced)
+        self.remove(*orphans)
+        return len(orphans)
 
 
-def _is_ours(name: object) -> bool:
-    """Whether a name is one of those that are made here, and so no path out of the folder."""
-    return isinstance(name, str) and _OURS.fullmatch(name) is not None
+def _is_artifact_name(name: object) -> bool:
+    """Whether a name has the form that `write` creates, and so cannot escape the folder."""
+    return isinstance(name, str) and _ARTIFACT_NAME.fullmatch(name) is not None
 
 
 def sync_folder(folder: Path) -> None:
-    """Let names in a folder last, where a system leaves that open."""
+    """Sync a folder, so that renames in it are durable; does nothing on Windows."""
     if sys.platform == "win32":
         return
     handle = os.open(folder, os.O_RDONLY)

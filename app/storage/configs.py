@@ -1,4 +1,4 @@
-"""What any kind of run was asked to do, in plain types and back."""
+"""Serialise the config of any kind of run to plain JSON types, and parse it back."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -13,23 +13,23 @@ CONFIGS: Mapping[Kind, type[Config]] = {
     "race": RaceConfig,
     "experiment": ExperimentConfig,
 }
-"""The config of each kind of run."""
+"""Config class by kind of run."""
 
 
 def config_as_json(config: Config) -> dict[str, Any]:
-    """In plain types, as the API shows it and the database keeps it."""
+    """Serialise a config to plain JSON types, as sent by the API and stored in the database."""
     if isinstance(config, ExperimentConfig):
         return experiments.as_json(config)
     return as_json(config)
 
 
-def config_of(kind: str, shown: Mapping[str, Any]) -> Config:
-    """The config that `config_as_json` wrote of a run of this kind.
+def config_of(kind: str, fields: Mapping[str, Any]) -> Config:
+    """Parse a config that `config_as_json` wrote for a run of this kind.
 
     Raises:
-        InvalidInput: if a value cannot be.
-        KeyError, TypeError, ValueError: if `config_as_json` did not write it.
+        InvalidInput: if a value is out of range.
+        KeyError, TypeError, ValueError: if the structure is not that of `config_as_json`.
     """
     if kind == "experiment":
-        return experiments.from_json(shown)
-    return config_from_json(shown)
+        return experiments.from_json(fields)
+    return config_from_json(fields)

@@ -1,4 +1,7 @@
-"""Room in the data folder: a quota, a share that stays free, and a reserve for the database."""
+"""Disk space of the data folder: quota, minimum free space, and a reserve file.
+
+The reserve file is deleted when the disk is full, which lets the database commit once more.
+"""
 
 import os
 import shutil
@@ -10,36 +13,36 @@ from app.storage.errors import StorageFailed, StorageFull
 
 MB = 1_000_000
 START_BYTES = 5 * MB
-"""Room that has to be there for a run to start: what a usual one leaves behind."""
-KEPT_FREE_BYTES = 1 * MB
-"""Arrays leave so much of the disk to the database."""
+"""Space required to start a run: the size of a typical run's files."""
+MIN_FREE_BYTES = 1 * MB
+"""Free space that artifacts must leave on the disk for the database."""
 RESERVE_BYTES = 1 * MB
-"""Given up when the disk is full, so that the database can still note what came of that."""
+"""Size of the reserve file, which is deleted when the disk is full."""
 _RESERVE = "reserve"
 
 
 class DiskSpace:
-    """The room that is left in a folder. Safe to use from any thread."""
+    """Checks the quota and the free disk space of a folder. Thread-safe."""
 
     def __init__(self, folder: Path, quota_mb: int | None = None) -> None:
-        """Look after a folder that exists.
+        """Use an existing folder.
 
         Args:
             folder: the data folder.
-            quota_mb: how much all in it may take, in MB; None for as much as the disk has.
+            quota_mb: maximum total size of its files [MB]; None for no quota.
         """
         self._folder, self._quota_mb = folder, quota_mb
         self._reserve, self._lock = folder / _RESERVE, threading.Lock()
         self._keeps_reserve = False
 
     def check(self, size: int) -> None:
-        """Make sure that there is room for a new file.
+        """Check that a new file fits into the quota and onto the disk.
 
         Args:
-            size: of the file, in bytes.
+            size: of the file [bytes].
 
         Raises:
-            StorageFull: if there is not.
+            StorageFull: if it does not fit.
         """
         if self._quota_mb is not None and self.used_bytes() + size > self._quota_mb * MB:
             raise StorageFull(
@@ -47,7 +50,7 @@ class DiskSpace:
                 "over that; delete runs, or raise HEXAPODS_QUOTA_MB"
             )
         free = shutil.disk_usage(self._folder).free
-        if free < size + KEPT_FREE_BYTES:
+        if free < size + MIN_FREE_BYTES:
             raise StorageFull(
                 f"the disk of the data folder has {_mb(free)} left, too little for {_mb(size)} "
                 "more; delete runs, or make room there"
@@ -56,30 +59,34 @@ class DiskSpace:
             self.reserve()
 
     def used_bytes(self) -> int:
-        """What all in the folder takes."""
+        """Return the total size of the files in the folder [bytes]."""
         total = 0
         for base, _, names in os.walk(self._folder):
             for name in names:
-                # Files come and go meanwhile.
+                # Files may be deleted during the walk.
                 with suppress(FileNotFoundError):
                     total += (Path(base) / name).stat().st_size
         return total
 
     def reserve(self) -> None:
-        """Set the reserve aside as soon as there is room for it, and again after each release."""
+        """Create the reserve file if there is space, and recreate it later after each release."""
         with self._lock:
             self._keeps_reserve = True
             if self._reserve.exists():
                 return
             try:
-                if shutil.disk_usage(self._folder).free > RESERVE_BYTES + KEPT_FREE_BYTES:
-                    # Real zeros: a file with a hole would reserve nothing.
+                if shutil.disk_usage(self._folder).free > RESERVE_BYTES + MIN_FREE_BYTES:
+                    # Written zeros: a sparse file would not allocate any disk blocks.
                     self._reserve.write_bytes(bytes(RESERVE_BYTES))
             except OSError:
                 self._reserve.unlink(missing_ok=True)
 
     def release(self) -> bool:
-        """Give the reserve up. True if there was one."""
+        """Delete the reserve file to free its space; return whether there was one.
+
+        Raises:
+            StorageFailed: if it cannot be deleted.
+        """
         with self._lock:
             try:
                 self._reserve.unlink()

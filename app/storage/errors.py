@@ -1,14 +1,14 @@
-"""What can go wrong with runs, beside bad input."""
+"""Exceptions of the run store and of job control, other than invalid input."""
 
 from app.domain.errors import HexapodError
 
 
 class NotFound(HexapodError):
-    """There is no such thing (any more)."""
+    """The requested run or file does not exist, or no longer exists."""
 
 
 class Conflict(HexapodError):
-    """It cannot be done in the run's present state, which is `state`."""
+    """The operation is not allowed in the run's present state, which is `state`."""
 
     def __init__(self, message: str, state: str) -> None:
         super().__init__(message)
@@ -16,7 +16,7 @@ class Conflict(HexapodError):
 
 
 class Damaged(Conflict):
-    """A stored run cannot be read; the message says why, and how to be rid of it."""
+    """A stored run cannot be decoded; the message says why, and what to do about it."""
 
     def __init__(self, run_id: str, why: str) -> None:
         super().__init__(
@@ -25,11 +25,11 @@ class Damaged(Conflict):
 
 
 class Gone(HexapodError):
-    """It was here once, and was deleted."""
+    """The run existed and was deleted."""
 
 
 class Busy(HexapodError):
-    """Too much is waiting; worth another try after `retry_after_s`."""
+    """The server is at capacity; retry after `retry_after_s` seconds."""
 
     def __init__(self, message: str, retry_after_s: int) -> None:
         super().__init__(message)
@@ -41,19 +41,22 @@ class JobFailed(HexapodError):
 
 
 class StorageFull(HexapodError):
-    """There is no room for what is to be kept; whatever was kept before is as it was."""
+    """The disk or the quota is full; what was stored before is unchanged."""
 
 
 class StorageFailed(HexapodError):
-    """The store cannot be used at the moment; the message says why."""
+    """The store is unavailable; the message says why."""
 
 
 class OwnershipLost(StorageFailed):
-    """Another server has taken the database over; this one must write nothing more."""
+    """The fencing token is out of date: another server owns the database now.
+
+    This process must not write any more.
+    """
 
 
 class NotAnswering(HexapodError):
-    """A job's process does not answer; nothing was changed."""
+    """A job's process did not respond in time; nothing was changed."""
 
     def __init__(self, message: str, retry_after_s: int) -> None:
         super().__init__(message)

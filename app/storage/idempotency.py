@@ -1,7 +1,7 @@
 """Idempotency keys: a repeated start returns the run that it created first.
 
-The key is kept in the database, in the transaction that creates the run. So there is never the one
-without the other, whatever ends the server in between, and a retry after a restart finds it.
+The key is stored in the transaction that creates the run. So neither is ever stored without the
+other, even if the server crashes in between, and a retry after a restart finds the run.
 """
 
 import hashlib
@@ -16,72 +16,74 @@ from app.storage.errors import Gone, NotFound
 from app.storage.store import IdempotencyKey, Run, RunStore
 
 Start = Callable[[IdempotencyKey | None], Run]
-"""Creates a run, and gives the key to the store together with it."""
+"""Creates a run, and passes the key to the store in the same call."""
 
 
 @dataclass
-class _Turn:
+class _KeyLock:
+    """Lock for the requests with one key, and the number of requests that hold or await it."""
+
     lock: threading.Lock = field(default_factory=threading.Lock)
-    waiting: int = 0
+    users: int = 0
 
 
 class Idempotency:
-    """Starts what was not started before with the same key. Safe to use from any thread."""
+    """Starts a run unless the same key started one before. Thread-safe."""
 
     def __init__(self, store: RunStore) -> None:
-        """Look up keys in a store."""
+        """Use the idempotency keys of a store."""
         self._store = store
-        self._turns: defaultdict[str, _Turn] = defaultdict(_Turn)
+        self._key_locks: defaultdict[str, _KeyLock] = defaultdict(_KeyLock)
         self._lock = threading.Lock()
 
     def run(self, key: str | None, request: bytes, start: Start) -> Run:
-        """The run that `start` creates, or created when this was asked for before.
+        """Return the run that this key started before, or start it now.
 
-        Requests with one key take turns. A start that fails is not remembered, so that the next
-        with its key tries again.
+        Requests with the same key are serialised. A start that fails stores no key, so that a
+        retry with the same key starts again.
 
         Args:
-            key: chosen by the client; None starts in any case.
-            request: what is asked for.
-            start: starts it.
+            key: chosen by the client; None always starts a run.
+            request: canonical bytes of the request; their SHA-256 is compared.
+            start: creates the run and stores the key.
 
         Returns:
-            the run as it is now.
+            the run in its present state.
 
         Raises:
-            InvalidInput: if something else was asked for with this key.
+            InvalidInput: if this key came with another request before.
             Gone: if the run that this key started was deleted.
         """
         if key is None:
             return start(None)
         digest = hashlib.sha256(request).hexdigest()
-        with self._turn(key):
-            started = self._store.started_by(key)
-            if started is None:
+        with self._locked(key):
+            record = self._store.find_key(key)
+            if record is None:
                 return start(IdempotencyKey(key, digest))
-            if started.digest != digest:
+            if record.digest != digest:
                 raise InvalidInput(
                     "this Idempotency-Key came with another request before; send a new key with "
                     "each new request, and the same only to repeat one"
                 )
             try:
-                return self._store.get(started.run_id)
+                return self._store.get(record.run_id)
             except NotFound as error:
                 raise Gone(
-                    f"run {started.run_id}, which this Idempotency-Key started, was deleted; send "
+                    f"run {record.run_id}, which this Idempotency-Key started, was deleted; send "
                     "a new key to start another"
                 ) from error
 
     @contextmanager
-    def _turn(self, key: str) -> Iterator[None]:
+    def _locked(self, key: str) -> Iterator[None]:
         with self._lock:
-            turn = self._turns[key]
-            turn.waiting += 1
+            key_lock = self._key_locks[key]
+            key_lock.users += 1
         try:
-            with turn.lock:
+            with key_lock.lock:
                 yield
         finally:
             with self._lock:
-                turn.waiting -= 1
-                if not turn.waiting:
-                    del self._turns[key]
+                key_lock.users -= 1
+                if not key_lock.users:
+                    del self._key_locks[key]

@@ -1,4 +1,4 @@
-"""JSON as it is sent to everyone: one number that JSON has not must not break a stream."""
+"""Strict JSON encoding: NaN and infinities, which JSON lacks, are sent as null."""
 
 import json
 import logging
@@ -9,7 +9,7 @@ _logger = logging.getLogger(__name__)
 
 
 def json_text(data: Any) -> str:
-    """The JSON of plain types; a NaN or an infinity, which JSON has not, becomes null."""
+    """Encode plain types as JSON, with null in place of NaN and infinities."""
     try:
         return json.dumps(data, allow_nan=False)
     except ValueError:
@@ -18,7 +18,7 @@ def json_text(data: Any) -> str:
 
 
 def finite(data: Any) -> Any:
-    """The same with None in place of each number that JSON has not."""
+    """Return a copy of plain types with None in place of each NaN or infinity."""
     if isinstance(data, float) and not math.isfinite(data):
         return None
     if isinstance(data, dict):
@@ -29,7 +29,7 @@ def finite(data: Any) -> Any:
 
 
 def is_finite(data: Any) -> bool:
-    """Whether every number in plain types is one that JSON has."""
+    """Whether plain types contain no NaN and no infinity."""
     if isinstance(data, float):
         return math.isfinite(data)
     if isinstance(data, dict):

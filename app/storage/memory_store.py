@@ -1,4 +1,4 @@
-"""The store of runs that lasts as long as the process."""
+"""In-memory implementation of `RunStore`, for tests and for a data folder that is empty."""
 
 import math
 import threading
@@ -16,34 +16,34 @@ from app.storage.store import (
     AnyRun,
     Content,
     IdempotencyKey,
+    KeyRecord,
     Kind,
     Page,
     Run,
-    Started,
     State,
 )
 
 
 class MemoryStore:
-    """Implements `RunStore` for as long as the process lives."""
+    """Implements `RunStore` with dictionaries under one lock; lost when the process ends."""
 
     def __init__(self) -> None:
         self._runs: dict[str, Run] = {}
         self._curves: dict[str, list[Mapping[str, Any]]] = {}
         self._trials: dict[str, dict[str, Mapping[str, Any]]] = {}
         self._artifacts: dict[str, dict[str, bytes]] = {}
-        self._keys: dict[str, Started] = {}
+        self._keys: dict[str, KeyRecord] = {}
         self._lock = threading.Lock()
         self.sessions = MemorySessionRows()
 
-    def check_room(self) -> None:
+    def check_disk_space(self) -> None:
         pass
 
     def create(self, *runs: Run, key: IdempotencyKey | None = None) -> None:
         with self._lock:
             self._runs |= {run.id: run for run in runs}
             if key is not None:
-                self._keys[key.key] = Started(key.digest, runs[-1].id)
+                self._keys[key.key] = KeyRecord(key.digest, runs[-1].id)
 
     def add(
         self,
@@ -61,7 +61,7 @@ class MemoryStore:
             self.put_artifact(run.id, name, data)
         return run
 
-    def started_by(self, key: str) -> Started | None:
+    def find_key(self, key: str) -> KeyRecord | None:
         with self._lock:
             return self._keys.get(key)
 
@@ -80,16 +80,16 @@ class MemoryStore:
         cursor: str | None = None,
     ) -> Page:
         with self._lock:
-            found = [
+            matching = [
                 run
                 for run in self._runs.values()
                 if (kind is None or run.kind == kind)
                 and (state is None or run.state == state)
                 and (cursor is None or run.id < cursor)
             ]
-        found.sort(key=lambda run: run.id, reverse=True)
-        more = len(found) > limit
-        return Page([*found[:limit]], found[limit - 1].id if more else None)
+        matching.sort(key=lambda run: run.id, reverse=True)
+        has_more = len(matching) > limit
+        return Page([*matching[:limit]], matching[limit - 1].id if has_more else None)
 
     def counts(self) -> Mapping[State, int]:
         with self._lock:
@@ -122,8 +122,8 @@ class MemoryStore:
             run = self._run(run_id)
             if run.state in UNENDED:
                 raise Conflict(f"{run.kind} {run_id} is {run.state}; stop it first", run.state)
-            for kept in (self._runs, self._curves, self._trials, self._artifacts):
-                kept.pop(run_id, None)
+            for table in (self._runs, self._curves, self._trials, self._artifacts):
+                table.pop(run_id, None)
 
     def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
         with self._lock:
@@ -137,7 +137,7 @@ class MemoryStore:
             self._run(run_id)
             return [*self._curves.get(run_id, ())]
 
-    def forget_evaluations(self, run_id: str, after_step: int) -> None:
+    def delete_evaluations(self, run_id: str, after_step: int) -> None:
         with self._lock:
             curve = self._curves.get(run_id, [])
             self._curves[run_id] = [row for row in curve if row["step"] <= after_step]

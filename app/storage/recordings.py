@@ -1,4 +1,4 @@
-"""The recordings of this server's runs: they grow while jobs run, and everyone may look."""
+"""Recordings of this server's runs: growing in memory while a job runs, stored when it ends."""
 
 import threading
 from dataclasses import replace
@@ -14,51 +14,60 @@ from app.storage.store import RunStore
 from app.storage.stored_recordings import StoredRecordings
 
 MAX_EVALUATION_MOTIONS = 1000
-"""Of one training; later evaluations keep their distance only. About 80 MB."""
+"""Evaluations of one training whose motion is kept, about 80 MB; later ones keep the distance."""
 
 
 class Recordings:
-    """By run. Each run has one thread that adds; any may read, since what is there stays."""
+    """Append-only store of recordings by run: one writer thread per run, any number of readers.
+
+    Readers need no lock, since recorded steps and evaluations never change.
+    """
 
     def __init__(self, store: RunStore | None = None) -> None:
-        """Begin with what a store has.
+        """Use the recordings of a store.
 
         Args:
-            store: keeps recordings for longer than this process; None keeps them in memory.
+            store: for persistent recordings; None keeps them in memory only.
         """
         self._trainings: dict[str, PracticeRecording] = {}
         self._races: dict[str, list[LaneRecording]] = {}
-        self._evaluated: dict[str, int] = {}
+        self._evaluation_counts: dict[str, int] = {}
         self._stored = None if store is None else StoredRecordings(store)
         self._lock = threading.Lock()
 
     def training(self, run_id: str) -> PracticeRecording | None:
-        """The recording of a training; None before it began."""
+        """Return the recording of a training; None if it has not started or was not recorded."""
         growing = self._trainings.get(run_id)
         return self._stored.training(run_id) if growing is None and self._stored else growing
 
     def race(self, run_id: str) -> list[LaneRecording] | None:
-        """The recordings of a race's lanes; None before it began."""
+        """Return the recordings of a race's lanes; None if it has not started or has none."""
         growing = self._races.get(run_id)
         return self._stored.race(run_id) if growing is None and self._stored else growing
 
     def begin_training(
         self, run_id: str, rest_qpos: NDArray[np.float32], after_step: int = 0
     ) -> None:
-        """A training stands at rest in this pose, or goes on after so many steps."""
+        """Start the recording of a training, or resume it, truncated to its checkpoint.
+
+        Args:
+            run_id: id of the training.
+            rest_qpos: initial pose, (7 + joints,).
+            after_step: step of the checkpoint from which the training resumes; 0 for a new one.
+        """
         former = self.training(run_id) if after_step else None
-        began = PracticeRecording(rest_qpos) if former is None else rewound(former, after_step)
+        recording = PracticeRecording(rest_qpos) if former is None else rewound(former, after_step)
         with self._lock:
-            self._trainings[run_id] = began
-            self._evaluated[run_id] = len(began.evaluations)
+            self._trainings[run_id] = recording
+            self._evaluation_counts[run_id] = len(recording.evaluations)
 
     def begin_race(self, run_id: str, lanes: list[LaneRecording]) -> None:
-        """The lanes of a race stand at rest."""
+        """Start the recordings of a race's lanes, which are still empty."""
         with self._lock:
             self._races[run_id] = lanes
 
     def add(self, run_id: str, record: Any) -> None:
-        """Take in a record of a run that has begun; those that show no motion are ignored."""
+        """Append a record to a run's recording; records without motion are ignored."""
         if isinstance(record, LaneStep):
             self._races[run_id][record.lane].steps.append(record)
         elif isinstance(record, LaneFailed):
@@ -66,16 +75,16 @@ class Recordings:
         elif isinstance(record, StepTaken):
             self._trainings[run_id].add(record)
         elif isinstance(record, Evaluated):
-            self._evaluated[run_id] += 1
-            if self._evaluated[run_id] > MAX_EVALUATION_MOTIONS:
+            self._evaluation_counts[run_id] += 1
+            if self._evaluation_counts[run_id] > MAX_EVALUATION_MOTIONS:
                 record = replace(record, motion=None)
             self._trainings[run_id].add(record)
 
     def save(self, run_id: str) -> None:
-        """Keep what a run has recorded so far; to be called by the thread that adds.
+        """Store what a run has recorded so far; call from the run's writer thread.
 
         Raises:
-            StorageFull, StorageFailed: if it cannot be kept.
+            StorageFull, StorageFailed: if it cannot be stored.
         """
         training, race = self._trainings.get(run_id), self._races.get(run_id)
         if self._stored is not None and training is not None:
@@ -84,28 +93,28 @@ class Recordings:
             self._stored.write_race(run_id, race)
 
     def finish(self, run_id: str) -> None:
-        """Keep what a run has recorded; it grows no more, and memory may let go of it.
+        """Store a complete recording, and move it from memory to the evicting cache.
 
         Raises:
-            StorageFull, StorageFailed: if it cannot be kept; it stays in memory then.
+            StorageFull, StorageFailed: if it cannot be stored; it stays in memory then.
         """
         self.save(run_id)
         if self._stored is None:
             return
         training, race = self._trainings.get(run_id), self._races.get(run_id)
         if training is not None:
-            self._stored.remember_training(run_id, training)
+            self._stored.cache_training(run_id, training)
         if race is not None:
-            self._stored.remember_race(run_id, race)
+            self._stored.cache_race(run_id, race)
         self._drop(run_id)
 
     def discard(self, run_id: str) -> None:
-        """Forget a run's recording."""
+        """Drop a run's recording from memory, and from the cache of stored recordings."""
         self._drop(run_id)
         if self._stored is not None:
-            self._stored.forget(run_id)
+            self._stored.invalidate(run_id)
 
     def _drop(self, run_id: str) -> None:
         with self._lock:
-            for kept in (self._trainings, self._races, self._evaluated):
-                kept.pop(run_id, None)
+            for table in (self._trainings, self._races, self._evaluation_counts):
+                table.pop(run_id, None)

@@ -1,4 +1,7 @@
-"""Ids of runs: short, fit for a URL, and in the order in which they were made."""
+"""Run ids: short, URL-safe and sortable by time of creation (like ULIDs).
+
+An id is 13 base-32 digits: 9 for the time in milliseconds since 1970, 4 random ones.
+"""
 
 import secrets
 import threading
@@ -7,63 +10,68 @@ import time
 from app.storage.store import RunStore
 
 _DIGITS = "0123456789abcdefghjkmnpqrstvwxyz"
-_TIME_DIGITS, _CHANCE_DIGITS = 9, 4
-_THIS_VERSION_MS = 1_767_225_600_000
-"""2026-01-01 in UTC: a clock that is behind that is wrong, as that of a machine without a battery
-is until it has asked others for the time."""
-_AHEAD_MS = 366 * 24 * 3_600_000
-"""A clock may have been so far ahead when an id was made, and be right again now."""
+_TIME_DIGITS, _RANDOM_DIGITS = 9, 4
+_RELEASE_MS = 1_767_225_600_000
+"""2026-01-01 in UTC: an earlier clock is wrong, as on a machine without a battery-backed clock
+before its first NTP synchronisation."""
+_MAX_CLOCK_LEAD_MS = 366 * 24 * 3_600_000
+"""How far the clock may have been ahead when an existing id was created."""
 
 
 class RunIds:
-    """Makes ids out of the time [ms], which rises even if the clock does not, and chance."""
+    """Generates strictly increasing ids, even if the clock is set back. Thread-safe."""
 
     def __init__(self, after: str | None = None) -> None:
-        """Begin after an id that was made before, whatever the clock says by now."""
+        """Generate ids that sort after this one, whatever the clock says.
+
+        Args:
+            after: the newest existing id; None if there is none.
+        """
         self._last_ms = _time_ms(after or "") or 0
         self._lock = threading.Lock()
 
     @classmethod
     def of(cls, store: RunStore) -> "RunIds":
-        """Ids that sort after those in a store, but for what could not have been made yet.
+        """Generate ids that sort after those in a store, except implausibly late ones.
 
-        An id of the year 3000 came from elsewhere, and after it there are none.
+        An id of the year 3000 cannot have been generated here, and starting after it would use up
+        the range of ids.
         """
-        believed_ms = max(_now_ms(), _THIS_VERSION_MS) + _AHEAD_MS
-        newest = store.list(limit=1, cursor=_id(believed_ms, 0)).items
+        plausible_ms = max(_now_ms(), _RELEASE_MS) + _MAX_CLOCK_LEAD_MS
+        newest = store.list(limit=1, cursor=_id(plausible_ms, 0)).items
         return cls(after=newest[0].id if newest else None)
 
     def __call__(self) -> str:
-        """An id that sorts after all that were made before."""
+        """Generate an id that sorts after all earlier ones."""
         with self._lock:
             self._last_ms = max(self._last_ms + 1, _now_ms())
-            made = self._last_ms
-        return _id(made, secrets.randbits(5 * _CHANCE_DIGITS))
+            time_ms = self._last_ms
+        return _id(time_ms, secrets.randbits(5 * _RANDOM_DIGITS))
 
-    def may_have_made(self, run_id: str) -> bool:
-        """Whether an id could come from here by now, so that no later one sorts before it."""
-        made_ms = _time_ms(run_id)
+    def is_plausible(self, run_id: str) -> bool:
+        """Whether an id is well-formed and not in the future, so that all new ids sort after it."""
+        time_ms = _time_ms(run_id)
         with self._lock:
-            return made_ms is not None and made_ms <= max(self._last_ms, _now_ms())
+            return time_ms is not None and time_ms <= max(self._last_ms, _now_ms())
 
 
 def _now_ms() -> int:
     return time.time_ns() // 1_000_000
 
 
-def _time_ms(made: str) -> int | None:
-    """The time in an id; None for what is none."""
-    if len(made) != _TIME_DIGITS + _CHANCE_DIGITS or set(made) - set(_DIGITS):
+def _time_ms(run_id: str) -> int | None:
+    """Return the time in an id [ms since 1970]; None if the id is malformed."""
+    if len(run_id) != _TIME_DIGITS + _RANDOM_DIGITS or set(run_id) - set(_DIGITS):
         return None
     time_ms = 0
-    for digit in made[:_TIME_DIGITS]:
+    for digit in run_id[:_TIME_DIGITS]:
         time_ms = time_ms << 5 | _DIGITS.index(digit)
     return time_ms
 
 
-def _id(time_ms: int, chance: int) -> str:
-    return _in_base_32(time_ms, _TIME_DIGITS) + _in_base_32(chance, _CHANCE_DIGITS)
+def _id(time_ms: int, random: int) -> str:
+    return _base_32(time_ms, _TIME_DIGITS) + _base_32(random, _RANDOM_DIGITS)
 
 
-def _in_base_32(number: int, digits: int) -> str:
+def _base_32(number: int, digits: int) -> str:
     return "".join(_DIGITS[number >> 5 * place & 31] for place in reversed(range(digits)))

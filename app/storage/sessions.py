@@ -1,4 +1,4 @@
-"""Sessions of operators' browsers: random ids in cookies, kept by the server as hashes."""
+"""Browser sessions of operators: random session ids in cookies, stored only as SHA-256 hashes."""
 
 import hashlib
 import secrets
@@ -8,15 +8,17 @@ from datetime import UTC, datetime, timedelta
 from typing import NamedTuple, Protocol
 
 SESSION_S = 30 * 24 * 3600
+"""Lifetime of a session [s]."""
 MAX_SESSIONS = 1000
+"""Open sessions at most; the oldest are closed first."""
 
 
 class SessionRow(NamedTuple):
-    """A session as it is stored.
+    """A stored session.
 
     Attributes:
-        id_sha256: hash of what is in the cookie.
-        token_sha256: hash of the token that it was opened with.
+        id_sha256: SHA-256 of the session id in the cookie, hexadecimal.
+        token_sha256: SHA-256 of the access token that opened the session, hexadecimal.
         created_at, expires_at: in UTC.
     """
 
@@ -27,42 +29,43 @@ class SessionRow(NamedTuple):
 
 
 class SessionRows(Protocol):
-    """Where sessions outlive the server."""
+    """Interface of the persistent storage of sessions."""
 
     def load(self) -> Sequence[SessionRow]:
-        """All that are stored, the oldest first."""
+        """Return all stored sessions, oldest first."""
 
     def add(self, row: SessionRow) -> None:
-        """Store one more."""
+        """Store a session."""
 
     def remove(self, ids_sha256: Collection[str]) -> None:
-        """Forget some."""
+        """Delete the sessions with these hashed ids."""
 
 
 class MemorySessionRows:
-    """Implements `SessionRows` for as long as the process lives."""
+    """Implements `SessionRows` in memory; lost when the process ends."""
 
     def __init__(self) -> None:
         self._rows: dict[str, SessionRow] = {}
 
     def load(self) -> Sequence[SessionRow]:
-        """All that are stored, the oldest first."""
+        """Return all stored sessions, oldest first."""
         return list(self._rows.values())
 
     def add(self, row: SessionRow) -> None:
-        """Store one more."""
+        """Store a session."""
         self._rows[row.id_sha256] = row
 
     def remove(self, ids_sha256: Collection[str]) -> None:
-        """Forget some."""
-        for one in ids_sha256:
-            self._rows.pop(one, None)
+        """Delete the sessions with these hashed ids."""
+        for id_sha256 in ids_sha256:
+            self._rows.pop(id_sha256, None)
 
 
 class Sessions:
-    """The sessions that a token opened. Safe to use from any thread.
+    """Opens, checks and closes the sessions of one access token. Thread-safe.
 
-    They are looked up in memory, since one server has the store; what is stored is for the next.
+    Lookups use an in-memory copy, since exactly one server owns the store; the rows are there so
+    that sessions survive a restart.
     """
 
     def __init__(
@@ -71,15 +74,15 @@ class Sessions:
         token: str,
         now: Callable[[], datetime] = lambda: datetime.now(UTC),
     ) -> None:
-        """Load what is stored, and forget what has expired or another token opened.
+        """Load the stored sessions; delete those that expired or belong to another token.
 
         Args:
-            rows: where they are stored.
-            token: of the server.
-            now: the clock.
+            rows: persistent storage of the sessions.
+            token: the server's access token.
+            now: the clock, with time zone.
 
         Raises:
-            StorageFailed: if the store cannot be used.
+            StorageFailed: if the store is unavailable.
         """
         self._rows, self._now = rows, now
         self._token_sha256 = _sha256(token)
@@ -92,7 +95,7 @@ class Sessions:
             rows.remove(ended)
 
     def open(self) -> str:
-        """Open a session, in place of the oldest one if there are too many. Returns its id.
+        """Open a session and return its id; beyond `MAX_SESSIONS` the oldest is closed.
 
         Raises:
             StorageFailed, StorageFull: if it cannot be stored.
@@ -101,9 +104,9 @@ class Sessions:
         expires_at = now + timedelta(seconds=SESSION_S)
         row = SessionRow(_sha256(session_id), self._token_sha256, now, expires_at)
         with self._lock:
-            ended = [key for key, one in self._open.items() if not self._is_valid(one)]
-            left = [key for key in self._open if key not in ended]
-            ended += left[: max(0, len(left) + 1 - MAX_SESSIONS)]
+            ended = [key for key, opened in self._open.items() if not self._is_valid(opened)]
+            remaining = [key for key in self._open if key not in ended]
+            ended += remaining[: max(0, len(remaining) + 1 - MAX_SESSIONS)]
             self._rows.add(row)
             self._open[row.id_sha256] = row
             if ended:
@@ -114,15 +117,15 @@ class Sessions:
 
     def is_open(self, session_id: str) -> bool:
         """Whether a cookie's value is the id of a session that has not expired."""
-        # By its hash: how long that takes to find says nothing of the id.
+        # Looked up by hash, so the timing of the lookup reveals nothing about the id.
         row = self._open.get(_sha256(session_id))
         return row is not None and self._is_valid(row)
 
     def close(self, session_id: str) -> None:
-        """End a session; nothing happens if there is none.
+        """Close a session; does nothing if it is not open.
 
         Raises:
-            StorageFailed: if the store cannot be used.
+            StorageFailed: if the store is unavailable.
         """
         key = _sha256(session_id)
         with self._lock:

@@ -1,4 +1,4 @@
-"""Runs and what they leave behind, behind one interface."""
+"""The `RunStore` interface, the `Run` that it stores, run states and artifact names."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -21,47 +21,48 @@ QUEUED: frozenset[State] = frozenset({"queued"})
 RUNNING: frozenset[State] = frozenset({"running"})
 PAUSED: frozenset[State] = frozenset({"paused"})
 LIVE = RUNNING | PAUSED
-"""A process works on it."""
+"""States in which a job process works on the run."""
 UNENDED = QUEUED | LIVE
+"""States from which a run can still change by itself; only ended runs can be deleted."""
 INTERRUPTED: frozenset[State] = frozenset({"interrupted"})
 RESUMABLE: Mapping[Kind, frozenset[State]] = {
-    # From its newest checkpoint: most failures are of the machine, not of the run.
+    # Resumes from its newest checkpoint: most failures are caused by the machine, not the run.
     "training": INTERRUPTED | {"failed"},
     "race": INTERRUPTED | {"failed"},
-    # Its trials are kept one by one, so that none is repeated however it ended.
+    # Each trial is stored as it ends, so resuming repeats none, whatever ended the experiment.
     "experiment": INTERRUPTED | {"stopped", "failed"},
 }
-"""The states of an ended run from which it can be queued again."""
+"""By kind, the states of an ended run from which it can be queued again."""
 TABLE = "q-table.npz"
-"""The artifact of a training that holds what was learned."""
+"""Artifact of a training: its learned Q-table."""
 CHECKPOINT = "checkpoint.npz"
-"""The artifact of a training from which it goes on if it is interrupted."""
+"""Artifact of a training: the checkpoint from which it resumes after an interruption."""
 SUMMARY = "summary.json"
-"""The artifact of an experiment that says what its trials so far show."""
+"""Artifact of an experiment: statistics and claims computed from its trials so far."""
 REPORT = "report.html"
-"""The artifact of an experiment that has ended: all of its report in one file."""
-KEY_KEPT = timedelta(days=1)
-"""How long an idempotency key is remembered."""
+"""Artifact of an ended experiment: its report as one self-contained HTML file."""
+KEY_LIFETIME = timedelta(days=1)
+"""Lifetime of an idempotency key."""
 MAX_KEYS = 10_000
-"""Of these the newest are remembered."""
+"""Idempotency keys stored at most; the oldest are dropped first."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """A training, a race or an experiment, as everyone sees it.
+    """A training, a race or an experiment: config, state, progress and result.
 
     Attributes:
-        id: short, fit for a URL; later runs sort after earlier ones.
-        lane_training_ids: for each lane of a race the training whose table it uses.
-        waiting_for: trainings that must end before this race begins.
-        continued_from: the training whose table this training went on from.
-        done, total: steps, of all lanes together; trials, of an experiment.
-        workers: of an experiment's cluster; None is one for each core.
-        eta_s: how much longer it will take [s], as far as that can be told; None unless it runs.
-        changes: rates and pace that were changed while it ran, each with the number of steps
-            that were done before.
-        greedy_distance_m: of a training, the line to beat, once it is known.
-        error: one sentence for the user.
+        id: short and URL-safe; sorts by time of creation (see `run_ids`).
+        lane_training_ids: of a race, for each lane the training whose Q-table it uses, or None.
+        waiting_for: of a race, ids of the trainings that must end before it starts.
+        continued_from: of a training, id of the training whose Q-table it continued from.
+        done, total: steps summed over all lanes; of an experiment, trials.
+        workers: of an experiment, worker processes of its cluster; None is one per core.
+        eta_s: estimated time left [s]; None if there is no estimate, or the run is not running.
+        changes: learning rates and pace changed while the run ran, each with the number of steps
+            done before the change.
+        greedy_distance_m: of a training, distance of the greedy baseline [m], once measured.
+        error: one sentence for the user; None if there was none.
         created_at, started_at, ended_at: in UTC.
     """
 
@@ -88,11 +89,11 @@ class Run:
 
 @dataclass(frozen=True, kw_only=True)
 class DamagedRun:
-    """A stored run that cannot be read, and what of it can; None for what cannot.
+    """A stored run that cannot be decoded; fields that cannot be read are None.
 
     Attributes:
-        id: by which it can be deleted.
-        kind: of the run; one of none is listed with every kind.
+        id: the id by which it can be deleted.
+        kind: kind of the run; if None, it is listed under every kind.
         damaged: what is wrong with it, in a sentence.
     """
 
@@ -108,27 +109,27 @@ AnyRun = Run | DamagedRun
 
 
 class Page(NamedTuple):
-    """Some runs of a list, newest first."""
+    """One page of a listing, newest run first."""
 
     items: list[AnyRun]
     next_cursor: str | None
-    """Where the next page begins; None on the last."""
+    """Cursor of the next page; None on the last page."""
 
     @property
     def runs(self) -> list[Run]:
-        """Those that can be read."""
+        """The items that could be decoded."""
         return [run for run in self.items if isinstance(run, Run)]
 
 
 class IdempotencyKey(NamedTuple):
-    """The key of a request that starts a run, and the SHA-256 of the request in hexadecimal."""
+    """Idempotency key of a start request, and the hexadecimal SHA-256 of that request."""
 
     key: str
     digest: str
 
 
-class Started(NamedTuple):
-    """What is known of an idempotency key that was used before."""
+class KeyRecord(NamedTuple):
+    """A used idempotency key's record: digest of its request and id of the run it created."""
 
     digest: str
     run_id: str
@@ -136,12 +137,12 @@ class Started(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Content:
-    """All that a run has beside its row.
+    """Everything stored for a run besides its row.
 
     Attributes:
-        evaluations: as `RunStore.append_evaluations` takes them.
-        trials: as `RunStore.append_trials` takes them.
-        artifacts: files by name.
+        evaluations: rows as for `RunStore.append_evaluations`.
+        trials: rows as for `RunStore.append_trials`.
+        artifacts: contents of files by name.
     """
 
     evaluations: Sequence[Mapping[str, Any]] = ()
@@ -150,25 +151,29 @@ class Content:
 
 
 class RunStore(Protocol):
-    """Where runs live. Safe to use from any thread."""
+    """Interface of the run store: runs, curves, trials and artifacts. Thread-safe.
+
+    Implemented by `SqlStore` (SQLite, PostgreSQL) and `MemoryStore`.
+    """
 
     @property
     def sessions(self) -> SessionRows:
-        """The sessions of operators, which are kept in the same place."""
+        """Storage of operators' browser sessions, in the same database."""
 
-    def check_room(self) -> None:
-        """Make sure that there is room for one more run.
+    def check_disk_space(self) -> None:
+        """Check that there is disk space for one more run.
 
         Raises:
-            StorageFull: if there is not, or there may soon be none.
+            StorageFull: if there is too little, or would be while the run runs.
         """
 
     def create(self, *runs: Run, key: IdempotencyKey | None = None) -> None:
-        """Add new runs, all or none.
+        """Insert new runs, all or none, in one transaction.
 
         Args:
-            runs: in order.
-            key: of the request for the last of them, remembered in the same transaction.
+            runs: in order of insertion.
+            key: idempotency key of the request that starts the last of them, stored in the same
+                transaction.
         """
 
     def add(
@@ -178,37 +183,37 @@ class RunStore(Protocol):
         new_id: Callable[[], str],
         key: IdempotencyKey | None = None,
     ) -> Run:
-        """Add a run that ended elsewhere with all it has: visible whole or not at all.
+        """Insert an ended run with its content (used by imports), atomically.
 
         Args:
-            run: as it was there.
-            content: what else it has.
-            new_id: makes an id in place of the run's own, if that is taken here.
-            key: of the request, remembered in the same transaction.
+            run: the run; keeps its id if that is free in this store.
+            content: its curve, trials and artifacts.
+            new_id: creates an id if the run's own is already in use.
+            key: idempotency key of the request, stored in the same transaction.
 
         Returns:
-            the run as it is here.
+            the run as stored.
 
         Raises:
-            StorageFull: if there is no room; nothing is left behind then.
+            StorageFull: if there is too little disk space; nothing is left behind then.
         """
 
-    def started_by(self, key: str) -> Started | None:
-        """What an idempotency key was used for in the last day; None if for nothing."""
+    def find_key(self, key: str) -> KeyRecord | None:
+        """Look up an idempotency key; None if it was not used within its lifetime."""
 
     def get(self, run_id: str) -> Run:
-        """The run as it is now.
+        """Return the run with its newest progress.
 
         Raises:
-            NotFound: if there is none.
-            Damaged: if it cannot be read.
+            NotFound: if there is no such run.
+            Damaged: if it cannot be decoded.
         """
 
     def find(self, run_id: str) -> AnyRun:
-        """The run as it is now, or what can be read of it.
+        """Return the run with its newest progress, or a `DamagedRun` if it cannot be decoded.
 
         Raises:
-            NotFound: if there is none.
+            NotFound: if there is no such run.
         """
 
     def list(
@@ -218,25 +223,31 @@ class RunStore(Protocol):
         limit: int = 50,
         cursor: str | None = None,
     ) -> Page:
-        """Runs, newest first.
+        """Return one page of runs, newest first (keyset pagination by id).
 
-        One that cannot be read stands in its place; if not even its kind can be, it is listed with
-        every kind.
+        A run that cannot be decoded is listed in its place as a `DamagedRun`; if its kind cannot
+        be decoded either, it is listed under every kind.
+
+        Args:
+            kind: only runs of this kind; None for all.
+            state: only runs in this state; None for all.
+            limit: items per page.
+            cursor: `Page.next_cursor` of the page before; None for the first page.
         """
 
     def counts(self) -> Mapping[State, int]:
-        """How many runs there are in each state that any is in."""
+        """Return the number of runs by state, for states that have any."""
 
     def change(
         self, run_id: str, from_states: Collection[State], to_state: State, **fields: Any
     ) -> Run:
-        """Change the state, and with it other fields, if it still is one of `from_states`.
+        """Change the state and other fields if the state is in `from_states` (compare-and-set).
 
-        The time left is told anew: `eta_s` is None afterwards.
+        `eta_s` is reset to None unless it is among the fields.
 
         Raises:
             NotFound: if there is no such run.
-            Conflict: if its state is another.
+            Conflict: if its state is not in `from_states`.
         """
 
     def update(self, run_id: str, **fields: Any) -> Run:
@@ -247,14 +258,14 @@ class RunStore(Protocol):
         """
 
     def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> Run:
-        """How far it is.
+        """Set the number of steps or trials done and the estimated time left [s].
 
         Raises:
             NotFound: if there is no such run.
         """
 
     def delete(self, run_id: str) -> None:
-        """Forget a run that has ended, with all it left behind.
+        """Delete an ended run with its curve, trials and artifacts.
 
         Raises:
             NotFound: if there is no such run.
@@ -262,41 +273,58 @@ class RunStore(Protocol):
         """
 
     def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
-        """Add to a training's curve, in place of what it has from the first of these steps on.
+        """Append rows to a training's curve, replacing its rows from the first new step on.
 
-        A training that goes on from a checkpoint evaluates again what came after that.
+        A training that resumes from a checkpoint repeats the evaluations after that checkpoint.
+
+        Args:
+            run_id: id of the training.
+            rows: `step`, `distance_m` [m] and `epsilon` (exploration rate) of each evaluation.
+
+        Raises:
+            NotFound: if there is no such run.
         """
 
     def evaluations(self, run_id: str) -> Sequence[Mapping[str, Any]]:
-        """A training's curve so far: `step`, `distance_m`, `epsilon`."""
+        """Return a training's curve so far, by step: `step`, `distance_m`, `epsilon`."""
 
-    def forget_evaluations(self, run_id: str, after_step: int) -> None:
-        """Drop what a training's curve has after this step."""
+    def delete_evaluations(self, run_id: str, after_step: int) -> None:
+        """Delete the rows of a training's curve after this step."""
 
     def append_trials(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
-        """Add trials of an experiment, each in place of what had its key.
+        """Add trials of an experiment, replacing those with the same key (upsert).
 
         Args:
-            run_id: of the experiment.
-            rows: `key`, `result` (plain types, or None), `set_aside` (why there is none, or None)
-                and `compute_s`.
+            run_id: id of the experiment.
+            rows: `key`, `result` (plain types, or None), `set_aside` (why there is no result, or
+                None) and `compute_s` [s].
 
         Raises:
             NotFound: if there is no such run.
         """
 
     def trials(self, run_id: str) -> Sequence[Mapping[str, Any]]:
-        """The trials of an experiment so far, by key.
+        """Return the trials of an experiment so far, sorted by key.
 
         Raises:
             NotFound: if there is no such run.
         """
 
     def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
-        """Keep a file of the run's, in place of what had this name, and set fields, or neither."""
+        """Store a file of the run and set fields of the run, atomically.
+
+        Replaces the file that had this name.
+
+        Raises:
+            NotFound: if there is no such run.
+            StorageFull: if there is too little disk space.
+        """
 
     def artifact(self, run_id: str, name: str) -> bytes | None:
-        """A file of the run's; None if it has none of this name."""
+        """Return the content of a file of the run; None if it has no file of this name."""
 
     def open_artifact(self, run_id: str, name: str) -> ArtifactFile | None:
-        """The same, to be read piece by piece, and to be closed."""
+        """Open a file of the run for reading in chunks; None if it has no file of this name.
+
+        The caller closes it.
+        """

@@ -1,4 +1,4 @@
-"""Recordings of runs whose job is over: kept in the store, and the newest looked at in memory."""
+"""Recordings of ended runs: stored as `.npz` artifacts, with an LRU cache in memory."""
 
 import io
 import logging
@@ -24,131 +24,135 @@ from app.storage.errors import NotFound
 from app.storage.store import RunStore
 
 RACE, PRACTICE = "race.npz", "practice.npz"
-EVALUATIONS_A_FILE = 20
-KEPT_IN_MEMORY, KEPT_BYTES = 4, 100_000_000
-"""Of either kind, and how large together; the one that was asked for last is kept in any case."""
-_ASK_AGAIN_S = 1.0
-_BESIDE_MOTION = 1000
-"""Bytes of a step beside its motion, about."""
+EVALUATIONS_PER_FILE = 20
+"""Evaluations per file: a growing training rewrites only its last file."""
+CACHE_RECORDINGS, CACHE_BYTES = 4, 100_000_000
+"""Capacity of each cache in recordings and in bytes; the newest entry is kept whatever its size."""
+_MISS_TTL_S = 1.0
+"""How long a cached miss is valid before the store is read again."""
+_STEP_OVERHEAD_BYTES = 1000
+"""Approximate size of a step in memory besides its motion."""
 T = TypeVar("T")
 _logger = logging.getLogger(__name__)
 
 
 class StoredRecordings:
-    """What `Recordings` reads and writes. Safe to use from any thread."""
+    """Reads and writes recordings of ended runs, with an LRU cache per kind. Thread-safe."""
 
     def __init__(self, store: RunStore) -> None:
         self._store = store
-        self._trainings = _Newest[PracticeRecording](
+        self._trainings = _LruCache[PracticeRecording](
             lambda run_id: _read_training(store, run_id), _size_of_training
         )
-        self._races = _Newest[list[LaneRecording]](
+        self._races = _LruCache[list[LaneRecording]](
             lambda run_id: _read_race(store, run_id), _size_of_race
         )
         self._evaluations: dict[str, int] = {}
 
     def training(self, run_id: str) -> PracticeRecording | None:
-        """The recording of a training; None if there is none, or it is damaged."""
+        """Return the recording of a training; None if there is none, or it is damaged."""
         return self._trainings.get(run_id)
 
     def race(self, run_id: str) -> list[LaneRecording] | None:
-        """The recordings of a race's lanes; None if there are none, or they are damaged."""
+        """Return the recordings of a race's lanes; None if there are none, or they are damaged."""
         return self._races.get(run_id)
 
     def write_training(self, run_id: str, recording: PracticeRecording) -> None:
-        """Keep a recording; of one that has grown since, only what is new is written.
+        """Store a recording incrementally: files of evaluations that are complete are skipped.
 
         Raises:
-            StorageFull, StorageFailed: if it cannot be kept.
+            StorageFull, StorageFailed: if it cannot be stored.
         """
         evaluations = recording.evaluations
-        first = self._evaluations.get(run_id, 0) // EVALUATIONS_A_FILE
-        for number in range(first, -(-len(evaluations) // EVALUATIONS_A_FILE)):
-            some = evaluations[number * EVALUATIONS_A_FILE :][:EVALUATIONS_A_FILE]
-            self._write(run_id, evaluations_file(number), evaluation_arrays(some))
-        # Last, since it says how many evaluations there are.
+        first = self._evaluations.get(run_id, 0) // EVALUATIONS_PER_FILE
+        for number in range(first, -(-len(evaluations) // EVALUATIONS_PER_FILE)):
+            batch = evaluations[number * EVALUATIONS_PER_FILE :][:EVALUATIONS_PER_FILE]
+            self._write(run_id, evaluations_file(number), evaluation_arrays(batch))
+        # Written last, since it holds the number of evaluations.
         self._write(run_id, PRACTICE, practice_arrays(recording))
         self._evaluations[run_id] = len(evaluations)
 
     def write_race(self, run_id: str, lanes: list[LaneRecording]) -> None:
-        """Keep the recordings of a race's lanes.
+        """Store the recordings of a race's lanes.
 
         Raises:
-            StorageFull, StorageFailed: if they cannot be kept.
+            StorageFull, StorageFailed: if they cannot be stored.
         """
         self._write(run_id, RACE, race_arrays(lanes))
 
-    def remember_training(self, run_id: str, recording: PracticeRecording) -> None:
-        """This was kept, and grows no more."""
+    def cache_training(self, run_id: str, recording: PracticeRecording) -> None:
+        """Cache a stored recording that is complete."""
         self._evaluations.pop(run_id, None)
         self._trainings.put(run_id, recording)
 
-    def remember_race(self, run_id: str, lanes: list[LaneRecording]) -> None:
-        """These were kept, and grow no more."""
+    def cache_race(self, run_id: str, lanes: list[LaneRecording]) -> None:
+        """Cache the stored recordings of a race that are complete."""
         self._races.put(run_id, lanes)
 
-    def forget(self, run_id: str) -> None:
-        """What is in memory may not be what is in the store."""
+    def invalidate(self, run_id: str) -> None:
+        """Invalidate the cache entries of a run."""
         self._evaluations.pop(run_id, None)
         self._trainings.drop(run_id)
         self._races.drop(run_id)
 
     def _write(self, run_id: str, name: str, arrays: Arrays) -> None:
-        # Not compressed: it would save a tenth, and take a hundred times as long.
+        # Uncompressed: compression saves a tenth of the size and takes a hundred times as long.
         buffer = io.BytesIO()
         np.savez(buffer, **arrays)  # type: ignore[arg-type]
         self._store.put_artifact(run_id, name, buffer.getvalue())
 
 
-class _Found(NamedTuple, Generic[T]):
+class _Entry(NamedTuple, Generic[T]):
+    """A cached value, or a cached miss (None)."""
+
     value: T | None
-    asked_s: float
+    read_s: float
     size: int
 
 
-class _Newest(Generic[T]):
-    """The values that were asked for last; that there is none is believed for a second."""
+class _LruCache(Generic[T]):
+    """Least-recently-used cache with negative caching: a miss is valid for `_MISS_TTL_S`."""
 
     def __init__(self, read: Callable[[str], T | None], size_of: Callable[[T], int]) -> None:
         self._read, self._size_of, self._lock = read, size_of, threading.Lock()
-        self._found: OrderedDict[str, _Found[T]] = OrderedDict()
+        self._entries: OrderedDict[str, _Entry[T]] = OrderedDict()
 
     def get(self, key: str) -> T | None:
         with self._lock:
-            found, now = self._found.get(key), time.monotonic()
-            if found is None or (found.value is None and now - found.asked_s > _ASK_AGAIN_S):
-                found = self._sized(self._tried(key), now)
-            self._put(key, found)
-            return found.value
+            entry, now = self._entries.get(key), time.monotonic()
+            if entry is None or (entry.value is None and now - entry.read_s > _MISS_TTL_S):
+                entry = self._entry(self._read_or_none(key), now)
+            self._put(key, entry)
+            return entry.value
 
     def put(self, key: str, value: T) -> None:
         with self._lock:
-            self._put(key, self._sized(value, time.monotonic()))
+            self._put(key, self._entry(value, time.monotonic()))
 
     def drop(self, key: str) -> None:
         with self._lock:
-            self._found.pop(key, None)
+            self._entries.pop(key, None)
 
-    def _put(self, key: str, found: _Found[T]) -> None:
-        self._found[key] = found
-        self._found.move_to_end(key)
-        while len(self._found) > 1 and self._is_too_much():
-            self._found.popitem(last=False)
+    def _put(self, key: str, entry: _Entry[T]) -> None:
+        self._entries[key] = entry
+        self._entries.move_to_end(key)
+        while len(self._entries) > 1 and self._is_over_capacity():
+            self._entries.popitem(last=False)
 
-    def _is_too_much(self) -> bool:
-        size = sum(found.size for found in self._found.values())
-        return len(self._found) > KEPT_IN_MEMORY or size > KEPT_BYTES
+    def _is_over_capacity(self) -> bool:
+        size = sum(entry.size for entry in self._entries.values())
+        return len(self._entries) > CACHE_RECORDINGS or size > CACHE_BYTES
 
-    def _sized(self, value: T | None, now: float) -> _Found[T]:
-        return _Found(value, now, 0 if value is None else self._size_of(value))
+    def _entry(self, value: T | None, now: float) -> _Entry[T]:
+        return _Entry(value, now, 0 if value is None else self._size_of(value))
 
-    def _tried(self, key: str) -> T | None:
+    def _read_or_none(self, key: str) -> T | None:
         try:
             return self._read(key)
         except NotFound:
             return None
         except HexapodError as error:
-            # Whoever draws thirty times a second has no use for an exception.
+            # The stage loop asks thirty times a second: log once, and cache the miss.
             _logger.warning("No recording can be shown: %s", error, extra={"run_id": key})
             return None
 
@@ -178,14 +182,14 @@ def _size_of_training(recording: PracticeRecording) -> int:
 
 def _size_of_race(lanes: list[LaneRecording]) -> int:
     return sum(
-        step.motion.qpos.nbytes + step.motion.time_s.nbytes + _BESIDE_MOTION
+        step.motion.qpos.nbytes + step.motion.time_s.nbytes + _STEP_OVERHEAD_BYTES
         for lane in lanes
         for step in lane.steps
     )
 
 
 def evaluations_file(number: int) -> str:
-    """What the `number`th file of a training's evaluations is called, from 0 on."""
+    """Return the artifact name of a training's `number`-th file of evaluations, from 0 on."""
     return f"evaluations-{number:04}.npz"
 
 
@@ -194,7 +198,7 @@ def _arrays(store: RunStore, run_id: str, name: str) -> Arrays | None:
     if file is None:
         return None
     try:
-        # From the file rather than from its bytes, which would be in memory beside the arrays.
+        # Read from the file, so that its bytes are not in memory in addition to the arrays.
         with np.load(io.BufferedReader(ReadableArtifact(file)), allow_pickle=False) as arrays:
             return {name: arrays[name] for name in arrays.files}
     finally:

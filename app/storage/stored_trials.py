@@ -1,4 +1,4 @@
-"""The trials of an experiment as the store has them, and what they were before."""
+"""Convert stored trials of an experiment to `TrialResult` objects and to CSV."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -11,10 +11,13 @@ from app.experiments.trial import TrialResult
 def results_of(
     rows: Iterable[Mapping[str, Any]],
 ) -> tuple[dict[str, TrialResult], dict[str, str]]:
-    """The results by key, and why others were set aside.
+    """Split stored trials into results and set-aside trials.
 
     Args:
-        rows: as `RunStore.trials` has them.
+        rows: as returned by `RunStore.trials`.
+
+    Returns:
+        results by trial key, and by key the reason why other trials have none.
     """
     results, set_aside = {}, {}
     for row in rows:
@@ -29,5 +32,10 @@ def results_of(
 
 
 def trials_as_csv(config: ExperimentConfig, rows: Iterable[Mapping[str, Any]]) -> bytes:
-    """The trials as a table, a row a distance."""
+    """Encode trials as CSV, with one row per distance.
+
+    Args:
+        config: of the experiment.
+        rows: as returned by `RunStore.trials`.
+    """
     return trials_csv(config, *results_of(rows))

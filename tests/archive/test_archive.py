@@ -1,4 +1,4 @@
-"""What an archive is not allowed to be; promise 6 among it."""
+"""Archive container: round trip, and rejection of malformed or malicious zips (promise 6)."""
 
 import io
 import json
@@ -24,20 +24,20 @@ def opened(data: bytes) -> dict[str, bytes]:
 
 
 def zipped(
-    change: Callable[[zipfile.ZipInfo], None] = lambda about: None,
+    change: Callable[[zipfile.ZipInfo], None] = lambda info: None,
     compression: int = zipfile.ZIP_STORED,
     members: dict[str, bytes] | None = None,
 ) -> bytes:
-    """A zip with a manifest that is right, whatever else is not."""
+    """Create a zip with a correct manifest, and otherwise as given."""
     members = MEMBERS if members is None else members
     hashes = {name: sha256(data).hexdigest() for name, data in members.items()}
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as file:
         for name, data in {**members, MANIFEST: json.dumps({"sha256": hashes}).encode()}.items():
-            about = zipfile.ZipInfo(name)
-            about.compress_type = compression
-            change(about)
-            file.writestr(about, data)
+            info = zipfile.ZipInfo(name)
+            info.compress_type = compression
+            change(info)
+            file.writestr(info, data)
     return buffer.getvalue()
 
 
@@ -49,13 +49,13 @@ def refusal(data: bytes) -> str:
     return str(error.value)
 
 
-def test_what_is_packed_is_unpacked() -> None:
+def test_unpack_inverts_pack() -> None:
     assert opened(pack(MEMBERS)) == MEMBERS
     assert pack(MEMBERS) == pack(MEMBERS)
     assert opened(zipped()) == MEMBERS
 
 
-def test_a_bomb_is_refused_from_its_header() -> None:
+def test_zip_bomb_is_refused_by_its_headers() -> None:
     bomb = zipped(members={"race.npz": bytes(320_000_000)}, compression=zipfile.ZIP_DEFLATED)
     assert len(bomb) < 320_000
     tracemalloc.start()
@@ -65,30 +65,30 @@ def test_a_bomb_is_refused_from_its_header() -> None:
     assert peak < 5_000_000
 
 
-def test_sizes_that_lie_are_refused() -> None:
+def test_wrong_member_sizes_are_refused() -> None:
     whole = zipped()
     directory = whole.index(b"PK\1\2")
     for claimed in (len(MEMBERS["run.json"]) + 1, 2**31, 2**32 - 1):
-        said = struct.pack("<LL", claimed, claimed)
-        refusal(whole[: directory + 20] + said + whole[directory + 28 :])
+        sizes = struct.pack("<LL", claimed, claimed)
+        refusal(whole[: directory + 20] + sizes + whole[directory + 28 :])
 
 
 @pytest.mark.parametrize(
     "name",
     ["../run.json", "/etc/passwd", "a/run.json", "a\\run.json", "run.json/", "RUN.JSON", "", "run"],
 )
-def test_only_known_names_are_let_in(name: str) -> None:
+def test_unexpected_member_names_are_refused(name: str) -> None:
     assert "which no run has" in refusal(zipped(members={**MEMBERS, name: b"x"}))
 
 
-def test_a_name_that_hides_behind_a_zero_is_refused() -> None:
+def test_member_name_with_nul_is_refused() -> None:
     data = zipped(members={**MEMBERS, "race.npz_evil": b"x"})
     assert "which no run has" in refusal(data.replace(b"race.npz_evil", b"race.npz\0evil"))
 
 
-def test_what_is_no_plain_file_is_refused() -> None:
-    def link(about: zipfile.ZipInfo) -> None:
-        about.external_attr = (stat.S_IFLNK | 0o777) << 16
+def test_links_and_encrypted_members_are_refused() -> None:
+    def link(info: zipfile.ZipInfo) -> None:
+        info.external_attr = (stat.S_IFLNK | 0o777) << 16
 
     assert "no plain file" in refusal(zipped(link))
     secret = bytearray(zipped())
@@ -96,17 +96,17 @@ def test_what_is_no_plain_file_is_refused() -> None:
     assert "no plain file" in refusal(bytes(secret))
 
 
-def test_a_member_twice_is_refused() -> None:
+def test_duplicate_member_is_refused() -> None:
     data = zipped(members={**MEMBERS, "run.jsox": b"x"})
     assert "twice" in refusal(data.replace(b"run.jsox", b"run.json"))
 
 
-def test_too_many_members_are_refused_before_they_are_read() -> None:
+def test_too_many_members_are_refused() -> None:
     many = zipped(members={f"{n}.npz": b"" for n in range(20_000)})
     assert "members" in refusal(many)
 
 
-def test_what_was_cut_short_or_made_longer_is_refused() -> None:
+def test_truncated_and_extended_archives_are_refused() -> None:
     whole = pack(MEMBERS)
     for size in range(len(whole)):
         refusal(whole[:size])
@@ -116,7 +116,7 @@ def test_what_was_cut_short_or_made_longer_is_refused() -> None:
         refusal(nothing)
 
 
-def test_flipped_bits_are_found_or_do_not_matter() -> None:
+def test_flipped_bits_are_detected_or_irrelevant() -> None:
     whole, chance = pack(MEMBERS), random.Random(6)
     refused = 0
     for place in range(len(whole)):
@@ -126,11 +126,11 @@ def test_flipped_bits_are_found_or_do_not_matter() -> None:
             assert opened(bytes(flipped)) == MEMBERS
         except DamagedFile:
             refused += 1
-    # What remains are times, versions and rights, which nobody reads.
+    # The others are in times, versions and permissions, which are not read.
     assert refused > 0.9 * len(whole)
 
 
-def test_a_manifest_that_does_not_fit_is_refused() -> None:
+def test_manifest_that_does_not_match_is_refused() -> None:
     def with_manifest(manifest: bytes) -> bytes:
         buffer = io.BytesIO()
         with zipfile.ZipFile(buffer, "w") as file:
@@ -151,7 +151,7 @@ def test_a_manifest_that_does_not_fit_is_refused() -> None:
     assert MANIFEST in refusal(buffer.getvalue())
 
 
-def test_what_could_not_be_taken_in_again_is_not_packed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_archive_too_large_to_import_is_not_packed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(archive, "MAX_BYTES", 1000)
     with pytest.raises(InvalidInput, match="too large"):
         pack(MEMBERS)

@@ -1,4 +1,4 @@
-"""Runs move between stores with all they have, and a file that lies does not get in."""
+"""Export and import of trainings and races: round trip, and rejection of invalid archives."""
 
 import io
 import json
@@ -38,38 +38,40 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SqlStore]:
         yield store
 
 
-def taken_in(data: bytes, store: RunStore | None = None) -> Run:
+def imported(data: bytes, store: RunStore | None = None) -> Run:
     return import_run(store or MemoryStore(), data, RunIds(), tuple(OURS), "run.zip")
 
 
 def refusal(data: bytes) -> str:
     store = MemoryStore()
     with pytest.raises(InvalidInput) as error:
-        taken_in(data, store)
+        imported(data, store)
     assert "\n" not in str(error.value)
     assert store.list().items == []
     return str(error.value)
 
 
 def repacked(data: bytes, **members: bytes | None) -> bytes:
-    """The archive with other members, and a manifest that fits them."""
-    former = archive.unpack(data, "run.zip", lambda name: True)
-    changed = {**former, **{name.replace("_", "."): data for name, data in members.items()}}
+    """Replace members of an archive (None removes one), with a manifest that matches."""
+    original = archive.unpack(data, "run.zip", lambda name: True)
+    changed = {**original, **{name.replace("_", "."): data for name, data in members.items()}}
     return archive.pack({name: data for name, data in changed.items() if data is not None})
 
 
 def rewritten(data: bytes, change: Change) -> bytes:
-    """The archive with another run.json."""
-    shown = json.loads(archive.unpack(data, "run.zip", lambda name: True)[RUN])
-    change(shown)
-    return repacked(data, run_json=json.dumps(shown).encode())
+    """Change the `run.json` of an archive."""
+    content = json.loads(archive.unpack(data, "run.zip", lambda name: True)[RUN])
+    change(content)
+    return repacked(data, run_json=json.dumps(content).encode())
 
 
 @pytest.mark.parametrize("run_id", [TRAINING, RACED])
-def test_everything_arrives(source: SqlStore, run_id: str, tmp_path: Path) -> None:
+def test_export_and_import_preserve_everything(
+    source: SqlStore, run_id: str, tmp_path: Path
+) -> None:
     data = export_run(source, run_id)
     with opened(tmp_path, None) as target:
-        assert taken_in(data, target) == source.get(run_id)
+        assert imported(data, target) == source.get(run_id)
         assert target.evaluations(run_id) == source.evaluations(run_id)
         for name in (TABLE, RACE, PRACTICE):
             assert target.artifact(run_id, name) == source.artifact(run_id, name)
@@ -89,23 +91,23 @@ def test_everything_arrives(source: SqlStore, run_id: str, tmp_path: Path) -> No
             assert len(practised.evaluations) == len(was.evaluations) == 24
 
 
-def test_what_is_here_is_not_replaced(source: SqlStore) -> None:
+def test_import_does_not_replace_an_existing_run(source: SqlStore) -> None:
     data, store = export_run(source, TRAINING), MemoryStore()
-    first = taken_in(data, store)
+    first = imported(data, store)
     store.update(first.id, name="Mine")
-    second = taken_in(data, store)
+    second = imported(data, store)
     assert first.id == TRAINING != second.id
     assert store.get(TRAINING).name == "Mine"
     assert second == replace(source.get(TRAINING), id=second.id)
     assert store.artifact(second.id, TABLE) == source.artifact(TRAINING, TABLE)
 
 
-def test_runs_of_every_end_move(source: SqlStore) -> None:
+def test_runs_can_be_exported_in_every_ended_state_only(source: SqlStore) -> None:
     states = ("stopped", "failed", "interrupted")
     for state in states:
         store = MemoryStore()
         store.create(training(ONE, state=state, error="It broke.", greedy_distance_m=0.5))
-        assert taken_in(export_run(store, ONE)) == store.get(ONE)
+        assert imported(export_run(store, ONE)) == store.get(ONE)
     for state in ("queued", "running", "paused"):
         store = MemoryStore()
         store.create(training("a", state=state))
@@ -115,41 +117,41 @@ def test_runs_of_every_end_move(source: SqlStore) -> None:
         export_run(source, "none")
 
 
-def test_what_was_interrupted_can_go_on_elsewhere(source: SqlStore) -> None:
+def test_checkpoint_is_exported_with_an_interrupted_run_only(source: SqlStore) -> None:
     store, target, saved = MemoryStore(), MemoryStore(), source.artifact(TRAINING, TABLE) or b""
     config = source.get(TRAINING).config
     states: dict[str, State] = {ONE: "interrupted", OTHER: "finished"}
     for run_id, state in states.items():
         store.create(training(run_id, state=state, config=config, done=120, total=120))
         store.put_artifact(run_id, CHECKPOINT, saved)
-        taken_in(export_run(store, run_id), target)
+        imported(export_run(store, run_id), target)
     assert target.artifact(ONE, CHECKPOINT) == saved
-    # Nobody goes on from there, so that it is not carried along.
+    # A finished training is not resumed, so that its checkpoint is not exported.
     assert target.artifact(OTHER, CHECKPOINT) is None
     data = export_run(store, ONE)
     assert "another step" in refusal(rewritten(data, _shorter))
     assert "is not a Q-table" in refusal(repacked(data, checkpoint_npz=b"milk"))
 
 
-def test_odd_configs_move_and_foreign_agents_do_not() -> None:
+def test_unusual_configs_are_imported_but_unregistered_agents_refused() -> None:
     store = MemoryStore()
     store.create(training(ONE, state="finished", config=replace(ODD, agent="q-learning")))
     store.create(training(OTHER, state="finished", config=ODD))
-    assert taken_in(export_run(store, ONE)) == store.get(ONE)
+    assert imported(export_run(store, ONE)) == store.get(ONE)
     assert "q-learning, greedy, two-step" in refusal(export_run(store, OTHER))
 
 
 def _set(name: str, value: Any, *path: str | int) -> Change:
-    def change(shown: Any) -> None:
+    def change(content: Any) -> None:
         for part in path:
-            shown = shown[part]
-        shown[name] = value
+            content = content[part]
+        content[name] = value
 
     return change
 
 
-def _shorter(shown: Any) -> None:
-    shown["run"] |= {"done": 119, "total": 119}
+def _shorter(content: Any) -> None:
+    content["run"] |= {"done": 119, "total": 119}
 
 
 @pytest.mark.parametrize(
@@ -197,10 +199,10 @@ def _shorter(shown: Any) -> None:
         (_set("curve", [{"step": 5}]), "distance_m"),
         (_set("curve", [{"step": 5, "distance_m": None, "epsilon": 0}]), "distance_m"),
         (_set("lane_training_ids", [None], "run"), "has lanes"),
-        (lambda shown: shown.pop("run"), "run"),
+        (lambda content: content.pop("run"), "run"),
     ],
 )
-def test_a_run_that_says_something_else_is_refused(
+def test_invalid_run_json_of_a_training_is_refused(
     source: SqlStore, change: Change, names: str
 ) -> None:
     assert names in refusal(rewritten(export_run(source, TRAINING), change))
@@ -212,20 +214,20 @@ def test_a_run_that_says_something_else_is_refused(
         _set("lane_training_ids", [None], "run"),
         _set("lanes", [], "run", "result"),
         _set("curve", [{"step": 5, "distance_m": 1, "epsilon": 0}]),
-        lambda shown: shown["run"]["result"]["lanes"].reverse(),
-        lambda shown: shown["run"]["result"]["lanes"][0].update(decision_s=None),
-        lambda shown: shown["run"]["result"]["lanes"][0]["clocks"].pop("wall"),
-        lambda shown: shown["run"]["config"]["lanes"].pop(),
-        lambda shown: shown["run"]["config"]["lanes"].reverse(),
+        lambda content: content["run"]["result"]["lanes"].reverse(),
+        lambda content: content["run"]["result"]["lanes"][0].update(decision_s=None),
+        lambda content: content["run"]["result"]["lanes"][0]["clocks"].pop("wall"),
+        lambda content: content["run"]["config"]["lanes"].pop(),
+        lambda content: content["run"]["config"]["lanes"].reverse(),
         _set("steps", 3, "run", "config"),
         _set("divisions", 3, "run", "config"),
     ],
 )
-def test_a_race_that_says_something_else_is_refused(source: SqlStore, change: Change) -> None:
+def test_invalid_run_json_of_a_race_is_refused(source: SqlStore, change: Change) -> None:
     refusal(rewritten(export_run(source, RACED), change))
 
 
-def test_text_that_is_no_json_is_refused(source: SqlStore) -> None:
+def test_malformed_json_is_refused(source: SqlStore) -> None:
     data = export_run(source, RACED)
     for text in (b"", b"{", b"[]", b"null", b"[" * 100_000, b"\xff", b'{"format": 1e999}'):
         assert "run.json" in refusal(repacked(data, run_json=text))
@@ -254,8 +256,8 @@ def _race_with(source: SqlStore, change: Change) -> bytes:
     return repacked(export_run(source, RACED), race_npz=buffer.getvalue())
 
 
-def test_recordings_that_cannot_be_drawn_are_refused(source: SqlStore) -> None:
-    assert taken_in(_race_with(source, lambda arrays: None)).id == RACED
+def test_invalid_recordings_are_refused(source: SqlStore) -> None:
+    assert imported(_race_with(source, lambda arrays: None)).id == RACED
 
     def put(name: str, value: Callable[[Any], Any]) -> Change:
         return lambda arrays: arrays.update({name: value(arrays[name])})
@@ -285,7 +287,7 @@ def test_recordings_that_cannot_be_drawn_are_refused(source: SqlStore) -> None:
     assert "compressed" in refusal(bomb)
 
 
-def test_an_id_that_could_not_have_been_made_yet_is_not_kept(source: SqlStore) -> None:
+def test_future_and_malformed_ids_are_replaced(source: SqlStore) -> None:
     for run_id in ("zzzzzzzzz0000", "0", "training", "1zzzzzzzzzzzz"):
         store, ids = MemoryStore(), RunIds()
         data = rewritten(export_run(source, TRAINING), _set("id", run_id, "run"))
@@ -295,7 +297,7 @@ def test_an_id_that_could_not_have_been_made_yet_is_not_kept(source: SqlStore) -
         assert ids() > run.id
 
 
-def test_new_runs_sort_last_beside_one_of_the_year_3000() -> None:
+def test_new_ids_ignore_existing_ids_in_the_far_future() -> None:
     store = MemoryStore()
     believed = "1m7zzzzzz0000"  # of November 2026
     store.create(training("zzzzzzzzz0000", state="finished"), training(believed, state="finished"))

@@ -1,4 +1,4 @@
-"""Experiments move between stores with all they have, and one that lies does not get in."""
+"""Export and import of experiments: round trip, and rejection of invalid archives."""
 
 import json
 from collections.abc import Iterator
@@ -14,7 +14,7 @@ from app.archive.transfer import export_run
 from app.storage.database.store import SqlStore
 from app.storage.memory_store import MemoryStore
 from app.storage.store import SUMMARY, State
-from tests.archive.test_transfer import Change, _set, refusal, repacked, rewritten, taken_in
+from tests.archive.test_transfer import Change, _set, imported, refusal, repacked, rewritten
 from tests.storage.ended import ended_experiment
 from tests.storage.stores import SWEEP, experiment, opened
 
@@ -33,23 +33,23 @@ def members(data: bytes) -> dict[str, bytes]:
 
 
 def with_trials(data: bytes, change: Change) -> bytes:
-    """The archive with other trials."""
+    """Change the `trials.json` of an archive."""
     rows = json.loads(members(data)[TRIALS])
     change(rows)
     return repacked(data, trials_json=json.dumps(rows).encode())
 
 
-def test_everything_arrives(source: SqlStore, tmp_path: Path) -> None:
+def test_export_and_import_preserve_everything(source: SqlStore, tmp_path: Path) -> None:
     data = export_run(source, RUN_ID)
     with opened(tmp_path, None) as target:
-        assert taken_in(data, target) == source.get(RUN_ID)
+        assert imported(data, target) == source.get(RUN_ID)
         assert target.trials(RUN_ID) == source.trials(RUN_ID)
         for name in (SUMMARY, "trials.csv"):
             assert target.artifact(RUN_ID, name) == source.artifact(RUN_ID, name)
         assert export_run(target, RUN_ID) == data
 
 
-def test_one_that_did_not_come_to_its_end_moves_with_what_it_has(source: SqlStore) -> None:
+def test_incomplete_experiments_are_imported_with_their_trials(source: SqlStore) -> None:
     store = MemoryStore()
     config, rows = source.get(RUN_ID).config, source.trials(RUN_ID)[:2]
     states: dict[str, State] = {"0000000000001": "interrupted", "0000000000002": "stopped"}
@@ -58,11 +58,11 @@ def test_one_that_did_not_come_to_its_end_moves_with_what_it_has(source: SqlStor
         store.create(run)
         store.append_trials(run_id, rows)
         target = MemoryStore()
-        assert taken_in(export_run(store, run_id), target) == run
+        assert imported(export_run(store, run_id), target) == run
         assert target.trials(run_id) == rows
 
 
-def test_agents_that_are_not_here_do_not_get_in_and_are_not_even_imported(
+def test_unregistered_agents_are_refused_without_importing_their_module(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "evil.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')")
@@ -97,7 +97,7 @@ def test_agents_that_are_not_here_do_not_get_in_and_are_not_even_imported(
         (_set("curve", [{"step": 5, "distance_m": 1, "epsilon": 0}]), "curve"),
     ],
 )
-def test_a_run_that_says_something_else_is_refused(
+def test_invalid_run_json_of_an_experiment_is_refused(
     source: SqlStore, change: Change, names: str
 ) -> None:
     assert names in refusal(rewritten(export_run(source, RUN_ID), change))
@@ -122,9 +122,7 @@ def _again(rows: Any) -> None:
         (_again, "twice"),
     ],
 )
-def test_trials_that_say_something_else_are_refused(
-    source: SqlStore, change: Change, names: str
-) -> None:
+def test_invalid_trials_are_refused(source: SqlStore, change: Change, names: str) -> None:
     assert names in refusal(with_trials(export_run(source, RUN_ID), change))
 
 
@@ -132,7 +130,7 @@ def summary_with(data: bytes, **fields: Any) -> bytes:
     return json.dumps({**json.loads(members(data)[SUMMARY]), **fields}).encode()
 
 
-def test_files_are_what_their_names_say(source: SqlStore) -> None:
+def test_report_files_must_match_their_names(source: SqlStore) -> None:
     data = export_run(source, RUN_ID)
     for changed, names in (
         ({"summary_json": b"{}"}, "no summary"),

@@ -1,4 +1,4 @@
-"""The bus: order, what a slow listener gets, and what one gets that comes back."""
+"""Event bus: order, coalescing for slow subscribers, and replay after a reconnection."""
 
 import asyncio
 import json
@@ -9,20 +9,20 @@ from typing import Any
 from app.events.bus import MAX_PENDING, RING_EVENTS, Event, EventBus, Subscription
 
 
-async def take(subscription: Subscription, count: int) -> list[Event]:
-    taken: list[Event] = []
+async def receive(subscription: Subscription, count: int) -> list[Event]:
+    events: list[Event] = []
     async for event in subscription:
-        taken.append(event)
-        if len(taken) == count:
+        events.append(event)
+        if len(events) == count:
             break
-    return taken
+    return events
 
 
 def in_loop(test: Callable[[], Coroutine[Any, Any, None]]) -> Callable[[], None]:
     return lambda: asyncio.run(asyncio.wait_for(test(), 30))
 
 
-def test_events_come_in_order_and_from_any_thread() -> None:
+def test_events_published_from_many_threads_arrive_in_order() -> None:
     async def run() -> None:
         bus = EventBus()
         subscription = bus.subscribe()
@@ -34,15 +34,15 @@ def test_events_come_in_order_and_from_any_thread() -> None:
         threads = [threading.Thread(target=publish) for _ in range(4)]
         for thread in threads:
             thread.start()
-        taken = await take(subscription, 400)
-        ids = [event.id for event in taken]
+        events = await receive(subscription, 400)
+        ids = [event.id for event in events]
         assert ids == sorted(set(ids))
-        assert sorted(json.loads(e.data)["n"] for e in taken) == sorted([*range(100)] * 4)
+        assert sorted(json.loads(e.data)["n"] for e in events) == sorted([*range(100)] * 4)
 
     in_loop(run)()
 
 
-def test_ids_go_on_rising_after_a_restart() -> None:
+def test_event_ids_increase_across_restarts() -> None:
     before = EventBus()
     before.publish("e", {})
     first = before.last_id
@@ -51,7 +51,7 @@ def test_ids_go_on_rising_after_a_restart() -> None:
     assert after.last_id >= first
 
 
-def test_a_slow_listener_gets_the_newest_of_each_run() -> None:
+def test_state_events_of_a_slow_subscriber_are_coalesced() -> None:
     async def run() -> None:
         bus = EventBus()
         subscription = bus.subscribe()
@@ -59,27 +59,27 @@ def test_a_slow_listener_gets_the_newest_of_each_run() -> None:
             bus.publish("run", {"n": n}, "a")
             bus.publish("run", {"n": n}, "b")
             bus.publish("evaluation", {"n": n}, "a")
-        taken = await take(subscription, 7)
-        runs = [(e.run_id, json.loads(e.data)["n"]) for e in taken if e.event == "run"]
+        events = await receive(subscription, 7)
+        runs = [(e.run_id, json.loads(e.data)["n"]) for e in events if e.event == "run"]
         assert runs == [("a", 4), ("b", 4)]
-        assert [json.loads(e.data)["n"] for e in taken if e.event == "evaluation"] == [*range(5)]
+        assert [json.loads(e.data)["n"] for e in events if e.event == "evaluation"] == [*range(5)]
 
     in_loop(run)()
 
 
-def test_one_run_only() -> None:
+def test_subscription_to_one_run_receives_only_its_events() -> None:
     async def run() -> None:
         bus = EventBus()
         subscription = bus.subscribe("a")
         bus.publish("run", {"n": 1}, "b")
         bus.publish("stage", {"n": 2})
         bus.publish("run", {"n": 3}, "a")
-        assert [json.loads(e.data)["n"] for e in await take(subscription, 1)] == [3]
+        assert [json.loads(e.data)["n"] for e in await receive(subscription, 1)] == [3]
 
     in_loop(run)()
 
 
-def test_who_comes_back_gets_what_a_snapshot_does_not_say() -> None:
+def test_reconnection_replays_all_but_state_events() -> None:
     async def run() -> None:
         bus = EventBus()
         bus.publish("evaluation", {"n": 0}, "a")
@@ -87,41 +87,41 @@ def test_who_comes_back_gets_what_a_snapshot_does_not_say() -> None:
         bus.publish("run", {"n": 1}, "a")
         bus.publish("evaluation", {"n": 2}, "a")
         bus.publish("run-deleted", {"n": 3}, "b")
-        taken = await take(bus.subscribe(last_event_id=seen), 2)
-        assert [json.loads(e.data)["n"] for e in taken] == [2, 3]
+        events = await receive(bus.subscribe(last_event_id=seen), 2)
+        assert [json.loads(e.data)["n"] for e in events] == [2, 3]
         future = bus.subscribe(last_event_id=bus.last_id + 1)
         bus.publish("e", {"n": 4})
-        assert [json.loads(e.data)["n"] for e in await take(future, 1)] == [4]
+        assert [json.loads(e.data)["n"] for e in await receive(future, 1)] == [4]
 
     in_loop(run)()
 
 
-def test_it_remembers_a_bounded_number() -> None:
+def test_replay_buffer_is_bounded() -> None:
     async def run() -> None:
         bus = EventBus()
         for n in range(RING_EVENTS + 10):
             bus.publish("e", {"n": n})
         late = bus.subscribe(last_event_id=0)
         bus.publish("e", {"n": -1})
-        first = (await take(late, 1))[0]
+        first = (await receive(late, 1))[0]
         assert json.loads(first.data)["n"] >= 10
 
     in_loop(run)()
 
 
-def test_one_that_never_reads_is_let_go() -> None:
+def test_subscription_with_too_many_pending_events_is_closed() -> None:
     async def run() -> None:
         bus = EventBus()
         subscription = bus.subscribe()
         for n in range(MAX_PENDING + 1):
             bus.publish("e", {"n": n})
-        taken = [event async for event in subscription]
-        assert len(taken) <= MAX_PENDING + 1
+        events = [event async for event in subscription]
+        assert len(events) <= MAX_PENDING + 1
 
     in_loop(run)()
 
 
-def test_closing_ends_every_subscription() -> None:
+def test_closing_the_bus_ends_every_subscription() -> None:
     async def run() -> None:
         bus = EventBus()
         subscription = bus.subscribe()
@@ -133,7 +133,7 @@ def test_closing_ends_every_subscription() -> None:
     in_loop(run)()
 
 
-def test_no_listener_is_kept_after_its_loop_is_gone() -> None:
+def test_subscription_of_a_closed_loop_is_removed() -> None:
     bus = EventBus()
 
     async def listen() -> None:
@@ -144,7 +144,7 @@ def test_no_listener_is_kept_after_its_loop_is_gone() -> None:
     bus.publish("e", {})
 
 
-def test_a_number_that_json_has_not_breaks_no_stream() -> None:
+def test_nan_and_infinity_are_sent_as_null() -> None:
     async def listen() -> list[str]:
         bus = EventBus()
         subscription = bus.subscribe()

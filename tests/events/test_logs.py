@@ -1,4 +1,4 @@
-"""One line a record, with the id of the run that it is about."""
+"""Log format: one line per record, with the id of its run; log records of state changes."""
 
 import io
 import json
@@ -30,7 +30,7 @@ def record(message: str, **more: Any) -> logging.LogRecord:
     return logging.makeLogRecord({"msg": message, "name": "app", "levelname": "INFO", **more})
 
 
-def test_json_for_programs(written: io.StringIO) -> None:
+def test_records_are_json_lines_on_a_stream(written: io.StringIO) -> None:
     logging.getLogger("app.x").info("two\n%s", "lines", extra={"run_id": "abc"})
     logging.getLogger("app.x").debug("nothing")
     try:
@@ -48,20 +48,20 @@ def test_json_for_programs(written: io.StringIO) -> None:
     assert "ZeroDivisionError" in second["traceback"]
 
 
-def test_words_for_people() -> None:
+def test_terminal_format_is_key_value_with_escapes() -> None:
     line = LineFormatter(as_json=False).format(record('a "b"\x1b[2J\n', run_id="abc", n=3))
     assert line.endswith(r'level=info logger=app message="a \"b\"\u001b[2J\n" run_id=abc n=3')
     assert "\n" not in line
 
 
-def test_a_job_s_process_and_thread_say_which_run_it_is() -> None:
+def test_run_id_is_taken_from_the_process_or_thread_name() -> None:
     formatter = LineFormatter(as_json=True)
-    for where in ({"processName": "training abc"}, {"threadName": "race abc"}):
-        assert json.loads(formatter.format(record("broken", **where)))["run_id"] == "abc"
+    for names in ({"processName": "training abc"}, {"threadName": "race abc"}):
+        assert json.loads(formatter.format(record("broken", **names)))["run_id"] == "abc"
     assert "run_id" not in json.loads(formatter.format(record("x", threadName="jobs")))
 
 
-def test_runs_are_counted_and_told_to_the_log(written: io.StringIO) -> None:
+def test_steps_are_counted_and_state_changes_logged(written: io.StringIO) -> None:
     clock = [0.0]
     bus = RunMetrics(lambda: clock[0])
 
@@ -69,8 +69,8 @@ def test_runs_are_counted_and_told_to_the_log(written: io.StringIO) -> None:
         run = training("abc", state=state, done=done, error=error)
         bus.publish("run", run_view(run), "abc")
 
-    for told in (("queued", 0), ("running", 0), ("running", 30), ("running", 100)):
-        publish(*told)
+    for state_and_done in (("queued", 0), ("running", 0), ("running", 30), ("running", 100)):
+        publish(*state_and_done)
     assert (bus.steps, bus.steps_per_s) == (100, 10.0)
     clock[0] = 5.0
     publish("failed", 120, "It broke.")
@@ -78,12 +78,12 @@ def test_runs_are_counted_and_told_to_the_log(written: io.StringIO) -> None:
     clock[0] = 12.0
     assert (bus.steps, bus.steps_per_s) == (120, 2.0)
     bus.publish("run-deleted", {"id": "abc"}, "abc")
-    said = [json.loads(line) for line in written.getvalue().splitlines()]
-    assert [one["message"] for one in said] == [
+    logged = [json.loads(line) for line in written.getvalue().splitlines()]
+    assert [one["message"] for one in logged] == [
         "training is queued",
         "training is running",
         "training is failed",
         "deleted",
     ]
-    assert {one["run_id"] for one in said} == {"abc"}
-    assert (said[2]["level"], said[2]["error"]) == ("warning", "It broke.")
+    assert {one["run_id"] for one in logged} == {"abc"}
+    assert (logged[2]["level"], logged[2]["error"]) == ("warning", "It broke.")

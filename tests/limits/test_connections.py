@@ -1,11 +1,11 @@
-"""Connections are counted, by address too, and the right one makes room."""
+"""Connection limits in total and per address, and which connection is evicted."""
 
 from app.limits.addresses import client_group
 from app.limits.connections import OPERATOR_SLOTS, Connection, ConnectionTable
 
 
 class Client:
-    """The other side of a connection, as the table sees it."""
+    """Stub of a connection's protocol (`Peer`)."""
 
     def __init__(self) -> None:
         self.is_aborted = self.is_overdue = False
@@ -17,14 +17,14 @@ class Client:
         self.is_aborted = True
 
 
-class Crowd:
-    """A table, and connections to it."""
+class Clients:
+    """A connection table, and a way to open connections to it."""
 
     def __init__(self, limit: int, per_address: int) -> None:
         self.table = ConnectionTable(limit, per_address, lambda: 0.0)
         self._files = iter(range(1000))
 
-    def come(self, host: str, busy: bool = False) -> tuple[Connection, Client] | None:
+    def connect(self, host: str, busy: bool = False) -> tuple[Connection, Client] | None:
         connection = self.table.admit(host, next(self._files))
         if connection is None:
             return None
@@ -33,90 +33,90 @@ class Crowd:
         connection.set_busy(busy)
         return connection, client
 
-    def must_come(self, host: str, busy: bool = False) -> tuple[Connection, Client]:
-        come = self.come(host, busy)
-        assert come is not None
-        return come
+    def must_connect(self, host: str, busy: bool = False) -> tuple[Connection, Client]:
+        connected = self.connect(host, busy)
+        assert connected is not None
+        return connected
 
 
-def test_the_longest_idle_of_the_same_address_makes_room() -> None:
-    crowd = Crowd(10, 3)
-    working = crowd.must_come("10.0.0.1", busy=True)
-    first, second = crowd.must_come("10.0.0.1"), crowd.must_come("10.0.0.1")
+def test_longest_idle_connection_of_the_same_address_is_evicted() -> None:
+    clients = Clients(10, 3)
+    working = clients.must_connect("10.0.0.1", busy=True)
+    first, second = clients.must_connect("10.0.0.1"), clients.must_connect("10.0.0.1")
     first[0].set_busy(True)
-    first[0].set_busy(False)  # so it is idle since later than the second
-    crowd.must_come("10.0.0.1")
+    first[0].set_busy(False)  # idle for less long than the second
+    clients.must_connect("10.0.0.1")
     assert [one[1].is_aborted for one in (working, first, second)] == [False, False, True]
-    assert (len(crowd.table), crowd.table.evicted) == (3, 1)
+    assert (len(clients.table), clients.table.evicted) == (3, 1)
 
 
-def test_where_all_work_the_oldest_makes_room() -> None:
-    crowd = Crowd(10, 2)
-    first, second = crowd.must_come("a", busy=True), crowd.must_come("a", busy=True)
-    crowd.must_come("a")
+def test_oldest_connection_is_evicted_if_all_are_busy() -> None:
+    clients = Clients(10, 2)
+    first, second = clients.must_connect("a", busy=True), clients.must_connect("a", busy=True)
+    clients.must_connect("a")
     assert (first[1].is_aborted, second[1].is_aborted) == (True, False)
 
 
-def test_the_heaviest_address_makes_room_for_another() -> None:
-    crowd = Crowd(4, 4)
-    light = crowd.must_come("light")
-    heavy = [crowd.must_come("heavy", busy=True) for _ in range(3)]
-    crowd.must_come("new")
-    # An idle one goes before one that works.
+def test_address_with_most_connections_is_evicted_for_another_address() -> None:
+    clients = Clients(4, 4)
+    light = clients.must_connect("light")
+    heavy = [clients.must_connect("heavy", busy=True) for _ in range(3)]
+    clients.must_connect("new")
+    # An idle connection is evicted before a busy one.
     assert light[1].is_aborted
-    crowd.must_come("another", busy=True)
+    clients.must_connect("another", busy=True)
     assert [client.is_aborted for _, client in heavy] == [False, False, False]
-    crowd.must_come("third", busy=True)
+    clients.must_connect("third", busy=True)
     assert [client.is_aborted for _, client in heavy] == [True, False, False]
 
 
-def test_addresses_do_not_only_take_turns() -> None:
-    crowd = Crowd(2, 2)
-    crowd.must_come("a", busy=True)
-    crowd.must_come("b", busy=True)
-    assert crowd.come("c") is None
-    assert crowd.table.refused == 1
+def test_no_eviction_between_addresses_with_equal_counts() -> None:
+    clients = Clients(2, 2)
+    clients.must_connect("a", busy=True)
+    clients.must_connect("b", busy=True)
+    assert clients.connect("c") is None
+    assert clients.table.refused == 1
 
 
-def test_an_operator_stays_and_gets_in() -> None:
-    crowd = Crowd(2, 1)
-    operator = crowd.must_come("operator")
+def test_operator_connections_are_not_evicted_and_have_extra_slots() -> None:
+    clients = Clients(2, 1)
+    operator = clients.must_connect("operator")
     operator[0].authenticated()
-    crowd.must_come("a", busy=True)
-    assert crowd.come("c") is None
+    clients.must_connect("a", busy=True)
+    assert clients.connect("c") is None
     for _ in range(OPERATOR_SLOTS):
-        crowd.must_come("operator", busy=True)[0].authenticated()
-    assert crowd.come("operator") is None
+        clients.must_connect("operator", busy=True)[0].authenticated()
+    assert clients.connect("operator") is None
     assert not operator[1].is_aborted
 
 
-def test_what_is_closed_counts_no_more() -> None:
-    crowd = Crowd(1, 1)
+def test_released_connections_are_not_counted() -> None:
+    clients = Clients(1, 1)
     for _ in range(5):
-        connection, _ = crowd.must_come("a")
+        connection, _ = clients.must_connect("a")
         connection.release()
         connection.release()
         connection.set_busy(True)
-        assert len(crowd.table) == 0
-    assert crowd.table.evicted == 0
+        assert len(clients.table) == 0
+    assert clients.table.evicted == 0
 
 
-def test_one_that_is_not_begun_yet_stays() -> None:
+def test_connection_without_a_protocol_is_not_evicted() -> None:
     table = ConnectionTable(1, 1, lambda: 0.0)
     assert table.admit("a", 0) is not None
     assert table.admit("a", 1) is None
 
 
-def test_who_is_overdue_is_closed() -> None:
-    crowd = Crowd(2, 2)
-    late, prompt = crowd.must_come("a"), crowd.must_come("a")
+def test_overdue_connections_are_aborted() -> None:
+    clients = Clients(2, 2)
+    late, prompt = clients.must_connect("a"), clients.must_connect("a")
     late[1].is_overdue = True
-    crowd.table.close_overdue()
+    clients.table.close_overdue()
     assert (late[1].is_aborted, prompt[1].is_aborted) == (True, False)
-    assert crowd.table.timed_out == 1
+    assert clients.table.timed_out == 1
 
 
-def test_who_has_a_network_counts_once() -> None:
+def test_ipv6_network_is_one_client_group() -> None:
     assert client_group("2001:db8::1") == client_group("2001:db8::ffff:2") == "2001:db8::/64"
     assert client_group("2001:db8:0:1::1") != client_group("2001:db8::1")
     assert client_group("::ffff:192.0.2.1") == client_group("192.0.2.1") == "192.0.2.1"

@@ -1,4 +1,4 @@
-"""The log stays small: repeated records are counted, and what is written is rationed."""
+"""Log rate limit: repeated records are suppressed and counted, and bytes are limited."""
 
 import io
 import logging
@@ -30,7 +30,9 @@ def log(stream: io.StringIO, clock: list[float]) -> Iterator[logging.Logger]:
     handler.close()
 
 
-def test_repeats_are_counted(log: logging.Logger, stream: io.StringIO, clock: list[float]) -> None:
+def test_repeated_records_are_suppressed_and_counted(
+    log: logging.Logger, stream: io.StringIO, clock: list[float]
+) -> None:
     for number in range(1000):
         log.warning("call %d failed\nwith details", number)
     log.warning("something else")
@@ -38,17 +40,24 @@ def test_repeats_are_counted(log: logging.Logger, stream: io.StringIO, clock: li
     assert len(lines) == 2 * REPEATS + 1
     clock[0] += WINDOW_S
     log.warning("and so on")
-    said = stream.getvalue().splitlines()[len(lines) :]
-    assert said == [f"{1000 - REPEATS} more like this were left out: call %d failed", "and so on"]
+    new_lines = stream.getvalue().splitlines()[len(lines) :]
+    assert new_lines == [
+        f"{1000 - REPEATS} more like this were left out: call %d failed",
+        "and so on",
+    ]
 
 
-def test_each_run_has_its_own_records(log: logging.Logger, stream: io.StringIO) -> None:
+def test_records_of_different_runs_are_not_repeats(
+    log: logging.Logger, stream: io.StringIO
+) -> None:
     for number in range(50):
         log.warning("it is %s", "running", extra={"run_id": str(number)})
     assert len(stream.getvalue().splitlines()) == 50
 
 
-def test_bytes_are_rationed(log: logging.Logger, stream: io.StringIO, clock: list[float]) -> None:
+def test_bytes_are_limited_by_a_token_bucket(
+    log: logging.Logger, stream: io.StringIO, clock: list[float]
+) -> None:
     for number in range(2000):
         log.warning(f"{number} {'x' * 1000}")
     assert BURST_BYTES - 2000 < len(stream.getvalue()) <= BURST_BYTES
@@ -57,7 +66,7 @@ def test_bytes_are_rationed(log: logging.Logger, stream: io.StringIO, clock: lis
     assert stream.getvalue().endswith("it is heard again\n")
 
 
-def test_what_was_left_out_is_said_at_the_end(stream: io.StringIO) -> None:
+def test_suppressed_records_are_reported_on_close(stream: io.StringIO) -> None:
     handler = LimitedHandler(stream)
     for _ in range(REPEATS + 5):
         handler.handle(logging.makeLogRecord({"msg": "again", "levelno": logging.INFO}))

@@ -1,9 +1,9 @@
-"""How much may be held for clients."""
+"""Memory budget: the limit for all clients and the share of one."""
 
 from app.limits.memory_budget import MemoryBudget
 
 
-def test_a_client_has_a_share_and_all_have_a_limit() -> None:
+def test_bytes_are_limited_per_client_and_in_total() -> None:
     budget = MemoryBudget(limit=100, share=60)
 
     assert budget.take("a", 40) is None
@@ -17,7 +17,7 @@ def test_a_client_has_a_share_and_all_have_a_limit() -> None:
     assert budget.held == 100
 
 
-def test_what_is_larger_than_all_gets_in_alone() -> None:
+def test_request_above_the_limit_is_granted_if_it_is_alone() -> None:
     budget = MemoryBudget(limit=100, share=60)
 
     assert budget.take("a", 500) is None

@@ -1,4 +1,4 @@
-"""Places: an address gets a share, newcomers get in, an operator always does."""
+"""Places: limits in total and per address, eviction for newcomers, priority of operators."""
 
 import pytest
 
@@ -6,13 +6,13 @@ from app.limits.places import NoPlace, Places
 
 
 def filled(places: int, per_address: int, *addresses: str) -> Places[int]:
-    made = Places[int](places, per_address)
+    table = Places[int](places, per_address)
     for number, address in enumerate(addresses):
-        assert made.take(number, address, is_operator=False) is None
-    return made
+        assert table.take(number, address, is_operator=False) is None
+    return table
 
 
-def test_an_address_gets_its_share_and_no_more() -> None:
+def test_places_of_one_address_are_limited() -> None:
     places = filled(10, 3, "a", "a", "a")
 
     with pytest.raises(NoPlace, match="address full"):
@@ -22,25 +22,25 @@ def test_an_address_gets_its_share_and_no_more() -> None:
     assert places.take(10, "a", is_operator=False) is None
 
 
-def test_where_all_is_taken_the_heaviest_address_gives_its_newest_to_one_with_fewer() -> None:
+def test_newest_client_of_the_address_with_most_places_is_evicted() -> None:
     places = filled(5, 4, "a", "a", "a", "b", "a")
 
     assert places.take(10, "c", is_operator=False) == 4
     assert places.take(11, "c", is_operator=False) == 2
-    # Two each, and one: nobody has so much more that it would be fairer.
+    # Two, two and one places: an eviction would only swap the counts of two addresses.
     for address in ("a", "b", "c"):
         with pytest.raises(NoPlace, match="full"):
             places.take(12, address, is_operator=False)
     assert len(places) == 5
 
 
-def test_an_address_that_comes_anew_always_gets_in() -> None:
+def test_new_address_is_always_admitted() -> None:
     places = filled(20, 16, *["a"] * 10, *["b"] * 10)
     for number in range(8):
         assert places.take(100 + number, f"new {number}", is_operator=False) is not None
 
 
-def test_an_operator_takes_a_spectators_place_and_is_in_no_share() -> None:
+def test_operator_evicts_a_spectator_and_is_exempt_from_the_address_limit() -> None:
     places = filled(3, 2, "a", "a", "b")
 
     assert places.take(10, "a", is_operator=True) == 1
@@ -50,7 +50,7 @@ def test_an_operator_takes_a_spectators_place_and_is_in_no_share() -> None:
     assert len(places) == 3
 
 
-def test_among_operators_the_first_makes_room_and_spectators_get_nothing() -> None:
+def test_operator_evicts_the_first_operator_and_spectators_are_refused() -> None:
     places = Places[int](2, 2)
     for number in (1, 2):
         assert places.take(number, "a", is_operator=True) is None
@@ -60,7 +60,7 @@ def test_among_operators_the_first_makes_room_and_spectators_get_nothing() -> No
     assert places.take(4, "a", is_operator=True) == 1
 
 
-def test_one_that_lost_its_place_may_leave_too() -> None:
+def test_leaving_after_an_eviction_changes_nothing() -> None:
     places = filled(1, 1, "a")
     assert places.take(1, "b", is_operator=True) == 0
     places.leave(0)
@@ -69,7 +69,7 @@ def test_one_that_lost_its_place_may_leave_too() -> None:
     assert len(places) == 0
 
 
-def test_no_places_are_for_nobody() -> None:
+def test_table_without_places_refuses_all() -> None:
     places = Places[int](0, 0)
     for is_operator in (False, True):
         with pytest.raises(NoPlace):

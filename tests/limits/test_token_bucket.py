@@ -1,9 +1,9 @@
-"""An allowance is used up, and fills again with time."""
+"""Token bucket: tokens are used up, and are refilled with time."""
 
 from app.limits.token_bucket import MAX_CALLERS, RateLimiter
 
 
-def test_it_is_used_up_and_fills_again() -> None:
+def test_tokens_are_used_up_and_refilled_per_caller() -> None:
     clock = [1000.0]
     buckets = RateLimiter(2, 0.5, lambda: clock[0])
     assert [buckets.take("a") for _ in range(3)] == [0, 0, 2]
@@ -17,12 +17,12 @@ def test_it_is_used_up_and_fills_again() -> None:
     assert [buckets.take("a") for _ in range(3)] == [0, 0, 2]
 
 
-def test_looking_uses_nothing() -> None:
+def test_wait_s_takes_no_token() -> None:
     buckets = RateLimiter(1, 1.0, lambda: 0.0)
     assert [buckets.wait_s("a"), buckets.wait_s("a"), buckets.take("a")] == [0, 0, 0]
 
 
-def test_nothing_grows() -> None:
+def test_least_recently_used_buckets_are_dropped() -> None:
     buckets = RateLimiter(1, 1e-9, lambda: 0.0)
     buckets.take("first")
     for number in range(MAX_CALLERS):

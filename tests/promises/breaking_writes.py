@@ -223,7 +223,7 @@ def looked_at(store: SqlStore, folder: Path) -> dict[str, Any]:
     runs = [_whole(store, run) for run in store.list().runs]
     known = store._database.read(lambda c: c.execute(select(ARTIFACTS.c.file)).scalars().all())
     on_disk = [path.name for path in folder.glob("artifacts/*/*") if path.is_file()]
-    key = store.started_by(KEY.key)
+    key = store.find_key(KEY.key)
     return {
         "runs": sorted(runs, key=lambda run: str(run["name"])),
         "key_is_of": None if key is None else store.get(key.run_id).name,

@@ -1,4 +1,4 @@
-"""Runs that have ended, made by the real loops, with all that a server keeps of them."""
+"""Helpers for tests: ended runs, computed by the real loops and stored with all their files."""
 
 import json
 import time
@@ -25,7 +25,7 @@ GAIT = "left-right-origin"
 
 
 def ended_training(store: RunStore, run_id: str, name: str = "It learned", steps: int = 120) -> Run:
-    """A training whose every file is in the store."""
+    """Run a training, and store it with its curve, recording, table and result."""
     config = TrainingConfig(gait=GAIT, steps=steps, simulator="kinematic", evaluate_every=5)
     store.create(training(run_id, name=name, config=config, total=steps))
     recordings, learner = Recordings(store), build_learner(config)
@@ -45,7 +45,7 @@ def ended_training(store: RunStore, run_id: str, name: str = "It learned", steps
 
 
 def ended_race(store: RunStore, run_id: str, training_id: str) -> Run:
-    """A race of that training's table and a greedy lane, whose every file is in the store."""
+    """Run a race of a training's table against a greedy lane, and store it with its recordings."""
     lanes = (LaneConfig(agent="q-learning"), LaneConfig(agent="greedy"))
     config = RaceConfig(gait=GAIT, simulator="kinematic", steps=8, lanes=lanes)
     table = from_bytes(store.artifact(training_id, TABLE) or b"", "the table")
@@ -64,14 +64,14 @@ def ended_race(store: RunStore, run_id: str, training_id: str) -> Run:
     recordings.begin_race(run_id, recorded)
     recordings.finish(run_id)
     result = race_result(recorded, config.steps)
-    for lane, known in zip(result["lanes"], (training_id, None), strict=True):
-        lane |= {"training_id": known, "trained_robot": None}
+    for lane, lane_training_id in zip(result["lanes"], (training_id, None), strict=True):
+        lane |= {"training_id": lane_training_id, "trained_robot": None}
     result["shared_machine"] = False
     return store.change(run_id, {"queued"}, "finished", done=16, result=result)
 
 
 def ended_experiment(store: RunStore, run_id: str) -> Run:
-    """A sweep with its trials and its summary, but without the figures."""
+    """Run a sweep, and store it with its trials and summary, but without figures."""
     config = sweep(seeds=3, agents=("q-learning", "greedy"))
     plan = Plan(config)
     store.create(

@@ -1,4 +1,4 @@
-"""Stores of every kind, and runs to put into them."""
+"""Helpers for tests: stores on every database, and sample runs, configs and trials."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -32,13 +32,13 @@ RACE = RaceConfig(
 
 
 def training(run_id: str, **fields: Any) -> Run:
-    """A training, queued unless it is said otherwise."""
+    """Create a training, queued by default."""
     fields = {"name": f"training {run_id}", "config": PLAIN, "total": 500, **fields}
     return Run(id=run_id, kind="training", **fields)
 
 
 def race(run_id: str, **fields: Any) -> Run:
-    """A race, queued unless it is said otherwise."""
+    """Create a race, queued by default."""
     fields = {"name": f"race {run_id}", "config": RACE, "total": 100, **fields}
     return Run(id=run_id, kind="race", lane_training_ids=("abc", None), **fields)
 
@@ -79,14 +79,14 @@ TRIALS: list[dict[str, Any]] = [
 
 
 def experiment(run_id: str, **fields: Any) -> Run:
-    """An experiment, queued unless it is said otherwise."""
+    """Create an experiment, queued by default."""
     fields = {"name": f"experiment {run_id}", "config": SWEEP, "total": 100, **fields}
     return Run(id=run_id, kind="experiment", **fields)
 
 
 @contextmanager
 def database_url(backend: str, server: PostgresServer) -> Iterator[str | None]:
-    """What to set for a database that is there until the context ends."""
+    """Create a database, and yield the setting for its URL; None for SQLite."""
     if backend == "sqlite":
         yield None
         return
@@ -96,6 +96,6 @@ def database_url(backend: str, server: PostgresServer) -> Iterator[str | None]:
 
 @contextmanager
 def opened(folder: Path, url: str | None) -> Iterator[SqlStore]:
-    """The store of a server with this data folder and database."""
+    """Open the store of a server with this data folder and database URL."""
     with open_store(Settings(data=folder, database_url=url)) as store:
         yield store

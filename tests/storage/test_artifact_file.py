@@ -1,4 +1,4 @@
-"""Files of runs, read piece by piece."""
+"""Chunked reading of artifact files, and the descriptor that concurrent readers share."""
 
 import gc
 import io
@@ -14,7 +14,7 @@ from app.storage.artifact_file import (
     closing_after,
     pieces,
 )
-from app.storage.artifacts import ArtifactFiles, Stored
+from app.storage.artifacts import ArtifactFiles, StoredFile
 from app.storage.disk_space import DiskSpace
 
 DATA = bytes(range(256)) * 1000
@@ -31,11 +31,11 @@ def files(folder: Path) -> ArtifactFiles:
 
 
 def open_descriptors(folder: Path) -> int:
-    found = [link.resolve() for link in Path("/proc/self/fd").iterdir() if link.exists()]
-    return sum(path.parent == folder.resolve() for path in found)
+    targets = [link.resolve() for link in Path("/proc/self/fd").iterdir() if link.exists()]
+    return sum(path.parent == folder.resolve() for path in targets)
 
 
-def test_the_pieces_are_the_whole(files: ArtifactFiles, folder: Path) -> None:
+def test_chunks_add_up_to_the_file(files: ArtifactFiles, folder: Path) -> None:
     stored = files.write(DATA)
     parts = list(pieces(files.open(stored, "it")))
 
@@ -44,30 +44,32 @@ def test_the_pieces_are_the_whole(files: ArtifactFiles, folder: Path) -> None:
     assert open_descriptors(folder) == 0
 
 
-def test_many_readers_share_one_descriptor(files: ArtifactFiles, folder: Path) -> None:
+def test_concurrent_readers_share_one_descriptor(files: ArtifactFiles, folder: Path) -> None:
     stored = files.write(DATA)
     readers = [pieces(files.open(stored, "it")) for _ in range(50)]
-    begun = [next(reader) for reader in readers]
+    started = [next(reader) for reader in readers]
 
     assert open_descriptors(folder) == 1
-    assert {b"".join([first, *rest]) for first, rest in zip(begun, readers, strict=True)} == {DATA}
+    assert {b"".join([first, *rest]) for first, rest in zip(started, readers, strict=True)} == {
+        DATA
+    }
     assert open_descriptors(folder) == 0
     assert files.open(stored, "it").read_at(0, 10) == DATA[:10]
 
 
-def test_a_reader_that_is_dropped_closes_its_file(files: ArtifactFiles, folder: Path) -> None:
+def test_garbage_collected_readers_close_the_file(files: ArtifactFiles, folder: Path) -> None:
     stored = files.write(DATA)
-    never_begun = closing_after(files.open(stored, "it"), [b""])
-    begun = pieces(files.open(stored, "it"))
-    next(begun)
+    never_started = closing_after(files.open(stored, "it"), [b""])
+    started = pieces(files.open(stored, "it"))
+    next(started)
     assert open_descriptors(folder) == 1
 
-    del never_begun, begun
+    del never_started, started
     gc.collect()
     assert open_descriptors(folder) == 0
 
 
-def test_a_file_that_goes_while_it_is_read_is_read_to_its_end(files: ArtifactFiles) -> None:
+def test_file_deleted_during_a_read_is_read_to_its_end(files: ArtifactFiles) -> None:
     stored = files.write(DATA)
     reader = pieces(files.open(stored, "it"))
     begin = next(reader)
@@ -81,9 +83,7 @@ def test_a_file_that_goes_while_it_is_read_is_read_to_its_end(files: ArtifactFil
 @pytest.mark.parametrize(
     "damaged", [DATA[:-1], DATA + b"\0", b"\1" + DATA[1:], DATA[:-1] + b"\1", b""]
 )
-def test_what_is_not_what_was_written_is_refused(
-    files: ArtifactFiles, folder: Path, damaged: bytes
-) -> None:
+def test_changed_file_is_refused(files: ArtifactFiles, folder: Path, damaged: bytes) -> None:
     stored = files.write(DATA)
     (folder / stored.file).write_bytes(damaged)
 
@@ -92,8 +92,8 @@ def test_what_is_not_what_was_written_is_refused(
     assert open_descriptors(folder) == 0
 
 
-def test_a_closed_reader_reads_no_more(files: ArtifactFiles) -> None:
-    stored: Stored = files.write(DATA)
+def test_reading_a_closed_reader_raises(files: ArtifactFiles) -> None:
+    stored: StoredFile = files.write(DATA)
     reader = files.open(stored, "it")
     reader.close()
     reader.close()
@@ -102,7 +102,7 @@ def test_a_closed_reader_reads_no_more(files: ArtifactFiles) -> None:
         reader.read_at(0, 1)
 
 
-def test_an_artifact_can_be_read_as_a_file() -> None:
+def test_artifact_is_readable_as_a_binary_file() -> None:
     file = io.BufferedReader(ReadableArtifact(BytesFile(DATA)))
 
     assert file.read(5) == DATA[:5]

@@ -1,4 +1,4 @@
-"""Files of runs: whole or not there, checked, and bounded."""
+"""Artifact files: atomic writes, detection of damage, quota and reserve."""
 
 import errno
 import os
@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.domain.errors import DamagedFile
-from app.storage.artifacts import ArtifactFiles, Stored
+from app.storage.artifacts import ArtifactFiles, StoredFile
 from app.storage.database.store import SqlStore
 from app.storage.disk_space import MB, RESERVE_BYTES, DiskSpace
 from app.storage.errors import NotFound, StorageFailed, StorageFull
@@ -23,7 +23,7 @@ def names(tmp_path: Path) -> list[str]:
     return [path.name for path in (tmp_path / "files").iterdir()]
 
 
-def test_a_file_that_cannot_be_written_leaves_nothing(
+def test_failed_write_leaves_nothing_behind(
     files: ArtifactFiles, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(handle: int) -> None:
@@ -38,21 +38,23 @@ def test_a_file_that_cannot_be_written_leaves_nothing(
     assert files.read(kept, "it") == b"old"
 
 
-def test_a_folder_that_is_gone_is_said(files: ArtifactFiles, tmp_path: Path) -> None:
+def test_missing_folder_is_reported(files: ArtifactFiles, tmp_path: Path) -> None:
     (tmp_path / "files").rmdir()
     with pytest.raises(StorageFailed, match="No such file"):
         files.write(b"new")
 
 
 @pytest.mark.parametrize("damaged", [b"", b"wholf", b"whol", b"wholes", bytes(5)])
-def test_a_damaged_file_is_named(files: ArtifactFiles, tmp_path: Path, damaged: bytes) -> None:
+def test_damaged_file_is_named_in_the_error(
+    files: ArtifactFiles, tmp_path: Path, damaged: bytes
+) -> None:
     kept = files.write(b"whole")
     (tmp_path / "files" / kept.file).write_bytes(damaged)
     with pytest.raises(DamagedFile, match="the table of Ben is damaged"):
         files.read(kept, "the table of Ben")
 
 
-def test_a_missing_file_is_named(tmp_path: Path) -> None:
+def test_missing_file_is_named_in_the_error(tmp_path: Path) -> None:
     with opened(tmp_path, None) as store:
         store.create(training("a"))
         store.put_artifact("a", "q-table.npz", b"data")
@@ -64,9 +66,9 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
         assert store.artifact("a", "q-table.npz") == b"again"
 
 
-def test_a_run_that_is_gone_gets_no_file(tmp_path: Path) -> None:
+def test_artifact_of_a_deleted_run_is_not_stored(tmp_path: Path) -> None:
     class Slow(ArtifactFiles):
-        def write(self, data: bytes) -> Stored:
+        def write(self, data: bytes) -> StoredFile:
             stored = super().write(data)
             store.delete("a")
             return stored
@@ -81,9 +83,9 @@ def test_a_run_that_is_gone_gets_no_file(tmp_path: Path) -> None:
         assert list(folder.iterdir()) == []
 
 
-def test_the_quota_is_kept(tmp_path: Path) -> None:
-    room = DiskSpace(tmp_path, quota_mb=10)
-    files = ArtifactFiles(tmp_path / "files", room)
+def test_quota_is_enforced(tmp_path: Path) -> None:
+    disk_space = DiskSpace(tmp_path, quota_mb=10)
+    files = ArtifactFiles(tmp_path / "files", disk_space)
     kept = [files.write(bytes(3 * MB)) for _ in range(3)]
     with pytest.raises(StorageFull, match=r"10 MB.*3\.0 MB more.*HEXAPODS_QUOTA_MB"):
         files.write(bytes(3 * MB))
@@ -92,13 +94,13 @@ def test_the_quota_is_kept(tmp_path: Path) -> None:
     files.write(bytes(3 * MB))
 
 
-def test_the_reserve_is_given_up_once(tmp_path: Path) -> None:
-    room = DiskSpace(tmp_path)
-    room.reserve()
-    assert room.used_bytes() == RESERVE_BYTES
-    room.reserve()
-    assert room.release()
-    assert room.used_bytes() == 0
-    assert not room.release()
-    room.check(1)
-    assert room.used_bytes() == RESERVE_BYTES
+def test_reserve_is_released_once_and_recreated(tmp_path: Path) -> None:
+    disk_space = DiskSpace(tmp_path)
+    disk_space.reserve()
+    assert disk_space.used_bytes() == RESERVE_BYTES
+    disk_space.reserve()
+    assert disk_space.release()
+    assert disk_space.used_bytes() == 0
+    assert not disk_space.release()
+    disk_space.check(1)
+    assert disk_space.used_bytes() == RESERVE_BYTES

@@ -1,4 +1,4 @@
-"""Runs are refused before the disk is full, and nothing else is."""
+"""New runs are refused before the quota or the disk is full; other operations go through."""
 
 import shutil
 from collections.abc import Iterator
@@ -14,7 +14,7 @@ from app.runs.config import TrainingConfig
 from app.settings import Settings
 from app.storage.database.opening import open_store
 from app.storage.database.store import SqlStore
-from app.storage.disk_space import KEPT_FREE_BYTES, MB, START_BYTES, DiskSpace
+from app.storage.disk_space import MB, MIN_FREE_BYTES, START_BYTES, DiskSpace
 from app.storage.errors import StorageFull
 from app.storage.recordings import Recordings
 from app.storage.store import QUEUED, TABLE
@@ -26,20 +26,20 @@ START = TrainingStart(TrainingConfig(gait="left-right-origin", simulator="kinema
 
 @pytest.fixture
 def store(tmp_path: Path) -> Iterator[SqlStore]:
-    with open_store(Settings(data=tmp_path, quota_mb=QUOTA_MB)) as found:
-        yield found
+    with open_store(Settings(data=tmp_path, quota_mb=QUOTA_MB)) as opened_store:
+        yield opened_store
 
 
-def test_a_start_is_refused_before_the_quota_is_used_up(store: SqlStore) -> None:
-    jobs = Jobs(store, Recordings(), EventBus())  # nothing is open, so that all of it waits
+def test_start_is_refused_if_the_quota_leaves_too_little(store: SqlStore) -> None:
+    jobs = Jobs(store, Recordings(), EventBus())  # not opened, so that all runs stay queued
     store.create(training("0old"))
     store.put_artifact("0old", TABLE, bytes(6 * MB))
     with pytest.raises(StorageFull, match="raise HEXAPODS_QUOTA_MB"):
         jobs.train(START)
     with pytest.raises(StorageFull, match="delete runs"):
-        store.check_room()
+        store.check_disk_space()
     assert [run.id for run in store.list().items] == ["0old"]
-    # What goes on has what is left, and all can be read.
+    # Existing runs may use the remaining space, and everything can be read.
     store.put_artifact("0old", "race.npz", bytes(1 * MB))
     assert store.artifact("0old", TABLE) == bytes(6 * MB)
     store.change("0old", QUEUED, "stopped")
@@ -47,15 +47,15 @@ def test_a_start_is_refused_before_the_quota_is_used_up(store: SqlStore) -> None
     assert jobs.train(START).state == "queued"
 
 
-def test_a_start_is_refused_before_the_disk_is_full(
+def test_start_is_refused_if_the_disk_leaves_too_little(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     class Usage(NamedTuple):
         free: int
 
-    room, needed = DiskSpace(tmp_path), START_BYTES + KEPT_FREE_BYTES
+    disk_space, needed = DiskSpace(tmp_path), START_BYTES + MIN_FREE_BYTES
     monkeypatch.setattr(shutil, "disk_usage", lambda folder: Usage(needed))
-    room.check(START_BYTES)
+    disk_space.check(START_BYTES)
     monkeypatch.setattr(shutil, "disk_usage", lambda folder: Usage(needed - 1))
     with pytest.raises(StorageFull, match="the disk of the data folder has"):
-        room.check(START_BYTES)
+        disk_space.check(START_BYTES)

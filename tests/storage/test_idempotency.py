@@ -1,4 +1,4 @@
-"""The same key is the same run, for a day, whatever happens to the server."""
+"""Idempotency keys: a repeated request returns the same run, for a day and across restarts."""
 
 import threading
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ from app.storage.database import keys
 from app.storage.errors import Busy, Gone
 from app.storage.idempotency import Idempotency
 from app.storage.run_ids import RunIds
-from app.storage.store import KEY_KEPT, Content, IdempotencyKey, Run, RunStore
+from app.storage.store import KEY_LIFETIME, Content, IdempotencyKey, Run, RunStore
 from tests.storage.stores import BACKENDS, database_url, opened, training
 
 new_id = RunIds()
@@ -22,12 +22,12 @@ new_id = RunIds()
 @pytest.fixture(params=BACKENDS)
 def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RunStore]:
     server = request.param == "postgresql" and request.getfixturevalue("postgresql")
-    with database_url(request.param, server) as url, opened(tmp_path, url) as found:
-        yield found
+    with database_url(request.param, server) as url, opened(tmp_path, url) as opened_store:
+        yield opened_store
 
 
 class Starts:
-    """Creates a run with each call."""
+    """Start function that creates a new run with each call."""
 
     def __init__(self, store: RunStore) -> None:
         self.store = store
@@ -42,7 +42,7 @@ def count(store: RunStore) -> int:
     return len(store.list().items)
 
 
-def test_a_key_starts_once_and_is_not_for_anything_else(store: RunStore) -> None:
+def test_key_starts_one_run_and_rejects_another_request(store: RunStore) -> None:
     idempotency, start = Idempotency(store), Starts(store)
     assert idempotency.run(None, b"x", start) != idempotency.run(None, b"x", start)
     run = idempotency.run("key", b"x", start)
@@ -54,7 +54,7 @@ def test_a_key_starts_once_and_is_not_for_anything_else(store: RunStore) -> None
     assert count(store) == 4
 
 
-def test_an_import_remembers_its_key_too(store: RunStore) -> None:
+def test_import_stores_its_key(store: RunStore) -> None:
     idempotency = Idempotency(store)
 
     def add(key: IdempotencyKey | None) -> Run:
@@ -67,7 +67,7 @@ def test_an_import_remembers_its_key_too(store: RunStore) -> None:
     assert count(store) == 2
 
 
-def test_who_comes_meanwhile_waits_for_the_same_run(store: RunStore) -> None:
+def test_concurrent_requests_with_one_key_return_the_same_run(store: RunStore) -> None:
     idempotency, start, gate = Idempotency(store), Starts(store), threading.Event()
 
     def slowly(key: IdempotencyKey | None) -> Run:
@@ -75,13 +75,13 @@ def test_who_comes_meanwhile_waits_for_the_same_run(store: RunStore) -> None:
         return start(key)
 
     with ThreadPoolExecutor(8) as pool:
-        asked = [pool.submit(idempotency.run, "key", b"x", slowly) for _ in range(8)]
+        futures = [pool.submit(idempotency.run, "key", b"x", slowly) for _ in range(8)]
         gate.set()
-        runs = {one.result().id for one in asked}
+        runs = {future.result().id for future in futures}
     assert len(runs) == count(store) == 1
 
 
-def test_what_could_not_be_started_can_be_tried_again(store: RunStore) -> None:
+def test_failed_start_can_be_retried_with_the_same_key(store: RunStore) -> None:
     idempotency = Idempotency(store)
 
     def refuse(key: IdempotencyKey | None) -> Run:
@@ -92,7 +92,7 @@ def test_what_could_not_be_started_can_be_tried_again(store: RunStore) -> None:
     assert idempotency.run("key", b"x", Starts(store)).state == "finished"
 
 
-def test_a_key_whose_run_was_deleted_is_gone(store: RunStore) -> None:
+def test_key_of_a_deleted_run_raises_gone(store: RunStore) -> None:
     idempotency, start = Idempotency(store), Starts(store)
     run = idempotency.run("key", b"x", start)
     store.delete(run.id)
@@ -102,7 +102,7 @@ def test_a_key_whose_run_was_deleted_is_gone(store: RunStore) -> None:
 
 
 class Clock(datetime):
-    """The time of day, put forward."""
+    """System time, set forward by `ahead`."""
 
     ahead = timedelta()
 
@@ -111,19 +111,19 @@ class Clock(datetime):
         return datetime.now(UTC) + cls.ahead
 
 
-def test_keys_are_forgotten_after_a_day_or_when_there_are_too_many(
+def test_keys_expire_after_a_day_or_beyond_the_maximum(
     store: RunStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(keys, "datetime", Clock)
     monkeypatch.setattr(keys, "MAX_KEYS", 5)
     idempotency, start = Idempotency(store), Starts(store)
     first = idempotency.run("key", b"x", start)
-    monkeypatch.setattr(Clock, "ahead", KEY_KEPT - timedelta(minutes=1))
+    monkeypatch.setattr(Clock, "ahead", KEY_LIFETIME - timedelta(minutes=1))
     assert idempotency.run("key", b"x", start) == first
-    monkeypatch.setattr(Clock, "ahead", KEY_KEPT + timedelta(minutes=1))
+    monkeypatch.setattr(Clock, "ahead", KEY_LIFETIME + timedelta(minutes=1))
     assert idempotency.run("key", b"y", start) != first
     for number in range(10):
         monkeypatch.setattr(Clock, "ahead", Clock.ahead + timedelta(seconds=1))
         idempotency.run(f"key {number}", b"x", start)
-    kept = [n for n in range(10) if store.started_by(f"key {n}") is not None]
+    kept = [n for n in range(10) if store.find_key(f"key {n}") is not None]
     assert kept == [5, 6, 7, 8, 9]

@@ -1,4 +1,4 @@
-"""Recordings outlive the process that made them, and memory does not keep them all."""
+"""Recordings survive a restart; incremental writes, resuming, and the LRU cache."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,7 +10,7 @@ from app.runs.recording import LaneRecording, PracticeRecording
 from app.storage import stored_recordings
 from app.storage.database.store import SqlStore
 from app.storage.recordings import Recordings
-from app.storage.stored_recordings import KEPT_IN_MEMORY
+from app.storage.stored_recordings import CACHE_RECORDINGS
 from tests.runs.made_up import lane, step
 from tests.runs.test_stored_practice import assert_same, practise
 from tests.storage.stores import opened, race, training
@@ -18,33 +18,33 @@ from tests.storage.stores import opened, race, training
 
 @pytest.fixture
 def store(tmp_path: Path) -> Iterator[SqlStore]:
-    with opened(tmp_path, None) as found:
-        yield found
+    with opened(tmp_path, None) as opened_store:
+        yield opened_store
 
 
 def record(recordings: Recordings, run_id: str, practised: PracticeRecording) -> None:
     recordings.begin_training(run_id, practised.rest_qpos)
-    for taken in practised.steps:
-        recordings.add(run_id, taken)
+    for step_taken in practised.steps:
+        recordings.add(run_id, step_taken)
     for evaluation in practised.evaluations:
         recordings.add(run_id, evaluation)
 
 
-def test_a_training_is_shown_after_a_restart(store: SqlStore) -> None:
+def test_training_recording_survives_a_restart(store: SqlStore) -> None:
     store.create(training("a"))
     practised = practise(700)
     recordings = Recordings(store)
     assert recordings.training("a") is None
     record(recordings, "a", practised)
     recordings.finish("a")
-    for looking in (recordings, Recordings(store)):
-        found = looking.training("a")
-        assert found is not None
-        assert_same(found, practised)
-        assert looking.training("a") is found
+    for reader in (recordings, Recordings(store)):
+        recording = reader.training("a")
+        assert recording is not None
+        assert_same(recording, practised)
+        assert reader.training("a") is recording
 
 
-def test_a_race_is_shown_after_a_restart(store: SqlStore) -> None:
+def test_race_recordings_survive_a_restart(store: SqlStore) -> None:
     store.create(race("a"))
     lanes = [lane(step(1, [0.1, 0.2])), LaneRecording("greedy", np.zeros(8, np.float32))]
     lanes[1].failure = "It fell."
@@ -52,49 +52,49 @@ def test_a_race_is_shown_after_a_restart(store: SqlStore) -> None:
     recordings.begin_race("a", lanes)
     recordings.finish("a")
     assert recordings.race("a") is lanes
-    found = Recordings(store).race("a")
-    assert found is not None
-    assert [(o.agent, len(o.steps), o.failure) for o in found] == [
+    stored = Recordings(store).race("a")
+    assert stored is not None
+    assert [(o.agent, len(o.steps), o.failure) for o in stored] == [
         ("greedy", 1, None),
         ("greedy", 0, "It fell."),
     ]
-    assert np.array_equal(found[0].steps[0].motion.qpos, lanes[0].steps[0].motion.qpos)
+    assert np.array_equal(stored[0].steps[0].motion.qpos, lanes[0].steps[0].motion.qpos)
 
 
-def test_a_training_goes_on_from_what_was_saved(store: SqlStore) -> None:
+def test_resumed_training_continues_the_saved_recording(store: SqlStore) -> None:
     store.create(training("a"))
     whole = practise(100)
     recordings = Recordings(store)
     record(recordings, "a", whole)
     recordings.save("a")
 
-    later = Recordings(store)
-    later.begin_training("a", whole.rest_qpos, after_step=45)
-    begun = later.training("a")
-    assert begun is not None
-    assert begun.steps[-1].step == 45
-    for one in whole.steps[45:]:
-        later.add("a", one)
+    resumed = Recordings(store)
+    resumed.begin_training("a", whole.rest_qpos, after_step=45)
+    truncated = resumed.training("a")
+    assert truncated is not None
+    assert truncated.steps[-1].step == 45
+    for step_taken in whole.steps[45:]:
+        resumed.add("a", step_taken)
     for evaluation in whole.evaluations[4:]:
-        later.add("a", evaluation)
-    later.finish("a")
-    found = Recordings(store).training("a")
-    assert found is not None
-    assert_same(found, whole)
+        resumed.add("a", evaluation)
+    resumed.finish("a")
+    stored = Recordings(store).training("a")
+    assert stored is not None
+    assert_same(stored, whole)
 
 
-def test_saving_again_writes_only_what_is_new(
+def test_saving_again_writes_only_new_files(
     store: SqlStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     written: list[str] = []
-    put = store.put_artifact
+    put_artifact = store.put_artifact
 
-    def noted(run_id: str, name: str, data: bytes) -> None:
+    def spy(run_id: str, name: str, data: bytes) -> None:
         written.append(name)
-        put(run_id, name, data)
+        put_artifact(run_id, name, data)
 
-    monkeypatch.setattr(store, "put_artifact", noted)
-    monkeypatch.setattr(stored_recordings, "EVALUATIONS_A_FILE", 2)
+    monkeypatch.setattr(store, "put_artifact", spy)
+    monkeypatch.setattr(stored_recordings, "EVALUATIONS_PER_FILE", 2)
     store.create(training("a"))
     practised = practise(60)
     recordings = Recordings(store)
@@ -112,10 +112,10 @@ def test_saving_again_writes_only_what_is_new(
     assert [e.step for e in again.evaluations] == [10, 20, 30, 40, 50, 60]
 
 
-def test_memory_keeps_the_newest(store: SqlStore) -> None:
+def test_cache_evicts_the_least_recently_used_recording(store: SqlStore) -> None:
     recordings = Recordings(store)
     practised = practise(10)
-    ids = [f"t{number}" for number in range(KEPT_IN_MEMORY + 1)]
+    ids = [f"t{number}" for number in range(CACHE_RECORDINGS + 1)]
     for run_id in ids:
         store.create(training(run_id))
         record(recordings, run_id, practised)
@@ -129,7 +129,7 @@ def test_memory_keeps_the_newest(store: SqlStore) -> None:
     assert recordings.training(ids[0]) is not oldest
 
 
-def test_a_deleted_run_has_no_recording(store: SqlStore) -> None:
+def test_deleted_run_has_no_recording(store: SqlStore) -> None:
     store.create(training("a", state="finished"))
     recordings = Recordings(store)
     record(recordings, "a", practise(10))
@@ -139,7 +139,7 @@ def test_a_deleted_run_has_no_recording(store: SqlStore) -> None:
     assert recordings.training("a") is None
 
 
-def test_a_damaged_recording_is_none(store: SqlStore, tmp_path: Path) -> None:
+def test_damaged_recording_is_returned_as_none(store: SqlStore, tmp_path: Path) -> None:
     store.create(race("a"))
     recordings = Recordings(store)
     recordings.begin_race("a", [lane()])

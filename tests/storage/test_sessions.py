@@ -1,4 +1,4 @@
-"""Sessions outlive the server, but not their time or their token."""
+"""Operators' sessions: persistence, expiry, binding to the token, and their maximum number."""
 
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
@@ -16,11 +16,11 @@ TOKEN, OTHER = "a-token-for-tests", "another-token-for-tests"
 @pytest.fixture(params=BACKENDS)
 def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[SqlStore]:
     server = request.param == "postgresql" and request.getfixturevalue("postgresql")
-    with database_url(request.param, server) as url, opened(tmp_path, url) as made:
-        yield made
+    with database_url(request.param, server) as url, opened(tmp_path, url) as opened_store:
+        yield opened_store
 
 
-def test_they_outlive_the_server_but_not_the_token(store: SqlStore) -> None:
+def test_sessions_survive_a_restart_but_not_a_new_token(store: SqlStore) -> None:
     sessions = Sessions(store.sessions, TOKEN)
     first, second = sessions.open(), sessions.open()
     sessions.close(second)
@@ -36,7 +36,7 @@ def test_they_outlive_the_server_but_not_the_token(store: SqlStore) -> None:
     assert not Sessions(store.sessions, TOKEN).is_open(first)
 
 
-def test_they_expire() -> None:
+def test_sessions_expire_and_are_deleted() -> None:
     now, rows = [datetime(2026, 1, 1, tzinfo=UTC)], MemorySessionRows()
     sessions = Sessions(rows, TOKEN, lambda: now[0])
     opened_one = sessions.open()
@@ -51,7 +51,7 @@ def test_they_expire() -> None:
     assert rows.load() == []
 
 
-def test_there_are_not_too_many() -> None:
+def test_oldest_session_is_closed_beyond_the_maximum() -> None:
     rows = MemorySessionRows()
     sessions = Sessions(rows, TOKEN)
     first = sessions.open()

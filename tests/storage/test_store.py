@@ -1,4 +1,4 @@
-"""What every store of runs has to do: in memory, in SQLite, in PostgreSQL."""
+"""Conformance tests of `RunStore`, for its implementations in memory, SQLite and PostgreSQL."""
 
 import math
 import threading
@@ -34,17 +34,17 @@ def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RunStore]:
         yield MemoryStore()
         return
     server = request.param == "postgresql" and request.getfixturevalue("postgresql")
-    with database_url(request.param, server) as url, opened(tmp_path, url) as found:
-        yield found
+    with database_url(request.param, server) as url, opened(tmp_path, url) as opened_store:
+        yield opened_store
 
 
-def a_run(store: RunStore, name: str = "it") -> Run:
+def queued_run(store: RunStore, name: str = "it") -> Run:
     run = training(new_id(), name=name)
     store.create(run)
     return run
 
 
-def test_what_went_in_comes_out(store: RunStore) -> None:
+def test_stored_runs_are_returned_unchanged(store: RunStore) -> None:
     now = datetime(2026, 3, 1, 12, 30, 15, 123456, tzinfo=timezone(timedelta(hours=5)))
     runs = [
         training("a", config=ODD, continued_from="x", changes=({"step": 3, "pace": "max"},)),
@@ -61,13 +61,13 @@ def test_what_went_in_comes_out(store: RunStore) -> None:
     assert store.get("d").created_at.astimezone(UTC) == now
 
 
-def test_it_counts_runs_by_state(store: RunStore) -> None:
+def test_counts_are_by_state(store: RunStore) -> None:
     assert not store.counts()
     store.create(training("a"), race("b"), training("c", state="failed"))
     assert store.counts() == {"queued": 2, "failed": 1}
 
 
-def test_nan_is_kept(store: RunStore) -> None:
+def test_nan_and_infinity_are_preserved(store: RunStore) -> None:
     store.create(training("a", result={"distance_m": math.nan, "lanes": [math.nan, -math.inf]}))
     result: Any = store.get("a").result
     assert math.isnan(result["distance_m"])
@@ -77,7 +77,7 @@ def test_nan_is_kept(store: RunStore) -> None:
     assert math.isnan(store.evaluations("a")[0]["distance_m"])
 
 
-def test_what_is_not_there_is_said(store: RunStore) -> None:
+def test_unknown_run_raises_not_found(store: RunStore) -> None:
     for run_id in ("none", "", "a\0b", "\ud800", "' OR 1=1 --"):
         for look in (
             store.get,
@@ -98,32 +98,32 @@ def test_what_is_not_there_is_said(store: RunStore) -> None:
 
 
 @pytest.mark.parametrize("cursor", ["", "a\0", "\ud800", "zzzz", "c"])
-def test_any_text_is_a_cursor(store: RunStore, cursor: str) -> None:
+def test_any_text_is_accepted_as_a_cursor(store: RunStore, cursor: str) -> None:
     store.create(training("b"), training("d"))
     assert [run.id for run in store.list(cursor=cursor).items] == [
         run_id for run_id in ("d", "b") if run_id < cursor
     ]
 
 
-def test_lists_are_filtered(store: RunStore) -> None:
+def test_list_filters_by_kind_and_state_and_paginates(store: RunStore) -> None:
     states: list[State] = ["queued", "running", "finished"]
     store.create(*(training(f"t{n}", state=state) for n, state in enumerate(states)))
     store.create(*(race(f"r{n}", state=state) for n, state in enumerate(states)))
 
-    def found(**wanted: Any) -> list[str]:
-        return [run.id for run in store.list(**wanted).items]
+    def listed(**filters: Any) -> list[str]:
+        return [run.id for run in store.list(**filters).items]
 
-    assert found() == ["t2", "t1", "t0", "r2", "r1", "r0"]
-    assert found(kind="race") == ["r2", "r1", "r0"]
-    assert found(state="running") == ["t1", "r1"]
-    assert found(kind="training", state="finished", limit=1) == ["t2"]
+    assert listed() == ["t2", "t1", "t0", "r2", "r1", "r0"]
+    assert listed(kind="race") == ["r2", "r1", "r0"]
+    assert listed(state="running") == ["t1", "r1"]
+    assert listed(kind="training", state="finished", limit=1) == ["t2"]
     page = store.list(kind="race", limit=2)
     assert page.next_cursor == "r1"
     assert store.list(kind="race", limit=2, cursor=page.next_cursor).next_cursor is None
 
 
-def test_progress_is_seen_at_once_and_outlives_changes(store: RunStore) -> None:
-    run = a_run(store)
+def test_progress_is_visible_at_once_and_survives_changes(store: RunStore) -> None:
+    run = queued_run(store)
     store.change(run.id, QUEUED, "running")
     for done in range(1, 200):
         assert store.update_progress(run.id, done, eta_s=200.0 - done).done == done
@@ -138,21 +138,21 @@ def test_progress_is_seen_at_once_and_outlives_changes(store: RunStore) -> None:
 
 
 @pytest.mark.parametrize("state", ["paused", "finished", "failed"])
-def test_only_a_running_run_has_time_left(store: RunStore, state: State) -> None:
-    """A late report of progress does not bring the estimate back."""
-    run = a_run(store)
+def test_only_a_running_run_has_an_estimate(store: RunStore, state: State) -> None:
+    """A late report of progress does not restore the estimate."""
+    run = queued_run(store)
     store.change(run.id, QUEUED, "running")
     store.update_progress(run.id, 10, eta_s=5.0)
-    shown: list[AnyRun] = [store.change(run.id, RUNNING, state)]
+    returned: list[AnyRun] = [store.change(run.id, RUNNING, state)]
     for done in (11, 12):
-        shown.append(store.update_progress(run.id, done, eta_s=4.0))
-        shown += [store.get(run.id), *store.list().items, store.update(run.id, error="late")]
-    assert [one.eta_s for one in shown if isinstance(one, Run)] == [None] * len(shown)
+        returned.append(store.update_progress(run.id, done, eta_s=4.0))
+        returned += [store.get(run.id), *store.list().items, store.update(run.id, error="late")]
+    assert [one.eta_s for one in returned if isinstance(one, Run)] == [None] * len(returned)
 
 
-def test_a_reader_never_sees_the_estimate_of_an_ended_run(store: RunStore) -> None:
-    """Readers look between the write of the last state and the removal of the newest progress."""
-    runs = [a_run(store) for _ in range(50)]
+def test_ended_run_never_has_an_estimate(store: RunStore) -> None:
+    """Also not between the write of the final state and the removal of the cached progress."""
+    runs = [queued_run(store) for _ in range(50)]
     seen: list[Run] = []
     over = threading.Event()
 
@@ -160,8 +160,8 @@ def test_a_reader_never_sees_the_estimate_of_an_ended_run(store: RunStore) -> No
         is_last = False
         while not is_last:
             is_last = over.is_set()
-            found = store.list().items
-            seen.extend(run for run in found if isinstance(run, Run) and run.state == "finished")
+            items = store.list().items
+            seen.extend(run for run in items if isinstance(run, Run) and run.state == "finished")
 
     readers = [threading.Thread(target=read) for _ in range(2)]
     for reader in readers:
@@ -177,26 +177,26 @@ def test_a_reader_never_sees_the_estimate_of_an_ended_run(store: RunStore) -> No
     assert {run.eta_s for run in seen} == {None}
 
 
-def test_progress_never_goes_back(store: RunStore) -> None:
-    """Whatever is written to the run meanwhile."""
-    run = a_run(store)
+def test_progress_never_decreases(store: RunStore) -> None:
+    """Not even with concurrent writes to the run."""
+    run = queued_run(store)
     store.change(run.id, QUEUED, "running")
     seen: list[int] = []
     over = threading.Event()
 
-    def act(what: Callable[[], object]) -> threading.Thread:
+    def repeatedly(call: Callable[[], object]) -> threading.Thread:
         def repeat() -> None:
             while not over.is_set():
-                what()
+                call()
 
         thread = threading.Thread(target=repeat)
         thread.start()
         return thread
 
     threads = [
-        act(lambda: seen.append(store.get(run.id).done)),
-        act(lambda: store.update(run.id, greedy_distance_m=0.5)),
-        act(lambda: store.put_artifact(run.id, "a", b"", error=None)),
+        repeatedly(lambda: seen.append(store.get(run.id).done)),
+        repeatedly(lambda: store.update(run.id, greedy_distance_m=0.5)),
+        repeatedly(lambda: store.put_artifact(run.id, "a", b"", error=None)),
     ]
     for done in range(1, 300):
         store.update_progress(run.id, done, eta_s=1.0)
@@ -207,8 +207,8 @@ def test_progress_never_goes_back(store: RunStore) -> None:
     assert store.get(run.id).done == 299
 
 
-def test_a_curve_grows_and_what_is_evaluated_again_takes_its_place(store: RunStore) -> None:
-    run = a_run(store)
+def test_repeated_evaluations_replace_the_curve_from_their_step_on(store: RunStore) -> None:
+    run = queued_run(store)
 
     def row(step: int, distance: float) -> dict[str, float]:
         return {"step": step, "distance_m": distance, "epsilon": 1 - step / 1000}
@@ -221,7 +221,7 @@ def test_a_curve_grows_and_what_is_evaluated_again_takes_its_place(store: RunSto
     assert store.evaluations(run.id) == [row(50, 0.1), row(100, 0.25)]
 
 
-def test_trials_come_as_they_end_and_one_that_comes_again_is_one(store: RunStore) -> None:
+def test_trials_are_sorted_and_replaced_by_key(store: RunStore) -> None:
     store.create(experiment("a"), experiment("b"))
     assert store.trials("a") == []
     first, second = TRIALS
@@ -239,8 +239,8 @@ def test_trials_come_as_they_end_and_one_that_comes_again_is_one(store: RunStore
     assert store.trials("a") == []
 
 
-def test_a_file_takes_the_place_of_the_one_before(store: RunStore) -> None:
-    runs = a_run(store), a_run(store)
+def test_artifact_replaces_the_one_with_its_name(store: RunStore) -> None:
+    runs = queued_run(store), queued_run(store)
     for size in (0, 1, 1_000_000, 10):
         for number, run in enumerate(runs):
             data = bytes([number]) * size
@@ -249,8 +249,8 @@ def test_a_file_takes_the_place_of_the_one_before(store: RunStore) -> None:
     assert store.artifact(runs[0].id, "../a") is None
 
 
-def test_who_reads_a_file_gets_one_that_was_whole(store: RunStore) -> None:
-    run = a_run(store)
+def test_concurrent_reads_return_a_complete_artifact(store: RunStore) -> None:
+    run = queued_run(store)
     store.put_artifact(run.id, "a", bytes(100_000))
     stopped = threading.Event()
     seen: list[bytes | None] = []
@@ -270,8 +270,8 @@ def test_who_reads_a_file_gets_one_that_was_whole(store: RunStore) -> None:
     assert None not in seen
 
 
-def test_a_state_changes_only_from_where_it_was_thought_to_be(store: RunStore) -> None:
-    run = a_run(store)
+def test_change_of_state_is_compare_and_set(store: RunStore) -> None:
+    run = queued_run(store)
     assert store.change(run.id, QUEUED, "running", done=3).done == 3
     with pytest.raises(Conflict, match="is running") as error:
         store.change(run.id, QUEUED, "stopped")
@@ -279,8 +279,8 @@ def test_a_state_changes_only_from_where_it_was_thought_to_be(store: RunStore) -
     assert store.get(run.id).state == "running"
 
 
-def test_of_many_at_once_one_wins(store: RunStore) -> None:
-    run = a_run(store)
+def test_one_of_many_concurrent_changes_succeeds(store: RunStore) -> None:
+    run = queued_run(store)
     store.change(run.id, QUEUED, "running")
     won: list[int] = []
 
@@ -299,8 +299,8 @@ def test_of_many_at_once_one_wins(store: RunStore) -> None:
     assert len(won) == 1
 
 
-def test_pages_go_on_where_the_last_ended(store: RunStore) -> None:
-    runs = [a_run(store, f"run {n}") for n in range(5)]
+def test_pages_are_stable_while_runs_are_added(store: RunStore) -> None:
+    runs = [queued_run(store, f"run {n}") for n in range(5)]
     seen, cursor = [], None
     while True:
         page = store.list(limit=2, cursor=cursor)
@@ -308,14 +308,14 @@ def test_pages_go_on_where_the_last_ended(store: RunStore) -> None:
         cursor = page.next_cursor
         if cursor is None:
             break
-        a_run(store, "one more does not move the page")
+        queued_run(store, "one more does not move the page")
     assert seen == [run.id for run in reversed(runs)]
     assert store.list(kind="race").items == []
     assert store.list(state="running").items == []
 
 
-def test_only_what_has_ended_is_deleted_and_then_wholly(store: RunStore) -> None:
-    run = a_run(store)
+def test_only_an_ended_run_is_deleted_and_completely(store: RunStore) -> None:
+    run = queued_run(store)
     store.put_artifact(run.id, "a", b"1")
     store.append_evaluations(run.id, [{"step": 50, "distance_m": 0.1, "epsilon": 0.5}])
     assert store.artifact(run.id, "a") == b"1"
@@ -331,15 +331,15 @@ def test_only_what_has_ended_is_deleted_and_then_wholly(store: RunStore) -> None
         store.artifact(run.id, "a")
 
 
-def test_ids_rise_even_within_a_millisecond() -> None:
+def test_ids_increase_within_a_millisecond() -> None:
     ids = [new_id() for _ in range(1000)]
     assert ids == sorted(ids)
     assert len(set(ids)) == 1000
     assert all(len(made) == 13 and made.isalnum() for made in ids)
 
 
-def test_a_file_and_what_goes_with_it_are_kept_together(store: RunStore) -> None:
-    run = a_run(store)
+def test_artifact_and_fields_are_stored_atomically(store: RunStore) -> None:
+    run = queued_run(store)
     store.update_progress(run.id, 7, 2.0)
     store.put_artifact(run.id, "checkpoint.npz", b"5", done=5)
     store.put_artifact(run.id, "other", b"x")
@@ -349,11 +349,11 @@ def test_a_file_and_what_goes_with_it_are_kept_together(store: RunStore) -> None
         store.put_artifact("none", "checkpoint.npz", b"5", done=5)
 
 
-def test_a_curve_is_cut_off_after_a_step(store: RunStore) -> None:
-    run, other = a_run(store), a_run(store)
+def test_evaluations_after_a_step_are_deleted(store: RunStore) -> None:
+    run, other = queued_run(store), queued_run(store)
     for one in (run, other):
         rows = [{"step": step, "distance_m": 0.1, "epsilon": 0.0} for step in (50, 100, 150)]
         store.append_evaluations(one.id, rows)
-    store.forget_evaluations(run.id, after_step=100)
+    store.delete_evaluations(run.id, after_step=100)
     assert [row["step"] for row in store.evaluations(run.id)] == [50, 100]
     assert [row["step"] for row in store.evaluations(other.id)] == [50, 100, 150]

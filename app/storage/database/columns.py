@@ -1,4 +1,4 @@
-"""Column types that mean the same in SQLite and in PostgreSQL."""
+"""Column types with identical semantics in SQLite and PostgreSQL."""
 
 import math
 from datetime import UTC, datetime
@@ -11,21 +11,21 @@ _NON_FINITE = "$float"
 
 
 class PortableText(TypeDecorator[str]):
-    """Any text. What no database takes, NUL and halves of surrogate pairs, becomes a mark.
+    """Text column; NUL and lone surrogates, which databases reject, are replaced by U+FFFD.
 
-    It sorts by code point everywhere, so that ids are in the order in which they were made.
+    Sorts by code point on both databases, so that run ids sort by time of creation.
     """
 
     impl = String
     cache_ok = True
 
     def load_dialect_impl(self, dialect: Dialect) -> Any:
-        """PostgreSQL sorts by the rules of a language unless it is told otherwise."""
+        """Use collation "C" on PostgreSQL, whose default sorts by the rules of a language."""
         collation = "C" if dialect.name == "postgresql" else None
         return dialect.type_descriptor(String(collation=collation))
 
     def process_bind_param(self, value: str | None, dialect: Dialect) -> str | None:
-        """On the way in."""
+        """Replace NUL and lone surrogates before a value is stored."""
         if value is None:
             return None
         text = value.replace("\0", "\ufffd")
@@ -33,55 +33,55 @@ class PortableText(TypeDecorator[str]):
 
 
 class UtcTime(TypeDecorator[datetime]):
-    """A moment, with its time zone in Python and in UTC in the database."""
+    """Time column: aware `datetime` in Python, UTC in the database."""
 
     impl = DateTime(timezone=True)
     cache_ok = True
 
     def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:
-        """On the way in."""
+        """Convert an aware time to UTC; raise `ValueError` for a naive one."""
         if value is not None and value.tzinfo is None:
             raise ValueError(f"{value} has no time zone")
         return None if value is None else value.astimezone(UTC)
 
     def process_result_value(self, value: datetime | None, dialect: Dialect) -> datetime | None:
-        """On the way out; SQLite knows no time zones."""
+        """Return a stored time in UTC; SQLite drops the time zone."""
         if value is None:
             return None
         return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
 
 
 class JsonWithNan(TypeDecorator[Any]):
-    """Plain types as JSON; NaN and the infinities, which JSON lacks, come back as they were."""
+    """JSON column that preserves NaN and infinities, stored as objects `{"$float": …}`."""
 
     impl = JSON(none_as_null=True)
     cache_ok = True
 
     def process_bind_param(self, value: Any, dialect: Dialect) -> Any:
-        """On the way in."""
-        return _encoded(value)
+        """Encode plain types before they are stored."""
+        return _encode_json(value)
 
     def process_result_value(self, value: Any, dialect: Dialect) -> Any:
-        """On the way out."""
-        return decoded(value)
+        """Decode stored plain types."""
+        return decode_json(value)
 
 
-def _encoded(value: Any) -> Any:
+def _encode_json(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return {_NON_FINITE: repr(value)}
     if isinstance(value, dict):
-        return {key: _encoded(item) for key, item in value.items()}
+        return {key: _encode_json(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_encoded(item) for item in value]
+        return [_encode_json(item) for item in value]
     return value
 
 
-def decoded(value: Any) -> Any:
-    """Plain types of JSON as they were before `JsonWithNan` encoded them."""
+def decode_json(value: Any) -> Any:
+    """Decode plain types that `JsonWithNan` encoded: restore NaN and infinities."""
     if isinstance(value, dict):
         if value.keys() == {_NON_FINITE}:
             return float(value[_NON_FINITE])
-        return {key: decoded(item) for key, item in value.items()}
+        return {key: decode_json(item) for key, item in value.items()}
     if isinstance(value, list):
-        return [decoded(item) for item in value]
+        return [decode_json(item) for item in value]
     return value

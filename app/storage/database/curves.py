@@ -1,4 +1,4 @@
-"""The evaluations of trainings, as rows."""
+"""Rows of the `evaluations` table: the learning curves of trainings."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -6,12 +6,12 @@ from typing import Any
 from sqlalchemy import Connection, delete, insert, select
 
 from app.storage.database.engine import Database
-from app.storage.database.queries import Row, found, row_of_run
+from app.storage.database.queries import Row, fetch_rows, fetch_run_row
 from app.storage.database.schema import EVALUATIONS
 
 
 class Curves:
-    """The curves of a database."""
+    """Reads and writes the learning curves in a database."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
@@ -24,7 +24,7 @@ class Curves:
         repeated = EVALUATIONS.c.run_id == run_id, EVALUATIONS.c.step >= first
 
         def work(connection: Connection) -> None:
-            row_of_run(connection, run_id, and_hold=True)
+            fetch_run_row(connection, run_id, for_update=True)
             connection.execute(delete(EVALUATIONS).where(*repeated))
             self.insert(connection, run_id, rows)
 
@@ -33,25 +33,25 @@ class Curves:
     def insert(
         self, connection: Connection, run_id: str, rows: Sequence[Mapping[str, Any]]
     ) -> None:
-        """Add rows to a run that has none of these steps, within a transaction."""
+        """Insert rows within a transaction, for steps that the run does not have yet."""
         if rows:
             connection.execute(insert(EVALUATIONS), [{"run_id": run_id, **row} for row in rows])
 
-    def of(self, run_id: str) -> Sequence[Mapping[str, Any]]:
+    def get(self, run_id: str) -> Sequence[Mapping[str, Any]]:
         """See `RunStore.evaluations`."""
         curve = select(EVALUATIONS).where(EVALUATIONS.c.run_id == run_id)
 
         def work(connection: Connection) -> Sequence[Row]:
-            row_of_run(connection, run_id)
-            return found(connection, curve.order_by(EVALUATIONS.c.step))
+            fetch_run_row(connection, run_id)
+            return fetch_rows(connection, curve.order_by(EVALUATIONS.c.step))
 
         return [
             {name: _number(row[name]) for name in ("step", "distance_m", "epsilon")}
             for row in self._database.read(work)
         ]
 
-    def forget(self, run_id: str, after_step: int) -> None:
-        """See `RunStore.forget_evaluations`."""
+    def delete_after(self, run_id: str, after_step: int) -> None:
+        """See `RunStore.delete_evaluations`."""
         later = EVALUATIONS.c.run_id == run_id, EVALUATIONS.c.step > after_step
         self._database.write(
             lambda connection: connection.execute(delete(EVALUATIONS).where(*later))
@@ -59,5 +59,5 @@ class Curves:
 
 
 def _number(value: Any) -> float:
-    """NULL, and whatever else SQLite may have there, is NaN."""
+    """Return a number; NaN for NULL and for any other type that SQLite may hold."""
     return value if isinstance(value, int | float) else float("nan")

@@ -1,4 +1,8 @@
-"""A database for many threads of one process: transactions, and its errors in plain words."""
+"""Transactions on a database shared by the threads of one process.
+
+Adds to SQLAlchemy's engines: fair queuing for SQLite, retries during an outage, the check of the
+fencing token before each write, and driver errors translated to messages for the user.
+"""
 
 import sqlite3
 import threading
@@ -19,166 +23,170 @@ from app.storage.database.schema import ABOUT
 from app.storage.errors import OwnershipLost, StorageFailed, StorageFull
 
 BUSY_S = 10.0
-"""How long to wait for another process that holds the database."""
+"""How long to wait for a lock that another process holds on the database."""
 POOL_WAIT_S = 5.0
-"""How long to wait for a connection while others have them all."""
+"""How long to wait for a connection from the exhausted PostgreSQL pool."""
 _FIRST_RETRY_S, _LAST_RETRY_S = 0.1, 1.0
 SQLITE_CONNECTIONS = 5
-"""Reads of the database at once; further ones wait for a turn."""
+"""Concurrent connections to SQLite; further reads are queued."""
 SQLITE_FILES = 2 * SQLITE_CONNECTIONS + 1
-"""Open files of the database at most: each connection has it and its log, all share an index."""
+"""Maximum of open database files: `.db` and `-wal` per connection, and one shared `-shm`."""
 T = TypeVar("T")
-_ONLY_READS = "hexapods_only_reads"
-_SECONDARY = 0xFF  # an error code of SQLite's, without what it says beyond its kind
+_READ_ONLY = "hexapods_only_reads"
+_PRIMARY_CODE = 0xFF  # mask: an extended result code of SQLite has the primary one in its low byte
 
 
-class _Patience(NamedTuple):
-    at_most_s: float
+class _RetryPolicy(NamedTuple):
+    max_retry_s: float
     cancelled: threading.Event
 
 
-_patience: ContextVar[_Patience | None] = ContextVar("patience", default=None)
+_retry_policy: ContextVar[_RetryPolicy | None] = ContextVar("retry_policy", default=None)
 
 
 @contextmanager
-def retry_during_outage(at_most_s: float, cancelled: threading.Event) -> Iterator[None]:
-    """Let every database call in this context be retried while the database cannot be used.
+def retry_during_outage(max_retry_s: float, cancelled: threading.Event) -> Iterator[None]:
+    """Retry every database call in this context with exponential back-off during an outage.
 
-    For threads that nobody waits for, such as those that take in a job's results. A call may
-    have been committed although its answer was lost, so whatever is called here must come to
-    the same when it is done twice.
+    For background threads, such as those that receive a job's results. A call may have been
+    committed although its reply was lost, so all calls in this context must be idempotent.
 
     Args:
-        at_most_s: how long each call is retried before it fails.
-        cancelled: ends the retries early.
+        max_retry_s: how long each call is retried before it fails.
+        cancelled: when set, ends the retries early.
     """
-    token = _patience.set(_Patience(at_most_s, cancelled))
+    token = _retry_policy.set(_RetryPolicy(max_retry_s, cancelled))
     try:
         yield
     finally:
-        _patience.reset(token)
+        _retry_policy.reset(token)
 
 
 class Database:
-    """One database. A piece of work is one transaction, done whole or not at all.
+    """Runs functions as transactions on one database. Thread-safe.
 
     Attributes:
-        engine: for who needs connections of their own.
-        on_full: called when the disk is full; True if it made room, so that trying again helps.
-        owner: the fencing token of the server that writes; None checks none, before it has one.
-        is_answering: circuit breaker; while it says False every call fails at once, so that
+        engine: SQLAlchemy's engine, for callers that need a connection of their own.
+        on_disk_full: called when the disk is full; returns True if it freed space, so that the
+            write is retried.
+        fencing_token: number of this server's ownership, which every write compares with the one
+            in the database; None, before the database is claimed, skips the check.
+        is_available: circuit breaker; while it returns False every call fails at once, so that
             threads do not pile up behind a database that hangs.
     """
 
-    def __init__(self, engine: Engine, on_full: Callable[[], bool] = lambda: False) -> None:
-        self.engine, self.on_full = engine, on_full
-        self.owner: int | None = None
-        self.is_answering: Callable[[], bool] = lambda: True
-        # SQLite lets those who wait poll, and its pool lets others overtake them, so they starve.
+    def __init__(self, engine: Engine, on_disk_full: Callable[[], bool] = lambda: False) -> None:
+        self.engine, self.on_disk_full = engine, on_disk_full
+        self.fencing_token: int | None = None
+        self.is_available: Callable[[], bool] = lambda: True
+        # SQLite's busy handler polls, and the pool's queue is not fair, so waiters would starve.
         is_sqlite = engine.dialect.name == "sqlite"
         self._writers = FairSemaphore(1) if is_sqlite else None
         self._connections = FairSemaphore(SQLITE_CONNECTIONS) if is_sqlite else None
 
     def read(self, work: Callable[[Connection], T]) -> T:
-        """Do what only reads; it sees one state of the database throughout.
+        """Run a function in a read-only transaction, which sees one snapshot of the database.
 
         Raises:
-            StorageFailed: if the database cannot be used.
+            StorageFailed: if the database is unavailable.
         """
 
         def attempt() -> T:
             with (
-                _turn(self._connections),
-                in_plain_words(),
+                _slot(self._connections),
+                translate_errors(),
                 self.engine.connect() as connection,
             ):
-                return work(connection.execution_options(**{_ONLY_READS: True}))
+                return work(connection.execution_options(**{_READ_ONLY: True}))
 
         return self._retry(attempt)
 
     def write(self, work: Callable[[Connection], T]) -> T:
-        """Do what writes; when this returns, it lasts. It may be tried twice.
+        """Run a function in a write transaction, which is durable on return.
+
+        The function may be called more than once, in a transaction of its own each time.
 
         Raises:
             StorageFull: if the disk is full.
-            StorageFailed: if the database cannot be used, or is held for over 10 s.
-            OwnershipLost: if another server has taken the database over.
+            StorageFailed: if the database is unavailable, or locked for over `BUSY_S`.
+            OwnershipLost: if another server has claimed the database.
         """
 
         def attempt() -> T:
             try:
                 return self._write(work)
             except StorageFull:
-                if not self.on_full():
+                if not self.on_disk_full():
                     raise
             return self._write(work)
 
         return self._retry(attempt)
 
     def _retry(self, attempt: Callable[[], T]) -> T:
-        """Call until it succeeds, for as long as the context of `retry_during_outage` says."""
-        patience = _patience.get()
+        """Call until it succeeds or the policy set by `retry_during_outage` gives up."""
+        policy = _retry_policy.get()
         began_s, pause_s = time.monotonic(), _FIRST_RETRY_S
         while True:
             try:
-                if not self.is_answering():
-                    raise _unreachable()
+                if not self.is_available():
+                    raise _unreachable_error()
                 return attempt()
             except OwnershipLost:
                 raise
             except StorageFailed:
-                if patience is None or time.monotonic() - began_s > patience.at_most_s:
+                if policy is None or time.monotonic() - began_s > policy.max_retry_s:
                     raise
-                if patience.cancelled.wait(pause_s):
+                if policy.cancelled.wait(pause_s):
                     raise
             pause_s = min(2 * pause_s, _LAST_RETRY_S)
 
     def _write(self, work: Callable[[Connection], T]) -> T:
         with (
-            _turn(self._writers),
-            _turn(self._connections),
-            in_plain_words(),
+            _slot(self._writers),
+            _slot(self._connections),
+            translate_errors(),
             self.engine.begin() as connection,
         ):
             self._check_owner(connection)
             return work(connection)
 
     def _check_owner(self, connection: Connection) -> None:
-        """Fence: refuse to write once another server has raised the owner's number."""
-        if self.owner is None:
+        """Fence: refuse to write once another server has incremented the fencing token."""
+        if self.fencing_token is None:
             return
-        # The share lock keeps the number as it is until this transaction has ended.
-        number = connection.execute(select(ABOUT.c.owner).with_for_update(read=True)).scalar()
-        if number != self.owner:
+        # FOR SHARE keeps the token unchanged until this transaction has ended.
+        token = connection.execute(select(ABOUT.c.owner).with_for_update(read=True)).scalar()
+        if token != self.fencing_token:
             raise OwnershipLost(
                 "another server has taken this database over, so this one writes nothing more"
             )
 
     def connect(self) -> Connection:
-        """A connection of one's own, outside of any transaction; to be closed.
+        """Open a connection in autocommit mode; the caller closes it.
 
         Raises:
             StorageFailed: if the database cannot be reached.
         """
-        with in_plain_words():
+        with translate_errors():
             return self.engine.connect().execution_options(isolation_level="AUTOCOMMIT")
 
     def close(self) -> None:
-        """Let go of all connections."""
+        """Close all pooled connections."""
         self.engine.dispose()
 
 
-def _turn(semaphore: FairSemaphore | None) -> AbstractContextManager[None]:
-    return nullcontext() if semaphore is None else semaphore.taken(BUSY_S, _held)
+def _slot(semaphore: FairSemaphore | None) -> AbstractContextManager[None]:
+    return nullcontext() if semaphore is None else semaphore.acquired(BUSY_S, _busy_error)
 
 
 def sqlite_engine(path: Path) -> Engine:
-    """An engine for a file, which is made if it is not there."""
+    """Create an engine for a SQLite file, which is created if it does not exist."""
     engine = create_engine(
         URL.create("sqlite", database=str(path)),
-        # Without the driver's own transactions, which begin late and so lose updates.
+        # Autocommit: the driver's implicit transactions begin only at the first write, so a read
+        # before it would not be protected against lost updates.
         connect_args={"isolation_level": None, "timeout": BUSY_S},
-        # All are kept, and none is opened beyond them.
+        # A fixed-size pool, without overflow, bounds the number of open files.
         pool_size=SQLITE_CONNECTIONS,
         max_overflow=0,
         pool_timeout=BUSY_S,
@@ -189,7 +197,7 @@ def sqlite_engine(path: Path) -> Engine:
 
 
 def postgresql_engine(url: str) -> Engine:
-    """An engine for a PostgreSQL server, whose connections are made when they are needed."""
+    """Create an engine for a PostgreSQL server; it connects on first use."""
     wait_ms = int(BUSY_S * 1000)
     return create_engine(
         make_url(url).set(drivername="postgresql+psycopg"),
@@ -203,7 +211,7 @@ def postgresql_engine(url: str) -> Engine:
 
 
 def decode_leniently(connection: sqlite3.Connection) -> None:
-    """Let text that is no UTF-8 be read with what is wrong escaped, instead of failing a query."""
+    """Decode invalid UTF-8 in text columns with `surrogateescape`, instead of failing the query."""
     connection.text_factory = lambda data: data.decode("utf-8", "surrogateescape")
 
 
@@ -215,14 +223,14 @@ def _prepare_sqlite(connection: sqlite3.Connection, record: object) -> None:
 
 
 def _begin_sqlite(connection: Connection) -> None:
-    only_reads = connection.get_execution_options().get(_ONLY_READS)
-    # A transaction that begins to write halfway can find that it is too late, and loses.
-    connection.exec_driver_sql("BEGIN" if only_reads else "BEGIN IMMEDIATE")
+    read_only = connection.get_execution_options().get(_READ_ONLY)
+    # IMMEDIATE takes the write lock now: upgrading a read transaction later can fail with BUSY.
+    connection.exec_driver_sql("BEGIN" if read_only else "BEGIN IMMEDIATE")
 
 
 @contextmanager
-def in_plain_words() -> Iterator[None]:
-    """Turn the driver's errors into those that a user can read.
+def translate_errors() -> Iterator[None]:
+    """Translate the driver's errors into `HexapodError`s with messages for the user.
 
     Raises:
         StorageFull, StorageFailed, DamagedFile: in place of the driver's errors.
@@ -234,7 +242,7 @@ def in_plain_words() -> Iterator[None]:
     except DBAPIError as error:
         raise _translated(error) from error
     except PoolTimeout as error:
-        raise _held() from error
+        raise _busy_error() from error
 
 
 def _translated(error: DBAPIError) -> HexapodError:
@@ -244,41 +252,42 @@ def _translated(error: DBAPIError) -> HexapodError:
     if state in ("53100", "54000"):
         return StorageFull("the disk of the PostgreSQL server is full; make room there")
     if state == "55P03":
-        return _held()
+        return _busy_error()
     if isinstance(error, OperationalError | InterfaceError):
-        return _unreachable()
+        return _unreachable_error()
     return StorageFailed(f"the database refuses ({type(error.orig).__name__})")
 
 
 def _sqlite_error(error: sqlite3.Error) -> HexapodError:
     code = getattr(error, "sqlite_errorcode", 0)
     kinds: dict[int, Any] = {
-        sqlite3.SQLITE_BUSY: _held,
-        sqlite3.SQLITE_LOCKED: _held,
-        sqlite3.SQLITE_FULL: _full,
-        sqlite3.SQLITE_CORRUPT: _damaged,
-        sqlite3.SQLITE_NOTADB: _damaged,
+        sqlite3.SQLITE_BUSY: _busy_error,
+        sqlite3.SQLITE_LOCKED: _busy_error,
+        sqlite3.SQLITE_FULL: _disk_full_error,
+        sqlite3.SQLITE_CORRUPT: _corrupt_error,
+        sqlite3.SQLITE_NOTADB: _corrupt_error,
     }
-    # A limit on the size of files is met as an error of a write.
-    found = _full if code == sqlite3.SQLITE_IOERR_WRITE else kinds.get(code & _SECONDARY)
-    return found() if found else StorageFailed(f"the database cannot be used ({error})")
+    # Exceeding a file size limit (ulimit, quota) is reported as an I/O error of a write.
+    is_write_error = code == sqlite3.SQLITE_IOERR_WRITE
+    make_error = _disk_full_error if is_write_error else kinds.get(code & _PRIMARY_CODE)
+    return make_error() if make_error else StorageFailed(f"the database cannot be used ({error})")
 
 
-def _unreachable() -> StorageFailed:
+def _unreachable_error() -> StorageFailed:
     return StorageFailed("the PostgreSQL server does not answer; see that it runs")
 
 
-def _held() -> HexapodError:
+def _busy_error() -> HexapodError:
     return StorageFailed(
         f"another program holds the database for over {BUSY_S:g} s; close it, then try again"
     )
 
 
-def _full() -> HexapodError:
+def _disk_full_error() -> HexapodError:
     return StorageFull("the disk of the data folder is full; delete runs, or make room there")
 
 
-def _damaged() -> HexapodError:
+def _corrupt_error() -> HexapodError:
     return DamagedFile(
         "the database file in the data folder is damaged, or is no database; move it away to "
         "begin anew, or put a copy of it back"

@@ -1,4 +1,4 @@
-"""A semaphore for threads that is handed over in the order in which they came."""
+"""A fair (first-in, first-out) semaphore for threads."""
 
 import threading
 from collections import deque
@@ -7,33 +7,33 @@ from contextlib import contextmanager
 
 
 class FairSemaphore:
-    """Lets so many threads in at once, first come, first served.
+    """Semaphore that is handed to waiting threads in the order in which they arrived.
 
-    With `threading.Semaphore`, or a pool's own queue, a thread that lets go and comes again at
-    once overtakes those that wait, of which one may wait for ever.
+    With `threading.Semaphore`, or a connection pool's own queue, a thread that releases and
+    acquires again at once overtakes waiting threads, which may starve.
     """
 
     def __init__(self, size: int) -> None:
-        """Let as many in as `size` says."""
+        """Admit `size` threads at a time."""
         self._free = size
         self._waiting: deque[threading.Lock] = deque()
         self._lock = threading.Lock()
 
     @property
     def waiting(self) -> int:
-        """How many threads wait for a place."""
+        """Number of threads that wait to acquire the semaphore."""
         return len(self._waiting)
 
     @contextmanager
-    def taken(self, timeout_s: float, late: Callable[[], Exception]) -> Iterator[None]:
-        """Wait for a place and keep it for as long as the context lasts.
+    def acquired(self, timeout_s: float, timeout_error: Callable[[], Exception]) -> Iterator[None]:
+        """Acquire the semaphore, and release it when the context ends.
 
         Args:
             timeout_s: how long to wait at most.
-            late: makes the error to raise after that.
+            timeout_error: creates the exception to raise after that time.
         """
         if not self._acquire(timeout_s):
-            raise late()
+            raise timeout_error()
         try:
             yield
         finally:
@@ -53,7 +53,7 @@ class FairSemaphore:
             if turn in self._waiting:
                 self._waiting.remove(turn)
                 return False
-        # It was handed over in the moment in which the time ran out.
+        # It was handed over to this thread between the timeout and the lock.
         return True
 
     def _release(self) -> None:

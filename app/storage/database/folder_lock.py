@@ -1,4 +1,4 @@
-"""A data folder belongs to one server at a time."""
+"""File lock on a data folder, so that one server at a time uses it."""
 
 import sys
 from collections.abc import Iterator
@@ -12,17 +12,17 @@ LOCK_FILE = "server.lock"
 
 
 class FolderInUse(InvalidInput):
-    """Another process has the data folder."""
+    """Another process holds the lock of the data folder."""
 
 
 @contextmanager
 def lock_folder(folder: Path) -> Iterator[None]:
-    """Keep others out. The system lets go of the lock when the process ends, however it ends.
+    """Hold an exclusive file lock; the operating system releases it when the process ends.
 
     Raises:
-        FolderInUse: if another process has the folder.
+        FolderInUse: if another process holds the lock.
     """
-    # Never removed: another process may have opened it already, and would lock nothing.
+    # The file is never deleted: another process may have opened it, and would lock a dead inode.
     with (folder / LOCK_FILE).open("ab") as file:
         try:
             _lock(file)

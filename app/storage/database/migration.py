@@ -1,4 +1,4 @@
-"""Brings a database to the schema of this version."""
+"""Schema migration: upgrade a database to the schema of this version with Alembic."""
 
 import logging
 
@@ -12,17 +12,17 @@ from app.domain.errors import InvalidInput
 from app.storage.database.engine import Database
 
 CONNECTION = "connection"
-"""Where `migrations/env.py` finds its connection."""
+"""Key of the open connection among the attributes of Alembic's config (see `migrations/env`)."""
 
 
 def migrate(database: Database) -> None:
-    """Bring the database to this version's schema, or leave it as it is.
+    """Upgrade the database to this version's schema in one transaction.
 
     Raises:
-        InvalidInput: if a newer version made it.
-        StorageFailed: if it cannot be used.
+        InvalidInput: if a newer version created it.
+        StorageFailed: if the database is unavailable.
     """
-    # It would tell of every start.
+    # Alembic logs two lines at INFO on every start.
     logging.getLogger("alembic").setLevel(logging.WARNING)
 
     def work(connection: Connection) -> None:
@@ -35,10 +35,10 @@ def migrate(database: Database) -> None:
 
 
 def check_current(connection: Connection) -> bool:
-    """Whether the database has this version's schema; False if it has none yet.
+    """Check that the database has this version's schema; return False if it has none yet.
 
     Raises:
-        InvalidInput: if another version made it.
+        InvalidInput: if it has the schema of another version.
     """
     _refuse_newer(connection)
     heads = MigrationContext.configure(connection).get_current_heads()
@@ -51,14 +51,14 @@ def check_current(connection: Connection) -> bool:
 
 
 def newest_revision() -> str:
-    """The schema of this version."""
+    """Return the revision of this version's schema."""
     return str(ScriptDirectory.from_config(_config()).get_current_head())
 
 
 def _config() -> Config:
     config = Config()
     config.set_main_option("script_location", "app.storage.database:migrations")
-    # What else alembic knows of paths is about its own command.
+    # Silences a deprecation warning; the setting matters to Alembic's own command only.
     config.set_main_option("path_separator", "os")
     return config
 

@@ -1,4 +1,4 @@
-"""Opens the store that a server keeps its runs in, and makes it whole after whatever happened."""
+"""Open the store of a server: lock, migrate, claim ownership, and recover from a crash."""
 
 import logging
 from collections.abc import Callable, Iterator
@@ -10,7 +10,7 @@ from app.storage.database.engine import Database, postgresql_engine, sqlite_engi
 from app.storage.database.folder_lock import lock_folder
 from app.storage.database.migration import migrate
 from app.storage.database.ownership import Ownership, claim
-from app.storage.database.sqlite_file import begin_file, check_file
+from app.storage.database.sqlite_file import check_file, create_file
 from app.storage.database.store import SqlStore
 from app.storage.disk_space import DiskSpace
 
@@ -23,32 +23,31 @@ _logger = logging.getLogger(__name__)
 def open_store(
     settings: Settings, on_lost: Callable[[], object] = lambda: None
 ) -> Iterator[SqlStore]:
-    """The store of a server, for as long as the context lasts; no other server can have it.
+    """Open the store of a server exclusively, for as long as the context lasts.
 
-    Runs that a dead server left behind become `interrupted`, and its unfinished files go.
+    Runs that a crashed server left unended become `interrupted`; its orphaned files are deleted.
 
     Args:
         settings: of the server.
-        on_lost: called from another thread if another server takes the database over all the
-            same, as it may after an outage; every write fails from then on.
+        on_lost: called from another thread if another server claims the database nevertheless,
+            which is possible after an outage of PostgreSQL; all writes fail from then on.
 
     Raises:
-        InvalidInput: if another server has it, or a newer version made it, or the data folder
-            cannot be written.
+        InvalidInput: if another server owns the database, a newer version created it, or the data
+            folder is not writable.
         DamagedFile: if the database is damaged.
-        StorageFailed: if the database cannot be used.
+        StorageFailed: if the database is unavailable.
     """
     settings.prepare_data()
     with lock_folder(settings.data):
-        room = DiskSpace(settings.data, settings.quota_mb)
-        with closing(_database(settings, room)) as database:
+        disk_space = DiskSpace(settings.data, settings.quota_mb)
+        with closing(_database(settings, disk_space)) as database:
             ownership = Ownership(database, on_lost)
             with _locked(ownership):
                 migrate(database)
-                taken = claim(database)
-                files = ArtifactFiles(settings.data / ARTIFACTS_FOLDER / taken.database_id, room)
-                store = SqlStore(database, files)
-                _tidy(store)
+                folder = settings.data / ARTIFACTS_FOLDER / claim(database).database_id
+                store = SqlStore(database, ArtifactFiles(folder, disk_space))
+                _recover(store)
                 with ownership.watched():
                     yield store
 
@@ -62,22 +61,22 @@ def _locked(ownership: Ownership) -> Iterator[None]:
         ownership.release()
 
 
-def _tidy(store: SqlStore) -> None:
-    """Make whole what a dead server left behind."""
-    left_behind, interrupted = store.sweep(), store.interrupt_all()
-    if left_behind or interrupted:
+def _recover(store: SqlStore) -> None:
+    """Clean up after a crash: delete orphaned files, mark unended runs as interrupted."""
+    orphans, interrupted = store.delete_orphans(), store.interrupt_all()
+    if orphans or interrupted:
         _logger.warning(
             "The last server died: %d runs are interrupted, %d unfinished files are gone",
             len(interrupted),
-            left_behind,
+            orphans,
         )
 
 
-def _database(settings: Settings, room: DiskSpace) -> Database:
+def _database(settings: Settings, disk_space: DiskSpace) -> Database:
     if settings.database_url is not None:
         return Database(postgresql_engine(settings.database_url))
-    room.reserve()
+    disk_space.reserve()
     path = settings.data / DATABASE_FILE
     check_file(path, settings.data / ARTIFACTS_FOLDER)
-    begin_file(path, on_full=room.release)
-    return Database(sqlite_engine(path), on_full=room.release)
+    create_file(path, on_disk_full=disk_space.release)
+    return Database(sqlite_engine(path), on_disk_full=disk_space.release)

@@ -1,8 +1,9 @@
-"""Exactly one server writes to a database: an advisory lock, a fencing token, and a watch on both.
+"""Single-writer ownership of a database: advisory lock, fencing token, and a monitor thread.
 
-PostgreSQL lets go of an advisory lock with the connection that took it, so the lock alone says
-nothing after the database was restarted. The *fencing token* does: a number in the database that
-rises with every server that takes it over, and that every write compares with its own.
+PostgreSQL releases an advisory lock when the connection that holds it ends, so the lock alone does
+not exclude a second writer after the database was restarted. The *fencing token* does: a number in
+the database that every server increments when it claims the database, and that every write compares
+with the server's own.
 """
 
 import logging
@@ -17,7 +18,7 @@ from sqlalchemy import Connection, Executable, insert, select, text, update
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.domain.errors import HexapodError, InvalidInput
-from app.storage.database.engine import Database, in_plain_words
+from app.storage.database.engine import Database, translate_errors
 from app.storage.database.schema import ABOUT
 
 _LOCK_NUMBER = 0x6865_7861_706F_6473
@@ -28,67 +29,67 @@ _HAS_LOCK = text(
 )
 _LOCK_WAIT_S = 5.0
 WATCH_EVERY_S = 0.5
-_SILENT_S = 3.0
-"""A database that has not answered for so long is not asked by anyone else."""
+_HANG_S = 3.0
+"""A poll that takes longer opens the circuit breaker: other threads' calls fail at once."""
 _JOIN_S = 2.0
 _logger = logging.getLogger(__name__)
 
 
 class Claim(NamedTuple):
-    """What a server is given with the database."""
+    """Result of claiming a database."""
 
     database_id: str
-    """Names the folder of its files."""
-    owner: int
-    """The fencing token."""
+    """Random id of the database; names the folder of its artifact files."""
+    fencing_token: int
+    """Number of this ownership, one higher than that of the previous owner."""
 
 
 def claim(database: Database) -> Claim:
-    """Take the database over: from now on nobody who had it before can write.
+    """Increment the fencing token, so that previous owners of the database can no longer write.
 
     Raises:
-        StorageFailed: if it cannot be used.
+        StorageFailed: if the database is unavailable.
     """
 
     def work(connection: Connection) -> Claim:
-        found = connection.execute(select(ABOUT.c.id)).scalar()
-        if found is None:
-            found = secrets.token_hex(8)
-            connection.execute(insert(ABOUT), [{"id": found, "owner": 0}])
-        raised = update(ABOUT).values(owner=ABOUT.c.owner + 1).returning(ABOUT.c.owner)
-        return Claim(found, connection.execute(raised).scalar_one())
+        database_id = connection.execute(select(ABOUT.c.id)).scalar()
+        if database_id is None:
+            database_id = secrets.token_hex(8)
+            connection.execute(insert(ABOUT), [{"id": database_id, "owner": 0}])
+        increment = update(ABOUT).values(owner=ABOUT.c.owner + 1).returning(ABOUT.c.owner)
+        return Claim(database_id, connection.execute(increment).scalar_one())
 
-    taken = database.write(work)
-    database.owner = taken.owner
-    return taken
+    claimed = database.write(work)
+    database.fencing_token = claimed.fencing_token
+    return claimed
 
 
 class Ownership:
-    """Holds the advisory lock, takes it again after an outage, and notices a successor.
+    """Holds the advisory lock, reacquires it after an outage, and detects a new owner.
 
     Args:
-        database: to be held.
-        on_lost: called once, from a thread of its own, when another server has taken it over.
+        database: the database to own.
+        on_lost: called once, from the monitor thread, when another server has claimed it.
     """
 
     def __init__(self, database: Database, on_lost: Callable[[], object]) -> None:
         self._database, self._on_lost = database, on_lost
         self._is_postgresql = database.engine.dialect.name == "postgresql"
         self._connection: Connection | None = None
-        self._asked_s: float | None = None
+        self._poll_began_s: float | None = None
         self._failed = False
         self._closing = threading.Event()
-        self._thread = threading.Thread(target=self._watch, name="ownership", daemon=True)
+        self._thread = threading.Thread(target=self._monitor, name="ownership", daemon=True)
 
     def lock(self) -> None:
-        """Take the advisory lock; SQLite has the data folder's lock in its place.
+        """Acquire the advisory lock; for SQLite the data folder's file lock serves instead.
 
         Raises:
-            InvalidInput: if another server has it.
+            InvalidInput: if another server holds it.
             StorageFailed: if the database cannot be reached.
         """
         deadline = time.monotonic() + _LOCK_WAIT_S
-        # PostgreSQL may notice the end of a server a moment after it.
+        # PostgreSQL may release the lock of a server that ended only a moment later.
         while self._is_postgresql and not self._try_lock():
             if time.monotonic() > deadline:
                 raise InvalidInput(
@@ -99,74 +100,74 @@ class Ownership:
 
     @contextmanager
     def watched(self) -> Iterator[None]:
-        """Keep the lock for as long as the context lasts."""
-        self._database.is_answering = self._is_answering
+        """Run the monitor thread for as long as the context lasts."""
+        self._database.is_available = self._is_available
         self._thread.start()
         try:
             yield
         finally:
             self._closing.set()
-            # It may hang in a database that does not answer; nothing waits for that.
+            # With a timeout: the thread may hang in a call to an unresponsive database.
             self._thread.join(_JOIN_S)
 
     def release(self) -> None:
-        """Let go of the lock."""
+        """Release the lock by closing its connection."""
         if not self._thread.is_alive():
             self._drop_connection()
 
     def _drop_connection(self) -> None:
         connection, self._connection = self._connection, None
         if connection is not None:
-            with suppress(SQLAlchemyError):  # one that cannot be closed is closed already
+            with suppress(SQLAlchemyError):  # a connection that fails to close is closed already
                 connection.invalidate()
                 connection.close()
 
-    def _is_answering(self) -> bool:
-        asked_s = self._asked_s
+    def _is_available(self) -> bool:
+        poll_began_s = self._poll_began_s
         if threading.current_thread() is self._thread:
             return True
-        hangs = asked_s is not None and time.monotonic() - asked_s > _SILENT_S
+        hangs = poll_began_s is not None and time.monotonic() - poll_began_s > _HANG_S
         return not (self._failed or hangs)
 
-    def _watch(self) -> None:
+    def _monitor(self) -> None:
         while not self._closing.wait(WATCH_EVERY_S):
-            self._asked_s = time.monotonic()
+            self._poll_began_s = time.monotonic()
             try:
-                owner = self._look()
+                owner = self._read_owner()
             except HexapodError as error:
                 if not self._failed:
                     _logger.warning("The database does not answer: %s", error)
                 self._failed = self._is_postgresql
                 continue
             finally:
-                self._asked_s = None
+                self._poll_began_s = None
             if self._failed:
                 _logger.warning("The database answers again")
             self._failed = False
-            if owner != self._database.owner:
+            if owner != self._database.fencing_token:
                 _logger.error("Another server has taken this database over")
                 self._on_lost()
                 return
 
-    def _look(self) -> int:
-        """The number of the present owner, after the lock was taken again if it was lost."""
-        asked = select(ABOUT.c.owner)
+    def _read_owner(self) -> int:
+        """Return the fencing token of the present owner; first reacquire a lost advisory lock."""
+        query = select(ABOUT.c.owner)
         if not self._is_postgresql:
-            read: int = self._database.read(lambda c: c.execute(asked).scalar_one())
-            return read
+            owner: int = self._database.read(lambda c: c.execute(query).scalar_one())
+            return owner
         self._try_lock()
-        # Not through the pool, whose connections may all be held by threads that hang.
-        return int(self._ask(asked))
+        # On its own connection: hanging threads may hold all those of the pool.
+        return int(self._execute(query))
 
     def _try_lock(self) -> bool:
-        """Whether this server has the advisory lock, on a connection that is kept for it."""
-        return bool(self._ask(_HAS_LOCK)) or bool(self._ask(_TRY_LOCK))
+        """Try to acquire the advisory lock on its own connection; return whether it is held."""
+        return bool(self._execute(_HAS_LOCK)) or bool(self._execute(_TRY_LOCK))
 
-    def _ask(self, statement: Executable) -> Any:
+    def _execute(self, statement: Executable) -> Any:
         try:
             if self._connection is None:
                 self._connection = self._database.connect()
-            with in_plain_words():
+            with translate_errors():
                 return self._connection.execute(statement).scalar_one()
         except HexapodError:
             self._drop_connection()

@@ -1,54 +1,55 @@
-"""How far runs are, between the moments in which the database is told."""
+"""Write-behind cache of the runs' progress, which is written to the database once a second."""
 
 import threading
 import time
 from typing import Any, NamedTuple
 
 WRITE_EVERY_S = 1.0
-"""A job says thirty times a second how far it is; so much of that a dead server may forget."""
+"""Interval of writes for each run. Jobs report about thirty times a second; a crash loses at most
+this much progress."""
 
 
-class _Noted(NamedTuple):
+class _Entry(NamedTuple):
     fields: dict[str, Any]
     written_s: float
 
 
-class Progress:
-    """The newest progress of runs that are worked on. Safe to use from any thread."""
+class ProgressCache:
+    """Caches the newest progress of live runs. Thread-safe."""
 
     def __init__(self) -> None:
-        self._noted: dict[str, _Noted] = {}
+        self._entries: dict[str, _Entry] = {}
         self._lock = threading.Lock()
 
-    def note(self, run_id: str, fields: dict[str, Any]) -> bool:
-        """Take in progress. True if it is time to write it."""
+    def put(self, run_id: str, fields: dict[str, Any]) -> bool:
+        """Cache a run's progress; return True if the caller must write it to the database now."""
         now = time.monotonic()
         with self._lock:
-            noted = self._noted.get(run_id)
-            is_due = noted is None or now - noted.written_s >= WRITE_EVERY_S
-            written_s = now if noted is None or is_due else noted.written_s
-            self._noted[run_id] = _Noted(fields, written_s)
+            entry = self._entries.get(run_id)
+            is_due = entry is None or now - entry.written_s >= WRITE_EVERY_S
+            written_s = now if entry is None or is_due else entry.written_s
+            self._entries[run_id] = _Entry(fields, written_s)
             return is_due
 
-    def of(self, run_id: str) -> dict[str, Any]:
-        """The fields that are newer than the database, or the same."""
+    def get(self, run_id: str) -> dict[str, Any]:
+        """Return the cached fields of a run, at least as new as its row; empty if none."""
         with self._lock:
-            noted = self._noted.get(run_id)
-            return {} if noted is None else noted.fields
+            entry = self._entries.get(run_id)
+            return {} if entry is None else entry.fields
 
-    def newest(self) -> dict[str, dict[str, Any]]:
-        """The fields of every run that has any, by id."""
+    def snapshot(self) -> dict[str, dict[str, Any]]:
+        """Return the cached fields of all runs by id."""
         with self._lock:
-            return {run_id: noted.fields for run_id, noted in self._noted.items()}
+            return {run_id: entry.fields for run_id, entry in self._entries.items()}
 
-    def forget_estimate(self, run_id: str) -> None:
-        """Keep how far it is, and drop how long it will take."""
+    def drop_estimate(self, run_id: str) -> None:
+        """Set the estimated time left to None, and keep the number of steps done."""
         with self._lock:
-            noted = self._noted.get(run_id)
-            if noted is not None:
-                self._noted[run_id] = noted._replace(fields={**noted.fields, "eta_s": None})
+            entry = self._entries.get(run_id)
+            if entry is not None:
+                self._entries[run_id] = entry._replace(fields={**entry.fields, "eta_s": None})
 
-    def forget(self, run_id: str) -> None:
-        """Drop all of a run, because the database has it or something else."""
+    def drop(self, run_id: str) -> None:
+        """Remove a run's entry, after its row was written or deleted."""
         with self._lock:
-            self._noted.pop(run_id, None)
+            self._entries.pop(run_id, None)

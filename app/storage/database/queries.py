@@ -1,7 +1,7 @@
-"""Rows as plain dictionaries, and those of runs: undecoded, so that one that is damaged harms none.
+"""Queries that return rows as dictionaries, with the columns of runs undecoded.
 
-What SQLite holds in a column need not be of the column's type, and a database is not only written
-by this version. A value that cannot be decoded would otherwise fail the whole query.
+SQLite columns may hold values of any type, and other versions may have written the database. A
+value that cannot be decoded would fail the whole query, so `rows` decodes each run separately.
 """
 
 import hashlib
@@ -28,74 +28,79 @@ from app.storage.errors import NotFound
 
 Row = dict[str, Any]
 
-MAX_CELL = 4_000_000
-"""Characters of a column of a run that are read: one that has more cannot be shown."""
-_ADDRESS = re.compile(r"(?!damaged-)[0-9A-Za-z_-]{1,64}", re.ASCII)
+MAX_CELL_CHARS = 4_000_000
+"""Maximum of characters read of a column of a run; a longer one counts as damaged."""
+_PUBLIC_ID = re.compile(r"(?!damaged-)[0-9A-Za-z_-]{1,64}", re.ASCII)
 
 
-def found(connection: Connection, statement: Executable) -> Sequence[Row]:
-    """What a statement finds."""
+def fetch_rows(connection: Connection, statement: Executable) -> Sequence[Row]:
+    """Execute a statement, and return its rows as dictionaries."""
     return [{**row} for row in connection.execute(statement).mappings()]
 
 
 def _undecoded(column: ColumnElement[Any], name: str) -> ColumnElement[Any]:
-    """A column as the database has it: JSON and times as text, text cut where it is too long."""
+    """Return a column without type decoding: JSON and times as text, truncated if too long."""
     if name == "id":
         return type_coerce(column, String).label(name)
     if isinstance(column.type, JsonWithNan | UtcTime):
-        return func.substr(cast(column, String), 1, MAX_CELL + 1).label(name)
+        return func.substr(cast(column, String), 1, MAX_CELL_CHARS + 1).label(name)
     if isinstance(column.type, PortableText):
-        return func.substr(type_coerce(column, String), 1, MAX_CELL + 1).label(name)
+        return func.substr(type_coerce(column, String), 1, MAX_CELL_CHARS + 1).label(name)
     return column.label(name)
 
 
 RAW_RUN = tuple(_undecoded(column, column.name) for column in RUNS.c)
-"""The columns of a run, for SELECT and RETURNING; `rows.any_run_of` decodes them."""
+"""Undecoded columns of a run, for SELECT and RETURNING; `rows.try_decode_run` decodes them."""
 
 
 def select_runs() -> Select[Any]:
-    """The rows of runs, undecoded."""
+    """Return a SELECT of the undecoded rows of runs."""
     return select(*RAW_RUN)
 
 
-def row_of_run(connection: Connection, run_id: str, and_hold: bool = False) -> Row:
-    """The row of a run, which nobody else changes before the transaction ends if it is held.
+def fetch_run_row(connection: Connection, run_id: str, for_update: bool = False) -> Row:
+    """Return the undecoded row of a run.
+
+    Args:
+        connection: with an open transaction.
+        run_id: public id of the run.
+        for_update: lock the row until the transaction ends (SELECT … FOR UPDATE).
 
     Raises:
-        NotFound: if there is none.
+        NotFound: if there is no such run.
     """
-    wanted = select_runs().where(is_run(connection, run_id))
-    rows = found(connection, wanted.with_for_update() if and_hold else wanted)
+    query = select_runs().where(has_public_id(connection, run_id))
+    rows = fetch_rows(connection, query.with_for_update() if for_update else query)
     if not rows:
         raise NotFound(f"there is no run {run_id!r} (any more)")
     return rows[0]
 
 
-def shown_id(stored: object) -> str:
-    """The id of a row as the world knows it: its own, or a digest if it is fit for no address."""
-    if isinstance(stored, str) and _ADDRESS.fullmatch(stored):
+def public_id(stored: object) -> str:
+    """Return the id of a row as used outside of the database: a digest if it is not URL-safe."""
+    if isinstance(stored, str) and _PUBLIC_ID.fullmatch(stored):
         return stored
     return f"damaged-{hashlib.sha256(_bytes(stored)).hexdigest()[:16]}"
 
 
-def is_run(connection: Connection, run_id: str) -> ColumnElement[bool]:
-    """That a row is of the run with this shown id."""
+def has_public_id(connection: Connection, run_id: str) -> ColumnElement[bool]:
+    """Return the condition that a row has this public id."""
     stored = _stored_id(connection, run_id)
     return RUNS.c.id == run_id if stored is None else cast(RUNS.c.id, LargeBinary) == stored
 
 
-def is_before(connection: Connection, run_id: str) -> ColumnElement[bool]:
-    """That a row sorts before that with this shown id."""
+def sorts_before(connection: Connection, run_id: str) -> ColumnElement[bool]:
+    """Return the condition that a row's id sorts before the one with this public id."""
     stored = _stored_id(connection, run_id)
     return RUNS.c.id < run_id if stored is None else cast(RUNS.c.id, LargeBinary) < stored
 
 
 def _stored_id(connection: Connection, run_id: str) -> bytes | None:
-    """The id in the database, where the shown one is but its digest."""
+    """Return the stored id whose digest is this public id; None if the id is not a digest."""
     if not run_id.startswith("damaged-"):
         return None
     stored = connection.execute(select(type_coerce(RUNS.c.id, String))).scalars()
-    return next((_bytes(one) for one in stored if shown_id(one) == run_id), None)
+    return next((_bytes(one) for one in stored if public_id(one) == run_id), None)
 
 
 def _bytes(stored: object) -> bytes:

@@ -1,4 +1,4 @@
-"""Looks into the store of a server, which may run meanwhile, and changes nothing in it."""
+"""Open the store of a data folder read-only, also while its server runs."""
 
 import sqlite3
 from collections.abc import Iterator
@@ -24,10 +24,10 @@ from app.storage.store import RunStore
 
 @contextmanager
 def open_read_only(settings: Settings) -> Iterator[RunStore]:
-    """The store as it is, for who only reads; empty where no server has ever been.
+    """Open the store read-only; an empty one if no server has ever used this data folder.
 
     Raises:
-        InvalidInput: if another version's server made it.
+        InvalidInput: if it has the schema of another version.
         DamagedFile: if the database is damaged.
         StorageFailed: if it cannot be read.
     """
@@ -36,18 +36,18 @@ def open_read_only(settings: Settings) -> Iterator[RunStore]:
         yield MemoryStore()
         return
     with closing(Database(engine)) as database:
-        found = database.read(_id)
-        if found is None:
+        database_id = database.read(_id)
+        if database_id is None:
             yield MemoryStore()
             return
-        folder = settings.data / ARTIFACTS_FOLDER / found
+        folder = settings.data / ARTIFACTS_FOLDER / database_id
         yield SqlStore(database, ArtifactFiles(folder, DiskSpace(settings.data)))
 
 
 def _engine(settings: Settings) -> Engine | None:
     if settings.database_url is not None:
         engine = postgresql_engine(settings.database_url)
-        event.listen(engine, "connect", _only_read)
+        event.listen(engine, "connect", _set_read_only)
         return engine
     path = settings.data / DATABASE_FILE
     check_file(path, settings.data / ARTIFACTS_FOLDER)
@@ -56,9 +56,9 @@ def _engine(settings: Settings) -> Engine | None:
 
 def _sqlite_engine(path: Path) -> Engine:
     def connect() -> sqlite3.Connection:
-        # Not by a path: only a URI can ask for no writing.
-        address = f"file:{quote(str(path))}?mode=ro"
-        connection = sqlite3.connect(address, timeout=BUSY_S, isolation_level=None, uri=True)
+        # By URI, because read-only mode is available there only.
+        uri = f"file:{quote(str(path))}?mode=ro"
+        connection = sqlite3.connect(uri, timeout=BUSY_S, isolation_level=None, uri=True)
         decode_leniently(connection)
         return connection
 
@@ -67,14 +67,14 @@ def _sqlite_engine(path: Path) -> Engine:
     return engine
 
 
-def _only_read(connection: object, record: object) -> None:
+def _set_read_only(connection: object, record: object) -> None:
     del record
     connection.read_only = True  # type: ignore[attr-defined] # psycopg's
 
 
 def _id(connection: Connection) -> str | None:
-    """The id of the database; None if no server got as far as to make its tables."""
+    """Return the id of the database; None if its tables do not exist yet."""
     if not check_current(connection):
         return None
-    found: str | None = connection.execute(select(ABOUT.c.id)).scalar()
-    return found
+    database_id: str | None = connection.execute(select(ABOUT.c.id)).scalar()
+    return database_id

@@ -1,4 +1,4 @@
-"""Runs as rows of the database, and back."""
+"""Encode runs as rows of the database, and decode them, tolerating damaged rows."""
 
 import json
 from collections.abc import Mapping
@@ -10,31 +10,31 @@ from typing import Any, TypeVar
 from app.domain.text import visible
 from app.runs.config import RaceConfig
 from app.storage.configs import CONFIGS, config_as_json, config_of
-from app.storage.database.columns import decoded
-from app.storage.database.queries import MAX_CELL, shown_id
+from app.storage.database.columns import decode_json
+from app.storage.database.queries import MAX_CELL_CHARS, public_id
 from app.storage.errors import Damaged
 from app.storage.store import KINDS, STATES, AnyRun, Config, DamagedRun, Run
 
-MAX_ERROR = 10_000
-"""Characters of a run's error; an agent of one's own may raise one of any length."""
+MAX_ERROR_CHARS = 10_000
+"""Maximum length of a run's error; exceptions of user-defined agents may be longer."""
 MAX_COUNT = 2**53
-"""Of steps or trials: beyond it JavaScript no longer counts by ones."""
+"""Maximum of steps or trials: JavaScript's largest exact integer."""
 _MAX_TEXT = 10_000
-_SHORT = 10_000
-"""Characters of a config that is kept in memory once it was parsed."""
+_MAX_CACHED_CONFIG_CHARS = 10_000
+"""Longer configs are parsed anew each time instead of being cached."""
 _JSON = ("lane_training_ids", "waiting_for", "changes", "result")
 _LISTS: Mapping[str, Any] = {"lane_training_ids": str | None, "waiting_for": str, "changes": dict}
 _TIMES = ("created_at", "started_at", "ended_at")
 T = TypeVar("T")
 
 
-def row_of(run: Run) -> dict[str, Any]:
-    """All columns of a run."""
-    return columns_of({field.name: getattr(run, field.name) for field in fields(run)})
+def encode_run(run: Run) -> dict[str, Any]:
+    """Encode a run as a row with all columns."""
+    return encode_fields({field.name: getattr(run, field.name) for field in fields(run)})
 
 
-def columns_of(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Some fields of a run as the columns take them."""
+def encode_fields(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Encode some fields of a run as column values."""
     columns = dict(values)
     config: Config | None = columns.get("config")
     if config is not None:
@@ -43,47 +43,47 @@ def columns_of(values: Mapping[str, Any]) -> dict[str, Any]:
         if name in columns:
             columns[name] = [dict(v) if isinstance(v, Mapping) else v for v in columns[name]]
     error = columns.get("error")
-    if error is not None and len(error) > MAX_ERROR:
-        columns["error"] = f"{error[: MAX_ERROR - 1]}…"
+    if error is not None and len(error) > MAX_ERROR_CHARS:
+        columns["error"] = f"{error[: MAX_ERROR_CHARS - 1]}…"
     return columns
 
 
-def run_of(row: Mapping[str, Any]) -> Run:
-    """The run of an undecoded row.
+def decode_run(row: Mapping[str, Any]) -> Run:
+    """Decode a row that `queries` read.
 
     Raises:
-        Damaged: if this version cannot read it.
+        Damaged: if this version cannot decode it.
     """
-    run = any_run_of(row)
+    run = try_decode_run(row)
     if isinstance(run, DamagedRun):
         raise Damaged(run.id, run.damaged)
     return run
 
 
-def any_run_of(row: Mapping[str, Any]) -> AnyRun:
-    """The run of an undecoded row, or what of it can be read."""
+def try_decode_run(row: Mapping[str, Any]) -> AnyRun:
+    """Decode a row that `queries` read; return a `DamagedRun` if that fails."""
     try:
-        return Run(**_fields(row))
-    except Exception as error:  # a config of another version may raise anything
+        return Run(**_decode_fields(row))
+    except Exception as error:  # parsing a config of another version may raise anything
         return DamagedRun(
-            id=shown_id(row["id"]),
+            id=public_id(row["id"]),
             kind=row["kind"] if row["kind"] in KINDS else None,
             name=visible(row["name"])[:_MAX_TEXT] if isinstance(row["name"], str) else None,
             state=row["state"] if row["state"] in STATES else None,
-            created_at=_or_none(row["created_at"]),
-            damaged=f"this version cannot read what the database holds of it ({_said(error)})",
+            created_at=_created_at_or_none(row["created_at"]),
+            damaged=f"this version cannot read what the database holds of it ({_describe(error)})",
         )
 
 
-def _fields(row: Mapping[str, Any]) -> dict[str, Any]:
+def _decode_fields(row: Mapping[str, Any]) -> dict[str, Any]:
     values = {**row, **{name: _json(name, row[name]) for name in _JSON}}
     values |= {name: _time(name, row[name]) for name in _TIMES}
     for name in ("name", "error", "continued_from"):
         values[name] = _text(name, row[name], is_needed=name == "name")
-    _check_plain(row, values)
+    _check_scalars(row, values)
     for name, kinds in _LISTS.items():
         values[name] = tuple(_list(name, values[name], kinds))
-    parse = _config if len(row["config"]) <= _SHORT else _config.__wrapped__
+    parse = _config if len(row["config"]) <= _MAX_CACHED_CONFIG_CHARS else _config.__wrapped__
     values["config"] = config = parse(row["kind"], row["config"])
     if not isinstance(config, CONFIGS[row["kind"]]):
         raise ValueError("its config is that of another kind")
@@ -94,12 +94,12 @@ def _fields(row: Mapping[str, Any]) -> dict[str, Any]:
 
 @lru_cache(maxsize=512)
 def _config(kind: str, text: str) -> Config:
-    """The config in a column; most runs share theirs with others, and parsing takes the longest."""
+    """Parse a config, cached: parsing dominates a listing, and many runs have the same config."""
     return config_of(kind, _json("config", text))
 
 
-def _check_plain(row: Mapping[str, Any], values: Mapping[str, Any]) -> None:
-    if shown_id(row["id"]) != row["id"]:
+def _check_scalars(row: Mapping[str, Any], values: Mapping[str, Any]) -> None:
+    if public_id(row["id"]) != row["id"]:
         raise ValueError("its id is none")
     for name, choices in (("kind", KINDS), ("state", STATES)):
         if row[name] not in choices:
@@ -118,23 +118,23 @@ def _check_plain(row: Mapping[str, Any], values: Mapping[str, Any]) -> None:
 def _json(name: str, text: Any) -> Any:
     if text is None:
         return None
-    if len(text) > MAX_CELL:
+    if len(text) > MAX_CELL_CHARS:
         raise ValueError(f"its {name} is too long")
-    return decoded(json.loads(text))
+    return decode_json(json.loads(text))
 
 
 def _time(name: str, text: Any) -> datetime | None:
     if text is None:
         return None
     moment = datetime.fromisoformat(text)
-    # SQLite knows no time zones.
+    # SQLite drops the time zone.
     moment = moment.replace(tzinfo=UTC) if moment.tzinfo is None else moment.astimezone(UTC)
     if not 1970 <= moment.year < 9999:
         raise ValueError(f"its {name} is no date of ours")
     return moment
 
 
-def _or_none(text: Any) -> datetime | None:
+def _created_at_or_none(text: Any) -> datetime | None:
     try:
         return _time("created_at", text)
     except (ValueError, TypeError, OverflowError):
@@ -147,8 +147,8 @@ def _text(name: str, value: Any, *, is_needed: bool) -> str | None:
     if not isinstance(value, str):
         raise ValueError(f"its {name} is no text")
     if name == "error":
-        # Of several lines, where an agent's exception is.
-        return value[:MAX_ERROR].encode("utf-8", "replace").decode()
+        # Not checked by `visible`: an agent's exception may have several lines.
+        return value[:MAX_ERROR_CHARS].encode("utf-8", "replace").decode()
     if len(value) > _MAX_TEXT:
         raise ValueError(f"its {name} is too long")
     return visible(value)
@@ -167,5 +167,5 @@ def _list(name: str, value: Any, kinds: Any) -> list[Any]:
     return value
 
 
-def _said(error: Exception) -> str:
+def _describe(error: Exception) -> str:
     return visible(f"{type(error).__name__}: {error}" if str(error) else type(error).__name__)[:300]

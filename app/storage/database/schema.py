@@ -1,4 +1,4 @@
-"""The tables as this version knows them; `migrations` makes them, and brings older ones here."""
+"""Table definitions of this version's schema; `migrations` creates and upgrades them."""
 
 from sqlalchemy import BigInteger, Column, Double, ForeignKey, Index, MetaData, Table
 
@@ -9,10 +9,10 @@ METADATA = MetaData()
 ABOUT = Table(
     "about",
     METADATA,
-    # The one row names the folder of this database's files, so that no other database's server
-    # takes them for nobody's.
+    # Id of the database (one row); names the folder of its artifact files, so that a server with
+    # another database does not delete them as orphans.
     Column("id", PortableText, primary_key=True),
-    # Fencing token: rises with every server that opens the database, and every write checks it.
+    # Fencing token: incremented by every server that claims the database, checked by every write.
     Column("owner", BigInteger, nullable=False, server_default="0"),
 )
 
@@ -48,7 +48,7 @@ EVALUATIONS = Table(
     METADATA,
     Column("run_id", PortableText, ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True),
     Column("step", BigInteger, primary_key=True, autoincrement=False),
-    # NULL is NaN: SQLite knows no other.
+    # NULL stands for NaN, which SQLite cannot store.
     Column("distance_m", Double),
     Column("epsilon", Double),
 )
@@ -78,9 +78,9 @@ IDEMPOTENCY_KEYS = Table(
     "idempotency_keys",
     METADATA,
     Column("key", PortableText, primary_key=True),
-    # SHA-256 of the request, so that a key is not taken for another one.
+    # SHA-256 of the request, to reject a key that is reused with another request.
     Column("digest", PortableText, nullable=False),
-    # No foreign key: a run that was deleted was started all the same.
+    # No foreign key: the key must outlive its run, or a retry would start a deleted run again.
     Column("run_id", PortableText, nullable=False),
     Column("created_at", UtcTime, nullable=False),
     Index("ix_idempotency_keys_created_at", "created_at"),
@@ -89,9 +89,9 @@ IDEMPOTENCY_KEYS = Table(
 SESSIONS = Table(
     "sessions",
     METADATA,
-    # Hashes only: whoever reads the database cannot become an operator by it.
+    # Only hashes are stored, so that read access to the database does not give away sessions.
     Column("id_sha256", PortableText, primary_key=True),
-    # A server with another token knows none of the sessions of this one.
+    # Sessions are valid only with the access token that opened them.
     Column("token_sha256", PortableText, nullable=False),
     Column("created_at", UtcTime, nullable=False),
     Column("expires_at", UtcTime, nullable=False),

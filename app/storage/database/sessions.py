@@ -1,4 +1,4 @@
-"""Sessions of operators' browsers in the database."""
+"""Rows of the `sessions` table: browser sessions of operators."""
 
 from collections.abc import Collection, Sequence
 
@@ -10,24 +10,24 @@ from app.storage.sessions import SessionRow
 
 
 class SqlSessionRows:
-    """Implements `SessionRows`."""
+    """Implements `SessionRows` in a database."""
 
     def __init__(self, database: Database) -> None:
-        """Keep them in a database."""
+        """Use the sessions of a database."""
         self._database = database
 
     def load(self) -> Sequence[SessionRow]:
-        """All that are stored, the oldest first."""
-        wanted = select(SESSIONS).order_by(SESSIONS.c.created_at)
-        rows = self._database.read(lambda connection: connection.execute(wanted).mappings().all())
+        """Return all stored sessions, oldest first."""
+        query = select(SESSIONS).order_by(SESSIONS.c.created_at)
+        rows = self._database.read(lambda connection: connection.execute(query).mappings().all())
         return [SessionRow(**row) for row in rows]
 
     def add(self, row: SessionRow) -> None:
-        """Store one more."""
+        """Store a session."""
         statement = insert(SESSIONS).values(row._asdict())
         self._database.write(lambda connection: connection.execute(statement))
 
     def remove(self, ids_sha256: Collection[str]) -> None:
-        """Forget some."""
+        """Delete the sessions with these hashed ids."""
         statement = delete(SESSIONS).where(SESSIONS.c.id_sha256.in_(ids_sha256))
         self._database.write(lambda connection: connection.execute(statement))

@@ -1,4 +1,4 @@
-"""The store that lasts: rows in a database, arrays in files beside it."""
+"""`RunStore` in a database: rows in SQLite or PostgreSQL, artifacts in files beside it."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
@@ -20,23 +20,23 @@ from sqlalchemy import (
 
 from app.domain.errors import DamagedFile
 from app.storage.artifact_file import ArtifactFile
-from app.storage.artifacts import ArtifactFiles, Stored
+from app.storage.artifacts import ArtifactFiles, StoredFile
 from app.storage.database.columns import UtcTime
 from app.storage.database.curves import Curves
 from app.storage.database.engine import Database
 from app.storage.database.keys import Keys
-from app.storage.database.progress import Progress
+from app.storage.database.progress import ProgressCache
 from app.storage.database.queries import (
     RAW_RUN,
     Row,
-    found,
-    is_before,
-    is_run,
-    row_of_run,
+    fetch_rows,
+    fetch_run_row,
+    has_public_id,
+    public_id,
     select_runs,
-    shown_id,
+    sorts_before,
 )
-from app.storage.database.rows import any_run_of, columns_of, row_of, run_of
+from app.storage.database.rows import decode_run, encode_fields, encode_run, try_decode_run
 from app.storage.database.schema import ARTIFACTS, RUNS
 from app.storage.database.sessions import SqlSessionRows
 from app.storage.database.trials import Trials
@@ -51,42 +51,42 @@ from app.storage.store import (
     Content,
     DamagedRun,
     IdempotencyKey,
+    KeyRecord,
     Kind,
     Page,
     Run,
-    Started,
     State,
 )
 
 T = TypeVar("T")
-_DIED = "The server ended before the run did."
+_INTERRUPTED_ERROR = "The server ended before the run did."
 _FILE = (ARTIFACTS.c.file, ARTIFACTS.c.size, ARTIFACTS.c.sha256)
 
 
 class SqlStore:
-    """Implements `RunStore`. What a call has done when it returns lasts, but for progress.
+    """Implements `RunStore` in a database. Calls are durable on return, except `update_progress`.
 
-    Every call may also raise `StorageFailed`, if the database cannot be used, and those that
-    write `StorageFull`; nothing has changed then.
+    Every call may also raise `StorageFailed` if the database is unavailable, and every write
+    `StorageFull`; nothing has changed then.
     """
 
     def __init__(self, database: Database, files: ArtifactFiles) -> None:
         self._database, self._files = database, files
-        self._progress = Progress()
+        self._progress = ProgressCache()
         self._curves, self._trials, self._keys = Curves(database), Trials(database), Keys(database)
         self.sessions = SqlSessionRows(database)
 
-    def check_room(self) -> None:
-        self._files.check_room(START_BYTES)
+    def check_disk_space(self) -> None:
+        self._files.check_disk_space(START_BYTES)
 
     def create(self, *runs: Run, key: IdempotencyKey | None = None) -> None:
         if not runs:
             return
-        rows = [row_of(run) for run in runs]
+        rows = [encode_run(run) for run in runs]
 
         def work(connection: Connection) -> None:
             connection.execute(insert(RUNS), rows)
-            self._keys.note(connection, key, runs[-1].id)
+            self._keys.insert(connection, key, runs[-1].id)
 
         self._database.write(work)
 
@@ -97,34 +97,36 @@ class SqlStore:
         new_id: Callable[[], str],
         key: IdempotencyKey | None = None,
     ) -> Run:
-        stored: dict[str, Stored] = {}
-        was_asked = False
+        stored: dict[str, StoredFile] = {}
+        was_submitted = False
 
         def work(connection: Connection) -> Run:
-            taken = connection.execute(select(RUNS.c.id).where(RUNS.c.id == run.id)).first()
-            added = run if taken is None else replace(run, id=new_id())
-            connection.execute(insert(RUNS), [row_of(added)])
+            existing = connection.execute(select(RUNS.c.id).where(RUNS.c.id == run.id)).first()
+            added = run if existing is None else replace(run, id=new_id())
+            connection.execute(insert(RUNS), [encode_run(added)])
             self._curves.insert(connection, added.id, content.evaluations)
             self._trials.insert(connection, added.id, content.trials)
             if stored:
-                connection.execute(insert(ARTIFACTS), _rows_of(added.id, stored))
-            self._keys.note(connection, key, added.id)
-            # As it will be read, so that what cannot be is not taken in.
-            return run_of(row_of_run(connection, added.id))
+                connection.execute(insert(ARTIFACTS), _artifact_rows(added.id, stored))
+            self._keys.insert(connection, key, added.id)
+            # Decoded again, so that a run that could not be read later is rejected now.
+            return decode_run(fetch_run_row(connection, added.id))
 
         try:
-            # Files first: whatever ends this process leaves no row, and the next start sweeps up.
+            # Files first: a crash then leaves orphaned files, which the next start deletes, but
+            # never a row without its files.
             for name, data in content.artifacts.items():
                 stored[name] = self._files.write(data)
-            was_asked = True
+            was_submitted = True
             return self._database.write(work)
         except BaseException as error:
-            # A database that fails may have taken it all the same, and the next start knows.
-            if not (was_asked and isinstance(error, StorageFailed)):
+            # After an outage the transaction may have been committed with its reply lost. The
+            # files stay then; if they are orphans, the next start deletes them.
+            if not (was_submitted and isinstance(error, StorageFailed)):
                 self._files.remove(*(one.file for one in stored.values()))
             raise
 
-    def started_by(self, key: str) -> Started | None:
+    def find_key(self, key: str) -> KeyRecord | None:
         return self._keys.find(key)
 
     def get(self, run_id: str) -> Run:
@@ -134,10 +136,11 @@ class SqlStore:
         return run
 
     def find(self, run_id: str) -> AnyRun:
-        # Before the row, which has it once it is forgotten: so progress never goes back.
-        progress = self._progress.of(run_id)
-        row = self._database.read(lambda connection: row_of_run(connection, run_id))
-        return any_run_of(_newest(row, progress))
+        # Read before the row: an entry is dropped only after its row was written, so that the
+        # progress seen by a reader never decreases.
+        progress = self._progress.get(run_id)
+        row = self._database.read(lambda connection: fetch_run_row(connection, run_id))
+        return try_decode_run(_with_progress(row, progress))
 
     def list(
         self,
@@ -146,120 +149,125 @@ class SqlStore:
         limit: int = 50,
         cursor: str | None = None,
     ) -> Page:
-        wanted = select_runs().order_by(RUNS.c.id.desc()).limit(limit + 1)
+        newest_first = select_runs().order_by(RUNS.c.id.desc()).limit(limit + 1)
         if state is not None:
-            wanted = wanted.where(RUNS.c.state == state)
+            newest_first = newest_first.where(RUNS.c.state == state)
 
         def work(connection: Connection) -> Sequence[Row]:
-            asked = wanted
+            query = newest_first
             if kind is not None:
-                asked = asked.where(_is_of_kind(connection, kind))
+                query = query.where(_is_of_kind(connection, kind))
             if cursor is not None:
-                asked = asked.where(is_before(connection, cursor))
-            return found(connection, asked)
+                query = query.where(sorts_before(connection, cursor))
+            return fetch_rows(connection, query)
 
-        progress = self._progress.newest()
+        progress = self._progress.snapshot()
         rows = self._database.read(work)
         return Page(
-            [any_run_of(_newest(row, progress.get(row["id"], {}))) for row in rows[:limit]],
-            shown_id(rows[limit - 1]["id"]) if len(rows) > limit else None,
+            [
+                try_decode_run(_with_progress(row, progress.get(row["id"], {})))
+                for row in rows[:limit]
+            ],
+            public_id(rows[limit - 1]["id"]) if len(rows) > limit else None,
         )
 
     def counts(self) -> Mapping[State, int]:
-        wanted = select(RUNS.c.state, func.count()).group_by(RUNS.c.state)
-        rows = self._database.read(lambda connection: connection.execute(wanted).all())
+        query = select(RUNS.c.state, func.count()).group_by(RUNS.c.state)
+        rows = self._database.read(lambda connection: connection.execute(query).all())
         return {state: count for state, count in rows}  # noqa: C416 - as a dict of plain types
 
     def change(
         self, run_id: str, from_states: Collection[State], to_state: State, **fields: Any
     ) -> Run:
-        progress = self._progress.of(run_id)
-        columns = columns_of({**progress, "eta_s": None, "state": to_state, **fields})
-        still = update(RUNS).where(RUNS.c.id == run_id, RUNS.c.state.in_(from_states))
+        progress = self._progress.get(run_id)
+        columns = encode_fields({**progress, "eta_s": None, "state": to_state, **fields})
+        unchanged = update(RUNS).where(RUNS.c.id == run_id, RUNS.c.state.in_(from_states))
         attempts = 0
 
         def work(connection: Connection) -> Row:
             nonlocal attempts
             attempts += 1
-            changed = found(connection, still.values(columns).returning(*RAW_RUN))
+            changed = fetch_rows(connection, unchanged.values(columns).returning(*RAW_RUN))
             if not changed:
-                run = row_of_run(connection, run_id)
+                run = fetch_run_row(connection, run_id)
                 if attempts > 1 and run["state"] == to_state:
-                    # The first attempt was committed, and its answer lost in an outage.
+                    # The first attempt was committed, and its reply lost in an outage.
                     return run
                 raise Conflict(f"{run['kind']} {run_id} is {run['state']}", run["state"])
             return changed[0]
 
         row = self._database.write(work)
         if to_state in LIVE:
-            self._progress.forget_estimate(run_id)
+            self._progress.drop_estimate(run_id)
         else:
-            self._progress.forget(run_id)
-        return run_of(_newest(row, {}))
+            self._progress.drop(run_id)
+        return decode_run(_with_progress(row, {}))
 
     def update(self, run_id: str, **fields: Any) -> Run:
-        progress = self._progress.of(run_id)
-        values = columns_of(fields)
+        progress = self._progress.get(run_id)
+        values = encode_fields(fields)
         statement = update(RUNS).where(RUNS.c.id == run_id).values(values).returning(*RAW_RUN)
 
         def work(connection: Connection) -> Row:
-            changed = found(connection, statement)
-            return changed[0] if changed else row_of_run(connection, run_id)
+            changed = fetch_rows(connection, statement)
+            return changed[0] if changed else fetch_run_row(connection, run_id)
 
         row = self._database.write(work)
-        self._note_written(run_id, fields)
-        return run_of(_newest(row, {k: v for k, v in progress.items() if k not in fields}))
+        self._invalidate_progress(run_id, fields)
+        return decode_run(
+            _with_progress(row, {k: v for k, v in progress.items() if k not in fields})
+        )
 
     def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> Run:
-        if self._progress.note(run_id, {"done": done, "eta_s": eta_s}):
+        if self._progress.put(run_id, {"done": done, "eta_s": eta_s}):
             statement = update(RUNS).where(RUNS.c.id == run_id).values(done=done, eta_s=eta_s)
             self._database.write(lambda connection: connection.execute(statement))
         return self.get(run_id)
 
     def delete(self, run_id: str) -> None:
         def work(connection: Connection) -> Sequence[str]:
-            row = row_of_run(connection, run_id, and_hold=True)
+            row = fetch_run_row(connection, run_id, for_update=True)
             state = row["state"]
             if state in UNENDED:
                 raise Conflict(f"{row['kind']} {run_id} is {state}; stop it first", state)
-            is_it = is_run(connection, run_id)
+            is_this_run = has_public_id(connection, run_id)
             files = select(ARTIFACTS.c.file).where(
-                ARTIFACTS.c.run_id.in_(select(RUNS.c.id).where(is_it))
+                ARTIFACTS.c.run_id.in_(select(RUNS.c.id).where(is_this_run))
             )
             names = connection.execute(files).scalars().all()
-            connection.execute(delete(RUNS).where(is_it))
+            connection.execute(delete(RUNS).where(is_this_run))
             return names
 
         self._files.remove(*self._database.write(work))
-        self._progress.forget(run_id)
+        self._progress.drop(run_id)
 
     def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
         self._curves.append(run_id, rows)
 
     def evaluations(self, run_id: str) -> Sequence[Mapping[str, Any]]:
-        return self._curves.of(run_id)
+        return self._curves.get(run_id)
 
-    def forget_evaluations(self, run_id: str, after_step: int) -> None:
-        self._curves.forget(run_id, after_step)
+    def delete_evaluations(self, run_id: str, after_step: int) -> None:
+        self._curves.delete_after(run_id, after_step)
 
     def append_trials(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
         self._trials.append(run_id, rows)
 
     def trials(self, run_id: str) -> Sequence[Mapping[str, Any]]:
-        return self._trials.of(run_id)
+        return self._trials.get(run_id)
 
     def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
         self.get(run_id)
-        columns = columns_of(fields)
+        columns = encode_fields(fields)
         stored = self._files.write(data)
         of_this_name = ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name
 
         def work(connection: Connection) -> Sequence[str]:
-            row_of_run(connection, run_id, and_hold=True)
+            fetch_run_row(connection, run_id, for_update=True)
             former = select(ARTIFACTS.c.file).where(*of_this_name)
             names = connection.execute(former).scalars().all()
             connection.execute(delete(ARTIFACTS).where(*of_this_name))
-            connection.execute(insert(ARTIFACTS), _rows_of(run_id, {name: stored}))
+            connection.execute(insert(ARTIFACTS), _artifact_rows(run_id, {name: stored}))
             if columns:
                 of_run = RUNS.c.id == run_id
                 connection.execute(update(RUNS).where(of_run).values(columns))
@@ -268,84 +276,96 @@ class SqlStore:
         try:
             former = self._database.write(work)
         except BaseException as error:
-            # A database that fails may have taken it all the same, and the next start knows.
+            # As in `add`: after an outage the transaction may have been committed.
             if not isinstance(error, StorageFailed):
                 self._files.remove(stored.file)
             raise
-        self._note_written(run_id, fields)
-        # Itself is among them if the answer to a first attempt was lost.
+        self._invalidate_progress(run_id, fields)
+        # After a retried commit the new file itself is among the former ones.
         self._files.remove(*(name for name in former if name != stored.file))
 
     def artifact(self, run_id: str, name: str) -> bytes | None:
-        return self._found(run_id, name, self._files.read)
+        return self._read_artifact(run_id, name, self._files.read)
 
     def open_artifact(self, run_id: str, name: str) -> ArtifactFile | None:
-        return self._found(run_id, name, self._files.open)
+        return self._read_artifact(run_id, name, self._files.open)
 
-    def _found(self, run_id: str, name: str, read: Callable[[Stored, str], T]) -> T | None:
-        said = f"{name} of run {run_id}"
-        missing: Stored | None = None
-        while (stored := self._stored(run_id, name)) is not None:
+    def _read_artifact(
+        self, run_id: str, name: str, read: Callable[[StoredFile, str], T]
+    ) -> T | None:
+        label = f"{name} of run {run_id}"
+        missing: StoredFile | None = None
+        while (stored := self._artifact_row(run_id, name)) is not None:
             try:
-                return read(stored, said)
+                return read(stored, label)
             except FileNotFoundError as error:
-                # It may have made way for a newer one since we asked.
+                # A concurrent `put_artifact` may have replaced it since the query: look again.
                 if stored == missing:
-                    raise DamagedFile(f"{said} is missing from the data folder") from error
+                    raise DamagedFile(f"{label} is missing from the data folder") from error
                 missing = stored
         return None
 
     def interrupt_all(self) -> Sequence[str]:
-        """Mark every run that has not ended as interrupted: the server that ran it is dead.
+        """Mark every unended run as interrupted, after the server that ran it crashed.
 
         Returns:
-            their ids.
+            ids of these runs.
         """
         now = literal(datetime.now(UTC), UtcTime)
-        # The clock may have been put back since it began.
+        # The clock may have been set back since the run started.
         ended_at = case((RUNS.c.started_at > now, RUNS.c.started_at), else_=now)
         statement = (
             update(RUNS)
             .where(RUNS.c.state.in_(UNENDED))
-            .values(state="interrupted", error=_DIED, eta_s=None, waiting_for=[], ended_at=ended_at)
+            .values(
+                state="interrupted",
+                error=_INTERRUPTED_ERROR,
+                eta_s=None,
+                waiting_for=[],
+                ended_at=ended_at,
+            )
             .returning(RUNS.c.id)
         )
         return self._database.write(
             lambda connection: connection.execute(statement).scalars().all()
         )
 
-    def sweep(self) -> int:
-        """Remove the files that no run has; to be called before anyone writes.
+    def delete_orphans(self) -> int:
+        """Delete the artifact files that no run references; only safe before the first write.
 
         Returns:
-            how many files that were.
+            the number of deleted files.
         """
-        known = select(ARTIFACTS.c.file)
-        files = self._database.read(lambda connection: connection.execute(known).scalars().all())
-        return self._files.sweep(files)
+        names = select(ARTIFACTS.c.file)
+        files = self._database.read(lambda connection: connection.execute(names).scalars().all())
+        return self._files.delete_orphans(files)
 
-    def _note_written(self, run_id: str, fields: Mapping[str, Any]) -> None:
+    def _invalidate_progress(self, run_id: str, fields: Mapping[str, Any]) -> None:
         if "done" in fields:
-            self._progress.forget(run_id)
+            self._progress.drop(run_id)
 
-    def _stored(self, run_id: str, name: str) -> Stored | None:
-        wanted = select(*_FILE).where(ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name)
+    def _artifact_row(self, run_id: str, name: str) -> StoredFile | None:
+        query = select(*_FILE).where(ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name)
 
         def work(connection: Connection) -> Sequence[Row]:
-            row_of_run(connection, run_id)
-            return found(connection, wanted)
+            fetch_run_row(connection, run_id)
+            return fetch_rows(connection, query)
 
         rows = self._database.read(work)
-        return Stored(**rows[0]) if rows else None
+        return StoredFile(**rows[0]) if rows else None
 
 
 def _is_of_kind(connection: Connection, kind: Kind) -> ColumnElement[bool]:
-    """That a run is of this kind, or may be, since its own cannot be read."""
-    odd = connection.execute(select(RUNS.c.id).where(RUNS.c.kind.not_in(KINDS))).scalars().all()
-    return or_(RUNS.c.kind == kind, RUNS.c.kind.not_in(KINDS)) if odd else RUNS.c.kind == kind
+    """Return the condition that a run is of this kind, or of an unknown (damaged) kind.
+
+    The second part is added only if there are such runs, because it prevents the use of an index.
+    """
+    is_unknown = RUNS.c.kind.not_in(KINDS)
+    unknown = connection.execute(select(RUNS.c.id).where(is_unknown)).scalars().all()
+    return or_(RUNS.c.kind == kind, is_unknown) if unknown else RUNS.c.kind == kind
 
 
-def _rows_of(run_id: str, stored: Mapping[str, Stored]) -> list[Row]:
+def _artifact_rows(run_id: str, stored: Mapping[str, StoredFile]) -> list[Row]:
     now = datetime.now(UTC)
     return [
         {"run_id": run_id, "name": name, "written_at": now, **one._asdict()}
@@ -353,9 +373,9 @@ def _rows_of(run_id: str, stored: Mapping[str, Stored]) -> list[Row]:
     ]
 
 
-def _newest(row: Row, progress: Mapping[str, Any]) -> Row:
-    """A row with newer progress while a process works on its run."""
-    newest = {**row, **progress} if row["state"] in LIVE else dict(row)
+def _with_progress(row: Row, progress: Mapping[str, Any]) -> Row:
+    """Merge cached progress into the row of a live run; only a running one has an estimate."""
+    merged = {**row, **progress} if row["state"] in LIVE else dict(row)
     if row["state"] not in RUNNING:
-        newest["eta_s"] = None
-    return newest
+        merged["eta_s"] = None
+    return merged

@@ -1,4 +1,4 @@
-"""The trials of experiments, as rows."""
+"""Rows of the `trials` table: the trials of experiments."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -7,26 +7,26 @@ from typing import Any
 from sqlalchemy import Connection, String, bindparam, cast, delete, insert, select
 
 from app.domain.text import visible
-from app.storage.database.columns import decoded
+from app.storage.database.columns import decode_json
 from app.storage.database.engine import Database
-from app.storage.database.queries import Row, found, row_of_run
+from app.storage.database.queries import Row, fetch_rows, fetch_run_row
 from app.storage.database.schema import TRIALS
 
 
 class Trials:
-    """The trials in a database."""
+    """Reads and writes the trials in a database."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
 
     def append(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
         """See `RunStore.append_trials`."""
-        # By key, since a statement may name a row once only.
+        # Deduplicated by key, since one INSERT must not contain a primary key twice.
         added = [{"run_id": run_id, **row} for row in {row["key"]: row for row in rows}.values()]
         again = delete(TRIALS).where(TRIALS.c.run_id == run_id, TRIALS.c.key == bindparam("again"))
 
         def work(connection: Connection) -> None:
-            row_of_run(connection, run_id, and_hold=True)
+            fetch_run_row(connection, run_id, for_update=True)
             if added:
                 connection.execute(again, [{"again": row["key"]} for row in added])
                 self.insert(connection, run_id, added)
@@ -36,22 +36,22 @@ class Trials:
     def insert(
         self, connection: Connection, run_id: str, rows: Sequence[Mapping[str, Any]]
     ) -> None:
-        """Add rows to a run that has none of these keys, within a transaction."""
+        """Insert rows within a transaction, for keys that the run does not have yet."""
         if rows:
             connection.execute(insert(TRIALS), [{"run_id": run_id, **row} for row in rows])
 
-    def of(self, run_id: str) -> Sequence[Mapping[str, Any]]:
-        """See `RunStore.trials`. One that cannot be read has no result, and says so."""
-        wanted = select(*_RAW).where(TRIALS.c.run_id == run_id).order_by(TRIALS.c.key)
+    def get(self, run_id: str) -> Sequence[Mapping[str, Any]]:
+        """See `RunStore.trials`. A trial that cannot be decode_json is returned as set aside."""
+        query = select(*_UNDECODED).where(TRIALS.c.run_id == run_id).order_by(TRIALS.c.key)
 
         def work(connection: Connection) -> Sequence[Row]:
-            row_of_run(connection, run_id)
-            return found(connection, wanted)
+            fetch_run_row(connection, run_id)
+            return fetch_rows(connection, query)
 
-        return [_decoded(row) for row in self._database.read(work)]
+        return [_decode(row) for row in self._database.read(work)]
 
 
-_RAW = (
+_UNDECODED = (
     TRIALS.c.key,
     cast(TRIALS.c.result, String).label("result"),
     TRIALS.c.set_aside,
@@ -59,7 +59,7 @@ _RAW = (
 )
 
 
-def _decoded(row: Row) -> dict[str, Any]:
+def _decode(row: Row) -> dict[str, Any]:
     seconds, set_aside = row["compute_s"], row["set_aside"]
     fields = {
         "key": visible(str(row["key"])),
@@ -67,7 +67,7 @@ def _decoded(row: Row) -> dict[str, Any]:
         "compute_s": seconds if isinstance(seconds, int | float) else 0.0,
     }
     try:
-        result = None if row["result"] is None else decoded(json.loads(row["result"]))
+        result = None if row["result"] is None else decode_json(json.loads(row["result"]))
         if not isinstance(result, dict | None):
             raise TypeError("it is no object")
     except (ValueError, TypeError, RecursionError):

@@ -1,4 +1,4 @@
-"""The connections that SQLite's engine holds."""
+"""Fair queuing of threads, and the number of files that SQLite's engine opens."""
 
 import os
 import threading
@@ -16,12 +16,12 @@ from tests.jobs.waiting import until
 from tests.promises.files import database_files
 
 THREADS = 40
-"""As many as answer requests at once."""
+"""Size of the server's thread pool for requests."""
 
 
 @contextmanager
 def reading(database: Database) -> Iterator[None]:
-    """Many threads read until the context ends."""
+    """Read from many threads until the context ends."""
     over = threading.Event()
 
     def read() -> None:
@@ -39,27 +39,27 @@ def reading(database: Database) -> Iterator[None]:
             thread.join()
 
 
-def test_places_are_handed_over_in_the_order_in_which_threads_came() -> None:
+def test_semaphore_is_handed_over_in_order_of_arrival() -> None:
     semaphore, order = FairSemaphore(1), []
 
     def take(number: int) -> None:
-        with semaphore.taken(60.0, AssertionError):
+        with semaphore.acquired(60.0, AssertionError):
             order.append(number)
 
-    with semaphore.taken(1.0, AssertionError):
+    with semaphore.acquired(1.0, AssertionError):
         threads = []
         for number in range(5):
             threads.append(threading.Thread(target=take, args=(number,)))
             threads[-1].start()
             until(lambda: semaphore.waiting == len(threads))
-        with pytest.raises(TimeoutError), semaphore.taken(0.01, TimeoutError):
+        with pytest.raises(TimeoutError), semaphore.acquired(0.01, TimeoutError):
             pass
     for thread in threads:
         thread.join()
     assert order == [*range(5)]
 
 
-def test_many_threads_open_no_more_files_than_are_stated(tmp_path: Path) -> None:
+def test_open_files_are_bounded_with_many_threads(tmp_path: Path) -> None:
     with closing(Database(sqlite_engine(tmp_path / "hexapods.db"))) as database:
         database.write(lambda connection: connection.execute(text("CREATE TABLE t (x INTEGER)")))
         most = 0

@@ -1,4 +1,4 @@
-"""Opening the store: who may, what a dead server left behind, and what is refused."""
+"""Opening the store: exclusive ownership, recovery from a crash, and refused databases."""
 
 import sqlite3
 import subprocess
@@ -24,12 +24,14 @@ ROOT = Path(__file__).parents[3]
 
 
 def database_of(folder: Path, url: str | None) -> Database:
-    made = sqlite_engine(folder / DATABASE_FILE) if url is None else postgresql_engine(url)
-    return Database(made)
+    database_engine = (
+        sqlite_engine(folder / DATABASE_FILE) if url is None else postgresql_engine(url)
+    )
+    return Database(database_engine)
 
 
 @on_both
-def test_what_a_dead_server_ran_is_interrupted(
+def test_unended_runs_of_a_crashed_server_become_interrupted(
     backend: str, postgresql: PostgresServer, tmp_path: Path
 ) -> None:
     states: list[State] = ["queued", "running", "paused", "finished", "stopped", "failed"]
@@ -44,19 +46,19 @@ def test_what_a_dead_server_ran_is_interrupted(
         before = datetime.now(UTC) - timedelta(seconds=1)
         with opened(tmp_path, url) as store:
             for run in runs:
-                found = store.get(run.id)
+                recovered = store.get(run.id)
                 if run.state in UNENDED:
-                    assert (found.state, found.eta_s) == ("interrupted", None)
-                    assert found.error == "The server ended before the run did."
-                    assert found.ended_at is not None
-                    assert found.ended_at > before
+                    assert (recovered.state, recovered.eta_s) == ("interrupted", None)
+                    assert recovered.error == "The server ended before the run did."
+                    assert recovered.ended_at is not None
+                    assert recovered.ended_at > before
                 else:
-                    assert found == run
+                    assert recovered == run
             assert store.get("running").done == 33
 
 
 @on_both
-def test_unfinished_files_go_and_others_stay(
+def test_orphaned_files_are_deleted_on_opening(
     backend: str, postgresql: PostgresServer, tmp_path: Path
 ) -> None:
     with database_url(backend, postgresql) as url:
@@ -78,7 +80,7 @@ def test_unfinished_files_go_and_others_stay(
             assert store.artifact("b", "q-table.npz") == b"new"
 
 
-def test_another_database_leaves_the_files_alone(
+def test_files_of_another_database_are_not_deleted(
     postgresql: PostgresServer, tmp_path: Path
 ) -> None:
     with opened(tmp_path, None) as store:
@@ -90,7 +92,7 @@ def test_another_database_leaves_the_files_alone(
         assert store.artifact("a", "q-table.npz") == b"kept"
 
 
-def test_a_data_folder_has_one_server(tmp_path: Path) -> None:
+def test_data_folder_is_locked_by_one_server(tmp_path: Path) -> None:
     script = f"from tests.storage.stores import *\nwith opened(Path({str(tmp_path)!r}), None): pass"
     with opened(tmp_path, None):
         with pytest.raises(InvalidInput, match=r"another server .* HEXAPODS_DATA"):
@@ -107,7 +109,7 @@ def test_a_data_folder_has_one_server(tmp_path: Path) -> None:
         pass
 
 
-def test_a_postgresql_database_has_one_server(
+def test_postgresql_database_is_locked_by_one_server(
     postgresql: PostgresServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("app.storage.database.ownership._LOCK_WAIT_S", 0.2)
@@ -119,9 +121,7 @@ def test_a_postgresql_database_has_one_server(
 
 
 @on_both
-def test_a_database_of_a_newer_version_is_refused(
-    backend: str, postgresql: PostgresServer, tmp_path: Path
-) -> None:
+def test_newer_schema_is_refused(backend: str, postgresql: PostgresServer, tmp_path: Path) -> None:
     with database_url(backend, postgresql) as url:
         with opened(tmp_path, url) as store:
             store.create(training("a"))
@@ -137,21 +137,21 @@ def test_a_database_of_a_newer_version_is_refused(
         database.close()
 
 
-def test_what_is_no_database_is_refused_and_kept(tmp_path: Path) -> None:
+def test_file_that_is_no_database_is_refused_and_unchanged(tmp_path: Path) -> None:
     (tmp_path / DATABASE_FILE).write_bytes(b"holiday pictures" * 100)
     with pytest.raises(DamagedFile, match="no database"):
         open_store(Settings(data=tmp_path)).__enter__()
     assert (tmp_path / DATABASE_FILE).read_bytes().startswith(b"holiday")
 
 
-def test_a_postgresql_that_is_not_there_is_said_without_the_password(tmp_path: Path) -> None:
+def test_unreachable_postgresql_is_reported_without_the_password(tmp_path: Path) -> None:
     url = f"postgresql://me:sesame@/db?host={tmp_path}"
     with pytest.raises(StorageFailed, match="does not answer") as error:
         open_store(Settings(data=tmp_path, database_url=url)).__enter__()
     assert "sesame" not in str(error.value)
 
 
-def test_sqlite_is_set_up_to_last(tmp_path: Path) -> None:
+def test_sqlite_pragmas_make_writes_durable(tmp_path: Path) -> None:
     with opened(tmp_path, None):
         database = database_of(tmp_path, None)
 
@@ -165,7 +165,7 @@ def test_sqlite_is_set_up_to_last(tmp_path: Path) -> None:
         database.close()
 
 
-def test_whoever_holds_the_database_too_long_is_named(
+def test_database_locked_by_another_program_is_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(engine, "BUSY_S", 0.3)

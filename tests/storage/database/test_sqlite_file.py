@@ -1,4 +1,4 @@
-"""A database file that has lost what it held is refused, not begun anew."""
+"""Checks of the SQLite file: one that has lost its tables is assert_refused, not recreated."""
 
 import json
 import sqlite3
@@ -16,7 +16,7 @@ from tests.cli.running import hexapods
 from tests.storage.stores import opened, training
 
 
-def refused(folder: Path, names: str) -> None:
+def assert_refused(folder: Path, names: str) -> None:
     before = (folder / DATABASE_FILE).read_bytes()
     with pytest.raises(DamagedFile, match=names), opened(folder, None):
         pass
@@ -26,23 +26,23 @@ def refused(folder: Path, names: str) -> None:
 
 
 @pytest.mark.parametrize("was_used", [False, True])
-def test_a_file_of_no_length_is_refused(was_used: bool, tmp_path: Path) -> None:
+def test_empty_file_is_refused(was_used: bool, tmp_path: Path) -> None:
     if was_used:
         with opened(tmp_path, None) as store:
             store.create(training("a"))
     (tmp_path / DATABASE_FILE).write_bytes(b"")
-    refused(tmp_path, "is empty.*put a backup of it back.*move it away")
+    assert_refused(tmp_path, "is empty.*put a backup of it back.*move it away")
     done = hexapods("doctor", "--data", ".", "--json", folder=tmp_path, HEXAPODS_PORT="0")
-    found = {check["name"]: check for check in json.loads(done.stdout)["checks"]}
-    assert not found["database"]["ok"]
-    assert "move it away" in found["database"]["said"]
+    checks = {check["name"]: check for check in json.loads(done.stdout)["checks"]}
+    assert not checks["database"]["ok"]
+    assert "move it away" in checks["database"]["said"]
     (tmp_path / DATABASE_FILE).rename(tmp_path / "moved away")
     with opened(tmp_path, None) as store:
         assert store.list().items == []
 
 
 @pytest.mark.parametrize("tables", [["runs"], None])
-def test_one_that_has_lost_its_tables_is_refused(tables: list[str] | None, tmp_path: Path) -> None:
+def test_file_without_its_tables_is_refused(tables: list[str] | None, tmp_path: Path) -> None:
     with opened(tmp_path, None) as store:
         store.create(training("a", state="finished"))
         store.put_artifact("a", "q-table.npz", b"x")
@@ -51,11 +51,11 @@ def test_one_that_has_lost_its_tables_is_refused(tables: list[str] | None, tmp_p
         for name in tables or [name for (name,) in file.execute(query).fetchall()]:
             file.execute(f"DROP TABLE {name}")
         file.commit()
-    refused(tmp_path, "has lost its tables .*runs")
+    assert_refused(tmp_path, "has lost its tables .*runs")
     assert len(list(tmp_path.glob("artifacts/*/*"))) == 1, "the files are left for the backup"
 
 
-def test_a_first_start_that_is_killed_leaves_nothing_to_refuse(
+def test_killed_first_start_leaves_no_database_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def die(database: object) -> None:

@@ -1,6 +1,6 @@
-"""How each released schema becomes the next. A file that was released is never changed.
+"""Alembic migrations from each released schema to the next. A released file is never changed.
 
-`alembic` finds them by itself; `docs/operations.md` says what an upgrade does. A new one is a
-file in `versions` that names the one before as its `down_revision`, together with a dump of its
-schema in `tests/promises/released`.
+Alembic discovers the files; `docs/operations.md` describes an upgrade. To add a migration, add a
+file to `versions` with the previous one as its `down_revision`, and a dump of its schema to
+`tests/promises/released`.
 """

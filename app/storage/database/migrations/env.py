@@ -1,4 +1,4 @@
-"""What Alembic runs to migrate, with a connection whose transaction is already open."""
+"""Alembic's environment script: runs migrations on a connection with an open transaction."""
 
 from alembic import context
 
@@ -6,7 +6,7 @@ from app.storage.database.migration import CONNECTION
 
 context.configure(
     connection=context.config.attributes[CONNECTION],
-    # SQLite changes a table by copying it.
+    # SQLite lacks most of ALTER TABLE: batch mode copies the table instead.
     render_as_batch=True,
 )
 with context.begin_transaction():

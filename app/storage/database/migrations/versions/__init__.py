@@ -1,1 +1,1 @@
-"""One file for each schema that was released."""
+"""Migrations, one file per released schema."""

@@ -1,4 +1,4 @@
-"""Runs, their curves, and their files."""
+"""Schema 0001: runs, their curves and their artifacts."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -8,8 +8,8 @@ down_revision = None
 
 
 def upgrade() -> None:
-    """Make the first tables."""
-    # Types are spelled out: a released schema stays as it was, whatever becomes of the app's.
+    """Create the first tables."""
+    # Column types are spelled out, so that later changes of the app do not alter this schema.
     is_postgresql = op.get_bind().dialect.name == "postgresql"
     text = sa.String(collation="C" if is_postgresql else None)
     time = sa.DateTime(timezone=True)

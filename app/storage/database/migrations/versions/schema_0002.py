@@ -1,4 +1,4 @@
-"""Experiments: their trials, and how many workers they have."""
+"""Schema 0002: trials of experiments, and the number of workers of a run."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -8,7 +8,7 @@ down_revision = "0001"
 
 
 def upgrade() -> None:
-    """Make room for experiments; what is there stays as it is."""
+    """Add what experiments need; existing rows are unchanged."""
     is_postgresql = op.get_bind().dialect.name == "postgresql"
     text = sa.String(collation="C" if is_postgresql else None)
     op.add_column("runs", sa.Column("workers", sa.BigInteger()))

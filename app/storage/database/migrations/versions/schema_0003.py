@@ -1,4 +1,4 @@
-"""The number of the owner, keys of repeated starts, and sessions of operators."""
+"""Schema 0003: fencing token, idempotency keys and operators' sessions."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -8,7 +8,7 @@ down_revision = "0002"
 
 
 def upgrade() -> None:
-    """Make room for what used to be kept in memory; what is there stays as it is."""
+    """Add what used to be in memory only; existing rows are unchanged."""
     is_postgresql = op.get_bind().dialect.name == "postgresql"
     text = sa.String(collation="C" if is_postgresql else None)
     time = sa.DateTime(timezone=True)
