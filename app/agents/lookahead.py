@@ -18,6 +18,8 @@ class LookAhead:
     Every layer is simulated by one call of `expand`. Of equals the first is taken.
     """
 
+    learns = False
+
     def __init__(self, expand: Expand, depth: int = 1) -> None:
         self._expand, self._depth = expand, depth
 

@@ -7,6 +7,9 @@ A class whose constructor asks, by the names of its parameters, for what it need
 - `expand`: a simulator to look ahead with (`Expand`); who asks for it is not blind;
 - `explore`: False where the agent is evaluated or raced and should do its best;
 - any further parameter by name, from the settings of the run.
+
+Parameters that a person may choose are declared with their limits (`app.domain.settings`). An agent
+that practice does not change has the attribute `learns = False`.
 """
 
 from collections.abc import Sequence

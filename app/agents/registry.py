@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from importlib.metadata import entry_points
 from typing import Any
 
-from app.agents.lookahead import Greedy, LookAhead, TwoStep
+from app.agents.lookahead import Greedy, TwoStep
 from app.agents.protocol import Agent
 from app.agents.q_learning import QLearning
 from app.domain.errors import InvalidInput, UnknownName
@@ -60,12 +60,12 @@ def find(name: str) -> AgentClass:
 
 
 def learns(name: str) -> bool:
-    """Whether an agent has anything from practice.
+    """Whether practice changes an agent; false only if it says so by `learns = False`.
 
     Raises:
         UnknownName, InvalidInput: as `find`.
     """
-    return not issubclass(find(name), LookAhead)  # type: ignore[arg-type]
+    return bool(getattr(find(name), "learns", True))
 
 
 def asks_for(agent: AgentClass) -> set[str]:

@@ -103,9 +103,9 @@ def run_routes(kind: Kind) -> APIRouter:
 
 
 _VERBS = {
-    "stop": "End {} with what has come of it",
-    "pause": "Let {} wait",
-    "resume": "Let {} go on that is paused or was interrupted",
+    "stop": "Stop {} and keep its result so far",
+    "pause": "Pause {}",
+    "resume": "Resume {} that is paused, interrupted or failed",
 }
 _VIEWS: Mapping[Kind, tuple[type[RunView], type[Page]]] = {
     "training": (TrainingView, TrainingPage),

@@ -102,3 +102,15 @@ def test_an_agent_gets_what_it_asks_for_and_no_more() -> None:
 def test_asking_for_what_is_not_offered_names_what_is() -> None:
     with pytest.raises(InvalidInput, match="asks for crystal_ball; on offer: problem, rng"):
         registry.build(own_agents.Needy, {"rng": np.random.default_rng(0), "problem": PROBLEM})
+
+
+def test_look_ahead_does_not_learn_and_others_do() -> None:
+    names = ("q-learning", "greedy", "tests.own_agents:ThreeStep", "tests.own_agents:Restless")
+    assert [registry.learns(name) for name in names] == [True, False, False, True]
+
+
+def test_a_factory_may_stand_for_a_class(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(registry, "OURS", {"made": lambda rng: own_agents.Plain(rng, PROBLEM)})
+    assert registry.learns("made")
+    agent = registry.build(registry.find("made"), {"rng": np.random.default_rng(0)})
+    assert isinstance(agent, own_agents.Plain)
