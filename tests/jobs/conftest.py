@@ -1,4 +1,4 @@
-"""What tests of the services stand on, where they need no other."""
+"""Fixtures of the jobs' tests: a store in memory, and jobs that run one process at a time."""
 
 from collections.abc import Iterator
 
