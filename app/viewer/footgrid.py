@@ -29,16 +29,16 @@ class FootGridDrawing:
     choice.
     """
 
-    def __init__(self, server: viser.ViserServer, root: str, cast: SceneSpec, x_m: float) -> None:
+    def __init__(self, server: viser.ViserServer, root: str, spec: SceneSpec, x_m: float) -> None:
         self._x_m = x_m
-        self._forward_rad = math.radians(90 - cast.gait.forward_deg)
+        self._forward_rad = math.radians(90 - spec.gait.forward_deg)
         self._frame = server.scene.add_frame(root, show_axes=False)
-        pairs = cast.gait.pairs
-        legs = range(1, len(cast.robot.legs) + 1)
+        pairs = spec.gait.pairs
+        legs = range(1, len(spec.robot.legs) + 1)
         self._pair_of_leg = [next(p for p, both in enumerate(pairs) if leg in both) for leg in legs]
-        places, side = _places(cast), cast.grid.side_m / (cast.grid.divisions - 1)
-        home_is_between = cast.grid.divisions % 2 == 0
-        others = np.arange(1, len(cast.grid))
+        places, side = _places(spec), spec.grid.side_m / (spec.grid.divisions - 1)
+        home_is_between = spec.grid.divisions % 2 == 0
+        others = np.arange(1, len(spec.grid))
         self._tiles = [
             _Tiles(server, f"{root}/others", _square(side), others, places, rim=_OTHER),
             _Tiles(
@@ -120,12 +120,12 @@ def _tile(outline: FloatArray) -> Shape:
     return Shape(corners, np.array([[0, 1, 2], [0, 2, 3]], np.uint32))
 
 
-def _places(cast: SceneSpec) -> FloatArray:
+def _places(spec: SceneSpec) -> FloatArray:
     """Every cell of every leg in the robot frame, x right and y forward, (legs, cells, 3)."""
-    azimuth = np.radians(cast.gait.azimuths_deg)
-    homes = cast.robot.home_radius_m * np.stack([-np.sin(azimuth), np.cos(azimuth)], axis=1)
-    cells = np.tile(cast.grid.cells, (len(homes), 1, 1))  # (legs, cells, 2)
-    partners = [partner - 1 for _, partner in cast.gait.pairs]
+    azimuth = np.radians(spec.gait.azimuths_deg)
+    homes = spec.robot.home_radius_m * np.stack([-np.sin(azimuth), np.cos(azimuth)], axis=1)
+    cells = np.tile(spec.grid.cells, (len(homes), 1, 1))  # (legs, cells, 2)
+    partners = [partner - 1 for _, partner in spec.gait.pairs]
     cells[partners, :, 0] *= -1
     places = np.zeros((*cells.shape[:2], 3))
     places[..., :2] = homes[:, None] + cells

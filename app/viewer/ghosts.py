@@ -19,9 +19,9 @@ class PhotoFinish:
     """A bar from the start line to each robot with its distance, while the picture is frozen."""
 
     def __init__(
-        self, server: viser.ViserServer, root: str, cast: SceneSpec, xs: Sequence[float]
+        self, server: viser.ViserServer, root: str, spec: SceneSpec, xs: Sequence[float]
     ) -> None:
-        self._server, self._root, self._cast, self._xs = server, root, cast, xs
+        self._server, self._root, self._cast, self._xs = server, root, spec, xs
         self._shown: tuple[tuple[int, float], ...] = ()
         self._frame: viser.FrameHandle | None = None
 
@@ -40,7 +40,7 @@ class PhotoFinish:
         self._frame = self._server.scene.add_frame(self._root, show_axes=False)
         for number, ((rank, far), x) in enumerate(zip(wanted, self._xs, strict=True)):
             bar = strip(_BAR_M, max(abs(far), 0.002))
-            color = rgb(self._cast.roles[number].color)
+            color = rgb(self._cast.lane_specs[number].color)
             self._server.scene.add_mesh_simple(
                 f"{self._root}/bar{number}",
                 bar.vertices,
@@ -63,11 +63,11 @@ class Ghosts:
     """Evaluations on a lane of their own: a line for each, a pale robot for the newest."""
 
     def __init__(
-        self, server: viser.ViserServer, root: str, cast: SceneSpec, mesh: RobotMesh, x_m: float
+        self, server: viser.ViserServer, root: str, spec: SceneSpec, mesh: RobotMesh, x_m: float
     ) -> None:
         self._server, self._root, self._x_m, self._mesh = server, root, x_m, mesh
-        self._width = 2 * cast.robot.home_radius_m
-        self._color, self._rest = rgb(cast.roles[0].color), rest_pose(cast)
+        self._width = 2 * spec.robot.home_radius_m
+        self._color, self._rest = rgb(spec.lane_specs[0].color), rest_pose(spec)
         self._shown: tuple[Ghost, ...] = ()
         self._frame: viser.FrameHandle | None = None
 

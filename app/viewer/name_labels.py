@@ -13,14 +13,14 @@ TEXT_SCALE = 1.35
 """Of 12 px, on every screen."""
 
 
-def plate_text(role: LaneSpec, lane: LaneView) -> str:
+def plate_text(lane_spec: LaneSpec, lane: LaneView) -> str:
     """Who, how far, and what it does; lines so short that three plates fit on a phone."""
     if lane.failure is not None:
-        return f"{role.name}\ncannot go on"
+        return f"{lane_spec.name}\ncannot go on"
     if lane.step == 0:
-        return role.name
+        return lane_spec.name
     far = f"{lane.distance_m:.2f} m".replace("-0.00", "0.00")
-    lines = [role.name, f"{far}, {'done' if lane.done else f'step {lane.step}'}"]
+    lines = [lane_spec.name, f"{far}, {'done' if lane.done else f'step {lane.step}'}"]
     if lane.thinking:
         futures = f" {lane.futures}/{lane.futures_total}" if lane.futures else "…"
         lines.append(f"thinking{futures}")
@@ -32,17 +32,19 @@ def plate_text(role: LaneSpec, lane: LaneView) -> str:
 class Plate:
     """Of one lane."""
 
-    def __init__(self, server: viser.ViserServer, root: str, role: LaneSpec, x_m: float) -> None:
-        self._role, self._x_m = role, x_m
+    def __init__(
+        self, server: viser.ViserServer, root: str, lane_spec: LaneSpec, x_m: float
+    ) -> None:
+        self._lane_spec, self._x_m = lane_spec, x_m
         self._label = server.scene.add_label(
-            f"{root}/plate", role.name, anchor="bottom-center", font_screen_scale=TEXT_SCALE
+            f"{root}/plate", lane_spec.name, anchor="bottom-center", font_screen_scale=TEXT_SCALE
         )
         shape = flag(_FLAG_M)
         self._flag = server.scene.add_mesh_simple(
             f"{root}/flag",
             shape.vertices,
             shape.faces,
-            color=rgb(role.color),
+            color=rgb(lane_spec.color),
             side="double",
             receive_shadow=False,
             visible=False,
@@ -56,7 +58,7 @@ class Plate:
         place = (x + self._x_m, y, z + ANTENNA_M + 0.03)
         if place != self._place:
             self._label.position = self._place = place
-        text = plate_text(self._role, lane)
+        text = plate_text(self._lane_spec, lane)
         if text != self._label.text:
             self._label.text = text
         finished = lane.done and lane.failure is None

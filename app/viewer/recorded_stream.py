@@ -31,7 +31,7 @@ def recorded_stream(
         clock: which it is timed by.
     """
     show = RaceShow(race_scene(config), config.steps, clock, lambda: lanes)
-    show.advance(0.0, None, over=True)
+    show.advance(0.0, None, run_ended=True)
     length_s = show.duration_s or 0.0
     speed = length_s / LONGEST_S if length_s > 2 * LONGEST_S else None
     frame_s, run_label = 1 / FRAMES_PER_S, RunLabel(None, name)
@@ -43,7 +43,7 @@ def recorded_stream(
         while not show.ended:
             serializer.insert_sleep(frame_s)
             now += frame_s
-            show.advance(frame_s, speed, over=True)
+            show.advance(frame_s, speed, run_ended=True)
             scene.draw(show.frame(run_label), now)
             scene.centre("leader")
         serializer.insert_sleep(_LAST_PICTURE_S)

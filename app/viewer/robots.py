@@ -22,7 +22,7 @@ class Robots:
         self,
         server: viser.ViserServer,
         root: str,
-        cast: SceneSpec,
+        spec: SceneSpec,
         mesh: RobotMesh,
         xs: Sequence[float],
     ) -> None:
@@ -31,7 +31,7 @@ class Robots:
         self._placed = [mesh.place(mesh.standing).moved(x) for x in xs]
         self._batches: list[viser.BatchedMeshHandle] = []
         for number, part in enumerate(mesh.parts):
-            colors = [_color(role.color, part.painted) for role in cast.roles]
+            colors = [_color(lane_spec.color, part.painted) for lane_spec in spec.lane_specs]
             positions, wxyzs = self._instances(number)
             handle = server.scene.add_batched_meshes_simple(
                 f"{root}/{number}",

@@ -45,10 +45,10 @@ class StageScene:
             Whether anything moved.
         """
         with self._server.atomic():
-            if self._drawn is None or self._drawn.cast != frame.cast:
+            if self._drawn is None or self._drawn.spec != frame.spec:
                 if self._drawn is not None:
                     self._drawn.remove()
-                self._drawn, self._eased = _Drawing(self._server, frame.cast), None
+                self._drawn, self._eased = _Drawing(self._server, frame.spec), None
             moved = self._drawn.draw(frame)
             moved |= self._follow(frame, self._drawn.xs, now)
         self._server.flush()
@@ -95,25 +95,25 @@ class StageScene:
 class _Drawing:
     """Everything that belongs to one cast."""
 
-    def __init__(self, server: viser.ViserServer, cast: SceneSpec) -> None:
-        self.cast = cast
+    def __init__(self, server: viser.ViserServer, spec: SceneSpec) -> None:
+        self.spec = spec
         self._root = server.scene.add_frame(CAST, show_axes=False)
-        width = 2 * cast.robot.home_radius_m + cast.grid.side_m + 0.08
+        width = 2 * spec.robot.home_radius_m + spec.grid.side_m + 0.08
         # Beside who practises there is a lane for the ghosts of its evaluations.
-        lanes = len(cast.roles) + (cast.kind == "training")
+        lanes = len(spec.lane_specs) + (spec.kind == "training")
         xs = [width * (lane - (lanes - 1) / 2) for lane in range(lanes)]
         draw_lanes(server, f"{CAST}/track", xs, width)
-        self.xs = xs[: len(cast.roles)]
-        mesh = RobotMesh(cast.robot)
-        self._robots = Robots(server, f"{CAST}/robots", cast, mesh, self.xs)
-        pairs = list(zip(cast.roles, self.xs, strict=True))
+        self.xs = xs[: len(spec.lane_specs)]
+        mesh = RobotMesh(spec.robot)
+        self._robots = Robots(server, f"{CAST}/robots", spec, mesh, self.xs)
+        pairs = list(zip(spec.lane_specs, self.xs, strict=True))
         self._plates = [
-            Plate(server, f"{CAST}/lane{n}", role, x) for n, (role, x) in enumerate(pairs)
+            Plate(server, f"{CAST}/lane{n}", lane_spec, x) for n, (lane_spec, x) in enumerate(pairs)
         ]
         self._grids: dict[int, FootGridDrawing] = {}
-        self._photo = PhotoFinish(server, f"{CAST}/photo", cast, self.xs)
-        ghosts = cast.kind == "training"
-        self._ghosts = Ghosts(server, f"{CAST}/ghosts", cast, mesh, xs[-1]) if ghosts else None
+        self._photo = PhotoFinish(server, f"{CAST}/photo", spec, self.xs)
+        ghosts = spec.kind == "training"
+        self._ghosts = Ghosts(server, f"{CAST}/ghosts", spec, mesh, xs[-1]) if ghosts else None
         self._server = server
 
     def draw(self, frame: StageFrame) -> bool:
@@ -125,7 +125,7 @@ class _Drawing:
             if lane.knowledge is not None and number not in self._grids:
                 root = f"{CAST}/lane{number}/grid"
                 x = self.xs[number]
-                self._grids[number] = FootGridDrawing(self._server, root, self.cast, x)
+                self._grids[number] = FootGridDrawing(self._server, root, self.spec, x)
             if number in self._grids:
                 self._grids[number].draw(lane)
         self._photo.draw(frame)

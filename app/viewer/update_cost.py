@@ -52,7 +52,7 @@ def _walking_show() -> RaceShow:
     walkers = build_walkers(config, [None] * len(lanes))
     recorded = list(record_race(walkers, config, time.perf_counter))[-1]
     show = RaceShow(race_scene(config), config.steps, "free", lambda: recorded)
-    show.advance(0.0, None, over=True)
+    show.advance(0.0, None, run_ended=True)
     return show
 
 

@@ -20,7 +20,7 @@ def opened(data: bytes) -> dict[str, object]:
 
 def test_it_has_the_whole_race_and_names_its_version() -> None:
     parts = StageParts()
-    run = parts.race(steps=6)
+    run = parts.finished_race(steps=6)
     assert isinstance(run.config, RaceConfig)
     lanes = parts.recordings.race(run.id) or []
 
@@ -38,7 +38,7 @@ def test_it_has_the_whole_race_and_names_its_version() -> None:
 
 def test_a_long_race_is_shown_faster() -> None:
     parts = StageParts()
-    run = parts.race(("two-step",), steps=150)
+    run = parts.finished_race(("two-step",), steps=150)
     assert isinstance(run.config, RaceConfig)
 
     data = recorded_stream(run.config, parts.recordings.race(run.id) or [])

@@ -60,13 +60,13 @@ def race_of(lanes: int, robot: Robot | None = None) -> SceneSpec:
     return race_scene(config)
 
 
-def standing(cast: SceneSpec) -> StageFrame:
-    lane = LaneView(rest_pose(cast), 3, 50, 0.0)
-    return StageFrame(cast, "run", "race", "Race", (lane,) * len(cast.roles))
+def standing(spec: SceneSpec) -> StageFrame:
+    lane = LaneView(rest_pose(spec), 3, 50, 0.0)
+    return StageFrame(spec, "run", "race", "Race", (lane,) * len(spec.lane_specs))
 
 
-def knowing(cast: SceneSpec, current: tuple[int, ...] = (0, 1, 2)) -> ActionValuesView:
-    values = np.linspace(-0.01, 0.06, 3 * len(cast.grid)).reshape(3, -1)
+def knowing(spec: SceneSpec, current: tuple[int, ...] = (0, 1, 2)) -> ActionValuesView:
+    values = np.linspace(-0.01, 0.06, 3 * len(spec.grid)).reshape(3, -1)
     values[range(3), current] = np.nan
     return ActionValuesView(values, values, current, None, -0.01, 0.06)
 
@@ -104,17 +104,17 @@ def test_a_robot_of_any_number_of_legs_stands_where_its_pose_says(legs: int) -> 
 
 
 def test_lanes_stand_side_by_side_in_their_agents_colours(server: InProcessViser) -> None:
-    cast = race_of(3)
+    spec = race_of(3)
     scene = StageScene(server)
-    scene.draw(standing(cast))
+    scene.draw(standing(spec))
     xs = [(scene.follow_position(view) or (np.nan,))[0] for view in ("1", "2", "3")]
 
     assert np.diff(xs) == pytest.approx([xs[2], xs[2]])
     assert xs[0] == -xs[2]
-    assert xs[2] > 2 * cast.robot.home_radius_m, "they cannot touch"
+    assert xs[2] > 2 * spec.robot.home_radius_m, "they cannot touch"
     assert scene.follow_position("4") is None
     plates = [m["text"] for n, m in told(server).items() if n.endswith("/plate")]
-    assert plates == [f"{role.name}\n0.00 m, step 3" for role in cast.roles]
+    assert plates == [f"{lane_spec.name}\n0.00 m, step 3" for lane_spec in spec.lane_specs]
 
 
 def test_start_and_finish_have_a_word(server: InProcessViser) -> None:
@@ -129,10 +129,10 @@ def test_start_and_finish_have_a_word(server: InProcessViser) -> None:
 
 
 def test_the_view_goes_along_with_the_leader(server: InProcessViser) -> None:
-    cast, scene = race_of(2), StageScene(server)
-    ahead = rest_pose(cast).copy()
+    spec, scene = race_of(2), StageScene(server)
+    ahead = rest_pose(spec).copy()
     ahead[1] = 0.4
-    first = standing(cast)
+    first = standing(spec)
     moved = replace(first, lanes=(first.lanes[0], LaneView(ahead, 9, 50, 0.4)))
 
     scene.draw(first, now=0.0)
@@ -181,13 +181,13 @@ def test_a_new_cast_leaves_nothing_of_the_old(server: InProcessViser) -> None:
 def test_cells_take_the_colour_of_their_value_and_the_present_one_none(
     server: InProcessViser,
 ) -> None:
-    cast, scene = race_of(1), StageScene(server)
-    lane = replace(standing(cast).lanes[0], knowledge=knowing(cast))
-    scene.draw(replace(standing(cast), lanes=(lane,)))
+    spec, scene = race_of(1), StageScene(server)
+    lane = replace(standing(spec).lanes[0], knowledge=knowing(spec))
+    scene.draw(replace(standing(spec), lanes=(lane,)))
     fills = told(server)["/world/cast/lane0/grid/others/fills"]
     colors = fills["batched_colors"].reshape(6, 4, 3)
 
-    leader, partner = cast.gait.pairs[2]
+    leader, partner = spec.gait.pairs[2]
     assert (colors[leader - 1] == colors[partner - 1]).all(), "a pair is of one mind"
     best, present = colors[leader - 1, 3], colors[leader - 1, 1]
     assert best[0] > 120
@@ -197,18 +197,18 @@ def test_cells_take_the_colour_of_their_value_and_the_present_one_none(
 
 @pytest.mark.parametrize("divisions", [2, 3, 8])
 def test_cells_of_every_grid_can_be_drawn(server: InProcessViser, divisions: int) -> None:
-    cast = replace(race_of(1), grid=FootGrid(0.04, divisions))
-    lane = replace(standing(cast).lanes[0], knowledge=knowing(cast))
+    spec = replace(race_of(1), grid=FootGrid(0.04, divisions))
+    lane = replace(standing(spec).lanes[0], knowledge=knowing(spec))
 
-    StageScene(server).draw(replace(standing(cast), lanes=(lane,)))
+    StageScene(server).draw(replace(standing(spec), lanes=(lane,)))
 
     assert sum(name.endswith("/fills") for name in told(server)) == 2
 
 
 def test_a_photo_finish_draws_every_distance_and_goes_again(server: InProcessViser) -> None:
-    cast, scene = race_of(2), StageScene(server)
-    far = replace(standing(cast).lanes[0], distance_m=0.375, rank=1)
-    frame = replace(standing(cast), lanes=(far, replace(far, distance_m=-0.01, rank=2)))
+    spec, scene = race_of(2), StageScene(server)
+    far = replace(standing(spec).lanes[0], distance_m=0.375, rank=1)
+    frame = replace(standing(spec), lanes=(far, replace(far, distance_m=-0.01, rank=2)))
 
     scene.draw(replace(frame, phase="photo-finish"))
     said = [m["text"] for n, m in told(server).items() if "/photo/far" in n]
@@ -229,8 +229,8 @@ def test_a_photo_finish_under_another_clock_is_another_photo(server: InProcessVi
 
 
 def test_a_finished_lane_shows_its_flag(server: InProcessViser) -> None:
-    cast, scene = race_of(1), StageScene(server)
-    frame = standing(cast)
+    spec, scene = race_of(1), StageScene(server)
+    frame = standing(spec)
     scene.draw(frame)
     assert not told(server)["/world/cast/lane0/flag"]["visible"]
 

@@ -56,7 +56,7 @@ def test_a_fault_in_a_frame_does_not_end_the_show(caplog: pytest.LogCaptureFixtu
 
 def test_a_race_moves_and_the_page_is_told() -> None:
     parts = StageParts()
-    run = parts.race()
+    run = parts.finished_race()
     stage = Stage(parts.store, parts.recordings, parts.bus)
     stage.show(run.id)
 
