@@ -268,8 +268,8 @@ class Job:
     def _handle_change(self, changed: Changed) -> None:
         change = {"step": changed.step, **changed.changes}
         # After a resume the stored changes may include later ones that are still to be replayed.
-        made = sorted((*self._store.get(self.run_id).changes, change), key=itemgetter("step"))
-        run = self._store.update(self.run_id, changes=tuple(made))
+        changes = sorted((*self._store.get(self.run_id).changes, change), key=itemgetter("step"))
+        run = self._store.update(self.run_id, changes=tuple(changes))
         self._progress.clear()
         self._publish_event("rates", **change)
         self._publish(run)

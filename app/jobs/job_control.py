@@ -83,7 +83,7 @@ class JobControl:
 
     def repeat(
         self,
-        made: Iterable[Mapping[str, Any]],
+        included: Iterable[Mapping[str, Any]],
         later: Iterable[Mapping[str, Any]],
         step: int,
         agent: object,
@@ -91,12 +91,12 @@ class JobControl:
         """Restore the changes of a resumed run, and schedule the later ones for replay.
 
         Args:
-            made: changes that the checkpoint includes.
+            included: changes that the checkpoint includes.
             later: changes made after the checkpoint, to be replayed after the same steps.
             step: number of steps done.
             agent: the learner whose rates may be changed.
         """
-        self.changes = [dict(change) for change in made]
+        self.changes = [dict(change) for change in included]
         for change in self.changes:
             if "pace" in change:
                 self.keep_pace(change["pace"], self._step_s)

@@ -146,8 +146,8 @@ class RunQueue:
         """Resolve dependencies on an ended run: release its dependents, or end them as it ended."""
         for entry in [entry for entry in self._entries if run.id in entry.waits_for]:
             if run.state == "finished":
-                left = [i for i in entry.run.waiting_for if i in entry.waits_for - {run.id}]
-                updated = self._store.update(entry.run.id, waiting_for=tuple(left))
+                remaining = [i for i in entry.run.waiting_for if i in entry.waits_for - {run.id}]
+                updated = self._store.update(entry.run.id, waiting_for=tuple(remaining))
                 # After the write, so that a failed write is retried.
                 entry.waits_for.discard(run.id)
                 self._publish(updated)

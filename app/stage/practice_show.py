@@ -150,11 +150,11 @@ class PracticeShow:
         if recording is None:
             return
         self._rest_qpos = recording.rest_qpos
-        taken = recording.steps
+        steps = recording.steps
         self._recorded = [
-            _RecordedStep(step, step.motion) for step in taken if step.motion is not None
+            _RecordedStep(step, step.motion) for step in steps if step.motion is not None
         ]
-        self._step_numbers = [recorded.taken.step for recorded in self._recorded]
+        self._step_numbers = [recorded.step.step for recorded in self._recorded]
         self._evaluations = [Ghost(e.step, e.distance_m) for e in recording.evaluations]
 
     def _playback_rate(self, speed: float | None) -> float:
@@ -217,10 +217,10 @@ class PracticeShow:
 
     def _relative_to_start_line(self, index: int, pose: FloatArray) -> FloatArray:
         """Return the pose as if its episode had begun on the start line, straight ahead."""
-        episode = self._recorded[index].taken.episode
+        episode = self._recorded[index].step.episode
         if self._origin.episode != episode:
             first = index
-            while first and self._recorded[first - 1].taken.episode == episode:
+            while first and self._recorded[first - 1].step.episode == episode:
                 first -= 1
             self._origin = _Origin.of(episode, self._start(first), rest_pose(self.spec))
         return self._origin.transformed(pose)
@@ -229,7 +229,7 @@ class PracticeShow:
         before = index - MARCHING_STEPS
         if before < 0 or self._step_numbers[before] != self._step_numbers[index] - MARCHING_STEPS:
             return False
-        gained = sum(recorded.taken.reward_m for recorded in self._recorded[before:index])
+        gained = sum(recorded.step.reward_m for recorded in self._recorded[before:index])
         return gained < MARCHING_M
 
     def _action_values(self, step: StepTaken) -> ActionValuesView | None:
@@ -245,7 +245,7 @@ class PracticeShow:
 class _RecordedStep(NamedTuple):
     """A step whose motion is recorded."""
 
-    taken: StepTaken
+    step: StepTaken
     motion: Motion
 
 

@@ -83,10 +83,10 @@ class RaceLane:
             complete: whether the lane will take no further steps.
         """
         moment, lane = self.moment_at(time_s), self.recording
-        taken = len(self._timetable.ends)
+        steps_taken = len(self._timetable.ends)
         computing = not complete and time_s >= self.end_s  # its next decision is not recorded yet
         at_end = complete and time_s >= self.end_s
-        if moment.step >= taken or at_end or (computing and taken):
+        if moment.step >= steps_taken or at_end or (computing and steps_taken):
             return self._standing_view(time_s, complete, computing)
         step = lane.steps[moment.step]
         start = lane.start_qpos(moment.step)
@@ -106,42 +106,42 @@ class RaceLane:
 
     def _standing_view(self, time_s: float, complete: bool, computing: bool) -> LaneView:
         """Return the lane at its end, or while its next decision is still being computed."""
-        lane, taken = self.recording, len(self._timetable.ends)
-        total = lane.steps[taken - 1].transitions if taken else 0
+        lane, steps_taken = self.recording, len(self._timetable.ends)
+        total = lane.steps[steps_taken - 1].transitions if steps_taken else 0
         return LaneView(
-            lane.start_qpos(taken),
-            min(taken + (not complete), self.steps),
+            lane.start_qpos(steps_taken),
+            min(steps_taken + (not complete), self.steps),
             self.steps,
-            lane.steps[taken - 1].distance_m if taken else 0.0,
+            lane.steps[steps_taken - 1].distance_m if steps_taken else 0.0,
             thinking=computing and total > 0,
             futures_total=total if computing else 0,
             done=complete,
             crossed=self._crossed(time_s),
-            marching=self._marching(taken),
+            marching=self._marching(steps_taken),
             failure=lane.failure,
-            knowledge=self._action_values(taken - 1),
+            knowledge=self._action_values(steps_taken - 1),
         )
 
     def _crossed(self, time_s: float) -> bool:
         return self._crossing_s is not None and time_s >= self._crossing_s
 
-    def _marching(self, taken: int) -> bool:
+    def _marching(self, steps_taken: int) -> bool:
         """Whether the last `MARCHING_STEPS` of the steps taken gained under `MARCHING_M`."""
-        if taken < MARCHING_STEPS:
+        if steps_taken < MARCHING_STEPS:
             return False
         steps = self.recording.steps
-        before = taken - MARCHING_STEPS
-        start = steps[before - 1].distance_m if before else 0.0
-        return steps[taken - 1].distance_m - start < MARCHING_M
+        first = steps_taken - MARCHING_STEPS
+        start = steps[first - 1].distance_m if first else 0.0
+        return steps[steps_taken - 1].distance_m - start < MARCHING_M
 
     def _action_values(self, step: int) -> ActionValuesView | None:
-        taken = self.recording.steps[step] if 0 <= step < len(self.recording.steps) else None
-        if taken is None or taken.knowledge is None:
+        step_taken = self.recording.steps[step] if 0 <= step < len(self.recording.steps) else None
+        if step_taken is None or step_taken.knowledge is None:
             return None
-        learned = taken.knowledge
+        learned = step_taken.knowledge
         low, high = self._range.extended_to(learned.values)
         return ActionValuesView(
-            learned.values, learned.visits, taken.observation, taken.action, low, high
+            learned.values, learned.visits, step_taken.observation, step_taken.action, low, high
         )
 
 

@@ -194,12 +194,12 @@ def rotated(pose: FloatArray, about: FloatArray, turn_rad: float) -> FloatArray:
     half_cos, half_sin = math.cos(turn_rad / 2), math.sin(turn_rad / 2)
     x, y = pose[:2] - about
     w, i, j, k = pose[3:7]
-    seen = pose.copy()
-    seen[:2] = cos * x - sin * y, sin * x + cos * y
-    seen[3:7] = (
+    result = pose.copy()
+    result[:2] = cos * x - sin * y, sin * x + cos * y
+    result[3:7] = (
         half_cos * w - half_sin * k,
         half_cos * i - half_sin * j,
         half_cos * j + half_sin * i,
         half_cos * k + half_sin * w,
     )
-    return seen
+    return result

@@ -45,11 +45,11 @@ def content_policy(page: str) -> str:
 
 def _scripts(page: str) -> list[bytes]:
     """Return every script that is to run, the packed one last."""
-    found = list(_SCRIPT.finditer(page))
-    packed = [match for script in found if (match := _PACKED.fullmatch(script["attributes"]))]
+    scripts = list(_SCRIPT.finditer(page))
+    packed = [match for script in scripts if (match := _PACKED.fullmatch(script["attributes"]))]
     if len(packed) != 1:
-        raise _unsupported(f"of {len(found)} scripts {len(packed)} hold the client, not one")
-    return [*(script["body"].encode() for script in found), _unpacked(packed[0])]
+        raise _unsupported(f"of {len(scripts)} scripts {len(packed)} hold the client, not one")
+    return [*(script["body"].encode() for script in scripts), _unpacked(packed[0])]
 
 
 def _unpacked(packed: re.Match[str]) -> bytes:

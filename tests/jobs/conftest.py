@@ -17,7 +17,7 @@ def store() -> MemoryStore:
 
 @pytest.fixture
 def jobs(store: MemoryStore) -> Iterator[Jobs]:
-    made = Jobs(store, Recordings(), EventBus(), cores=1)
-    made.open()
-    yield made
-    made.close()
+    jobs = Jobs(store, Recordings(), EventBus(), cores=1)
+    jobs.open()
+    yield jobs
+    jobs.close()

@@ -41,12 +41,12 @@ def wait_until_settled(store: MemoryStore, run: Run) -> Sequence[Mapping[str, An
 
 def worker_pids() -> set[int]:
     """Return ids of all spawned descendants, without `multiprocessing`'s resource tracker."""
-    found = set()
-    for one in psutil.Process().children(recursive=True):
+    pids = set()
+    for process in psutil.Process().children(recursive=True):
         with suppress(psutil.Error):  # it may exit meanwhile
-            if "spawn_main" in " ".join(one.cmdline()):
-                found.add(one.pid)
-    return found
+            if "spawn_main" in " ".join(process.cmdline()):
+                pids.add(process.pid)
+    return pids
 
 
 @pytest.mark.timeout(300)
@@ -107,7 +107,7 @@ def check_summary(store: MemoryStore, run: Run, config: ExperimentConfig) -> Non
     summary = json.loads(store.artifact(run.id, SUMMARY) or b"")
     assert summary["trials"]["done"] == 41
     assert summary["config"]["seeds"] == config.seeds
-    learner = next(one for one in summary["settings"] if one["role"] == "learner")
+    learner = next(process for process in summary["settings"] if process["role"] == "learner")
     assert learner["n"] == 40
     cost = summary["cost"]
     assert cost["workers"] == 1
@@ -171,12 +171,15 @@ def test_queued_or_starting_experiment_stops_at_once(jobs: Jobs, store: MemorySt
 
 
 def test_too_large_or_unreachable_grid_is_rejected(jobs: Jobs) -> None:
-    many = tuple(n / 1000 for n in range(1, 101))
-    for values, message in (
-        ({"alpha": many, "gamma": many, "epsilon_start": many, "epsilon_end": many}, "settings"),
-        ({"alpha": many, "seeds": 10_000}, "trials"),
+    values = tuple(n / 1000 for n in range(1, 101))
+    for lists, message in (
+        (
+            {"alpha": values, "gamma": values, "epsilon_start": values, "epsilon_end": values},
+            "settings",
+        ),
+        ({"alpha": values, "seeds": 10_000}, "trials"),
     ):
-        fields = {"simulator": "kinematic", **values}
+        fields = {"simulator": "kinematic", **lists}
         with pytest.raises(InvalidInput, match=message):
             jobs.experiment(ExperimentStart(experiment_config("sweep", fields)))
     with pytest.raises(Unreachable):

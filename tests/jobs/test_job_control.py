@@ -139,14 +139,14 @@ def test_leave_ends_the_loop_but_is_not_a_stop(pipe: FakePipe) -> None:
 
 def test_changes_are_replayed_after_the_same_steps(pipe: FakePipe) -> None:
     agent = QLearning(generator(0), Problem(((1, 4), (2, 5), (3, 6)), FootGrid().cells))
-    made = [{"step": 2, "pace": "max"}]
+    included = [{"step": 2, "pace": "max"}]
     later_on = [{"step": 5, "epsilon": 0.5}, {"step": 7, "epsilon": 0.25}]
-    pipe.control.repeat(made, later_on, 5, agent)
+    pipe.control.repeat(included, later_on, 5, agent)
     assert agent.epsilon == 0.5, "it was made after this step, and after the checkpoint"
     epsilons = []
     for step in (6, 7, 8):
         assert pipe.control.go_on(step, agent)
         epsilons.append(agent.epsilon)
     assert epsilons == [0.5, 0.25, 0.25]
-    assert pipe.control.changes == [*made, *later_on]
+    assert pipe.control.changes == [*included, *later_on]
     assert pipe.sent == [], "the server has them already"

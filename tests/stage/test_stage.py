@@ -92,9 +92,9 @@ def test_newest_finished_race_is_replayed_after_twenty_idle_seconds(
     parts.finished_race()
     newest = parts.finished_race()
     parts.stage.show(parts.finished_training(5).id)
-    shown = parts.watch_to_end()
+    frames = parts.watch_to_end()
 
-    assert not any(frame.replay for frame in shown)
+    assert not any(frame.replay for frame in frames)
     assert parts.watch(REPLAY_AFTER_S - 1)[-1].spec.kind == "training"
     frame = parts.watch(2.0)[-1]
     assert (frame.run_id, frame.replay) == (newest.id, True)

@@ -12,9 +12,9 @@ from app.viewer.colormap import VIRIDIS, batch_colors, rgb, value_colors
 
 def test_page_and_stage_use_the_same_scale() -> None:
     script = (assets.static_dir() / "js" / "colormap.js").read_text("utf-8")
-    found = re.search(r"STOPS = (\[.*?\]);", script, re.DOTALL)
-    assert found is not None
-    stops = json.loads(re.sub(r",\s*\]", "]", found[1]))
+    match = re.search(r"STOPS = (\[.*?\]);", script, re.DOTALL)
+    assert match is not None
+    stops = json.loads(re.sub(r",\s*\]", "]", match[1]))
 
     assert [tuple(stop) for stop in stops] == [rgb(color) for color in VIRIDIS]
 

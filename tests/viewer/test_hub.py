@@ -35,8 +35,8 @@ def served(viser_server: InProcessViser, robots: Robots) -> Iterator[ServedHub]:
 
 def robots_at(place: float) -> Any:
     def predicate(frame: wire.Frame) -> bool:
-        places = array(frame, Robots.NAME, "batched_positions")
-        return places is not None and bool(np.all(places == place))
+        positions = array(frame, Robots.NAME, "batched_positions")
+        return positions is not None and bool(np.all(positions == place))
 
     return predicate
 

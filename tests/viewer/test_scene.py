@@ -120,9 +120,9 @@ def test_lanes_are_side_by_side_with_their_labels(server: InProcessViser) -> Non
 def test_start_and_finish_lines_are_labelled_and_coloured(server: InProcessViser) -> None:
     StageScene(server).draw(frame_at_rest(race_of(1)))
     nodes = scene_nodes(server)
-    words = {m["text"] for n, m in nodes.items() if n.endswith("/word")}
+    labels = {m["text"] for n, m in nodes.items() if n.endswith("/word")}
 
-    assert words == {"Start", "Finish"}
+    assert labels == {"Start", "Finish"}
     red, green = nodes["/world/cast/track/finish"], nodes["/world/cast/track/start"]
     assert np.argmax(red["color"]) == 0
     assert np.argmax(green["color"]) == 1
