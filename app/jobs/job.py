@@ -84,6 +84,17 @@ class Job:
         shutdown: threading.Event,
         niceness: int,
     ) -> None:
+        """Create the job and its process, which `process.start` starts.
+
+        Args:
+            run: the run, stored as `running`.
+            task: sent to the process.
+            store: store of the runs.
+            recordings: receives the motion of the robots.
+            bus: receives the run's events.
+            shutdown: set when the server stops; ends retries during a database outage.
+            niceness: added to the server's nice value in the process.
+        """
         self.run_id, self.is_race = run.id, run.kind == "race"
         self.paused = self.stopping = self.shared = False
         self.ended, self.gone = threading.Event(), threading.Event()
@@ -162,7 +173,13 @@ class Job:
             self.process.kill(f"its process said nothing for {silent_s:.0f} s")
 
     def end(self, state: State, error: str | None = None, result: Any = None) -> None:
-        """Write the run's final state to the store, unless one was written; publish it."""
+        """Write the run's final state to the store, unless one was written; publish it.
+
+        Args:
+            state: the final state.
+            error: a sentence for the user if it did not finish.
+            result: the run's result, in plain types.
+        """
         if self.ended.is_set():
             return
         self._finish_recording(state)

@@ -240,7 +240,12 @@ def _without_dropped_steps(
 
 
 class InterruptibleAgent:
-    """Decorator of an `Agent` that calls `listen` before each action, to interrupt evaluations."""
+    """Wrapper of an `Agent` that executes commands before each action of an evaluation.
+
+    Args:
+        agent: the wrapped agent.
+        listen: executes pending commands; raises `Stopped` to abandon the evaluation.
+    """
 
     def __init__(self, agent: Agent, listen: Callable[[], None]) -> None:
         self._agent, self._listen = agent, listen

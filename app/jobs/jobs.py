@@ -163,7 +163,13 @@ class Jobs:
         return self._enqueue([queued_experiment(start, self.new_id)], key)
 
     def keep(self, run: Run, table: bytes, key: IdempotencyKey | None = None) -> Run:
-        """Store an imported training, which ended elsewhere, with its table; publish it."""
+        """Store an imported training, which ended elsewhere, and publish it.
+
+        Args:
+            run: the training, with its final state.
+            table: its table, as a file.
+            key: idempotency key of the request, stored with the run.
+        """
         run = self._store.add(run, Content(artifacts={TABLE: table}), self.new_id, key)
         self._publish(run)
         return run

@@ -51,7 +51,12 @@ class Show(Protocol):
 
 
 class IdleShow:
-    """Show of an idle stage: robots stand still on the start line."""
+    """Show of an idle stage: robots stand still on the start line.
+
+    Args:
+        spec: the scene.
+        still: the frame that is always shown.
+    """
 
     time_s = 0.0
     ended = True

@@ -32,7 +32,16 @@ _STOPS = np.array([rgb(color) for color in VIRIDIS], float)
 
 
 def value_colors(values: FloatArray, low: float, high: float) -> NDArray[np.uint8]:
-    """Map values to colours on a scale from low to high, (..., 3); NaN gets the lowest colour."""
+    """Map values to colours by linear interpolation between the stops of viridis.
+
+    Args:
+        values: (...); NaN gets the lowest colour.
+        low: value of the first stop; lower values are clipped.
+        high: value of the last stop; higher values are clipped.
+
+    Returns:
+        (..., 3), 0–255.
+    """
     fraction = (np.nan_to_num(values, nan=low) - low) / (high - low) if high > low else 0 * values
     index = np.clip(np.nan_to_num(fraction), 0, 1) * (len(_STOPS) - 1)
     channels = [np.interp(index, np.arange(len(_STOPS)), _STOPS[:, c]) for c in range(3)]

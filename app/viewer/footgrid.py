@@ -26,6 +26,12 @@ class FootGridDrawing:
     A cell is drawn as its Voronoi region, as observations assign a foot to the nearest cell. Rims
     are red at home and blue elsewhere, as in the paper; the fill is the value of moving the pair
     there now. The cell where a pair is has a white rim and no value, since it is no legal action.
+
+    Args:
+        server: where to draw.
+        root: scene node of the grid.
+        spec: the scene.
+        x_m: centre of the lane [m].
     """
 
     def __init__(self, server: viser.ViserServer, root: str, spec: SceneSpec, x_m: float) -> None:
@@ -77,7 +83,16 @@ class FootGridDrawing:
 
 
 class _Tiles:
-    """All cells of one shape, of all feet: one batch of rims and one of fills."""
+    """All cells of one shape, of all feet: one batch of rims and one of fills.
+
+    Args:
+        server: where to draw.
+        root: scene node of the batches.
+        outline: corners of a cell, (4, 2) [m].
+        cells: indices of the cells of this shape, (n,).
+        positions: of all cells, (legs, cells, 3) [m].
+        rim: colour of the rims.
+    """
 
     def __init__(
         self,

@@ -16,7 +16,14 @@ _TEXT_SCALE = 1.7
 
 
 class PhotoFinish:
-    """A bar from the start line to each robot with its distance, shown during the photo finish."""
+    """A bar from the start line to each robot with its distance, shown during the photo finish.
+
+    Args:
+        server: where to draw.
+        root: scene node of the bars.
+        spec: the scene.
+        xs: centres of the lanes [m].
+    """
 
     def __init__(
         self, server: viser.ViserServer, root: str, spec: SceneSpec, xs: Sequence[float]
@@ -60,7 +67,15 @@ class PhotoFinish:
 
 
 class Ghosts:
-    """Evaluations on a lane of their own: a line for each, a translucent robot for the newest."""
+    """Evaluations on a lane of their own: a line for each, a translucent robot for the newest.
+
+    Args:
+        server: where to draw.
+        root: scene node of the ghosts.
+        spec: the scene.
+        mesh: the robot.
+        x_m: centre of the lane [m].
+    """
 
     def __init__(
         self, server: viser.ViserServer, root: str, spec: SceneSpec, mesh: RobotMesh, x_m: float

@@ -30,7 +30,14 @@ def label_text(lane_spec: LaneSpec, lane: LaneView) -> str:
 
 
 class NameLabel:
-    """Name label and flag of one lane."""
+    """Name label and flag of one lane.
+
+    Args:
+        server: where to draw.
+        root: scene node of the lane.
+        lane_spec: name and colour.
+        x_m: centre of the lane [m].
+    """
 
     def __init__(
         self, server: viser.ViserServer, root: str, lane_spec: LaneSpec, x_m: float

@@ -16,7 +16,15 @@ _SHADE = 0.25
 
 
 class Robots:
-    """The robots of a scene, each on its lane."""
+    """The robots of a scene, each on its lane.
+
+    Args:
+        server: where to draw.
+        root: scene node of the robots.
+        spec: the scene.
+        mesh: the robot.
+        xs: centres of the lanes [m].
+    """
 
     def __init__(
         self,

@@ -34,6 +34,12 @@ class Session:
     At most `MAX_QUEUED_FRAMES` are queued in order. If more arrive, the queue is dropped, and the
     browser gets their changes coalesced into one catch-up frame when it is ready, so that memory is
     bounded however slow it is.
+
+    Args:
+        websocket: accepted websocket.
+        view: what the browser follows at first.
+        counters: counters of the hub, updated here.
+        catch_up: makes a catch-up frame.
     """
 
     MAX_QUEUED_FRAMES = 4
@@ -55,7 +61,12 @@ class Session:
         self._sender: asyncio.Task[None] | None = None
 
     def push(self, frame: wire.Frame, version: int) -> None:
-        """Queue a frame; if the queue is full, drop it in favour of a catch-up frame."""
+        """Queue a frame; if the queue is full, replace all of it by a later catch-up frame.
+
+        Args:
+            frame: the frame.
+            version: version of the scene after it.
+        """
         if not self._is_lagging and len(self._queue) < self.MAX_QUEUED_FRAMES:
             self._queue.append((frame, version))
         else:

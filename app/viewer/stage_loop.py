@@ -19,6 +19,11 @@ class StageLoop:
     """Draws the stage 30 times a second, and publishes a `scene` event at most five times a second.
 
     `with loop:` runs it. Without motion the frame rate drops and no events are published.
+
+    Args:
+        stage: advanced by each frame.
+        scene: draws the frames.
+        bus: receives the events.
     """
 
     def __init__(self, stage: Stage, scene: StageScene, bus: EventBus) -> None:

@@ -86,7 +86,14 @@ def _light(scene: viser.SceneApi) -> viser.SpotLightHandle:
 
 
 def draw_lanes(server: viser.ViserServer, root: str, xs: list[float], width: float) -> None:
-    """Draw lanes of the same width [m] centred on these x [m], ticks, start and finish line."""
+    """Draw lanes of equal width with ticks, start and finish line.
+
+    Args:
+        server: where to draw.
+        root: scene node of the lanes.
+        xs: centres of the lanes, ascending [m].
+        width: width of each lane [m].
+    """
     scene, left, right = server.scene, xs[0] - width / 2, xs[-1] + width / 2
     borders = [x - width / 2 for x in xs] + [right]
     scene.add_line_segments(

@@ -75,7 +75,13 @@ def parse(raw: bytes) -> Frame:
 
 
 def pack(messages: Iterable[Message], buffers: Sequence[memoryview], timestamp_s: float) -> Frame:
-    """Encode messages and the arrays they reference."""
+    """Encode messages and the arrays they reference.
+
+    Args:
+        messages: with array indices into `buffers`.
+        buffers: the arrays.
+        timestamp_s: time of the frame by viser's clock [s].
+    """
     messages = tuple(messages)
     body = _encoder.encode(
         {
