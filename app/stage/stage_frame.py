@@ -43,7 +43,7 @@ class SceneSpec:
 
 @dataclass(frozen=True, eq=False)
 class ActionValuesView:
-    """Action values of a learner in its present state [m]."""
+    """Action values of a learner in its present state, with their visit counts."""
 
     values_m: FloatArray
     """(pairs, cells), NaN where illegal."""
