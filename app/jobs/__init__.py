@@ -1,8 +1,12 @@
-"""Jobs: a process for every training, race and experiment, and the queue before them.
+"""Jobs: the queue of trainings, races and experiments, and one worker process for each.
 
-The way of a run: `submissions` checks what was asked and makes queued runs, `queue` orders them,
-`supervisor` starts a `worker_process` for each as cores become free, and `job` turns its messages
-into the run's state, recording and events. Inside the process `worker` runs the loop and
-`job_control` obeys commands between two steps. `jobs` is the face of it all; `resume` queues again
-what did not come to its end.
+In the server:
+- `jobs` is the facade: submit, pause, resume, stop, change and delete runs.
+- `submissions` validates requests and builds queued runs; `resume` does so for unfinished runs.
+- `queue` orders them; `supervisor` starts them as cores free up, and shuts them down.
+- `worker_process` is the handle on a process; `job` writes its messages to store and bus.
+Between both: `messages` defines the commands and messages on the pipe.
+In the worker process:
+- `worker` is the entry point and runs the loop; `experiment_worker` runs an experiment's trials.
+- `job_control` executes commands between two steps; `process_setup` sets priority and signals.
 """

@@ -1,4 +1,4 @@
-"""An experiment in its job's process: tries what was not tried yet, and tells what it shows."""
+"""An experiment in its worker process: runs the remaining trials, sends results and summaries."""
 
 import importlib
 import json
@@ -23,89 +23,89 @@ if TYPE_CHECKING:
 BATCHES_PER_S = 5
 SUMMARY_EVERY_S = 2.0
 _SUMMARY_SHARE = 0.15
-"""Of the time, at most; it takes a core away from the trials."""
+"""Largest share of the time spent on summaries, which take a core away from the trials."""
 
 
 def experiment(
-    order: ExperimentTask, send: Callable[[Message], None], words: "queue.SimpleQueue[Command]"
+    task: ExperimentTask, send: Callable[[Message], None], commands: "queue.SimpleQueue[Command]"
 ) -> None:
-    """Run an experiment to its end, or until someone says stop or leave.
+    """Run an experiment to its end, or until a `stop` or `leave` command.
 
     Args:
-        order: what to try.
-        send: tells the server.
-        words: what the server says.
+        task: the experiment, with the trials that are done.
+        send: sends a message to the server.
+        commands: commands received from the server.
 
     Raises:
-        HexapodError: if it cannot go on.
+        HexapodError: if it cannot continue.
     """
-    send(Began((), len(order.rows)))
-    listener, book = _Listener(words), _Progress(order, send)
-    book.summarise()
-    while listener.wait():
-        for outcome in book.tried(listener.go_on):
-            book.take(outcome)
-        book.flush()
-        if not listener.held:
+    send(Began((), len(task.rows)))
+    control, progress = _TrialControl(commands), _Progress(task, send)
+    progress.summarise()
+    while control.wait():
+        for outcome in progress.run_remaining(control.may_continue):
+            progress.add(outcome)
+        progress.flush()
+        if not control.draining:
             break
-        if listener.paused:
-            # Nothing runs while it waits: not even the cluster, which takes memory.
-            book.summarise()
-    if not listener.leaving:
-        book.report()
-        send(Ended("stopped" if listener.stopped else "finished", book.result()))
+        if control.paused:
+            # The cluster is shut down during a pause, since it takes memory.
+            progress.summarise()
+    if not control.exiting:
+        progress.report()
+        send(Ended("stopped" if control.stopped else "finished", progress.result()))
 
 
-class _Listener:
-    """Obeys words between trials.
+class _TrialControl:
+    """Executes the server's commands between trials.
 
     Attributes:
-        paused: whether it is to wait.
-        stopped: whether it is to end with what there is.
-        leaving: whether it is to end at once, to go on another time.
-        held: whether the trials were told not to go on; they are until somebody waits.
+        paused: whether to wait for `resume`.
+        stopped: whether to end with a report on the trials so far.
+        exiting: whether to end at once without a report, to be resumed later.
+        draining: whether no more trials are started until the next call of `wait`.
     """
 
-    def __init__(self, words: "queue.SimpleQueue[Command]") -> None:
-        self.paused = self.stopped = self.leaving = self.held = False
-        self._words = words
+    def __init__(self, commands: "queue.SimpleQueue[Command]") -> None:
+        self.paused = self.stopped = self.exiting = self.draining = False
+        self._commands = commands
 
-    def go_on(self) -> bool:
-        """Obey what was said; False if nothing more is to be tried before somebody waits."""
-        # Once is enough: who was told to end must not be told to go on while it does.
-        while not self.held and not self._words.empty():
-            self._obey(self._words.get())
-            self.held = self.paused or self.stopped or self.leaving
-        return not self.held
+    def may_continue(self) -> bool:
+        """Execute pending commands; False if no trial may start before the next `wait`."""
+        # False stays False: a `resume` must not restart an engine that is draining.
+        while not self.draining and not self._commands.empty():
+            self._execute(self._commands.get())
+            self.draining = self.paused or self.stopped or self.exiting
+        return not self.draining
 
     def wait(self) -> bool:
-        """Wait for as long as it is paused; False if it is to end."""
-        while not (self.stopped or self.leaving):
-            if not self.paused and self._words.empty():
-                self.held = False
+        """Block while paused; False if the experiment is to end."""
+        while not (self.stopped or self.exiting):
+            if not self.paused and self._commands.empty():
+                self.draining = False
                 return True
-            self._obey(self._words.get())
+            self._execute(self._commands.get())
         return False
 
-    def _obey(self, word: Command) -> None:
-        if word.verb in ("pause", "resume"):
-            self.paused = word.verb == "pause"
-        self.stopped |= word.verb == "stop"
-        self.leaving |= word.verb == "leave"
+    def _execute(self, command: Command) -> None:
+        if command.verb in ("pause", "resume"):
+            self.paused = command.verb == "pause"
+        self.stopped |= command.verb == "stop"
+        self.exiting |= command.verb == "leave"
 
 
 class _Progress:
-    """What came of the trials, and what the server knows of it."""
+    """Results of the trials so far, and which of them were sent to the server."""
 
-    def __init__(self, order: ExperimentTask, send: Callable[[Message], None]) -> None:
-        self._order, self._send_now = order, send
-        self._sending = threading.Lock()
-        self._summariser = ThreadPoolExecutor(1, "summary")
-        self._being_made: Future[None] | None = None
-        self._plan = Plan(order.config)
-        self._results, self._set_aside = results_of(order.rows)
-        self._compute_s = sum(row["compute_s"] for row in order.rows)
-        self._wall_s = order.wall_s
+    def __init__(self, task: ExperimentTask, send: Callable[[Message], None]) -> None:
+        self._task, self._send_now = task, send
+        self._send_lock = threading.Lock()
+        self._summary_executor = ThreadPoolExecutor(1, "summary")
+        self._pending_summary: Future[None] | None = None
+        self._plan = Plan(task.config)
+        self._results, self._set_aside = results_of(task.rows)
+        self._compute_s = sum(row["compute_s"] for row in task.rows)
+        self._wall_s = task.wall_s
         self._pending: list[dict[str, Any]] = []
         self._sent_s = self._due_s = time.monotonic()
         self._summary: dict[str, Any] = {}
@@ -114,31 +114,36 @@ class _Progress:
 
     @property
     def done(self) -> int:
-        """How many trials there are no more to be tried."""
+        """Number of trials done, those set aside included."""
         return len(self._results) + len(self._set_aside)
 
-    def tried(self, go_on: Callable[[], bool]) -> "Iterator[Outcome]":
-        """Try what is left."""
-        # The server imports this module, and has no use for what a cluster needs.
+    def run_remaining(self, may_continue: Callable[[], bool]) -> "Iterator[Outcome]":
+        """Run the remaining trials on a cluster and yield their outcomes.
+
+        Args:
+            may_continue: polled between trials; False ends the iteration.
+        """
+        # Imported here, since the server imports this module but needs no cluster.
         from app.experiments.cluster import ClusterSpec  # noqa: PLC0415
         from app.experiments.engine import run_trials  # noqa: PLC0415
 
-        # It would tell of each start and end of a cluster, and of tasks that a pause drops.
+        # It would log each start and end of a cluster, and the tasks that a pause drops.
         importlib.import_module("distributed")
         for name in ("distributed", "distributed.scheduler"):
             logging.getLogger(name).setLevel(logging.CRITICAL)
-        began_s, before_s = time.monotonic(), self._wall_s
+        started_s, before_s = time.monotonic(), self._wall_s
 
-        def attentive() -> bool:
-            self._wall_s = before_s + time.monotonic() - began_s
-            self._keep_up()
-            return go_on()
+        def send_and_check() -> bool:
+            self._wall_s = before_s + time.monotonic() - started_s
+            self._send_due()
+            return may_continue()
 
-        yield from run_trials(list(self._left()), ClusterSpec(workers=self._workers), attentive)
-        self._wall_s = before_s + time.monotonic() - began_s
+        cluster = ClusterSpec(workers=self._workers)
+        yield from run_trials(list(self._remaining()), cluster, send_and_check)
+        self._wall_s = before_s + time.monotonic() - started_s
 
-    def take(self, outcome: "Outcome") -> None:
-        """Take in what came of a trial."""
+    def add(self, outcome: "Outcome") -> None:
+        """Add the outcome of a trial to the results and to the next batch."""
         result = None if outcome.result is None else outcome.result.as_json()
         row = {**outcome._asdict(), "result": result}
         results, set_aside = results_of([row])
@@ -149,41 +154,41 @@ class _Progress:
         self._is_stale = True
 
     def flush(self) -> None:
-        """Send what was not sent yet."""
+        """Send the pending batch of trials."""
         if self._pending:
             self._send(TrialsDone(tuple(self._pending), self.done))
         self._pending = []
         self._sent_s = time.monotonic()
 
     def summarise(self) -> None:
-        """Send what the trials show so far, if that is another than before, and wait for it."""
+        """Send a summary of the trials so far unless the last one is up to date; wait for it."""
         self._wait_for_summary()
         if self._is_stale:
-            self._begin_summary()
+            self._start_summary()
             self._wait_for_summary()
 
-    def _begin_summary(self) -> None:
-        """Make it beside the trials, which it would keep waiting."""
+    def _start_summary(self) -> None:
+        """Start computing a summary in a thread, so that trials need not wait for it."""
         self.flush()
         self._is_stale = False
-        seen = dict(self._results), dict(self._set_aside), self._cost()
-        self._being_made = self._summariser.submit(self._make_summary, *seen)
+        inputs = dict(self._results), dict(self._set_aside), self._cost()
+        self._pending_summary = self._summary_executor.submit(self._compute_summary, *inputs)
 
     def _wait_for_summary(self) -> None:
-        if self._being_made is not None:
-            self._being_made.result()
-            self._being_made = None
+        if self._pending_summary is not None:
+            self._pending_summary.result()
+            self._pending_summary = None
 
-    def _make_summary(
+    def _compute_summary(
         self, results: Mapping[str, TrialResult], set_aside: Mapping[str, str], cost: Any
     ) -> None:
         from app.experiments.summary import summarise  # noqa: PLC0415 - it brings SciPy
 
-        began_s = time.monotonic()
-        self._summary = summarise(self._order.config, results, set_aside, cost)
-        took_s = time.monotonic() - began_s
-        self._due_s = began_s + max(SUMMARY_EVERY_S, took_s / _SUMMARY_SHARE)
-        self._keep(SUMMARY, json.dumps(self._summary, allow_nan=False).encode())
+        started_s = time.monotonic()
+        self._summary = summarise(self._task.config, results, set_aside, cost)
+        took_s = time.monotonic() - started_s
+        self._due_s = started_s + max(SUMMARY_EVERY_S, took_s / _SUMMARY_SHARE)
+        self._send_file(SUMMARY, json.dumps(self._summary, allow_nan=False).encode())
 
     def report(self) -> None:
         """Send the files of the report."""
@@ -193,40 +198,40 @@ class _Progress:
         self._is_stale = True
         self.summarise()
         for name, data in report_files(self._summary, self._results):
-            self._keep(name, data)
+            self._send_file(name, data)
 
     def result(self) -> dict[str, Any]:
-        """The run's result, short enough for lists of runs."""
+        """Return the run's result, short enough for lists of runs."""
         trials = {name: self._summary["trials"][name] for name in ("done", "total", "failed")}
         trials["set_aside"] = len(self._set_aside)
         claims = [{n: claim[n] for n in ("id", "verdict")} for claim in self._summary["claims"]]
         return {"trials": trials, "claims": claims, "files": self._files}
 
-    def _left(self) -> Iterator[Trial]:
-        known = self._results.keys() | self._set_aside.keys()
-        return (trial for trial in self._plan.trials() if trial.key not in known)
+    def _remaining(self) -> Iterator[Trial]:
+        completed = self._results.keys() | self._set_aside.keys()
+        return (trial for trial in self._plan.trials() if trial.key not in completed)
 
-    def _keep_up(self) -> None:
+    def _send_due(self) -> None:
         now_s = time.monotonic()
         if self._pending and now_s - self._sent_s >= 1 / BATCHES_PER_S:
             self.flush()
-        if self._being_made is not None and self._being_made.done():
+        if self._pending_summary is not None and self._pending_summary.done():
             self._wait_for_summary()
-        if self._is_stale and now_s >= self._due_s and self._being_made is None:
-            self._begin_summary()
+        if self._is_stale and now_s >= self._due_s and self._pending_summary is None:
+            self._start_summary()
 
-    def _keep(self, name: str, data: bytes) -> None:
+    def _send_file(self, name: str, data: bytes) -> None:
         if name not in self._files:
             self._files.append(name)
         self._send(Reported(name, data))
 
     def _send(self, message: Message) -> None:
-        with self._sending:
+        with self._send_lock:
             self._send_now(message)
 
     @property
     def _workers(self) -> int:
-        return self._order.workers or os.cpu_count() or 1
+        return self._task.workers or os.cpu_count() or 1
 
     def _cost(self) -> dict[str, Any]:
         wall_s = self._wall_s

@@ -1,4 +1,4 @@
-"""A job while it runs: what its process says becomes the run's state, recording and events."""
+"""A running job: applies its worker process's messages to the store, the recordings and the bus."""
 
 import itertools
 import logging
@@ -41,29 +41,33 @@ from app.storage.store import CHECKPOINT, LIVE, SUMMARY, TABLE, Run, RunStore, S
 
 EVENTS_PER_S = 10
 MAX_OUTAGE_S = 600.0
-"""For so long a job waits for a database that cannot be used; then it is interrupted."""
+"""Longest database outage that a job waits out; after that its run becomes `interrupted`."""
 STALLED_S = 8.0
-"""A process that was stopped for so long is ended: a run that reads `running` must run."""
+"""A process stopped by a signal (SIGSTOP) for longer is killed, since its run reads `running`."""
 SILENT_S = 60.0
-"""The same of one that says nothing, which on a busy machine may still be alive."""
+"""A process without a heartbeat for longer is killed. Longer than `STALLED_S`, since on a busy
+machine a silent process may still work."""
 _logger = logging.getLogger(__name__)
 
 
 class Job:
-    """One run that a process works on.
+    """One run and the worker process that computes it.
+
+    Messages arrive in the receiving thread of the process, one at a time; commands may be sent
+    from any thread.
 
     Attributes:
-        run_id: of the run.
-        is_race: what kind of run it is.
-        stop_grace_s: how long it may take to end when it is told to stop.
-        paused: whether it was told to wait.
-        stopping: whether it was told to stop.
-        shared: whether another job ran at the same time.
-        eta_window_s: from how much of the past it is told how long it will take.
-        process: works on it.
-        last: the run as this job wrote it last, its end included.
-        ended: set when the run's last state is in the store.
-        gone: set when its process is no more, and everyone has been told.
+        run_id: id of the run.
+        is_race: whether the run is a race.
+        stop_grace_s: time that the process may take to end after `stop` before it is killed [s].
+        paused: whether `pause` was sent last.
+        stopping: whether `stop` was called.
+        shared: whether another job ran at the same time; a race's result reports it.
+        eta_window_s: length of the moving window from which the remaining time is estimated [s].
+        process: the worker process.
+        last: the run as this job last wrote it, its final state included.
+        ended: set when the run's final state is in the store.
+        gone: set when the process has exited and all events of the run were published.
     """
 
     stop_grace_s = 20.0
@@ -72,7 +76,7 @@ class Job:
     def __init__(
         self,
         run: Run,
-        order: Task,
+        task: Task,
         store: RunStore,
         recordings: Recordings,
         bus: EventBus,
@@ -80,66 +84,88 @@ class Job:
         shutdown: threading.Event,
         niceness: int,
     ) -> None:
+        """Create the job and its process, which `process.start` starts.
+
+        Args:
+            run: the run, stored as `running`.
+            task: sent to the process.
+            store: store of the runs.
+            recordings: receives the motion of the robots.
+            bus: receives the run's events.
+            shutdown: set when the server stops; ends retries during a database outage.
+            niceness: added to the server's nice value in the process.
+        """
         self.run_id, self.is_race = run.id, run.kind == "race"
         self.paused = self.stopping = self.shared = False
         self.ended, self.gone = threading.Event(), threading.Event()
-        self.process = WorkerProcess(f"{run.kind} {run.id}", order, self._take_patiently, niceness)
+        self.process = WorkerProcess(
+            f"{run.kind} {run.id}", task, self._handle_with_retry, niceness
+        )
         self.last = run
-        self._run, self._order, self._shutdown = run, order, shutdown
-        self._began_s = time.monotonic()
-        self._began_at = max(datetime.now(UTC), run.started_at or run.created_at)
+        self._run, self._task, self._shutdown = run, task, shutdown
+        self._started_s = time.monotonic()
+        self._started_at = max(datetime.now(UTC), run.started_at or run.created_at)
         self._store, self._recordings, self._bus = store, recordings, bus
-        self._answers: dict[int, threading.Event] = {}
+        self._acknowledgements: dict[int, threading.Event] = {}
         self._tokens = itertools.count()
         self._has_begun = False
         self._published_s = 0.0
         self._progress: deque[tuple[float, int]] = deque()
 
     def pause(self) -> None:
-        """Wait after the present step."""
+        """Pause after the current step."""
         self.paused = True
         self.process.send(Command("pause"))
 
     def resume(self) -> None:
-        """Go on."""
+        """Continue after a pause."""
         self.paused = False
         self._progress.clear()
         self.process.send(Command("resume"))
 
     def stop(self) -> None:
-        """End after the present step, with what has come of it so far."""
+        """Stop after the current step and keep the results so far; kill it if it has not begun."""
         self.stopping = True
         if self._has_begun:
             self.process.send(Command("stop"))
         else:
             self.process.kill()
 
-    def leave(self) -> None:
-        """End after the present step with a checkpoint, if it is a training that has begun."""
+    def checkpoint_and_exit(self) -> None:
+        """Exit after the current step, a training with a checkpoint; kill what has none to write.
+
+        Used when the server shuts down: the run is `interrupted` and can be resumed.
+        """
         if self._has_begun and not self.is_race:
             self.process.send(Command("leave"))
         else:
             self.process.kill()
 
     def tune(self, changes: Mapping[str, Any], within_s: float) -> threading.Event:
-        """Change rates or pace after the present step; the event is set once that is done.
+        """Change learning rates or pace after the current step.
 
         Args:
             changes: any of alpha, gamma, epsilon, pace.
-            within_s: after which it is not done any more.
+            within_s: time after which the process discards the command [s].
+
+        Returns:
+            an event that is set once the process has acknowledged the change.
         """
-        token, answer = next(self._tokens), threading.Event()
-        self._answers[token] = answer
+        token, acknowledged = next(self._tokens), threading.Event()
+        self._acknowledgements[token] = acknowledged
         self.process.send(Command("tune", token, changes, time.monotonic() + within_s))
-        return answer
+        return acknowledged
 
     @property
     def is_answering(self) -> bool:
-        """Whether its process has said something lately, and was not stopped by a signal."""
+        """Whether the process sent a heartbeat lately and is not stopped by a signal."""
         return self.process.stopped_s() == 0 and self.process.silent_s() < SILENT_S
 
     def end_if_stalled(self) -> None:
-        """End the process if it answers no more; its run is then `failed`, and can be resumed."""
+        """Kill the process if it is stopped or silent for too long (watchdog).
+
+        Its run is then `failed` and can be resumed.
+        """
         stopped_s, silent_s = self.process.stopped_s(), self.process.silent_s()
         if stopped_s > STALLED_S:
             self.process.kill(f"its process was stopped by a signal for {stopped_s:.0f} s")
@@ -147,12 +173,18 @@ class Job:
             self.process.kill(f"its process said nothing for {silent_s:.0f} s")
 
     def end(self, state: State, error: str | None = None, result: Any = None) -> None:
-        """Give the run its last state, if it has none yet."""
+        """Write the run's final state to the store, unless one was written; publish it.
+
+        Args:
+            state: the final state.
+            error: a sentence for the user if it did not finish.
+            result: the run's result, in plain types.
+        """
         if self.ended.is_set():
             return
-        self._keep_recording(state)
-        # By a clock that nobody puts forward or back.
-        ended_at = self._began_at + timedelta(seconds=time.monotonic() - self._began_s)
+        self._finish_recording(state)
+        # From the monotonic clock, which clock adjustments do not affect.
+        ended_at = self._started_at + timedelta(seconds=time.monotonic() - self._started_s)
         run = self._store.change(
             self.run_id, LIVE, state, error=error, result=result, ended_at=ended_at, eta_s=None
         )
@@ -160,7 +192,7 @@ class Job:
         self.ended.set()
         self._publish(run)
 
-    def _keep_recording(self, state: State) -> None:
+    def _finish_recording(self, state: State) -> None:
         try:
             self._recordings.finish(self.run_id)
         except OwnershipLost:
@@ -168,18 +200,18 @@ class Job:
         except HexapodError:
             if state in ("finished", "stopped"):
                 raise
-            # It is lost, which is no reason to hide what was wrong in the first place.
+            # The run has failed anyway: do not let this error hide the first one.
             _logger.warning("no recording was kept", extra={"run_id": self.run_id}, exc_info=True)
 
     def process_ended(self, end: Exit) -> None:
-        """Give the run its last state if its process died before it could say one.
+        """Write a final state for a run whose process exited without reporting one.
 
         Raises:
-            StorageFailed: if the store cannot be used; worth another try.
+            StorageFailed: if the store cannot be used; to be retried.
         """
         if self.ended.is_set():
             return
-        # Before anything is given up: during an outage nothing can be noted, nor kept.
+        # Check that the store works before anything is discarded: raises during an outage.
         self._store.get(self.run_id)
         if self.stopping:
             if self._has_begun:
@@ -193,33 +225,33 @@ class Job:
         else:
             self.end("failed", f"The job ended before it was done: {end.how}.")
 
-    def _take_patiently(self, message: Message) -> None:
-        """Take in a message, for as long as it needs if the database is away.
+    def _handle_with_retry(self, message: Message) -> None:
+        """Handle a message, retrying while the database is unavailable.
 
-        Meanwhile the process fills its pipe and then waits, so that nothing is lost.
+        Meanwhile the pipe fills and blocks the process (back-pressure), so that nothing is lost.
         """
         with retry_during_outage(MAX_OUTAGE_S, self._shutdown):
-            self._take(message)
+            self._handle(message)
 
-    def _take(self, message: Message) -> None:
-        """Take in a message of the process; called from its thread."""
+    def _handle(self, message: Message) -> None:
+        """Handle one message of the process; called from its receiving thread."""
         if isinstance(message, Batch):
-            self._take_records(message)
+            self._handle_batch(message)
         elif isinstance(message, Began):
-            self._begin(message)
+            self._handle_began(message)
         elif isinstance(message, Changed):
-            self._take_change(message)
+            self._handle_change(message)
         elif isinstance(message, Checkpointed):
             self._recordings.save(self.run_id)
             self._store.put_artifact(self.run_id, CHECKPOINT, message.data, done=message.step)
         elif isinstance(message, Saved):
             self._store.put_artifact(self.run_id, TABLE, message.table)
         elif isinstance(message, Ended):
-            self._take_end(message)
+            self._handle_end(message)
         elif isinstance(message, Failed):
             self.end("failed", f"The {self._run.kind} failed: {message.reason}")
 
-    def _begin(self, began: Began) -> None:
+    def _handle_began(self, began: Began) -> None:
         self._has_begun = True
         config = self._run.config
         if not began.rest_qpos:
@@ -231,7 +263,7 @@ class Job:
         else:
             self._recordings.begin_training(self.run_id, began.rest_qpos[0], began.after_step)
 
-    def _take_records(self, batch: Batch) -> None:
+    def _handle_batch(self, batch: Batch) -> None:
         evaluated = [r for r in batch.records if isinstance(r, Evaluated)]
         rows = [
             {"step": r.step, "distance_m": r.distance_m, "epsilon": r.epsilon} for r in evaluated
@@ -241,40 +273,40 @@ class Job:
         for record in batch.records:
             self._recordings.add(self.run_id, record)
             if isinstance(record, Reference):
-                distance = record.greedy_distance_m
-                self._store.update(self.run_id, greedy_distance_m=distance)
-                self._tell("reference", greedy_distance_m=distance)
+                greedy_distance_m = record.greedy_distance_m
+                self._store.update(self.run_id, greedy_distance_m=greedy_distance_m)
+                self._publish_event("reference", greedy_distance_m=greedy_distance_m)
         for row in rows:
-            self._tell("evaluation", **row)
+            self._publish_event("evaluation", **row)
         run = self._store.update_progress(self.run_id, batch.done, self._eta_s(batch.done))
         if time.monotonic() - self._published_s >= 1 / EVENTS_PER_S:
             self._publish(run)
 
-    def _take_change(self, changed: Changed) -> None:
+    def _handle_change(self, changed: Changed) -> None:
         change = {"step": changed.step, **changed.changes}
-        # After a checkpoint some may be there already that are yet to be made again.
-        made = sorted((*self._store.get(self.run_id).changes, change), key=itemgetter("step"))
-        run = self._store.update(self.run_id, changes=tuple(made))
+        # After a resume the stored changes may include later ones that are still to be replayed.
+        changes = sorted((*self._store.get(self.run_id).changes, change), key=itemgetter("step"))
+        run = self._store.update(self.run_id, changes=tuple(changes))
         self._progress.clear()
-        self._tell("rates", **change)
+        self._publish_event("rates", **change)
         self._publish(run)
-        self._answers.pop(changed.token).set()
+        self._acknowledgements.pop(changed.token).set()
 
-    def _take_end(self, ended: Ended) -> None:
+    def _handle_end(self, ended: Ended) -> None:
         lanes = self._recordings.race(self.run_id)
-        if lanes is None or not isinstance(self._order, RaceTask):
+        if lanes is None or not isinstance(self._task, RaceTask):
             self.end(ended.outcome, result=ended.result)
             return
-        result = self._race_result(lanes, self._order)
+        result = self._race_result(lanes, self._task)
         failures = [lane.failure for lane in lanes if lane.failure]
         if ended.outcome == "finished" and len(failures) == len(lanes):
             self.end("failed", f"No lane could finish the race: {failures[0]}", result)
         else:
             self.end(ended.outcome, result=result)
 
-    def _race_result(self, lanes: list[LaneRecording], order: RaceTask) -> dict[str, Any]:
-        result = race_result(lanes, order.config.steps)
-        robots = _trained_robots(order)
+    def _race_result(self, lanes: list[LaneRecording], task: RaceTask) -> dict[str, Any]:
+        result = race_result(lanes, task.config.steps)
+        robots = _trained_robots(task)
         numbered = zip(result["lanes"], self._run.lane_training_ids, robots, strict=True)
         result["lanes"] = [
             {"agent": lane["agent"], "training_id": training, "trained_robot": robot, **lane}
@@ -283,17 +315,20 @@ class Job:
         return {**result, "shared_machine": self.shared}
 
     def _eta_s(self, done: int) -> float | None:
-        """From the newest seconds, since pace and machine change."""
+        """Return the estimated remaining time [s], None without progress.
+
+        From a moving window, since pace and machine load change.
+        """
         now = time.monotonic()
         self._progress.append((now, done))
         while self._progress[0][0] < now - self.eta_window_s:
             self._progress.popleft()
-        began, before = self._progress[0]
-        if done == before:
+        began, first_done = self._progress[0]
+        if done == first_done:
             return None
-        return round((self._run.total - done) * (now - began) / (done - before), 1)
+        return round((self._run.total - done) * (now - began) / (done - first_done), 1)
 
-    def _tell(self, event: str, **data: Any) -> None:
+    def _publish_event(self, event: str, **data: Any) -> None:
         self._bus.publish(event, {"run_id": self.run_id, **data}, self.run_id)
 
     def _publish(self, run: Run) -> None:
@@ -301,40 +336,40 @@ class Job:
         self._bus.publish("run", run_view(run), self.run_id)
 
 
-def _trained_robots(order: RaceTask) -> list[Any]:
-    """For each lane the robot that its table was learned on, where that is another one."""
-    here = as_mapping(order.config.robot)
-    learned = [table and table.meta["config"]["robot"] for table in order.tables]
-    return [None if robot == here else robot for robot in learned]
+def _trained_robots(task: RaceTask) -> list[Any]:
+    """Return for each lane the robot its table was learned on, None if it is the race's own."""
+    race_robot = as_mapping(task.config.robot)
+    table_robots = [table and table.meta["config"]["robot"] for table in task.tables]
+    return [None if robot == race_robot else robot for robot in table_robots]
 
 
-EVENTS_PER_S = 4
+TRIAL_EVENTS_PER_S = 4
 
 
 class ExperimentJob(Job):
-    """An experiment that a process works on."""
+    """An experiment and the worker process that runs its trials."""
 
-    # It ends with a report of what there is, whose figures take a while to draw.
+    # A stopped experiment still writes its report, whose figures take a while to draw.
     stop_grace_s = 90.0
     eta_window_s = 60.0
 
-    def _take(self, message: Message) -> None:
+    def _handle(self, message: Message) -> None:
         if isinstance(message, TrialsDone):
-            self._take_trials(message)
+            self._handle_trials(message)
         elif isinstance(message, Reported):
             self._store.put_artifact(self.run_id, message.name, message.data)
             if message.name == SUMMARY:
                 run = self._store.get(self.run_id)
-                self._tell("summary", done=run.done, total=run.total)
+                self._publish_event("summary", done=run.done, total=run.total)
         else:
-            super()._take(message)
+            super()._handle(message)
 
-    def _take_trials(self, tried: TrialsDone) -> None:
-        self._store.append_trials(self.run_id, tried.rows)
-        run = self._store.update_progress(self.run_id, tried.done, self._eta_s(tried.done))
-        if time.monotonic() - self._published_s >= 1 / EVENTS_PER_S:
+    def _handle_trials(self, trials: TrialsDone) -> None:
+        self._store.append_trials(self.run_id, trials.rows)
+        run = self._store.update_progress(self.run_id, trials.done, self._eta_s(trials.done))
+        if time.monotonic() - self._published_s >= 1 / TRIAL_EVENTS_PER_S:
             self._publish(run)
 
-    def _take_end(self, ended: Ended) -> None:
+    def _handle_end(self, ended: Ended) -> None:
         result: dict[str, Any] = {**(ended.result or {}), "shared_machine": self.shared}
         self.end(ended.outcome, result=result)

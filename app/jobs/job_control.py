@@ -1,4 +1,4 @@
-"""What a job's process does between two steps: report, obey, and keep its pace."""
+"""Job control inside the worker process: send records, execute commands, keep the pace."""
 
 import queue
 import time
@@ -13,29 +13,36 @@ from app.runs.records import RaceRecord, StepTaken, TrainingRecord
 
 BATCHES_PER_S = 30
 CHECKPOINT_EVERY_S = 3.0
-"""A dead server loses what came after the last one: with a step and a busy machine under 5 s."""
+"""Period of checkpoints [s]. A crash loses the work since the last one: under 5 s, with one step
+and a busy machine counted in."""
 
 
 class Stopped(Exception):
-    """The job was told to stop, in the middle of something that is not worth finishing."""
+    """Raised to abandon an evaluation when the job is to stop or to exit."""
 
 
 class JobControl:
-    """Stands between a loop and the server.
+    """Connects a training or race loop to the server: batches records, executes commands.
 
     Attributes:
-        stopped: whether the job was told to stop.
-        leaving: whether it was told to leave off, to go on another time.
-        changes: what was changed while it ran, each with the steps that were done before.
+        stopped: whether a `stop` command arrived: end with the results so far.
+        leaving: whether a `leave` command arrived: end with a checkpoint, to be resumed later.
+        changes: changes of rates and pace during the run, each with the number of steps done.
     """
 
     def __init__(
-        self, send: Callable[[Message], None], words: "queue.SimpleQueue[Command]"
+        self, send: Callable[[Message], None], commands: "queue.SimpleQueue[Command]"
     ) -> None:
+        """Create the control of one job.
+
+        Args:
+            send: sends a message to the server.
+            commands: commands received from the server.
+        """
         self.stopped = self.leaving = False
         self.changes: list[dict[str, Any]] = []
         self.send = send
-        self._words = words
+        self._commands = commands
         self._paused = False
         self._pace: float | Literal["max"] = "max"
         self._step_s = 0.0
@@ -46,20 +53,29 @@ class JobControl:
         self._save: Callable[[], Checkpointed] | None = None
         self._saved_s = time.monotonic()
         self._saved: tuple[int, int] | None = None
-        """The step and the number of changes of the newest checkpoint."""
-        self._to_repeat: list[Mapping[str, Any]] = []
+        """Step and number of changes at the newest checkpoint."""
+        self._to_replay: list[Mapping[str, Any]] = []
 
     def keep_pace(self, pace: float | Literal["max"], step_s: float) -> None:
-        """Let a step take as long as it would at `pace` times real time."""
+        """Limit the speed to `pace` times real time.
+
+        Args:
+            pace: times real time, or `max` for no limit.
+            step_s: duration of one step of the robot [s].
+        """
         self._pace, self._step_s = pace, step_s
         self._due_s = time.monotonic()
 
     def keep_safe(self, save: Callable[[], Checkpointed]) -> None:
-        """Send a checkpoint every few seconds in which something happened, and before a wait."""
+        """Send a checkpoint every few seconds of progress, and before a long wait.
+
+        Args:
+            save: makes a checkpoint of the present state.
+        """
         self._save = save
 
     def checkpoint(self) -> None:
-        """Send one now, after all that came before it."""
+        """Send a checkpoint now, after the records that precede it."""
         if self._save is not None:
             self.flush()
             self.send(self._save())
@@ -67,86 +83,95 @@ class JobControl:
 
     def repeat(
         self,
-        made: Iterable[Mapping[str, Any]],
+        included: Iterable[Mapping[str, Any]],
         later: Iterable[Mapping[str, Any]],
         step: int,
         agent: object,
     ) -> None:
-        """Go on where someone else left off.
+        """Restore the changes of a resumed run, and schedule the later ones for replay.
 
         Args:
-            made: changes that are in force.
-            later: changes that were made afterwards, to be made again after the same steps.
-            step: how many steps are done.
-            agent: whose rates may be changed.
+            included: changes that the checkpoint includes.
+            later: changes made after the checkpoint, to be replayed after the same steps.
+            step: number of steps done.
+            agent: the learner whose rates may be changed.
         """
-        self.changes = [dict(change) for change in made]
+        self.changes = [dict(change) for change in included]
         for change in self.changes:
             if "pace" in change:
                 self.keep_pace(change["pace"], self._step_s)
-        self._to_repeat = list(later)
+        self._to_replay = list(later)
         self._saved = (step, len(self.changes))
-        self._repeat(step, agent)
+        self._replay_due(step, agent)
 
     def report(self, record: TrainingRecord | RaceRecord, done: int) -> None:
-        """Send a record, together with others if they come fast."""
+        """Buffer a record and send the buffer, at most `BATCHES_PER_S` times a second.
+
+        Args:
+            record: what happened.
+            done: number of steps done, of all lanes together.
+        """
         self._records.append(record)
         self._done = done
         if time.monotonic() - self._sent_s >= 1 / BATCHES_PER_S:
             self.flush()
 
     def flush(self) -> None:
-        """Send what was not sent yet."""
+        """Send the buffered records."""
         if self._records:
-            self.send(Batch(_worth_sending(self._records), self._done))
+            self.send(Batch(_without_dropped_steps(self._records), self._done))
         self._records = []
         self._sent_s = time.monotonic()
 
     def go_on(self, step: int, agent: object = None) -> bool:
-        """Obey what there is to obey, and wait until the next step is due.
+        """Execute pending commands, and wait until the next step is due.
 
         Args:
-            step: how many steps are done.
-            agent: whose rates may be changed.
+            step: number of steps done.
+            agent: the learner whose rates may be changed.
 
         Returns:
-            False if the job is to stop, or to leave off.
+            False if the job is to stop or to exit.
         """
-        self._repeat(step, agent)
+        self._replay_due(step, agent)
         while True:
             wait_s = self._wait_s()
             if wait_s is None or wait_s > 1 / BATCHES_PER_S:
                 self.flush()
             self._checkpoint_if_due(step, wait_s)
             try:
-                word = self._next_word(wait_s)
+                command = self._next_command(wait_s)
             except queue.Empty:
                 self._set_due()
                 return True
-            self._obey(word, step, agent)
+            self._execute(command, step, agent)
             if self.stopped or self.leaving:
                 return False
 
     def listen(self, step: int, agent: object) -> None:
-        """Obey what there is to obey in the middle of an evaluation, which has no pace.
+        """Execute pending commands during an evaluation, which has no pace.
+
+        Args:
+            step: number of steps done.
+            agent: the learner whose rates may be changed.
 
         Raises:
-            Stopped: if the job is to stop, or to leave off.
+            Stopped: if the job is to stop or to exit.
         """
         while not (self.stopped or self.leaving):
             wait_s = None if self._paused else 0.0
             self._checkpoint_if_due(step, wait_s)
             try:
-                word = self._next_word(wait_s)
+                command = self._next_command(wait_s)
             except queue.Empty:
                 return
-            self._obey(word, step, agent)
+            self._execute(command, step, agent)
             if self._paused:
                 self.flush()
         raise Stopped
 
     def _checkpoint_if_due(self, step: int, wait_s: float | None) -> None:
-        """If there is something new, and the next chance would come too late."""
+        """Send a checkpoint if there is progress and the period would pass during the wait."""
         state = (step, len(self.changes))
         if self._save is None or state == self._saved:
             return
@@ -155,47 +180,47 @@ class JobControl:
             self.checkpoint()
             self._saved = state
 
-    def _next_word(self, wait_s: float | None) -> Command:
+    def _next_command(self, wait_s: float | None) -> Command:
         if wait_s is not None and wait_s <= 0:
-            return self._words.get_nowait()
-        return self._words.get(timeout=wait_s)
+            return self._commands.get_nowait()
+        return self._commands.get(timeout=wait_s)
 
     def _wait_s(self) -> float | None:
-        """Until the next step is due; None for as long as it is paused."""
+        """Return the time until the next step is due [s]; None while paused."""
         if self._paused:
             return None
         return 0.0 if self._pace == "max" else self._due_s - time.monotonic()
 
     def _set_due(self) -> None:
-        """The next step begins now; when the one after it is due follows from that."""
+        """Set when the step after the next is due; the next one begins now."""
         if self._pace != "max":
-            # From when it was due, or the time that a step takes to compute would add up.
+            # From the scheduled start, since the time to compute steps would add up to a drift.
             began = max(self._due_s, time.monotonic() - self._step_s / self._pace)
             self._due_s = began + self._step_s / self._pace
 
-    def _obey(self, word: Command, step: int, agent: object) -> None:
-        if word.verb == "stop":
+    def _execute(self, command: Command, step: int, agent: object) -> None:
+        if command.verb == "stop":
             self.stopped = True
-        elif word.verb == "leave":
+        elif command.verb == "leave":
             self.leaving = True
-        elif word.verb == "tune":
-            self._tune(word, step, agent)
+        elif command.verb == "tune":
+            self._tune(command, step, agent)
         else:
-            self._paused = word.verb == "pause"
+            self._paused = command.verb == "pause"
             self._due_s = time.monotonic()
 
-    def _tune(self, word: Command, step: int, agent: object) -> None:
-        if time.monotonic() > word.expires_s:
-            return  # its sender was told that nothing was changed
-        self._change(word.changes, step, agent)
-        self.send(Changed(word.token, step, dict(word.changes)))
+    def _tune(self, command: Command, step: int, agent: object) -> None:
+        if time.monotonic() > command.expires_s:
+            return  # its sender has reported a timeout, so that nothing may change
+        self._apply(command.changes, step, agent)
+        self.send(Changed(command.token, step, dict(command.changes)))
 
-    def _repeat(self, step: int, agent: object) -> None:
-        while self._to_repeat and self._to_repeat[0]["step"] <= step:
-            change = dict(self._to_repeat.pop(0))
-            self._change({k: v for k, v in change.items() if k != "step"}, step, agent)
+    def _replay_due(self, step: int, agent: object) -> None:
+        while self._to_replay and self._to_replay[0]["step"] <= step:
+            change = dict(self._to_replay.pop(0))
+            self._apply({k: v for k, v in change.items() if k != "step"}, step, agent)
 
-    def _change(self, changes: Mapping[str, Any], step: int, agent: object) -> None:
+    def _apply(self, changes: Mapping[str, Any], step: int, agent: object) -> None:
         rates = {name: value for name, value in changes.items() if name != "pace"}
         if rates and isinstance(agent, Tunable):
             agent.tune(**rates)
@@ -204,10 +229,10 @@ class JobControl:
         self.changes.append({"step": step, **changes})
 
 
-def _worth_sending(
+def _without_dropped_steps(
     records: list[TrainingRecord | RaceRecord],
 ) -> tuple[TrainingRecord | RaceRecord, ...]:
-    """All but those steps of practice that the recording would drop in the same moment."""
+    """Leave out steps of practice that the recording's ring buffer would drop at once."""
     if len(records) <= NEWEST_STEPS:
         return tuple(records)
     early = (r for r in records[:-NEWEST_STEPS] if not isinstance(r, StepTaken))
@@ -215,24 +240,29 @@ def _worth_sending(
 
 
 class InterruptibleAgent:
-    """Implements `Agent` by another one, and calls `listen` before it acts."""
+    """Wrapper of an `Agent` that executes commands before each action of an evaluation.
+
+    Args:
+        agent: the wrapped agent.
+        listen: executes pending commands; raises `Stopped` to abandon the evaluation.
+    """
 
     def __init__(self, agent: Agent, listen: Callable[[], None]) -> None:
         self._agent, self._listen = agent, listen
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
-        """Listen, then act."""
+        """Execute pending commands, then return the wrapped agent's action."""
         self._listen()
         return self._agent.act(observation, legal)
 
     def learn(self, transition: Transition) -> None:
-        """As the other does."""
+        """Pass the transition to the wrapped agent."""
         self._agent.learn(transition)
 
     def state(self) -> AgentState:
-        """Of the other."""
+        """Return the wrapped agent's state."""
         return self._agent.state()
 
     def load(self, state: AgentState) -> None:
-        """Into the other."""
+        """Load a state into the wrapped agent."""
         self._agent.load(state)

@@ -1,4 +1,4 @@
-"""Jobs: what is to run, what runs, and the words that change it."""
+"""Facade of the package: submit, pause, resume, stop, change and delete runs."""
 
 import logging
 import threading
@@ -41,19 +41,19 @@ from app.storage.store import (
 )
 
 MAX_PAUSED = 16
-MAX_CHANGING = 8
-"""So many changes at once may wait to be obeyed; each keeps a thread of the server."""
-_ANSWER_S = 5.0
-_DIE_S = 2.0
-_GONE_S = 10.0
-"""For a process to be gone once its run has ended."""
+MAX_PENDING_CHANGES = 8
+"""Maximum number of changes that wait for acknowledgement at once; each blocks a thread."""
+_ACKNOWLEDGE_S = 5.0
+_KILL_S = 2.0
+_EXIT_S = 10.0
+"""Time for a process to exit after the final state of its run was written."""
 _logger = logging.getLogger(__name__)
 
 
 class Jobs:
-    """Starts runs in order, as many at once as there are cores, and tells them what to do.
+    """Runs jobs in order of submission, at most one per core, and controls them.
 
-    Every verb may be called from any thread. A paused job needs no core and gives its place away.
+    Every method may be called from any thread. A paused job frees its core for the next one.
     """
 
     def __init__(
@@ -66,44 +66,44 @@ class Jobs:
         cores: int | None = None,
         niceness: int = 0,
     ) -> None:
-        """Start nothing yet.
+        """Create the queue and the supervisor; `open` starts them.
 
         Args:
-            store: where runs are kept.
-            recordings: where their motion goes.
-            bus: who wants to know.
-            on_queued: called with the id of what someone has asked for.
-            cores: how many jobs run at once; the machine's by default.
-            niceness: by how much the priority of a job's process is lower than the server's.
+            store: store of the runs.
+            recordings: receives the motion of the robots.
+            bus: receives the events.
+            on_queued: called with the id of each training or race that was submitted.
+            cores: maximum number of jobs that run at once; by default one per core.
+            niceness: added to the server's nice value in worker processes.
         """
         self._store, self._recordings, self._bus = store, recordings, bus
         self._on_queued = on_queued
         self.new_id = RunIds.of(store)
-        self._waiting = RunQueue(store, self._publish)
+        self._queue = RunQueue(store, self._publish)
         self._supervisor = Supervisor(
             store,
             recordings,
             bus,
-            self._waiting,
+            self._queue,
             publish=self._publish,
             cores=cores,
             niceness=niceness,
         )
         self._changed = self._supervisor.changed
-        self._changing = threading.BoundedSemaphore(MAX_CHANGING)
+        self._pending_changes = threading.BoundedSemaphore(MAX_PENDING_CHANGES)
 
     @property
     def cores(self) -> int:
-        """How many jobs run at once."""
+        """Maximum number of jobs that run at once."""
         return self._supervisor.cores
 
     @property
     def is_open(self) -> bool:
-        """Whether what is queued will be started."""
+        """Whether queued runs will be started."""
         return self._supervisor.is_open
 
     def trouble(self) -> str | None:
-        """What keeps queued runs from being started, in a sentence; None if nothing does."""
+        """Return a sentence on why queued runs are not started; None if they are (health check)."""
         if not self.is_open:
             return "The server is starting, or stopping."
         stuck_s = self._supervisor.stuck_s()
@@ -112,40 +112,40 @@ class Jobs:
         return None
 
     def open(self) -> None:
-        """Begin to start what is queued."""
+        """Begin to start queued runs."""
         self._supervisor.open()
 
     def close(self) -> None:
-        """Start no more, and end every process with a checkpoint: all is `interrupted` then."""
+        """Shut down: end every process with a checkpoint; unfinished runs become `interrupted`."""
         self._supervisor.close()
 
     def view(self, run: AnyRun) -> dict[str, Any]:
-        """The resource of a run, with its place in the queue."""
-        return run_view(run, self._waiting.position(run.id))
+        """Return the REST resource of a run, with its position in the queue."""
+        return run_view(run, self._queue.position(run.id))
 
     def train(self, start: TrainingStart, key: IdempotencyKey | None = None) -> Run:
         """Queue a training.
 
         Args:
-            start: what is asked for.
-            key: of the request, remembered with the run.
+            start: the training requested.
+            key: idempotency key of the request, stored with the run.
 
         Raises:
-            InvalidInput, Conflict: if it cannot be.
-            Busy: if too many runs are waiting.
+            InvalidInput, Conflict: if the request is invalid.
+            Busy: if the queue is full.
         """
         return self._enqueue([queued_training(start, self._store, self.new_id)], key)
 
     def race(self, start: RaceStart, key: IdempotencyKey | None = None) -> Run:
-        """Queue a race, and before it the trainings that it brings along.
+        """Queue a race, preceded by the trainings that are part of the request.
 
         Args:
-            start: what is asked for.
-            key: of the request, remembered with the race.
+            start: the race requested.
+            key: idempotency key of the request, stored with the race.
 
         Raises:
-            InvalidInput, Conflict: if it cannot be.
-            Busy: if too many runs are waiting.
+            InvalidInput, Conflict: if the request is invalid.
+            Busy: if the queue is full.
         """
         return self._enqueue(queued_race(start, self._store, self.new_id), key)
 
@@ -153,30 +153,36 @@ class Jobs:
         """Queue an experiment.
 
         Args:
-            start: what is asked for.
-            key: of the request, remembered with the run.
+            start: the experiment requested.
+            key: idempotency key of the request, stored with the run.
 
         Raises:
-            InvalidInput: if it cannot be.
-            Busy: if too many runs are waiting.
+            InvalidInput: if the request is invalid.
+            Busy: if the queue is full.
         """
         return self._enqueue([queued_experiment(start, self.new_id)], key)
 
     def keep(self, run: Run, table: bytes, key: IdempotencyKey | None = None) -> Run:
-        """Add a training that ended elsewhere, with its table."""
+        """Store an imported training, which ended elsewhere, and publish it.
+
+        Args:
+            run: the training, with its final state.
+            table: its table, as a file.
+            key: idempotency key of the request, stored with the run.
+        """
         run = self._store.add(run, Content(artifacts={TABLE: table}), self.new_id, key)
         self._publish(run)
         return run
 
     def pause(self, run_id: str) -> Run:
-        """Let a running job wait.
+        """Pause a running job.
 
         Raises:
             NotFound: if there is no such run.
-            Conflict: if it does not run, or too many are paused.
+            Conflict: if it is not running, or too many runs are paused.
         """
         with self._changed:
-            job = self._live(run_id, RUNNING, "paused")
+            job = self._live_job(run_id, RUNNING, "paused")
             if self._supervisor.paused >= MAX_PAUSED:
                 raise Conflict(f"{MAX_PAUSED} runs are paused; stop or resume one", "running")
             run = self._change(run_id, RUNNING, "paused", eta_s=None)
@@ -186,12 +192,12 @@ class Jobs:
         return run
 
     def resume(self, run_id: str) -> Run:
-        """Let a paused job go on, or queue a run again that did not come to its end.
+        """Continue a paused job, or queue a run again that ended before it was finished.
 
         Raises:
             NotFound: if there is no such run.
-            Conflict, InvalidInput: if it is neither, or what it needs is gone.
-            Busy: if too many runs are waiting.
+            Conflict, InvalidInput: if its state does not allow it, or what it needs is missing.
+            Busy: if the queue is full.
         """
         self._await_process(run_id)
         with self._changed:
@@ -204,12 +210,12 @@ class Jobs:
                 if conflict.state not in RESUMABLE[run.kind]:
                     raise
                 resumed = None
-        # A process can die between the look and the change: then the run is one to queue again.
+        # The process may die between the check and the change: then the run is queued again.
         return resumed or self.resume(run_id)
 
     def _resume_paused(self, run: Run) -> Run:
         choices = " or ".join(sorted(PAUSED | RESUMABLE[run.kind]))
-        job = self._live(run.id, PAUSED, "resumed", choices)
+        job = self._live_job(run.id, PAUSED, "resumed", choices)
         resumed = self._change(run.id, PAUSED, "running")
         job.resume()
         self._supervisor.mark_shared()
@@ -217,11 +223,11 @@ class Jobs:
         return resumed
 
     def stop(self, run_id: str) -> Run:
-        """End a run with what has come of it, and wait until it has ended.
+        """Stop a run, keep its results so far, and wait until it has ended.
 
         Raises:
             NotFound: if there is no such run.
-            Conflict: if it has ended, or someone else is stopping it.
+            Conflict: if it has ended, or is being stopped already.
         """
         with self._changed:
             run = self._store.get(run_id)
@@ -229,55 +235,61 @@ class Jobs:
                 for job in (self._supervisor.find(training) for training in run.waiting_for):
                     if job is not None and not job.stopping:
                         job.stop()
-                return self._waiting.stop(run)
-            job = self._live(run_id, LIVE, "stopped")
+                return self._queue.stop(run)
+            job = self._live_job(run_id, LIVE, "stopped")
             job.stop()
         if not job.ended.wait(job.stop_grace_s):
             job.process.kill()
-            job.ended.wait(_DIE_S)
+            job.ended.wait(_KILL_S)
         return self._store.get(run_id)
 
     def change(self, run_id: str, changes: Mapping[str, Any]) -> Run:
-        """Change the rates or the pace of a training, and wait until that is obeyed.
+        """Change the rates or the pace of a training, and wait for the acknowledgement.
+
+        Args:
+            run_id: id of the training.
+            changes: any of alpha, gamma, epsilon, pace.
 
         Raises:
             NotFound: if there is no such run.
             Conflict: if it neither runs nor is paused.
             InvalidInput: if its agent has no rates.
-            NotAnswering: if its process does not obey in time; nothing is changed then.
-            Busy: if too many changes wait to be obeyed.
+            NotAnswering: if its process does not acknowledge in time; nothing is changed then.
+            Busy: if too many changes wait for acknowledgement.
         """
-        if not self._changing.acquire(blocking=False):
-            raise Busy(f"{MAX_CHANGING} changes wait to be obeyed, which is the most; try again", 1)
+        if not self._pending_changes.acquire(blocking=False):
+            raise Busy(
+                f"{MAX_PENDING_CHANGES} changes wait to be obeyed, which is the most; try again", 1
+            )
         try:
             with self._changed:
-                job = self._live(run_id, LIVE, "changed")
+                job = self._live_job(run_id, LIVE, "changed")
                 agent = getattr(self._store.get(run_id).config, "agent", "")
                 if set(changes) - {"pace"} and not hasattr(registry.find(agent), "tune"):
                     raise InvalidInput(
                         f"{agent} has no rates that could be changed; give pace only"
                     )
-                answer = job.tune(changes, _ANSWER_S) if job.is_answering else None
-            if answer is None or not answer.wait(_ANSWER_S):
+                acknowledged = job.tune(changes, _ACKNOWLEDGE_S) if job.is_answering else None
+            if acknowledged is None or not acknowledged.wait(_ACKNOWLEDGE_S):
                 raise NotAnswering(
                     f"the process of training {run_id} does not answer, so nothing was changed; "
                     "if that lasts it is ended, and the training can be resumed",
-                    int(_ANSWER_S),
+                    int(_ACKNOWLEDGE_S),
                 )
         finally:
-            self._changing.release()
+            self._pending_changes.release()
         return self._store.get(run_id)
 
     def delete(self, run_id: str) -> None:
-        """Forget a run that has ended.
+        """Delete a run that has ended.
 
         Raises:
             NotFound: if there is no such run.
-            Conflict: if it has not ended, or a race that waits needs it.
+            Conflict: if it has not ended, or a queued race needs its table.
         """
         self._await_process(run_id)
         with self._changed:
-            race = self._waiting.needing(run_id)
+            race = self._queue.race_needing(run_id)
             if race is not None:
                 state = self._store.find(run_id).state or "damaged"
                 raise Conflict(f"race {race.id} waits, and needs its table", state)
@@ -288,51 +300,56 @@ class Jobs:
     def _enqueue(self, entries: list[QueuedRun], key: IdempotencyKey | None = None) -> Run:
         with self._changed:
             free = max(0, self.cores - self._supervisor.running)
-            self._waiting.add(entries, free, key)
+            self._queue.add(entries, free, key)
             self._changed.notify_all()
         run = entries[-1].run
         if self._on_queued is not None and run.kind != "experiment":
             try:
                 self._on_queued(run.id)
             except HexapodError:
-                # It is queued, whatever became of showing it.
+                # An error of the stage must not fail the submission.
                 _logger.warning("a run is not shown", extra={"run_id": run.id}, exc_info=True)
         return run
 
     def _await_process(self, run_id: str) -> None:
-        """Wait until the process of a run that has ended is gone, and everyone has been told.
+        """Wait until the process of an ended run has exited and its last events are published.
 
-        Otherwise the last words about a run would come after its deletion, or its next start.
+        Otherwise its last events could follow its deletion or its next start.
 
         Raises:
-            Conflict: if it takes too long.
+            Conflict: if it does not exit in time.
         """
         job = self._supervisor.find(run_id)
         if job is None or (run := self._store.get(run_id)).state in UNENDED:
             return
-        if not job.gone.wait(_GONE_S):
+        if not job.gone.wait(_EXIT_S):
             raise Conflict(f"{run.kind} {run_id} is still ending; try again", run.state)
 
     def _change(
         self, run_id: str, from_states: frozenset[State], to_state: State, **fields: Any
     ) -> Run:
-        """Change a job's state in the store; if that fails halfway it is set right later."""
+        """Change a job's state in the store; after a failed write it is reconciled later."""
         try:
             return self._store.change(run_id, from_states, to_state, **fields)
         except StorageFailed:
             self._supervisor.reconcile_later(run_id)
             raise
 
-    def _live(
-        self, run_id: str, states: frozenset[State], what: str, choices: str | None = None
+    def _live_job(
+        self, run_id: str, states: frozenset[State], action: str, choices: str | None = None
     ) -> Job:
-        """The job of a run in one of these states, that nobody is stopping."""
+        """Return the job of a run that is in one of these states and is not being stopped.
+
+        Raises:
+            NotFound: if there is no such run.
+            Conflict: if it is in another state, or being stopped.
+        """
         run = self._store.get(run_id)
         job = self._supervisor.find(run_id)
         if run.state not in states or job is None:
             choices = choices or " or ".join(sorted(states))
             raise Conflict(
-                f"{run.kind} {run_id} is {run.state}; it can be {what} while it is {choices}",
+                f"{run.kind} {run_id} is {run.state}; it can be {action} while it is {choices}",
                 run.state,
             )
         if job.stopping:

@@ -1,4 +1,4 @@
-"""The queue: runs in the order in which they were asked for, and what each waits for."""
+"""The queue: runs in order of submission, each with the trainings that it depends on."""
 
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
@@ -21,32 +21,34 @@ RETRY_AFTER_S = 10
 
 
 class RunQueue:
-    """Runs that wait for a core or for their trainings. Its owner holds a lock around every call.
+    """First-in first-out queue of runs that wait for a core or for their trainings.
+
+    Not thread-safe but for `has_ready` and `position`: the owner holds a lock around other calls.
 
     Args:
-        store: where the runs are kept.
-        tell: is told of every run that changes here.
+        store: store of the runs.
+        publish: called with every run that changes here.
     """
 
-    def __init__(self, store: RunStore, tell: Callable[[Run], None]) -> None:
-        self._store, self._tell = store, tell
+    def __init__(self, store: RunStore, publish: Callable[[Run], None]) -> None:
+        self._store, self._publish = store, publish
         self._entries: list[QueuedRun] = []
-        self._unsure: set[str] = set()
-        """Runs that may be in the store although it failed to say so."""
+        self._unreconciled: set[str] = set()
+        """Ids of runs that the store may have written although it raised an error."""
 
     def add(
         self, entries: Sequence[QueuedRun], free: int, key: IdempotencyKey | None = None
     ) -> None:
-        """Store runs and let them wait, all or none.
+        """Store runs and append them, all or none.
 
         Args:
-            entries: in order.
-            free: how many could start at once.
-            key: of the request for the last of them.
+            entries: runs in order, dependencies first.
+            free: number of free cores; so many runs may exceed the limit.
+            key: idempotency key of the request for the last of them.
 
         Raises:
-            Busy: if too many are waiting.
-            StorageFull: if there is no room for another run.
+            Busy: if the queue is full.
+            StorageFull: if the disk has no space for another run.
         """
         if len(self._entries) + len(entries) > MAX_QUEUED + free:
             raise Busy(
@@ -59,17 +61,17 @@ class RunQueue:
         try:
             self._store.create(*new, key=key)
             for entry in (entry for entry in entries if entry.goes_on):
-                entry.run = self._queue_again(entry.run)
+                entry.run = self._requeue(entry.run)
         except HexapodError:
-            # Some may read `queued` now, with nothing that will start them.
-            self._unsure |= {entry.run.id for entry in entries}
+            # Some may be stored as `queued` although they are not in the queue.
+            self._unreconciled |= {entry.run.id for entry in entries}
             raise
         self._entries += entries
         for entry in entries:
-            self._tell(entry.run)
+            self._publish(entry.run)
 
-    def _queue_again(self, run: Run) -> Run:
-        """What came after the step from which it goes on comes again."""
+    def _requeue(self, run: Run) -> Run:
+        """Store a resumed run as queued and delete the evaluations that it will repeat."""
         fields = ("done", "waiting_for", "error", "result", "ended_at")
         changed = {field: getattr(run, field) for field in fields}
         queued = self._store.change(run.id, RESUMABLE[run.kind], "queued", **changed)
@@ -77,78 +79,78 @@ class RunQueue:
         return queued
 
     def reconcile(self) -> None:
-        """End runs that were stored although their start was answered with an error."""
-        for run_id in list(self._unsure):
+        """Interrupt runs that were stored although their submission failed with an error."""
+        for run_id in list(self._unreconciled):
             try:
                 now = datetime.now(UTC)
-                why = "The database failed when it was started."
-                self._tell(
-                    self._store.change(run_id, QUEUED, "interrupted", error=why, ended_at=now)
+                reason = "The database failed when it was started."
+                self._publish(
+                    self._store.change(run_id, QUEUED, "interrupted", error=reason, ended_at=now)
                 )
             except (StorageFailed, StorageFull):
                 return
             except HexapodError:
                 pass  # it was never stored
-            self._unsure.discard(run_id)
+            self._unreconciled.discard(run_id)
 
     @property
     def has_ready(self) -> bool:
-        """Whether a run waits for nothing but a core; from any thread."""
+        """Whether a run waits for nothing but a core; callable from any thread."""
         return any(not entry.waits_for for entry in list(self._entries))
 
-    def take(self) -> QueuedRun | None:
-        """The first that waits for nothing but a core; it does not wait any more."""
+    def pop_ready(self) -> QueuedRun | None:
+        """Remove and return the first run that waits for nothing but a core, None if none does."""
         ready = (entry for entry in self._entries if not entry.waits_for)
         entry = next(ready, None)
         if entry is not None:
             self._entries.remove(entry)
         return entry
 
-    def put_back(self, entry: QueuedRun) -> None:
-        """It could not be started after all, and is the first again."""
+    def push_front(self, entry: QueuedRun) -> None:
+        """Insert a run that could not be started at the head of the queue."""
         self._entries.insert(0, entry)
 
-    def tell_all(self) -> None:
-        """All who wait have moved up, or some of them."""
+    def publish_positions(self) -> None:
+        """Publish all queued runs after their positions changed."""
         for entry in self._entries:
-            self._tell(self._store.get(entry.run.id))
+            self._publish(self._store.get(entry.run.id))
 
     def position(self, run_id: str) -> int | None:
-        """Its place among those that wait, 1 for the first; from any thread."""
+        """Return a run's position, 1 for the first, None if absent; callable from any thread."""
         ids = [entry.run.id for entry in self._entries]
         return ids.index(run_id) + 1 if run_id in ids else None
 
-    def interrupt(self, why: str) -> None:
-        """End all that wait, so that each may be resumed another time."""
+    def interrupt(self, reason: str) -> None:
+        """Set all queued runs to `interrupted`, which can be resumed, and empty the queue."""
         for entry in self._entries:
             now = max(datetime.now(UTC), entry.run.created_at)
-            changed = {"error": why, "ended_at": now, "waiting_for": ()}
-            # It reads `running` if its start failed halfway.
+            changed = {"error": reason, "ended_at": now, "waiting_for": ()}
+            # It is stored as `running` if its start failed halfway.
             states = QUEUED | RUNNING
-            self._tell(self._store.change(entry.run.id, states, "interrupted", **changed))
+            self._publish(self._store.change(entry.run.id, states, "interrupted", **changed))
         self._entries = []
 
-    def needing(self, training_id: str) -> Run | None:
-        """A race that waits, and needs the table of this training."""
+    def race_needing(self, training_id: str) -> Run | None:
+        """Return a queued race that needs the table of this training, None if there is none."""
         runs = (entry.run for entry in self._entries)
         return next((run for run in runs if training_id in run.lane_training_ids), None)
 
     def stop(self, run: Run) -> Run:
-        """End a run that waits, and the trainings that were made for it and wait as well."""
+        """Stop a queued run and the queued trainings that were created for it."""
         stopped = self._drop(run, "stopped", None)
         for entry in [entry for entry in self._entries if entry.run.id in run.waiting_for]:
             self._drop(entry.run, "stopped", f"Stopped together with race {run.id}.")
         return stopped
 
     def settle(self, run: Run) -> None:
-        """Tell those that wait for a run how it ended: go on, or end as it did."""
+        """Resolve dependencies on an ended run: release its dependents, or end them as it ended."""
         for entry in [entry for entry in self._entries if run.id in entry.waits_for]:
             if run.state == "finished":
-                left = [i for i in entry.run.waiting_for if i in entry.waits_for - {run.id}]
-                updated = self._store.update(entry.run.id, waiting_for=tuple(left))
-                # After it was written, so that it is tried again if that fails.
+                remaining = [i for i in entry.run.waiting_for if i in entry.waits_for - {run.id}]
+                updated = self._store.update(entry.run.id, waiting_for=tuple(remaining))
+                # After the write, so that a failed write is retried.
                 entry.waits_for.discard(run.id)
-                self._tell(updated)
+                self._publish(updated)
             elif run.state == "failed":
                 self._drop(entry.run, "failed", f"Its training {run.id} failed: {run.error}")
             else:
@@ -157,9 +159,9 @@ class RunQueue:
     def _drop(self, run: Run, state: State, error: str | None) -> Run:
         now = datetime.now(UTC)
         run = self._store.change(run.id, QUEUED, state, error=error, ended_at=now)
-        # After it was written, so that it still waits if that fails.
+        # After the write, so that the run stays queued if it fails.
         self._entries = [entry for entry in self._entries if entry.run.id != run.id]
-        self._tell(run)
-        self.tell_all()
+        self._publish(run)
+        self.publish_positions()
         self.settle(run)
         return run

@@ -1,9 +1,9 @@
-"""From runs that did not come to their end to runs that can be queued again.
+"""Build queued runs from interrupted, failed or stopped ones, so that they can be resumed.
 
-A training goes on from its newest checkpoint, or from its start if it has none: with the changes
-that were made since, after the same steps, and so to the same end. A race begins anew, since it is
-short and the same again; trainings that it still waits for go on before it. An experiment goes on
-with what it has not tried yet, however it ended.
+A training resumes from its newest checkpoint, or from its start if it has none. Changes of rates
+and pace made since are replayed after the same steps, so that the result is the same. A race is
+repeated from its start: it is short and deterministic; unfinished trainings that it needs are
+resumed before it. An experiment resumes with the trials that are not done yet.
 """
 
 from dataclasses import replace
@@ -19,11 +19,11 @@ from app.storage.store import CHECKPOINT, RESUMABLE, UNENDED, Run, RunStore
 
 
 def resumed_runs(run: Run, store: RunStore) -> list[QueuedRun]:
-    """A run that can go on, ready to be queued again, after the trainings that it waits for.
+    """Return a run as a queued run again, preceded by the trainings that it depends on.
 
     Raises:
-        Conflict: if it cannot, or what it needs is gone.
-        InvalidInput: if what it needs is gone, or damaged.
+        Conflict: if its state does not allow it, or a training it needs was deleted.
+        InvalidInput: if a table or checkpoint it needs is missing or damaged.
     """
     if run.state not in RESUMABLE[run.kind]:
         choices = " or ".join(sorted(RESUMABLE[run.kind]))
@@ -42,20 +42,23 @@ def _training(run: Run, config: TrainingConfig, store: RunStore) -> QueuedRun:
     checkpoint = _checkpoint(run, config, store)
     if checkpoint is None:
         table = None if run.continued_from is None else load_table(store, run.continued_from)
-        order, step = TrainingTask(config, table, changes=run.changes), 0
+        task, step = TrainingTask(config, table, changes=run.changes), 0
     else:
         since = run.changes[len(checkpoint.meta["changes"]) :]
-        order = TrainingTask(config, checkpoint=checkpoint, changes=since)
+        task = TrainingTask(config, checkpoint=checkpoint, changes=since)
         step = checkpoint.meta["step"]
-    return QueuedRun(_again(run, step), lambda: order, set(), goes_on=True)
+    return QueuedRun(_as_queued(run, step), lambda: task, set(), goes_on=True)
 
 
 def _checkpoint(run: Run, config: TrainingConfig, store: RunStore) -> Checkpoint | None:
-    """It may have come from another machine, so it is checked as a table from there is."""
-    data, said = store.artifact(run.id, CHECKPOINT), f"the checkpoint of training {run.id}"
+    """Load and check the newest checkpoint, None if there is none.
+
+    It may have been imported from another machine, so it is untrusted input, like a table.
+    """
+    data, subject = store.artifact(run.id, CHECKPOINT), f"the checkpoint of training {run.id}"
     if data is None:
         return None
-    checkpoint = from_bytes(data, said)
+    checkpoint = from_bytes(data, subject)
     meta = checkpoint.meta
     try:
         check_fits(checkpoint, config, config.observation)
@@ -64,23 +67,23 @@ def _checkpoint(run: Run, config: TrainingConfig, store: RunStore) -> Checkpoint
         is_whole = is_whole and all(steps) and len(steps) <= len(run.changes)
         is_whole = is_whole and {"due_epsilon", "episode_reward_m", "rng"} <= set(meta)
     except (KeyError, TypeError) as error:
-        raise DamagedFile(f"{said} does not hold together ({error!r})") from error
+        raise DamagedFile(f"{subject} does not hold together ({error!r})") from error
     if not is_whole:
-        raise DamagedFile(f"{said} does not hold together")
+        raise DamagedFile(f"{subject} does not hold together")
     return checkpoint
 
 
 def _race(run: Run, config: RaceConfig, store: RunStore) -> list[QueuedRun]:
-    before: list[QueuedRun] = []
+    trainings: list[QueuedRun] = []
     waits_for = []
     for training_id in dict.fromkeys(filter(None, run.lane_training_ids)):
         try:
             training = store.get(training_id)
         except NotFound as error:
-            why = f"training {training_id}, whose table it needs, was deleted"
-            raise Conflict(f"race {run.id} cannot go on: {why}", run.state) from error
+            reason = f"training {training_id}, whose table it needs, was deleted"
+            raise Conflict(f"race {run.id} cannot go on: {reason}", run.state) from error
         if training.state in RESUMABLE[training.kind]:
-            before += resumed_runs(training, store)
+            trainings += resumed_runs(training, store)
         elif training.state not in UNENDED:
             load_table(store, training_id)
             continue
@@ -90,8 +93,8 @@ def _race(run: Run, config: RaceConfig, store: RunStore) -> list[QueuedRun]:
         ids = run.lane_training_ids
         return RaceTask(config, tuple(None if i is None else load_table(store, i) for i in ids))
 
-    again = replace(_again(run, 0), waiting_for=tuple(waits_for))
-    return [*before, QueuedRun(again, make_task, set(waits_for), goes_on=True)]
+    queued = replace(_as_queued(run, 0), waiting_for=tuple(waits_for))
+    return [*trainings, QueuedRun(queued, make_task, set(waits_for), goes_on=True)]
 
 
 def _experiment(run: Run, config: ExperimentConfig, store: RunStore) -> QueuedRun:
@@ -99,8 +102,8 @@ def _experiment(run: Run, config: ExperimentConfig, store: RunStore) -> QueuedRu
         rows = tuple(store.trials(run.id))
         return ExperimentTask(config, run.workers, rows, wall_s_of(store, run.id))
 
-    return QueuedRun(_again(run, len(store.trials(run.id))), make_task, set(), goes_on=True)
+    return QueuedRun(_as_queued(run, len(store.trials(run.id))), make_task, set(), goes_on=True)
 
 
-def _again(run: Run, step: int) -> Run:
+def _as_queued(run: Run, step: int) -> Run:
     return replace(run, state="queued", done=step, error=None, result=None, ended_at=None)

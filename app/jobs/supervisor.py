@@ -1,7 +1,7 @@
 """Supervises job processes: starts them as cores free up, collects their results, shuts them down.
 
-The thread of the supervisor and those of the jobs never end by an exception: whatever is wrong with
-one run, the next one starts.
+No exception ends the supervisor's thread or the jobs' threads: whatever goes wrong with one run,
+the next one starts.
 """
 
 import logging
@@ -24,22 +24,22 @@ from app.storage.recordings import Recordings
 from app.storage.store import LIVE, QUEUED, RUNNING, UNENDED, Run, RunStore, State
 
 STUCK_S = 5.0
-"""A run that waits for so long beside a free core shows that something is wrong."""
-_LEAVE_S = 4.0
-"""To write a last checkpoint; with all else that ends, a server is gone within 10 s."""
-_DIE_S = 1.5
+"""A run that is ready for longer while a core is free is reported by the health check."""
+_CHECKPOINT_S = 4.0
+"""Time for jobs to write a last checkpoint at shutdown, of the 10 s that a shutdown may take."""
+_KILL_S = 1.5
 _CHECK_EVERY_S = 1.0
-_NO_STORE = (StorageFailed, StorageFull)
+_STORE_UNAVAILABLE = (StorageFailed, StorageFull)
 _logger = logging.getLogger(__name__)
 
 
 class Supervisor:
-    """One process for each job, as many at once as there are cores.
+    """Starts one worker process per job, at most one job per core, and watches over them.
 
     Attributes:
-        changed: guards the jobs and the queue, and is held around every call but `open`, `close`
-            and `stuck_s`; notified when something may be started.
-        cores: how many jobs run at once.
+        changed: condition variable that guards the jobs and the queue. Callers hold it around
+            every call but `open`, `close` and `stuck_s`; notified when a run may be started.
+        cores: maximum number of jobs that run at once.
     """
 
     def __init__(
@@ -47,99 +47,103 @@ class Supervisor:
         store: RunStore,
         recordings: Recordings,
         bus: EventBus,
-        waiting: RunQueue,
+        queue: RunQueue,
         *,
         publish: Callable[[Run], None],
         cores: int | None,
         niceness: int,
     ) -> None:
-        """Start nothing yet.
+        """Create the supervisor; `open` starts its thread.
 
         Args:
-            store: where runs are kept.
-            recordings: where their motion goes.
-            bus: who wants to know.
-            waiting: the queue.
-            publish: tells of a run that changed.
-            cores: how many jobs run at once; None is the machine's.
-            niceness: by how much the priority of a job's process is lower than the server's.
+            store: store of the runs.
+            recordings: receives the motion of the robots.
+            bus: receives the jobs' events.
+            queue: runs that wait to be started.
+            publish: called with each run that changed.
+            cores: maximum number of jobs that run at once; None means one per core.
+            niceness: added to the server's nice value in worker processes.
         """
         self._store, self._recordings, self._bus = store, recordings, bus
-        self._waiting, self._publish = waiting, publish
+        self._queue, self._publish = queue, publish
         self.cores = cores or os.cpu_count() or 1
         self._niceness = niceness
         self.changed = threading.Condition()
         self._jobs: dict[str, Job] = {}
-        self._unsure: set[str] = set()
-        """Jobs whose state in the store may be another than theirs: a write failed halfway."""
+        self._to_reconcile: set[str] = set()
+        """Ids of jobs whose stored state may differ from theirs, since a write failed halfway."""
         self._shutdown = threading.Event()
-        self._moved_s = time.monotonic()
-        """When something was started last, or nothing was there to be started."""
-        # The kernel ends a child with the thread that started it, so that one thread starts all.
+        self._last_progress_s = time.monotonic()
+        """When a run was started last, or no run could be started; monotonic clock."""
+        # PR_SET_PDEATHSIG kills a child when the *thread* that started it ends, so one long-lived
+        # thread starts all of them.
         self._thread = threading.Thread(target=self._supervise, name="supervisor", daemon=True)
 
     @property
     def is_open(self) -> bool:
-        """Whether what is queued will be started."""
+        """Whether queued runs will be started."""
         return self._thread.is_alive() and not self._shutdown.is_set()
 
     @property
     def running(self) -> int:
-        """How many jobs take a core."""
+        """Number of jobs that occupy a core."""
         return sum(not job.paused for job in list(self._jobs.values()))
 
     @property
     def paused(self) -> int:
-        """How many jobs were told to wait."""
+        """Number of paused jobs."""
         return len(self._jobs) - self.running
 
     def stuck_s(self) -> float:
-        """For how long a run has waited for nothing but a core while one was free."""
-        if not self._waiting.has_ready or self.running >= self.cores:
+        """Return for how long a ready run has waited although a core was free [s], else 0."""
+        if not self._queue.has_ready or self.running >= self.cores:
             return 0.0
-        return time.monotonic() - self._moved_s
+        return time.monotonic() - self._last_progress_s
 
     def find(self, run_id: str) -> Job | None:
-        """The job of a run, if it has one."""
+        """Return the job of a run, None if it has none."""
         return self._jobs.get(run_id)
 
     def open(self) -> None:
-        """Begin to start what is queued."""
-        self._moved_s = time.monotonic()
+        """Begin to start queued runs."""
+        self._last_progress_s = time.monotonic()
         self._thread.start()
 
     def close(self) -> None:
-        """Start no more, and end every process, each with a checkpoint if it is in time.
+        """Shut down: start no more runs, let processes write a checkpoint, kill late ones.
 
-        What ran or waited is `interrupted`.
+        Running and queued runs become `interrupted`.
         """
         with self.changed:
             self._shutdown.set()
             try:
-                self._waiting.interrupt("The server was stopped before its turn came.")
+                self._queue.interrupt("The server was stopped before its turn came.")
             except HexapodError:
                 _logger.exception("the queue cannot be noted; the next start does it")
             self.changed.notify_all()
             jobs = list(self._jobs.values())
         for job in jobs:
-            job.leave()
-        _wait(jobs, _LEAVE_S)
+            job.checkpoint_and_exit()
+        _wait_until_gone(jobs, _CHECKPOINT_S)
         late = [job for job in jobs if not job.gone.is_set()]
         for job in late:
             job.process.kill()
-        _wait(late, _DIE_S)
+        _wait_until_gone(late, _KILL_S)
         if self._thread.is_alive():
-            self._thread.join(_DIE_S)
+            self._thread.join(_KILL_S)
 
     def mark_shared(self) -> None:
-        """Decisions are measured in wall time, so a race says if it had the machine to itself."""
+        """Mark running jobs as sharing the machine if there are several.
+
+        Decision times are measured in wall time, so a race's result reports it.
+        """
         running = [job for job in self._jobs.values() if not job.paused]
         for job in running:
             job.shared |= len(running) > 1
 
     def reconcile_later(self, run_id: str) -> None:
-        """Note that the store may have taken a state that the job has not, and set it right."""
-        self._unsure.add(run_id)
+        """Schedule a rewrite of a job's state, which a failed write may have left different."""
+        self._to_reconcile.add(run_id)
 
     def _supervise(self) -> None:
         with self.changed:
@@ -151,100 +155,100 @@ class Supervisor:
                 except Exception:
                     _logger.exception("the supervisor goes on after an error of its own")
                     self.changed.wait(_CHECK_EVERY_S)
-            # The thread outlives those that it started, or they would end at once.
+            # This thread must outlive its child processes, or PR_SET_PDEATHSIG kills them.
             self.changed.wait_for(lambda: not self._jobs)
 
     def _start_next(self) -> bool:
-        """Start a run if a core is free; False if there is nothing to be done now."""
+        """Start the first ready run if a core is free; False if none can be started now."""
         is_free = self.running < self.cores
-        entry = self._waiting.take() if is_free else None
+        entry = self._queue.pop_ready() if is_free else None
         if entry is None:
-            self._moved_s = time.monotonic()
+            self._last_progress_s = time.monotonic()
             return False
         try:
             self._start(entry)
         except OwnershipLost:
-            _logger.exception("a run is not started", extra=_about(entry.run.id))
-        except _NO_STORE:
-            _logger.exception("a run cannot be started now", extra=_about(entry.run.id))
-            self._waiting.put_back(entry)
+            _logger.exception("a run is not started", extra=_log_fields(entry.run.id))
+        except _STORE_UNAVAILABLE:
+            _logger.exception("a run cannot be started now", extra=_log_fields(entry.run.id))
+            self._queue.push_front(entry)
             return False
         except (Conflict, NotFound) as error:
-            _logger.warning("a run waits no more: %s", error, extra=_about(entry.run.id))
+            _logger.warning("a run waits no more: %s", error, extra=_log_fields(entry.run.id))
             self._settle(entry.run)
-        self._moved_s = time.monotonic()
+        self._last_progress_s = time.monotonic()
         try:
-            self._waiting.tell_all()
+            self._queue.publish_positions()
         except HexapodError:
             _logger.warning("places in the queue cannot be told now", exc_info=True)
         return True
 
     def _start(self, entry: QueuedRun) -> None:
-        """Let a process take over a run that has waited."""
-        # The clock may have been put back since.
+        """Start a worker process for a run that was queued."""
+        # The system clock may have been set back since the run was created.
         run_id, now = entry.run.id, max(datetime.now(UTC), entry.run.created_at)
-        began_at = entry.run.started_at or now
-        # It may read `running` already, if the answer to an earlier try was lost.
+        started_at = entry.run.started_at or now
+        # It is stored as `running` already if the reply to an earlier attempt was lost.
         run = self._store.change(
-            run_id, QUEUED | RUNNING, "running", started_at=began_at, waiting_for=()
+            run_id, QUEUED | RUNNING, "running", started_at=started_at, waiting_for=()
         )
         try:
             job = self._job(run, entry.make_task())
             job.process.start(lambda end: self._process_ended(job, end))
-        except _NO_STORE:
+        except _STORE_UNAVAILABLE:
             raise
         except Exception as error:
             if not isinstance(error, HexapodError | OSError):
-                _logger.exception("a run cannot be started", extra=_about(run_id))
-            why = f"The {run.kind} could not be started: {error}"
-            run = self._store.change(run_id, LIVE, "failed", error=why, ended_at=now)
+                _logger.exception("a run cannot be started", extra=_log_fields(run_id))
+            reason = f"The {run.kind} could not be started: {error}"
+            run = self._store.change(run_id, LIVE, "failed", error=reason, ended_at=now)
             self._publish(run)
-            self._waiting.settle(run)
+            self._queue.settle(run)
             return
         self._jobs[run_id] = job
         self.mark_shared()
         self._publish(run)
 
-    def _job(self, run: Run, order: Task) -> Job:
-        kind = ExperimentJob if isinstance(order, ExperimentTask) else Job
-        given = self._store, self._recordings, self._bus
-        return kind(run, order, *given, shutdown=self._shutdown, niceness=self._niceness)
+    def _job(self, run: Run, task: Task) -> Job:
+        kind = ExperimentJob if isinstance(task, ExperimentTask) else Job
+        services = self._store, self._recordings, self._bus
+        return kind(run, task, *services, shutdown=self._shutdown, niceness=self._niceness)
 
     def _check_jobs(self) -> None:
-        """End processes that answer no more, and set right what a failed write left open."""
+        """Kill stalled processes, and reconcile the states that failed writes left uncertain."""
         for job in self._jobs.values():
             job.end_if_stalled()
-        for run_id in list(self._unsure):
-            unsure = self._jobs.get(run_id)
+        for run_id in list(self._to_reconcile):
+            running_job = self._jobs.get(run_id)
             try:
-                if unsure is not None:
-                    state: State = "paused" if unsure.paused else "running"
+                if running_job is not None:
+                    state: State = "paused" if running_job.paused else "running"
                     self._publish(self._store.change(run_id, LIVE, state))
-                self._unsure.discard(run_id)
-            except _NO_STORE:
+                self._to_reconcile.discard(run_id)
+            except _STORE_UNAVAILABLE:
                 return
             except HexapodError:
-                self._unsure.discard(run_id)
-        self._waiting.reconcile()
+                self._to_reconcile.discard(run_id)
+        self._queue.reconcile()
 
     def _process_ended(self, job: Job, end: Exit) -> None:
-        """Note how a run ended, and free its core whatever comes of that."""
+        """Write the final state of a run and free its core even if that fails."""
         try:
             while not self._note_end(job, end) and not self._shutdown.is_set():
-                # The store cannot be used; if that lasts, the next start notes the interruption.
+                # The store is unavailable; if that lasts, the next start marks it `interrupted`.
                 self._shutdown.wait(_CHECK_EVERY_S)
         except Exception:
-            _logger.exception("how a run ended cannot be noted", extra=_about(job.run_id))
+            _logger.exception("how a run ended cannot be noted", extra=_log_fields(job.run_id))
         finally:
             with self.changed:
                 if self._jobs.get(job.run_id) is job:
                     del self._jobs[job.run_id]
-                self._unsure.discard(job.run_id)
+                self._to_reconcile.discard(job.run_id)
                 self.changed.notify_all()
             job.gone.set()
 
     def _note_end(self, job: Job, end: Exit) -> bool:
-        """Give a run its last state; False if the store cannot be used, and to be tried again."""
+        """Write a run's final state; False if the store is unavailable and a retry is needed."""
         try:
             if self._shutdown.is_set():
                 job.end("interrupted", "The server was stopped while it ran.")
@@ -252,33 +256,33 @@ class Supervisor:
             job.process_ended(end)
         except OwnershipLost:
             return True
-        except _NO_STORE:
-            _logger.warning("a run's end cannot be noted yet", extra=_about(job.run_id))
+        except _STORE_UNAVAILABLE:
+            _logger.warning("a run's end cannot be noted yet", extra=_log_fields(job.run_id))
             return False
         except (NotFound, Conflict) as error:
-            _logger.warning("a run is gone at its end: %s", error, extra=_about(job.run_id))
+            _logger.warning("a run is gone at its end: %s", error, extra=_log_fields(job.run_id))
         with self.changed:
             if not self._shutdown.is_set():
                 return self._settle(job.last)
         return True
 
     def _settle(self, run: Run) -> bool:
-        """Let those that wait for a run go on, or end; False if the store cannot be used."""
+        """Resolve the dependencies on an ended run; False if the store is unavailable."""
         if run.state in UNENDED:
-            # Its row is gone, or was taken to another state by something else than its job.
+            # Its row was deleted, or something else than its job changed its state.
             run = replace(run, state="stopped")
         try:
-            self._waiting.settle(run)
-        except _NO_STORE:
+            self._queue.settle(run)
+        except _STORE_UNAVAILABLE:
             return False
         return True
 
 
-def _about(run_id: str) -> dict[str, str]:
+def _log_fields(run_id: str) -> dict[str, str]:
     return {"run_id": run_id}
 
 
-def _wait(jobs: list[Job], at_most_s: float) -> None:
+def _wait_until_gone(jobs: list[Job], at_most_s: float) -> None:
     deadline = time.monotonic() + at_most_s
     for job in jobs:
         job.gone.wait(max(0.0, deadline - time.monotonic()))

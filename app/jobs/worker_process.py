@@ -1,4 +1,4 @@
-"""A job's process, from the server's side: started, sent commands, its stall or death noticed."""
+"""The server's handle on a worker process: starts it, sends commands, detects stall and exit."""
 
 import logging
 import multiprocessing
@@ -22,86 +22,86 @@ class Exit(NamedTuple):
     """How a process ended."""
 
     how: str
-    """In a few words, for a sentence."""
+    """A clause for an error message."""
     error: Exception | None = None
-    """Why the server ended it: what it said could not be taken in."""
+    """The exception raised while one of its messages was handled, for which it was killed."""
 
 
 class WorkerProcess:
-    """One process that works on one order.
+    """One process that computes one task, with a sending and a receiving thread.
 
-    Start it from a thread that lives as long as the server: on Linux the kernel ends the process
-    when the thread that started it ends.
+    Start it from a thread that lives as long as the server: on Linux the kernel kills the process
+    when the thread that started it ends (PR_SET_PDEATHSIG).
     """
 
     def __init__(
-        self, name: str, order: Task, on_message: Callable[[Message], None], niceness: int
+        self, name: str, task: Task, on_message: Callable[[Message], None], niceness: int
     ) -> None:
-        """Start nothing yet.
+        """Create the pipe and the process object; `start` starts the process.
 
         Args:
-            name: of the process and its thread, for who looks at them.
-            order: what to do.
-            on_message: called with each message, one at a time, in a thread of the child's own.
-            niceness: by how much its priority is lower than the server's.
+            name: name of the process and its threads, for monitoring tools.
+            task: the first item sent through the pipe.
+            on_message: called with each message, one at a time, in the receiving thread.
+            niceness: added to the server's nice value.
         """
         context = multiprocessing.get_context("spawn")
-        self._pipe, self._its_pipe = context.Pipe()
-        # A pipe holds little, and a process takes a while to read from it: nobody waits for that.
+        self._pipe, self._child_pipe = context.Pipe()
+        # A pipe's buffer is small: a queue and a thread keep `send` from blocking its caller.
         self._to_send: queue.SimpleQueue[Task | Command | None] = queue.SimpleQueue()
-        self._to_send.put(order)
-        # Not a daemon: multiprocessing ends daemons from atexit, which a killed server never runs.
+        self._to_send.put(task)
+        # Not a daemon: multiprocessing ends daemons in atexit, which a killed server never runs.
         self._process = context.Process(
-            target=worker.main, args=(self._its_pipe, niceness), name=name, daemon=False
+            target=worker.main, args=(self._child_pipe, niceness), name=name, daemon=False
         )
         self._on_message = on_message
         self._error: Exception | None = None
-        self._killed_for: str | None = None
-        self._is_taking = False
-        self._heard_s = time.monotonic()
+        self._kill_reason: str | None = None
+        self._is_handling = False
+        self._last_message_s = time.monotonic()
         self._stopped_since_s: float | None = None
 
     def start(self, on_end: Callable[[Exit], None]) -> None:
         """Start the process.
 
         Args:
-            on_end: called once, when the process is gone, with how it ended.
+            on_end: called once, after the process has exited, with how it ended.
 
         Raises:
-            OSError: if the system has no room for one more process.
+            OSError: if the system cannot create another process.
         """
         self._process.start()
-        self._heard_s = time.monotonic()
-        # The only copy of its end is now its own, so that reading ends when it does.
-        self._its_pipe.close()
+        self._last_message_s = time.monotonic()
+        # With the server's copy of the child's end closed, `recv` raises EOFError at its exit.
+        self._child_pipe.close()
         name = self._process.name
-        threading.Thread(target=self._listen, args=(on_end,), name=name, daemon=True).start()
-        threading.Thread(target=self._talk, name=f"to {name}", daemon=True).start()
+        threading.Thread(target=self._receive_loop, args=(on_end,), name=name, daemon=True).start()
+        threading.Thread(target=self._send_loop, name=f"to {name}", daemon=True).start()
 
     @property
     def pid(self) -> int | None:
-        """Of the process; None before it was started, and after its end."""
+        """Process id; None before the start and after the exit."""
         try:
             return self._process.pid
         except ValueError:
             return None
 
-    def send(self, word: Command) -> None:
-        """Tell it something; nothing happens if it is gone."""
-        self._to_send.put(word)
+    def send(self, command: Command) -> None:
+        """Queue a command for the process; ignored if it has exited."""
+        self._to_send.put(command)
 
-    def kill(self, why: str | None = None) -> None:
-        """End the process at once, for a reason that its end is to name."""
-        self._killed_for = self._killed_for or why
-        with suppress(ValueError):  # it is gone, and its handle is closed
+    def kill(self, reason: str | None = None) -> None:
+        """Kill the process (SIGKILL); the first reason given becomes part of its `Exit`."""
+        self._kill_reason = self._kill_reason or reason
+        with suppress(ValueError):  # it has exited, and its handle is closed
             self._process.kill()
 
     def silent_s(self) -> float:
-        """For how long it has said nothing, not even that it lives; 0 while it is listened to."""
-        return 0.0 if self._is_taking else time.monotonic() - self._heard_s
+        """Return the time since its last message or heartbeat [s]; 0 while one is handled."""
+        return 0.0 if self._is_handling else time.monotonic() - self._last_message_s
 
     def stopped_s(self) -> float:
-        """For how long it was seen to be stopped by a signal, as SIGSTOP does; 0 if it is not."""
+        """Return for how long it was observed stopped by a signal such as SIGSTOP [s], else 0."""
         if not self._is_stopped():
             self._stopped_since_s = None
             return 0.0
@@ -114,26 +114,26 @@ class WorkerProcess:
         if not hasattr(os, "waitid") or self.pid is None:
             return False
         try:
-            # Looks, and leaves everything as it is for who waits for the end.
-            found = os.waitid(os.P_PID, self.pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT)
+            # WNOWAIT leaves the child waitable for `join`.
+            status = os.waitid(os.P_PID, self.pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT)
         except OSError:
             return False
-        return found is not None
+        return status is not None
 
-    def _talk(self) -> None:
-        while (said := self._to_send.get()) is not None:
-            with suppress(OSError):  # it is gone, which who listens to it finds out
-                self._pipe.send(said)
+    def _send_loop(self) -> None:
+        while (item := self._to_send.get()) is not None:
+            with suppress(OSError):  # it has exited, which the receiving thread detects
+                self._pipe.send(item)
         self._pipe.close()
 
-    def _listen(self, on_end: Callable[[Exit], None]) -> None:
+    def _receive_loop(self, on_end: Callable[[Exit], None]) -> None:
         try:
             while True:
-                self._hear(self._pipe.recv())
+                self._handle(self._pipe.recv())
         except (EOFError, ConnectionError):
             pass
         except Exception as error:
-            # What it says cannot be taken in, so it must not go on.
+            # Its results cannot be stored, so it must not continue.
             _logger.exception("%s: a message could not be taken in", self._process.name)
             self._error = error
             self._process.kill()
@@ -142,32 +142,32 @@ class WorkerProcess:
             self._process.kill()
             self._process.join()
         self._to_send.put(None)
-        end = Exit(self._how_it_ended(), self._error)
+        end = Exit(self._exit_description(), self._error)
         self._process.close()
         on_end(end)
 
-    def _hear(self, message: Message | Heartbeat) -> None:
-        """Take in a message; what the server does meanwhile is no silence of the process."""
-        self._is_taking = True
+    def _handle(self, message: Message | Heartbeat) -> None:
+        """Handle a message; the time that takes does not count as silence of the process."""
+        self._is_handling = True
         try:
             if not isinstance(message, Heartbeat):
                 self._on_message(message)
         finally:
-            self._heard_s = time.monotonic()
-            self._is_taking = False
+            self._last_message_s = time.monotonic()
+            self._is_handling = False
 
-    def _how_it_ended(self) -> str:
+    def _exit_description(self) -> str:
         if self._error is not None:
             return f"the server could not take in its results ({self._error})"
-        return self._killed_for or _in_words(self._process.exitcode)
+        return self._kill_reason or _describe_exit_code(self._process.exitcode)
 
 
-def _in_words(exit_code: int | None) -> str:
+def _describe_exit_code(exit_code: int | None) -> str:
     if exit_code is not None and exit_code < 0:
         try:
             name = signal.Signals(-exit_code).name
         except ValueError:
             name = f"signal {-exit_code}"
-        why = ", perhaps for want of memory" if name == "SIGKILL" else ""
-        return f"its process was ended by {name}{why}"
+        reason = ", perhaps for want of memory" if name == "SIGKILL" else ""
+        return f"its process was ended by {name}{reason}"
     return f"its process ended with exit code {exit_code}"

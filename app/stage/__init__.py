@@ -1,5 +1,8 @@
-"""The stage: the run that everyone is shown, and each moment of it as an immutable frame.
+"""The stage: plays one run's recording for all viewers, frame by frame. No drawing is done here.
 
-`stage` decides what is shown; `practice_show` and `race_show` play a training or a race from its
-recording; `scene_spec` is what stands there before it begins, `stage_frame` one moment of it.
+- `stage` chooses the run that is shown and executes playback commands.
+- `show` is the interface of playbacks; `race_show` plays a race, `practice_show` a training.
+- `race_lane` plays one lane of a race; `timeline` gives a race over time for the page's chart.
+- `stage_frame` is an immutable snapshot of one moment; `scene_spec` builds its constant part.
+- `palette` assigns colours to agents; `recording_export` streams a race's recording as JSON.
 """

@@ -1,10 +1,9 @@
-"""A training as it is shown: a time-lapse, or as it happens.
+"""Playback of a training: as a time-lapse, or live at the training's pace.
 
-Practice wanders off: the robot is never put back, and walks metres and in curves. So each episode
-is *drawn* from the start line, straight ahead. What is seen is then what the robot makes of its
-steps now, beside the ghosts of its evaluations, which start there too, and before the finish line
-that it is to race to. Only the place on the track is redrawn; motion, steps and table are as they
-were.
+During practice the robot is never reset, and walks metres and in curves. So each episode is drawn
+from the start line, straight ahead, by a rigid transformation of its poses in the plane. That
+makes it comparable with the ghosts of evaluations, which start there too. Only the position and
+heading on the track are changed; motion, steps and action values are as recorded.
 """
 
 import math
@@ -29,50 +28,50 @@ from app.stage.stage_frame import (
     Phase,
     SceneSpec,
     StageFrame,
-    turned,
+    rotated,
     yaw_rad,
 )
 
 SLOW_STEPS = 10
 GROWTH_PER_S = 1.5
-"""After the slow steps the time-lapse gets faster by this factor each second: 500 steps of 0.32 s
-take 13 s, a million would take 32."""
+"""Factor by which the time-lapse accelerates each second after the slow steps: 500 steps of 0.32 s
+take 13 s, a million would take 32 s."""
 
 SHOWN_GHOSTS = 12
 EVALUATION_SHOWN_S = 0.6
-_LAG_S, _LAG_MAX_S, _CATCH_UP = 0.4, 4.0, 0.8
+_TARGET_LAG_S, _MAX_LAG_S, _CATCH_UP_GAIN = 0.4, 4.0, 0.8
 
 
 class PracticeShow:
     """Plays a training's recording while it grows.
 
     Args:
-        cast: who practises.
-        steps: how many there are to be.
-        step_s: duration of one step's motion.
-        pace: asks how the training runs now: `max`, or times real time.
-        recording: what is recorded by now, None before there is anything.
+        spec: the scene.
+        steps: number of steps of the training.
+        step_s: duration of one step's motion [s].
+        pace: returns the training's present pace: `max`, or times real time.
+        recording: returns the recording so far, None before there is any.
     """
 
     def __init__(
         self,
-        cast: SceneSpec,
+        spec: SceneSpec,
         steps: int,
         step_s: float,
         pace: Callable[[], float | str],
         recording: Callable[[], PracticeRecording | None],
     ) -> None:
-        self.cast, self.steps, self._step_s = cast, steps, step_s
+        self.spec, self.steps, self._step_s = spec, steps, step_s
         self._pace, self._recording = pace, recording
-        self._kept: list[_Kept] = []
-        self._numbers: list[int] = []
-        self._rest_qpos = rest_pose(cast).astype(np.float32)
-        self._evaluated: list[Ghost] = []
+        self._recorded: list[_RecordedStep] = []
+        self._step_numbers: list[int] = []
+        self._rest_qpos = rest_pose(spec).astype(np.float32)
+        self._evaluations: list[Ghost] = []
         self._done: float | None = None
-        """Steps done, with the part of the one under way; None before the first is known."""
-        self._shown_s = 0.0
-        """Motion shown since the time-lapse began; gaps in the recording do not count."""
-        self._over = False
+        """Playback position in steps, with a fraction; None before the first step is recorded."""
+        self._played_s = 0.0
+        """Motion played since the time-lapse began [s]; gaps in the recording do not count."""
+        self._run_ended = False
         self._rate = 1.0
         self._since_evaluation_s = math.inf
         self._range = ValueRange()
@@ -80,49 +79,51 @@ class PracticeShow:
 
     @property
     def time_s(self) -> float:
-        """Practice time: steps done, in seconds of motion."""
+        """Playback position in practice time: steps done times the duration of a step [s]."""
         return (self._done or 0.0) * self._step_s
 
     @property
     def ended(self) -> bool:
-        """Whether the last step has been shown."""
-        return self._over and (not self._numbers or (self._done or 0) >= self._numbers[-1])
+        """Whether the run has ended and its last step was shown."""
+        return self._run_ended and (
+            not self._step_numbers or (self._done or 0) >= self._step_numbers[-1]
+        )
 
-    def advance(self, elapsed_s: float, speed: float | None, over: bool) -> None:
-        """Go on; see `Show`."""
-        self._over = over
-        self._look()
-        if not self._numbers:
+    def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
+        """Advance the playback position; see `Show.advance`."""
+        self._run_ended = run_ended
+        self._update()
+        if not self._step_numbers:
             return
         if self._done is None:
-            self._done = self._numbers[0] - 1.0
-        self._rate = self._rate_now(speed)
+            self._done = self._step_numbers[0] - 1.0
+        self._rate = self._playback_rate(speed)
         before = len(self._ghosts())
-        target = min(self._done + elapsed_s * self._rate / self._step_s, self._numbers[-1])
-        self._shown_s += max(0.0, target - self._done) * self._step_s
-        self._done = self._past_gap(target)
+        target = min(self._done + elapsed_s * self._rate / self._step_s, self._step_numbers[-1])
+        self._played_s += max(0.0, target - self._done) * self._step_s
+        self._done = self._skip_gap(target)
         self._since_evaluation_s += elapsed_s
         if len(self._ghosts()) > before:
             self._since_evaluation_s = 0.0
 
     def seek(self, time_s: float) -> None:
-        """Go to a practice time; where nothing is kept, to the next that is."""
-        self._look()
-        if not self._numbers:
+        """Set the playback position to a practice time [s], or to the next one recorded."""
+        self._update()
+        if not self._step_numbers:
             return
-        low, high = self._numbers[0] - 1.0, float(self._numbers[-1])
-        self._done = self._past_gap(min(max(time_s / self._step_s, low), high))
-        self._shown_s = bisect_left(self._numbers, self._done) * self._step_s
+        low, high = self._step_numbers[0] - 1.0, float(self._step_numbers[-1])
+        self._done = self._skip_gap(min(max(time_s / self._step_s, low), high))
+        self._played_s = bisect_left(self._step_numbers, self._done) * self._step_s
 
     def retime(self, clock: str) -> None:
-        """Practice has no other clock."""
+        """Do nothing: practice has no clocks."""
 
     def frame(self, run_label: RunLabel) -> StageFrame:
-        """What is to be seen now."""
-        number = self._number()
+        """Return the frame at the playback position."""
+        number = self._current_step()
         label = f"{run_label.name}, step {number} of {self.steps}" if number else run_label.name
         return StageFrame(
-            cast=self.cast,
+            spec=self.spec,
             run_id=run_label.run_id,
             phase=self._phase,
             label=label,
@@ -144,53 +145,55 @@ class PracticeShow:
         shown = self._since_evaluation_s < EVALUATION_SHOWN_S
         return "evaluation" if shown else "practice"
 
-    def _look(self) -> None:
+    def _update(self) -> None:
         recording = self._recording()
         if recording is None:
             return
         self._rest_qpos = recording.rest_qpos
-        taken = recording.steps
-        self._kept = [_Kept(step, step.motion) for step in taken if step.motion is not None]
-        self._numbers = [kept.taken.step for kept in self._kept]
-        self._evaluated = [Ghost(e.step, e.distance_m) for e in recording.evaluations]
+        steps = recording.steps
+        self._recorded = [
+            _RecordedStep(step, step.motion) for step in steps if step.motion is not None
+        ]
+        self._step_numbers = [recorded.step.step for recorded in self._recorded]
+        self._evaluations = [Ghost(e.step, e.distance_m) for e in recording.evaluations]
 
-    def _rate_now(self, speed: float | None) -> float:
+    def _playback_rate(self, speed: float | None) -> float:
         if speed is not None:
             return speed
         pace = self._pace()
-        if self._over or isinstance(pace, str):
+        if self._run_ended or isinstance(pace, str):
             slow_s = SLOW_STEPS * self._step_s
-            # Faster each second, as a function of what was shown: no state to get wrong.
-            return 1.0 + math.log(GROWTH_PER_S) * max(0.0, self._shown_s - slow_s)
-        lag_s = (self._numbers[-1] - (self._done or 0.0)) * self._step_s / pace
-        if lag_s > _LAG_MAX_S:
-            self._done = self._numbers[-1] - _LAG_S * pace / self._step_s
+            # Growth by a factor each second is linear in the motion played, so it needs no state.
+            return 1.0 + math.log(GROWTH_PER_S) * max(0.0, self._played_s - slow_s)
+        lag_s = (self._step_numbers[-1] - (self._done or 0.0)) * self._step_s / pace
+        if lag_s > _MAX_LAG_S:
+            self._done = self._step_numbers[-1] - _TARGET_LAG_S * pace / self._step_s
             return pace
-        return pace * min(max(1.0 + _CATCH_UP * (lag_s - _LAG_S), 0.3), 2.5)
+        return pace * min(max(1.0 + _CATCH_UP_GAIN * (lag_s - _TARGET_LAG_S), 0.3), 2.5)
 
-    def _past_gap(self, done: float) -> float:
-        """The same place, or the next that is kept."""
-        index = bisect_right(self._numbers, math.floor(done))
-        if index == len(self._numbers):
+    def _skip_gap(self, done: float) -> float:
+        """Return the position itself, or the next one whose motion is recorded."""
+        index = bisect_right(self._step_numbers, math.floor(done))
+        if index == len(self._step_numbers):
             return done
-        return max(done, self._numbers[index] - 1.0)
+        return max(done, self._step_numbers[index] - 1.0)
 
     def _ghosts(self) -> list[Ghost]:
-        steps = [ghost.step for ghost in self._evaluated]
-        return self._evaluated[: bisect_right(steps, math.floor(self._done or 0.0))]
+        steps = [ghost.step for ghost in self._evaluations]
+        return self._evaluations[: bisect_right(steps, math.floor(self._done or 0.0))]
 
-    def _number(self) -> int:
-        """The step it is in, counted from 1; 0 before the first."""
-        return 0 if self._done is None else min(math.floor(self._done) + 1, self._numbers[-1])
+    def _current_step(self) -> int:
+        """Return the number of the step at the position, from 1; 0 before the first."""
+        return 0 if self._done is None else min(math.floor(self._done) + 1, self._step_numbers[-1])
 
     def _lane(self) -> LaneView:
         if self._done is None:
-            return LaneView(rest_pose(self.cast), 0, self.steps, 0.0)
-        index = min(bisect_left(self._numbers, self._number()), len(self._kept) - 1)
-        step, motion = self._kept[index]
-        into_s = (self._done - (step.step - 1)) * float(motion.time_s[-1])
-        pose = pose_at(self._start(index), motion, into_s)
-        qpos = self._from_start_line(index, pose)
+            return LaneView(rest_pose(self.spec), 0, self.steps, 0.0)
+        index = min(bisect_left(self._step_numbers, self._current_step()), len(self._recorded) - 1)
+        step, motion = self._recorded[index]
+        elapsed_s = (self._done - (step.step - 1)) * float(motion.time_s[-1])
+        pose = pose_at(self._start(index), motion, elapsed_s)
+        qpos = self._relative_to_start_line(index, pose)
         return LaneView(
             qpos,
             step.step,
@@ -198,60 +201,62 @@ class PracticeShow:
             float(qpos[1]),
             done=self.ended,
             marching=self._marching(index),
-            knowledge=self._knowledge(step),
+            knowledge=self._action_values(step),
         )
 
     def _start(self, index: int) -> NDArray[np.float32]:
-        """The pose in which a kept step began, as well as it is known."""
-        number, poses = self._numbers[index], self._kept[index].motion.qpos
+        """Return the qpos at the start of a recorded step, or its first known one after a gap."""
+        number, poses = self._step_numbers[index], self._recorded[index].motion.qpos
         if number == 1:
             return self._rest_qpos
-        follows = index > 0 and self._numbers[index - 1] == number - 1
-        start: NDArray[np.float32] = self._kept[index - 1].motion.qpos[-1] if follows else poses[0]
+        follows = index > 0 and self._step_numbers[index - 1] == number - 1
+        start: NDArray[np.float32] = (
+            self._recorded[index - 1].motion.qpos[-1] if follows else poses[0]
+        )
         return start
 
-    def _from_start_line(self, index: int, pose: FloatArray) -> FloatArray:
-        """The pose as if its episode had begun on the start line, straight ahead."""
-        episode = self._kept[index].taken.episode
+    def _relative_to_start_line(self, index: int, pose: FloatArray) -> FloatArray:
+        """Return the pose as if its episode had begun on the start line, straight ahead."""
+        episode = self._recorded[index].step.episode
         if self._origin.episode != episode:
             first = index
-            while first and self._kept[first - 1].taken.episode == episode:
+            while first and self._recorded[first - 1].step.episode == episode:
                 first -= 1
-            self._origin = _Origin.of(episode, self._start(first), rest_pose(self.cast))
-        return self._origin.seen_from(pose)
+            self._origin = _Origin.of(episode, self._start(first), rest_pose(self.spec))
+        return self._origin.transformed(pose)
 
     def _marching(self, index: int) -> bool:
         before = index - MARCHING_STEPS
-        if before < 0 or self._numbers[before] != self._numbers[index] - MARCHING_STEPS:
+        if before < 0 or self._step_numbers[before] != self._step_numbers[index] - MARCHING_STEPS:
             return False
-        gained = sum(kept.taken.reward_m for kept in self._kept[before:index])
+        gained = sum(recorded.step.reward_m for recorded in self._recorded[before:index])
         return gained < MARCHING_M
 
-    def _knowledge(self, step: StepTaken) -> ActionValuesView | None:
-        known = step.knowledge
-        if known is None:
+    def _action_values(self, step: StepTaken) -> ActionValuesView | None:
+        learned = step.knowledge
+        if learned is None:
             return None
-        low, high = self._range.including(known.values)
+        low, high = self._range.extended_to(learned.values)
         return ActionValuesView(
-            known.values, known.visits, step.observation, step.action, low, high
+            learned.values, learned.visits, step.observation, step.action, low, high
         )
 
 
-class _Kept(NamedTuple):
-    """A step whose motion is kept."""
+class _RecordedStep(NamedTuple):
+    """A step whose motion is recorded."""
 
-    taken: StepTaken
+    step: StepTaken
     motion: Motion
 
 
 class _Origin(NamedTuple):
-    """Where an episode began, to be drawn from the start line."""
+    """Position and heading in which an episode began."""
 
     episode: int
     place: FloatArray
     """(2,) [m]"""
     turn_rad: float
-    """By how much it had turned from straight ahead, anticlockwise."""
+    """Heading relative to straight ahead, anticlockwise [rad]."""
 
     @classmethod
     def none(cls) -> "_Origin":
@@ -261,6 +266,6 @@ class _Origin(NamedTuple):
     def of(cls, episode: int, start: NDArray[np.float32], rest: FloatArray) -> "_Origin":
         return cls(episode, start[:2].astype(float), yaw_rad(start[3:7]) - yaw_rad(rest[3:7]))
 
-    def seen_from(self, pose: FloatArray) -> FloatArray:
-        """The pose with this origin on the start line, straight ahead."""
-        return turned(pose, self.place, -self.turn_rad)
+    def transformed(self, pose: FloatArray) -> FloatArray:
+        """Return the pose with this origin moved to the start line, straight ahead."""
+        return rotated(pose, self.place, -self.turn_rad)

@@ -1,4 +1,4 @@
-"""One lane of a race as it is shown: where it is, what it does, what it knows at a time."""
+"""Playback of one lane of a race: pose, progress and action values at a given race time."""
 
 import numpy as np
 
@@ -11,7 +11,13 @@ MARCHING_STEPS, MARCHING_M = 10, 0.01
 
 
 class RaceLane:
-    """A lane's recording with its timetable, both up to date as of the last `look`."""
+    """A lane's recording with its timetable, which is as new as the last `update`.
+
+    Args:
+        recording: the recording, which may grow.
+        steps: number of steps of the race.
+        clock: clock that times the steps.
+    """
 
     def __init__(self, recording: LaneRecording, steps: int, clock: Clock) -> None:
         self.recording, self.steps = recording, steps
@@ -21,37 +27,43 @@ class RaceLane:
         self._range = ValueRange()
 
     @property
-    def walked_all(self) -> bool:
-        """Whether it has used all its steps."""
+    def all_recorded(self) -> bool:
+        """Whether all steps of the lane are recorded."""
         return len(self._timetable.ends) == self.steps
 
     @property
     def end_s(self) -> float:
-        """Race time at the end of its last step so far."""
+        """Race time at the end of the last step recorded so far [s]."""
         return self._timetable.total_s
 
-    def look(self, over: bool) -> None:
-        """Take in what was recorded since; of a long race not each step at once."""
-        known, recorded = len(self._timetable.ends), len(self.recording.steps)
-        if recorded > 1.02 * known or (recorded > known and (over or recorded == self.steps)):
+    def update(self, run_ended: bool) -> None:
+        """Extend the timetable by new steps.
+
+        In a long race only by 2 % at a time, since each extension recomputes all of it.
+
+        Args:
+            run_ended: whether the run will record no more.
+        """
+        timed, recorded = len(self._timetable.ends), len(self.recording.steps)
+        if recorded > 1.02 * timed or (recorded > timed and (run_ended or recorded == self.steps)):
             self.retime(self._clock)
 
     def retime(self, clock: Clock) -> None:
-        """Time its steps by a clock."""
+        """Recompute the timetable under a clock."""
         self._clock = clock
         self._timetable = Timetable.of(list(self.recording.steps), clock)
         self._crossing_s = None
         if self.recording.distance_m > 0:
             done = len(self._timetable.ends)
-            known = LaneRecording("", self.recording.rest_qpos, self.recording.steps[:done])
-            self._crossing_s = crossing_s(known, self._timetable)
+            timed = LaneRecording("", self.recording.rest_qpos, self.recording.steps[:done])
+            self._crossing_s = crossing_s(timed, self._timetable)
 
-    def at(self, time_s: float) -> Moment:
-        """Where it is in its own course."""
+    def moment_at(self, time_s: float) -> Moment:
+        """Return the step, and the part of it, that the lane is in at a race time [s]."""
         return self._timetable.at(time_s)
 
     def time_of(self, moment: Moment) -> float:
-        """When it is there, the inverse of `at`."""
+        """Return the race time of a moment [s]: the inverse of `moment_at`."""
         ends = self._timetable.ends
         if moment.step >= len(ends):
             return self.end_s
@@ -60,22 +72,22 @@ class RaceLane:
         return began + moment.thinking * (thought - began) + moment.motion_s
 
     def distance_at(self, time_s: float) -> float:
-        """How far along the track it is [m]."""
+        """Return the distance along the track at a race time [m]."""
         return distance_at(self.recording, self._timetable, time_s)
 
     def view(self, time_s: float, complete: bool) -> LaneView:
-        """What is to be seen of it.
+        """Return the lane as shown at a race time, its pose interpolated.
 
         Args:
-            time_s: of the race.
-            complete: whether it will take no further steps.
+            time_s: race time [s].
+            complete: whether the lane will take no further steps.
         """
-        moment, lane = self.at(time_s), self.recording
-        taken = len(self._timetable.ends)
-        behind = not complete and time_s >= self.end_s  # it still computes, in earnest
+        moment, lane = self.moment_at(time_s), self.recording
+        steps_taken = len(self._timetable.ends)
+        computing = not complete and time_s >= self.end_s  # its next decision is not recorded yet
         at_end = complete and time_s >= self.end_s
-        if moment.step >= taken or at_end or (behind and taken):
-            return self._still(time_s, complete, behind)
+        if moment.step >= steps_taken or at_end or (computing and steps_taken):
+            return self._standing_view(time_s, complete, computing)
         step = lane.steps[moment.step]
         start = lane.start_qpos(moment.step)
         moves = moment.motion_s > 0 or moment.thinking >= 1
@@ -89,58 +101,58 @@ class RaceLane:
             futures_total=step.transitions,
             crossed=self._crossed(time_s),
             marching=self._marching(moment.step),
-            knowledge=self._knowledge(moment.step),
+            knowledge=self._action_values(moment.step),
         )
 
-    def _still(self, time_s: float, complete: bool, behind: bool) -> LaneView:
-        """At its end, or waiting for its own next decision."""
-        lane, taken = self.recording, len(self._timetable.ends)
-        total = lane.steps[taken - 1].transitions if taken else 0
+    def _standing_view(self, time_s: float, complete: bool, computing: bool) -> LaneView:
+        """Return the lane at its end, or while its next decision is still being computed."""
+        lane, steps_taken = self.recording, len(self._timetable.ends)
+        total = lane.steps[steps_taken - 1].transitions if steps_taken else 0
         return LaneView(
-            lane.start_qpos(taken),
-            min(taken + (not complete), self.steps),
+            lane.start_qpos(steps_taken),
+            min(steps_taken + (not complete), self.steps),
             self.steps,
-            lane.steps[taken - 1].distance_m if taken else 0.0,
-            thinking=behind and total > 0,
-            futures_total=total if behind else 0,
+            lane.steps[steps_taken - 1].distance_m if steps_taken else 0.0,
+            thinking=computing and total > 0,
+            futures_total=total if computing else 0,
             done=complete,
             crossed=self._crossed(time_s),
-            marching=self._marching(taken),
+            marching=self._marching(steps_taken),
             failure=lane.failure,
-            knowledge=self._knowledge(taken - 1),
+            knowledge=self._action_values(steps_taken - 1),
         )
 
     def _crossed(self, time_s: float) -> bool:
         return self._crossing_s is not None and time_s >= self._crossing_s
 
-    def _marching(self, taken: int) -> bool:
-        """Whether it gained next to nothing in the last ten of the steps taken."""
-        if taken < MARCHING_STEPS:
+    def _marching(self, steps_taken: int) -> bool:
+        """Whether the last `MARCHING_STEPS` of the steps taken gained under `MARCHING_M`."""
+        if steps_taken < MARCHING_STEPS:
             return False
         steps = self.recording.steps
-        before = taken - MARCHING_STEPS
-        start = steps[before - 1].distance_m if before else 0.0
-        return steps[taken - 1].distance_m - start < MARCHING_M
+        first = steps_taken - MARCHING_STEPS
+        start = steps[first - 1].distance_m if first else 0.0
+        return steps[steps_taken - 1].distance_m - start < MARCHING_M
 
-    def _knowledge(self, step: int) -> ActionValuesView | None:
-        taken = self.recording.steps[step] if 0 <= step < len(self.recording.steps) else None
-        if taken is None or taken.knowledge is None:
+    def _action_values(self, step: int) -> ActionValuesView | None:
+        step_taken = self.recording.steps[step] if 0 <= step < len(self.recording.steps) else None
+        if step_taken is None or step_taken.knowledge is None:
             return None
-        known = taken.knowledge
-        low, high = self._range.including(known.values)
+        learned = step_taken.knowledge
+        low, high = self._range.extended_to(learned.values)
         return ActionValuesView(
-            known.values, known.visits, taken.observation, taken.action, low, high
+            learned.values, learned.visits, step_taken.observation, step_taken.action, low, high
         )
 
 
 class ValueRange:
-    """The ends of a colour scale: it grows with what is shown, so colours keep their meaning."""
+    """Running minimum and maximum for a colour scale; it only grows, so colours stay comparable."""
 
     def __init__(self) -> None:
         self._low = self._high = 0.0
 
-    def including(self, values: FloatArray) -> tuple[float, float]:
-        """The range, with these values in it."""
+    def extended_to(self, values: FloatArray) -> tuple[float, float]:
+        """Extend the range to these values, NaN ignored, and return (low, high)."""
         self._low = min(self._low, float(np.nanmin(values)))
         self._high = max(self._high, float(np.nanmax(values)))
         return self._low, self._high

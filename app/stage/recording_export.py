@@ -1,4 +1,4 @@
-"""A race's recording in the forms that leave the server."""
+"""Export of a race's recording as streamed JSON."""
 
 import json
 from collections.abc import Callable, Iterator, Sequence
@@ -12,20 +12,21 @@ from app.runs.records import LaneStep
 def as_json(
     look: Callable[[], Sequence[LaneRecording]], training_ids: Sequence[str | None], steps: int
 ) -> Iterator[str]:
-    """All that a replay needs, in chunks.
+    """Yield the JSON document of a race in chunks, with all that a replay needs.
 
-    Of each step: what was seen and done, and `qpos` at the times `time_s` since its motion began.
+    Each step has its observation and action, and `qpos` (keyframes) at `time_s` [s] since its
+    motion began.
 
     Args:
-        look: the recording. It is asked for anew for each chunk, and not held while a client
-            takes that: recordings are large, and readers may be many and slow.
-        training_ids: for each lane where its table is from.
-        steps: that each lane is to take.
+        look: returns the recording. Called for each chunk and not kept while a client receives
+            that: recordings are large, and clients may be many and slow.
+        training_ids: for each lane the training its table is from.
+        steps: number of steps of each lane.
     """
     yield f'{{"steps": {steps}, "lanes": ['
     for number, training in enumerate(training_ids):
         yield (", " if number else "") + _head(look()[number], training)
-        # Others may add to the recording meanwhile.
+        # The number of steps is fixed here; the race may append to the recording meanwhile.
         for place in range(len(look()[number].steps)):
             yield (",\n" if place else "") + json.dumps(_step(look()[number].steps[place]))
         yield "]}"
@@ -57,5 +58,5 @@ def _step(step: LaneStep) -> dict[str, object]:
 
 
 def _rounded(array: np.ndarray[tuple[int, ...], np.dtype[np.float32]]) -> object:
-    """To a hundredth of a millimetre and of a milliradian: shorter, and no eye sees more."""
+    """Round to 1e-5 m and rad, which keeps the file short and is below what can be seen."""
     return np.round(array.astype(float), 5).tolist()

@@ -1,4 +1,4 @@
-"""Who is on stage in a run, and how they stand before it begins."""
+"""Build the scene of a run: its lanes, and the pose of its robot at rest."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -20,28 +20,30 @@ PAPERS_LANES = ("q-learning", "greedy", "two-step")
 
 
 def race_scene(config: RaceConfig) -> SceneSpec:
-    """A lane for each agent of the race, from left to right."""
-    roles = _roles([lane.agent for lane in config.lanes])
-    return SceneSpec("race", config.robot, config.resolved_gait, config.grid, roles)
+    """Return the scene of a race: one lane per agent, from left to right."""
+    lane_specs = _lane_specs([lane.agent for lane in config.lanes])
+    return SceneSpec("race", config.robot, config.resolved_gait, config.grid, lane_specs)
 
 
 def training_scene(config: TrainingConfig) -> SceneSpec:
-    """The one that practises."""
-    roles = _roles([config.agent])
-    return SceneSpec("training", config.robot, config.resolved_gait, config.grid, roles)
+    """Return the scene of a training: one lane."""
+    lane_specs = _lane_specs([config.agent])
+    return SceneSpec("training", config.robot, config.resolved_gait, config.grid, lane_specs)
 
 
 @lru_cache(maxsize=1)
 def idle_scene() -> SceneSpec:
-    """The paper's three, before anyone has pressed a button."""
+    """Return the scene of the idle stage: the paper's three agents."""
     lanes = tuple(LaneConfig(agent=agent) for agent in PAPERS_LANES)
     config = RaceConfig(gait="left-right-origin", lanes=lanes)
-    return SceneSpec("idle", config.robot, config.resolved_gait, config.grid, _roles(PAPERS_LANES))
+    return SceneSpec(
+        "idle", config.robot, config.resolved_gait, config.grid, _lane_specs(PAPERS_LANES)
+    )
 
 
-def rest_pose(cast: SceneSpec) -> FloatArray:
-    """The robot on the start line, (7 + 3 · legs,)."""
-    return _rest_pose(cast.robot, cast.gait, cast.grid)
+def rest_pose(spec: SceneSpec) -> FloatArray:
+    """Return the qpos of the robot at rest on the start line, (7 + 3 · legs,), read-only."""
+    return _rest_pose(spec.robot, spec.gait, spec.grid)
 
 
 @lru_cache(maxsize=8)
@@ -50,17 +52,17 @@ def _rest_pose(robot: Robot, gait: Gait, grid: FootGrid) -> FloatArray:
         simulator = KinematicSimulator(robot, gait, grid)
         pose = simulator.pose(simulator.rest())
     except Unreachable:
-        # A run of such a robot has failed before its first step; it is shown all the same.
+        # A run with such a robot failed before its first step, but can still be shown.
         pose = np.zeros(7 + 3 * len(robot.legs))
         pose[2], pose[3] = robot.body_height_m + robot.foot_radius_m, 1.0
     pose.flags.writeable = False
     return pose
 
 
-def _roles(agents: Sequence[str]) -> tuple[LaneSpec, ...]:
+def _lane_specs(agents: Sequence[str]) -> tuple[LaneSpec, ...]:
     names = [AGENT_TITLES.get(agent, agent.rpartition(":")[2]) for agent in agents]
-    roles = []
+    lane_specs = []
     for lane, (agent, color) in enumerate(zip(agents, lane_colors(agents), strict=True)):
         name, before = names[lane], names[:lane].count(names[lane])
-        roles.append(LaneSpec(agent, f"{name} {before + 1}" if before else name, color))
-    return tuple(roles)
+        lane_specs.append(LaneSpec(agent, f"{name} {before + 1}" if before else name, color))
+    return tuple(lane_specs)

@@ -1,4 +1,4 @@
-"""What the shows have in common: something that is played, sought in, and ends."""
+"""Interface of playbacks on the stage (`Show`), and the playback of the idle stage."""
 
 from dataclasses import dataclass, replace
 from typing import Protocol
@@ -10,7 +10,7 @@ TIME_LAPSE = "time-lapse"
 
 @dataclass(frozen=True)
 class RunLabel:
-    """What the stage knows of a show, for its frames."""
+    """Fields of a frame that the stage knows and the show does not."""
 
     run_id: str | None
     name: str
@@ -19,55 +19,60 @@ class RunLabel:
 
 
 class Show(Protocol):
-    """One run, or none, on stage. Not thread-safe; the stage sees to that."""
+    """Playback of one run, or of none. Not thread-safe: the stage holds a lock around calls."""
 
-    cast: SceneSpec
+    spec: SceneSpec
 
     @property
     def time_s(self) -> float:
-        """Where the show is, in the run's own time."""
+        """Playback position in the run's own time [s]."""
 
     @property
     def ended(self) -> bool:
-        """Whether all there will ever be has been shown."""
+        """Whether playback has reached the end of a run that will record no more."""
 
-    def advance(self, elapsed_s: float, speed: float | None, over: bool) -> None:
-        """Go on.
+    def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
+        """Advance the playback position.
 
         Args:
-            elapsed_s: real time since the last call; 0 while it is not playing.
-            speed: how many times real time; None leaves it to the show.
-            over: whether the run will record no more.
+            elapsed_s: real time since the last call [s]; 0 while playback is paused.
+            speed: times real time; None for the show's automatic speed.
+            run_ended: whether the run will record no more.
         """
 
     def seek(self, time_s: float) -> None:
-        """Go to a time, or to the nearest that can be shown."""
+        """Set the playback position to a time [s], or to the nearest that is recorded."""
 
     def retime(self, clock: str) -> None:
-        """Show the same under another clock, at the corresponding place."""
+        """Change the clock and keep the corresponding playback position."""
 
     def frame(self, run_label: RunLabel) -> StageFrame:
-        """What is to be seen now."""
+        """Return the frame at the playback position."""
 
 
 class IdleShow:
-    """Robots that stand on the start line and wait for someone to press a button."""
+    """Show of an idle stage: robots stand still on the start line.
+
+    Args:
+        spec: the scene.
+        still: the frame that is always shown.
+    """
 
     time_s = 0.0
     ended = True
 
-    def __init__(self, cast: SceneSpec, still: StageFrame) -> None:
-        self.cast, self._still = cast, still
+    def __init__(self, spec: SceneSpec, still: StageFrame) -> None:
+        self.spec, self._still = spec, still
 
-    def advance(self, elapsed_s: float, speed: float | None, over: bool) -> None:
-        """Nothing goes on."""
+    def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
+        """Do nothing: the show has no duration."""
 
     def seek(self, time_s: float) -> None:
-        """There is nowhere to go."""
+        """Do nothing: the show has no duration."""
 
     def retime(self, clock: str) -> None:
-        """It takes no time."""
+        """Do nothing: the show has no duration."""
 
     def frame(self, run_label: RunLabel) -> StageFrame:
-        """Always the same poses."""
+        """Return the constant frame."""
         return replace(self._still, playing=run_label.playing)

@@ -1,4 +1,4 @@
-"""What is on stage at one moment, as immutable values: all that drawing and the page need."""
+"""Immutable snapshot of the stage at one moment: all that the viewer and the page draw from."""
 
 import math
 from dataclasses import dataclass
@@ -20,71 +20,74 @@ Phase = Literal[
 
 @dataclass(frozen=True)
 class LaneSpec:
-    """Who walks on a lane."""
+    """Agent, display name and colour of a lane."""
 
     agent: str
     name: str
-    """As people read it."""
+    """Display name."""
     color: str
     """`#RRGGBB`."""
 
 
 @dataclass(frozen=True)
 class SceneSpec:
-    """Who is on stage. The scene is built anew when this changes, and only then."""
+    """The constant part of a scene. The viewer rebuilds its scene graph only when this changes."""
 
     kind: Kind
     robot: Robot
     gait: Gait
     grid: FootGrid
-    roles: tuple[LaneSpec, ...]
+    lane_specs: tuple[LaneSpec, ...]
     """One for each lane, from left to right."""
 
 
 @dataclass(frozen=True, eq=False)
 class ActionValuesView:
-    """What a learner expects of each move from where it is."""
+    """Action values of a learner in its present state, with their visit counts."""
 
     values_m: FloatArray
     """(pairs, cells), NaN where illegal."""
     visits: FloatArray
     """(pairs, cells), NaN where illegal."""
     current: Cells
+    """Cell of each leg pair."""
     next: Action | None
-    """What it does from here."""
+    """Action taken in this state."""
     low_m: float
-    """The ends of the colour scale: the lowest and highest value shown of this run so far."""
+    """Lower end of the colour scale; both ends span all values shown of this run so far."""
     high_m: float
 
 
 @dataclass(frozen=True, eq=False)
 class LaneView:
-    """One robot as it is shown."""
+    """One robot at one moment."""
 
     qpos: NDArray[np.floating[Any]]
     """(7 + 3 · legs,) in the lane's own frame: the start line is y = 0, the track goes to +y."""
     step: int
-    """Steps taken, with the one that it is in."""
+    """Number of steps taken, the current one included."""
     steps: int
     distance_m: float
-    """Along the track as drawn: of a race since its start, of practice since the episode began."""
+    """Distance along the track as drawn: since the start of the race, or of the episode."""
     rank: int = 1
     thinking: bool = False
+    """Whether it is computing a decision by look-ahead."""
     futures: int = 0
-    """How many transitions it has simulated for this decision."""
+    """Number of transitions simulated so far for this decision."""
     futures_total: int = 0
+    """Number of transitions that this decision simulates in all."""
     done: bool = False
     crossed: bool = False
-    """Whether it has passed the finish line."""
+    """Whether it has crossed the finish line."""
     marching: bool = False
-    """Whether it gained less than a centimetre in ten steps."""
+    """Whether it steps on the spot: under 1 cm gained in ten steps."""
     failure: str | None = None
     knowledge: ActionValuesView | None = None
 
 
 @dataclass(frozen=True)
 class Ghost:
-    """How far the learner came when it was evaluated."""
+    """Distance that the learner reached in one evaluation, shown as a ghost."""
 
     step: int
     distance_m: float
@@ -92,9 +95,9 @@ class Ghost:
 
 @dataclass(frozen=True, eq=False)
 class StageFrame:
-    """Everything that is on stage at one moment."""
+    """The whole stage at one moment."""
 
-    cast: SceneSpec
+    spec: SceneSpec
     run_id: str | None
     phase: Phase
     label: str
@@ -102,17 +105,17 @@ class StageFrame:
     ghosts: tuple[Ghost, ...] = ()
     time_s: float = 0.0
     duration_s: float | None = None
-    """None while nobody knows."""
+    """None while it is unknown, since the run is still computed."""
     shown_speed: float = 1.0
     playing: bool = True
     clock: str = "paper"
     replay: bool = False
 
     def scene(self) -> dict[str, Any]:
-        """The same in plain types for the page, without poses."""
+        """Return the frame in plain types for the page, without poses."""
         return {
             "run_id": self.run_id,
-            "kind": self.cast.kind,
+            "kind": self.spec.kind,
             "phase": self.phase,
             "time_s": round(self.time_s, 3),
             "duration_s": None if self.duration_s is None else round(self.duration_s, 3),
@@ -130,31 +133,31 @@ class StageFrame:
         }
 
     def _lane(self, number: int) -> dict[str, Any]:
-        lane, role = self.lanes[number], self.cast.roles[number]
+        lane, lane_spec = self.lanes[number], self.spec.lane_specs[number]
         plain = ("step", "steps", "thinking", "futures", "futures_total")
         flags = ("done", "crossed", "rank", "marching", "failure")
         return {
             "lane": number,
-            "agent": role.agent,
-            "name": role.name,
-            "color": role.color,
+            "agent": lane_spec.agent,
+            "name": lane_spec.name,
+            "color": lane_spec.color,
             "distance_m": round(lane.distance_m, 4),
             **{name: getattr(lane, name) for name in (*plain, *flags)},
         }
 
     def _knowledge(self) -> dict[str, Any] | None:
-        """Of the first lane that has any."""
+        """Return the action values of the first lane that has any."""
         learners = ((n, lane.knowledge) for n, lane in enumerate(self.lanes) if lane.knowledge)
         lane, known = next(learners, (0, None))
         if known is None:
             return None
-        cast = self.cast
+        spec = self.spec
         return {
             "lane": lane,
-            "agent": cast.roles[lane].agent,
-            "pairs": [list(pair) for pair in cast.gait.pairs],
-            "cells_m": cast.grid.cells.round(5).tolist(),
-            "cell_names": [cast.grid.name(cell) for cell in range(len(cast.grid))],
+            "agent": spec.lane_specs[lane].agent,
+            "pairs": [list(pair) for pair in spec.gait.pairs],
+            "cells_m": spec.grid.cells.round(5).tolist(),
+            "cell_names": [spec.grid.name(cell) for cell in range(len(spec.grid))],
             "current": list(known.current),
             "values_m": _table(known.values_m),
             "visits": _table(known.visits),
@@ -165,32 +168,38 @@ class StageFrame:
 
 
 def _table(values: FloatArray) -> list[list[float | None]]:
-    """Rows of numbers; JSON has no NaN."""
+    """Return rows of rounded numbers, with None for NaN, which JSON lacks."""
     rows: list[list[float]] = values.tolist()
     return [[None if math.isnan(v) else round(v, 5) for v in row] for row in rows]
 
 
 def yaw_rad(wxyz: NDArray[np.floating[Any]]) -> float:
-    """How far an attitude is turned about the vertical, anticlockwise from above."""
+    """Return the yaw of a rotation, a quaternion (w, x, y, z): anticlockwise from above [rad]."""
     w, x, y, z = wxyz.tolist()
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
 
-def turned(pose: FloatArray, about: FloatArray, turn_rad: float) -> FloatArray:
-    """A pose, (7 + joints,), with `about` (x, y) put on the origin and the world turned about it.
+def rotated(pose: FloatArray, about: FloatArray, turn_rad: float) -> FloatArray:
+    """Return a pose translated in the plane and then rotated about the vertical.
 
-    Height, tilt and joints stay as they are.
+    Args:
+        pose: qpos, (7 + joints,): position [m], quaternion wxyz, joint angles [rad].
+        about: (x, y) of the point that becomes the origin [m].
+        turn_rad: angle of the rotation about the new origin, anticlockwise [rad].
+
+    Returns:
+        a new qpos, with height, tilt and joints unchanged.
     """
     cos, sin = math.cos(turn_rad), math.sin(turn_rad)
     half_cos, half_sin = math.cos(turn_rad / 2), math.sin(turn_rad / 2)
     x, y = pose[:2] - about
     w, i, j, k = pose[3:7]
-    seen = pose.copy()
-    seen[:2] = cos * x - sin * y, sin * x + cos * y
-    seen[3:7] = (
+    result = pose.copy()
+    result[:2] = cos * x - sin * y, sin * x + cos * y
+    result[3:7] = (
         half_cos * w - half_sin * k,
         half_cos * i - half_sin * j,
         half_cos * j + half_sin * i,
         half_cos * k + half_sin * w,
     )
-    return seen
+    return result

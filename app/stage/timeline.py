@@ -1,4 +1,4 @@
-"""A race over time under one clock: when each lane thinks and walks, and how far it is."""
+"""Timeline of a race under one clock: distance over time, and intervals of thinking, per lane."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -15,44 +15,48 @@ def timeline(
     steps: int,
     clock: Clock,
 ) -> dict[str, Any]:
-    """The race so far in plain types.
+    """Return the race so far in plain types; times in s, distances in m.
 
     Args:
         lanes: the recording.
-        training_ids: for each lane where its table is from.
-        steps: that each lane is to take.
-        clock: that the race is timed by.
+        training_ids: for each lane the training its table is from.
+        steps: number of steps of each lane.
+        clock: clock that times the race.
     """
-    # Others may add to the recording meanwhile.
-    taken = [LaneRecording(o.agent, o.rest_qpos, list(o.steps), o.failure) for o in lanes]
-    colors = lane_colors([lane.agent for lane in taken])
+    # A copy, since the race may append to the recording meanwhile.
+    snapshot = [
+        LaneRecording(lane.agent, lane.rest_qpos, list(lane.steps), lane.failure) for lane in lanes
+    ]
+    colors = lane_colors([lane.agent for lane in snapshot])
     return {
         "clock": clock,
         "steps": steps,
         "finish_line_m": FINISH_LINE_M,
-        "first_finish_s": finish_s(taken, steps, clock),
+        "first_finish_s": finish_s(snapshot, steps, clock),
         "lanes": [
             {"agent": lane.agent, "training_id": training, "color": color, **_lane(lane, clock)}
-            for lane, training, color in zip(taken, training_ids, colors, strict=True)
+            for lane, training, color in zip(snapshot, training_ids, colors, strict=True)
         ],
     }
 
 
 def _lane(lane: LaneRecording, clock: Clock) -> dict[str, Any]:
-    table = Timetable.of(lane.steps, clock)
+    timetable = Timetable.of(lane.steps, clock)
     points, thinking = [(0.0, 0.0)], []
-    began, distance = 0.0, 0.0
-    for step, thought, end in zip(lane.steps, table.thought, table.ends, strict=True):
-        if thought > began:
-            thinking.append((began, thought))
-            points.append((thought, distance))
-        began, distance = end, step.distance_m
-        points.append((end, distance))
+    step_start_s, distance = 0.0, 0.0
+    for step, decision_end_s, step_end_s in zip(
+        lane.steps, timetable.thought, timetable.ends, strict=True
+    ):
+        if decision_end_s > step_start_s:
+            thinking.append((step_start_s, decision_end_s))
+            points.append((decision_end_s, distance))
+        step_start_s, distance = step_end_s, step.distance_m
+        points.append((step_end_s, distance))
     return {
         "points": points,
         "thinking": thinking,
         "futures": [step.transitions for step in lane.steps],
-        "crossed_s": crossing_s(lane, table),
-        "total_s": table.total_s,
+        "crossed_s": crossing_s(lane, timetable),
+        "total_s": timetable.total_s,
         "failure": lane.failure,
     }

@@ -1,4 +1,4 @@
-"""Colours: agents', and the perceptual scale for values that 3D, table and legend share."""
+"""Colour conversion, and the perceptual colour map (viridis) that 3D, table and legend share."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,11 +20,11 @@ VIRIDIS = (
     "#bddf26",
     "#fde725",
 )
-"""From worth less to worth more, evenly spaced; between them colours are mixed linearly."""
+"""Evenly spaced stops from low to high values, interpolated linearly in sRGB."""
 
 
 def rgb(color: str) -> Rgb:
-    """(red, green, blue), 0–255, of `#RRGGBB`."""
+    """Parse `#RRGGBB` into (red, green, blue), 0–255."""
     return int(color[1:3], 16), int(color[3:5], 16), int(color[5:7], 16)
 
 
@@ -32,24 +32,33 @@ _STOPS = np.array([rgb(color) for color in VIRIDIS], float)
 
 
 def value_colors(values: FloatArray, low: float, high: float) -> NDArray[np.uint8]:
-    """The colour of each value on a scale from low to high, (..., 3); of NaN the lowest."""
-    share = (np.nan_to_num(values, nan=low) - low) / (high - low) if high > low else 0 * values
-    place = np.clip(np.nan_to_num(share), 0, 1) * (len(_STOPS) - 1)
-    channels = [np.interp(place, np.arange(len(_STOPS)), _STOPS[:, c]) for c in range(3)]
+    """Map values to colours by linear interpolation between the stops of viridis.
+
+    Args:
+        values: (...); NaN gets the lowest colour.
+        low: value of the first stop; lower values are clipped.
+        high: value of the last stop; higher values are clipped.
+
+    Returns:
+        (..., 3), 0–255.
+    """
+    fraction = (np.nan_to_num(values, nan=low) - low) / (high - low) if high > low else 0 * values
+    index = np.clip(np.nan_to_num(fraction), 0, 1) * (len(_STOPS) - 1)
+    channels = [np.interp(index, np.arange(len(_STOPS)), _STOPS[:, c]) for c in range(3)]
     return np.stack(channels, axis=-1).round().astype(np.uint8)
 
 
-def mixed(color: Rgb, other: Rgb, share: float) -> Rgb:
-    """A colour with a share of another in it."""
-    r, g, b = (round((1 - share) * a + share * c) for a, c in zip(color, other, strict=True))
+def mix(color: Rgb, other: Rgb, fraction: float) -> Rgb:
+    """Interpolate linearly between two colours; `fraction` 0 is the first, 1 the other."""
+    r, g, b = (round((1 - fraction) * a + fraction * c) for a, c in zip(color, other, strict=True))
     return r, g, b
 
 
-def batched(colors: NDArray[np.uint8], dimmed: float = 1.0) -> NDArray[np.uint8]:
-    """Colours as viser 1.1.1 wants them for batched meshes, which it reads as linear.
+def batch_colors(colors: NDArray[np.uint8], brightness: float = 1.0) -> NDArray[np.uint8]:
+    """Convert sRGB to the linear colours that viser 1.1.1 expects for batched meshes (gamma 2.2).
 
     Args:
         colors: (n, 3), 0–255.
-        dimmed: for what lies flat under the stage's light and should look no paler than it is.
+        brightness: factor below 1 for surfaces that face the lamp and would look too pale.
     """
-    return (255 * dimmed * (colors / 255.0) ** 2.2).round().astype(np.uint8)
+    return (255 * brightness * (colors / 255.0) ** 2.2).round().astype(np.uint8)

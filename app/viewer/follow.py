@@ -1,7 +1,7 @@
-"""Which robot a viewer's camera goes along with.
+"""Follow camera: which robot is centred in a browser, and the messages for it.
 
-Everything is drawn under one frame. Moving that frame, in one viewer's browser only, by minus the
-robot's position keeps the robot in the middle while the viewer goes on orbiting as they like.
+All is drawn under one scene node. Translating that node by minus the robot's position, in one
+browser only, keeps the robot centred while the user can still orbit the camera.
 """
 
 from collections.abc import Callable
@@ -14,31 +14,31 @@ from app.viewer import wire
 
 FREE = "free"
 VIEWS = frozenset({FREE, "leader", *(str(lane) for lane in range(1, 9))})
-"""The leader of the race, the robot on a lane, or none."""
+"""Valid views: the leader of the race, the robot on a lane from 1, or none."""
 
 Position = tuple[float, float, float]
 FollowPosition = Callable[[str], Position | None]
-"""From a view to where that robot is in the scene [m]; None where there is no such robot.
+"""Returns the position in the scene [m] of a view's robot, None if there is no such robot.
 Called for each view in use at each frame, on the event loop."""
 
-_CHOICE_LIMIT_BYTES = 64
-"""Much less than the camera poses that every viser client sends, which are not even decoded."""
+_MAX_MESSAGE_BYTES = 64
+"""Far smaller than the camera poses that every viser client sends, which need no decoding then."""
 
 
-class _Choice(msgspec.Struct, forbid_unknown_fields=True):
+class _FollowMessage(msgspec.Struct, forbid_unknown_fields=True):
     type: Literal["FollowMessage"]
     view: str
 
 
-_decoder = msgspec.msgpack.Decoder(_Choice)
+_decoder = msgspec.msgpack.Decoder(_FollowMessage)
 
 
-def chosen_view(data: bytes | None) -> str | None:
-    """What a browser asks to follow, by msgpack of `{"type": "FollowMessage", "view": …}`.
+def decode_view(data: bytes | None) -> str | None:
+    """Decode a `{"type": "FollowMessage", "view": …}` message (msgpack) of a browser.
 
-    It is the one thing that the hub listens to. None for whatever else a browser says.
+    The only message that the hub accepts: returns None for any other input.
     """
-    if data is None or len(data) > _CHOICE_LIMIT_BYTES:
+    if data is None or len(data) > _MAX_MESSAGE_BYTES:
         return None
     try:
         return valid_view(_decoder.decode(data).view)
@@ -47,14 +47,14 @@ def chosen_view(data: bytes | None) -> str | None:
 
 
 def valid_view(view: str | None) -> str | None:
-    """The view itself, or None if there is no such view."""
+    """Return the view if it is valid, else None."""
     return view if view in VIEWS else None
 
 
-def centring(frame: str, position: Position) -> wire.Message:
-    """The message that moves the frame so that a position [m] comes to its parent's origin.
+def centring_message(frame: str, position: Position) -> wire.Message:
+    """Return the message that translates a scene node by minus a position [m], but not in height.
 
-    The height stays: a robot that bounces would otherwise shake the ground.
+    A bouncing robot would otherwise shake the ground.
     """
     x, y, _ = position
     return _messages.SetPositionMessage(frame, (-float(x), -float(y), 0.0)).as_serializable_dict()

@@ -1,4 +1,4 @@
-"""The foot grid under a learner's feet (paper, Figure 1), as a map of what it expects."""
+"""Heat map of action values on the foot grid under a learner's feet (paper, Figure 1)."""
 
 import math
 
@@ -8,73 +8,91 @@ from numpy.typing import NDArray
 
 from app.domain.types import FloatArray, IntArray
 from app.stage.stage_frame import ActionValuesView, LaneView, SceneSpec, yaw_rad
-from app.viewer.colormap import Rgb, batched, rgb, value_colors
+from app.viewer.colormap import Rgb, batch_colors, rgb, value_colors
 from app.viewer.shapes import Shape
 
-_HOME: Rgb = rgb("#e5484d")
-_OTHER: Rgb = rgb("#4c8dff")
-_BLANK: Rgb = (38, 42, 50)
-_HERE: Rgb = (255, 255, 255)
+_HOME_RIM: Rgb = rgb("#e5484d")
+_OTHER_RIM: Rgb = rgb("#4c8dff")
+_CURRENT_FILL: Rgb = (38, 42, 50)
+_CURRENT_RIM: Rgb = (255, 255, 255)
 _ABOVE_GROUND_M = 0.003
-_LAYER = np.array([0.0, 0.0, 0.0006])
-"""What lies over something else, so that it is not hidden by it [m]."""
+_LAYER_OFFSET = np.array([0.0, 0.0, 0.0006])
+"""Offset of a layer over the one below, against z-fighting [m]."""
 
 
 class FootGridDrawing:
-    """The cells of one lane, centred on each foot's home in the body's frame.
+    """The grid cells of one lane, around each foot's home position in the body's frame.
 
-    A cell is drawn as the ground that is nearer to it than to the others: that is how a foot's
-    place is read. Rims are red at home and blue elsewhere, as in the paper; the fill is the value
-    of moving the pair there now. The cell where a pair is has a white rim and no value: it is no
-    choice.
+    A cell is drawn as its Voronoi region, as observations assign a foot to the nearest cell. Rims
+    are red at home and blue elsewhere, as in the paper; the fill is the value of moving the pair
+    there now. The cell where a pair is has a white rim and no value, since it is no legal action.
+
+    Args:
+        server: where to draw.
+        root: scene node of the grid.
+        spec: the scene.
+        x_m: centre of the lane [m].
     """
 
-    def __init__(self, server: viser.ViserServer, root: str, cast: SceneSpec, x_m: float) -> None:
+    def __init__(self, server: viser.ViserServer, root: str, spec: SceneSpec, x_m: float) -> None:
         self._x_m = x_m
-        self._forward_rad = math.radians(90 - cast.gait.forward_deg)
+        self._forward_rad = math.radians(90 - spec.gait.forward_deg)
         self._frame = server.scene.add_frame(root, show_axes=False)
-        pairs = cast.gait.pairs
-        legs = range(1, len(cast.robot.legs) + 1)
-        self._pair_of_leg = [next(p for p, both in enumerate(pairs) if leg in both) for leg in legs]
-        places, side = _places(cast), cast.grid.side_m / (cast.grid.divisions - 1)
-        home_is_between = cast.grid.divisions % 2 == 0
-        others = np.arange(1, len(cast.grid))
+        pairs = spec.gait.pairs
+        legs = range(1, len(spec.robot.legs) + 1)
+        self._pair_of_leg = [
+            next(p for p, legs_of_pair in enumerate(pairs) if leg in legs_of_pair) for leg in legs
+        ]
+        positions, side = _cell_positions(spec), spec.grid.side_m / (spec.grid.divisions - 1)
+        home_is_between = spec.grid.divisions % 2 == 0
+        others = np.arange(1, len(spec.grid))
         self._tiles = [
-            _Tiles(server, f"{root}/others", _square(side), others, places, rim=_OTHER),
+            _Tiles(server, f"{root}/others", _square(side), others, positions, rim=_OTHER_RIM),
             _Tiles(
                 server,
                 f"{root}/home",
                 _diamond(side / 2) if home_is_between else _square(side),
                 np.array([0]),
-                places + 3 * _LAYER,
-                rim=_HOME,
+                positions + 3 * _LAYER_OFFSET,
+                rim=_HOME_RIM,
             ),
         ]
-        self._known: ActionValuesView | None = None
+        self._drawn: ActionValuesView | None = None
         self._pose: tuple[float, float, float] | None = None
 
     def draw(self, lane: LaneView) -> None:
-        """Go along with the body, and take on the colours of what it knows now."""
+        """Move the grid with the body, and colour its cells if the action values changed."""
         x, y = float(lane.qpos[0]) + self._x_m, float(lane.qpos[1])
         pose = (x, y, yaw_rad(lane.qpos[3:7]) - self._forward_rad)
         if pose != self._pose:
             self._frame.position = (x, y, _ABOVE_GROUND_M)
             self._frame.wxyz = (math.cos(pose[2] / 2), 0.0, 0.0, math.sin(pose[2] / 2))
             self._pose = pose
-        known = lane.knowledge
-        if known is None or _same(known, self._known):
+        action_values = lane.knowledge
+        if action_values is None or _is_unchanged(action_values, self._drawn):
             return
-        self._known = known
-        values = known.values_m[self._pair_of_leg]  # (legs, cells)
-        fills = value_colors(values, known.low_m, known.high_m)
-        here = np.array(known.current)[self._pair_of_leg][:, None] == np.arange(values.shape[1])
-        fills[here] = _BLANK
+        self._drawn = action_values
+        values = action_values.values_m[self._pair_of_leg]  # (legs, cells)
+        fills = value_colors(values, action_values.low_m, action_values.high_m)
+        is_current = np.array(action_values.current)[self._pair_of_leg][:, None] == np.arange(
+            values.shape[1]
+        )
+        fills[is_current] = _CURRENT_FILL
         for tiles in self._tiles:
-            tiles.draw(fills, here)
+            tiles.draw(fills, is_current)
 
 
 class _Tiles:
-    """Cells of one shape, under all feet."""
+    """All cells of one shape, of all feet: one batch of rims and one of fills.
+
+    Args:
+        server: where to draw.
+        root: scene node of the batches.
+        outline: corners of a cell, (4, 2) [m].
+        cells: indices of the cells of this shape, (n,).
+        positions: of all cells, (legs, cells, 3) [m].
+        rim: colour of the rims.
+    """
 
     def __init__(
         self,
@@ -82,78 +100,86 @@ class _Tiles:
         root: str,
         outline: FloatArray,
         cells: IntArray,
-        places: FloatArray,
+        positions: FloatArray,
         *,
         rim: Rgb,
     ) -> None:
         self._cells, self._rim = cells, rim
-        at = places[:, cells].reshape(-1, 3)
-        colors = np.tile(np.array(rim, np.uint8), (len(at), 1))
-        self._rims = _add(server, f"{root}/rims", _tile(0.96 * outline), at, colors)
-        self._fills = _add(server, f"{root}/fills", _tile(0.84 * outline), at + _LAYER, colors)
+        positions = positions[:, cells].reshape(-1, 3)
+        colors = np.tile(np.array(rim, np.uint8), (len(positions), 1))
+        self._rims = _add(server, f"{root}/rims", _tile(0.96 * outline), positions, colors)
+        self._fills = _add(
+            server, f"{root}/fills", _tile(0.84 * outline), positions + _LAYER_OFFSET, colors
+        )
 
-    def draw(self, fills: NDArray[np.uint8], here: NDArray[np.bool_]) -> None:
+    def draw(self, fills: NDArray[np.uint8], is_current: NDArray[np.bool_]) -> None:
         """Colour the cells.
 
         Args:
-            fills: of every cell of every leg, (legs, cells, 3).
-            here: where each leg's pair is, (legs, cells).
+            fills: colours of every cell of every leg, (legs, cells, 3), 0–255.
+            is_current: whether a leg's pair is in the cell, (legs, cells).
         """
-        is_here = here[:, self._cells].reshape(-1, 1)
-        self._rims.batched_colors = _flat(np.where(is_here, _HERE, self._rim).astype(np.uint8))
-        self._fills.batched_colors = _flat(fills[:, self._cells].reshape(-1, 3))
+        tile_is_current = is_current[:, self._cells].reshape(-1, 1)
+        self._rims.batched_colors = _flat_colors(
+            np.where(tile_is_current, _CURRENT_RIM, self._rim).astype(np.uint8)
+        )
+        self._fills.batched_colors = _flat_colors(fills[:, self._cells].reshape(-1, 3))
 
 
 def _square(side: float) -> FloatArray:
-    """Corners of a square around the origin, anticlockwise."""
+    """Return the corners of a square around the origin, anticlockwise, (4, 2) [m]."""
     return side / 2 * np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])
 
 
 def _diamond(reach: float) -> FloatArray:
-    """Corners of a square that stands on one of them."""
+    """Return the corners of a square rotated by 45°, anticlockwise, (4, 2) [m]."""
     return reach * np.array([[0.0, -1], [1, 0], [0, 1], [-1, 0]])
 
 
 def _tile(outline: FloatArray) -> Shape:
-    """A flat quadrilateral, facing up."""
+    """Return a flat quadrilateral, facing up."""
     corners = np.column_stack([outline, np.zeros(4)]).astype(np.float32)
     return Shape(corners, np.array([[0, 1, 2], [0, 2, 3]], np.uint32))
 
 
-def _places(cast: SceneSpec) -> FloatArray:
-    """Every cell of every leg in the robot frame, x right and y forward, (legs, cells, 3)."""
-    azimuth = np.radians(cast.gait.azimuths_deg)
-    homes = cast.robot.home_radius_m * np.stack([-np.sin(azimuth), np.cos(azimuth)], axis=1)
-    cells = np.tile(cast.grid.cells, (len(homes), 1, 1))  # (legs, cells, 2)
-    partners = [partner - 1 for _, partner in cast.gait.pairs]
+def _cell_positions(spec: SceneSpec) -> FloatArray:
+    """Return all cells of all legs in the robot frame, x right, y forward, (legs, cells, 3) [m]."""
+    azimuth = np.radians(spec.gait.azimuths_deg)
+    homes = spec.robot.home_radius_m * np.stack([-np.sin(azimuth), np.cos(azimuth)], axis=1)
+    cells = np.tile(spec.grid.cells, (len(homes), 1, 1))  # (legs, cells, 2)
+    partners = [partner - 1 for _, partner in spec.gait.pairs]
     cells[partners, :, 0] *= -1
-    places = np.zeros((*cells.shape[:2], 3))
-    places[..., :2] = homes[:, None] + cells
-    return places
+    positions = np.zeros((*cells.shape[:2], 3))
+    positions[..., :2] = homes[:, None] + cells
+    return positions
 
 
-def _same(known: ActionValuesView, before: ActionValuesView | None) -> bool:
-    if before is None:
+def _is_unchanged(action_values: ActionValuesView, drawn: ActionValuesView | None) -> bool:
+    if drawn is None:
         return False
-    scale = (known.low_m, known.high_m) == (before.low_m, before.high_m)
-    return scale and known.values_m is before.values_m
+    scale = (action_values.low_m, action_values.high_m) == (drawn.low_m, drawn.high_m)
+    return scale and action_values.values_m is drawn.values_m
 
 
-def _flat(colors: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    return batched(colors, dimmed=0.75)
+def _flat_colors(colors: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    return batch_colors(colors, brightness=0.75)
 
 
 def _add(
-    server: viser.ViserServer, name: str, shape: Shape, at: FloatArray, colors: NDArray[np.uint8]
+    server: viser.ViserServer,
+    name: str,
+    shape: Shape,
+    positions: FloatArray,
+    colors: NDArray[np.uint8],
 ) -> viser.BatchedMeshHandle:
-    """The same flat shape at many places, (n, 3)."""
+    """Add a batch of the same flat shape at many positions, (n, 3) [m]."""
     return server.scene.add_batched_meshes_simple(
         name,
         shape.vertices,
         shape.faces,
-        batched_positions=at,
-        batched_wxyzs=np.tile((1.0, 0.0, 0.0, 0.0), (len(at), 1)),
-        batched_colors=_flat(colors),
+        batched_positions=positions,
+        batched_wxyzs=np.tile((1.0, 0.0, 0.0, 0.0), (len(positions), 1)),
+        batched_colors=_flat_colors(colors),
         lod="off",
         cast_shadow=False,
         receive_shadow=False,

@@ -1,4 +1,4 @@
-"""What is drawn now and then: the distances of a photo finish, the ghosts of evaluations."""
+"""Temporary parts of the scene: distances in a photo finish, and ghosts of evaluations."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,7 @@ import viser
 
 from app.stage.scene_spec import rest_pose
 from app.stage.stage_frame import Ghost, SceneSpec, StageFrame
-from app.viewer.colormap import batched, rgb
+from app.viewer.colormap import batch_colors, rgb
 from app.viewer.robot_mesh import RobotMesh
 from app.viewer.shapes import strip
 
@@ -16,43 +16,50 @@ _TEXT_SCALE = 1.7
 
 
 class PhotoFinish:
-    """A bar from the start line to each robot with its distance, while the picture is frozen."""
+    """A bar from the start line to each robot with its distance, shown during the photo finish.
+
+    Args:
+        server: where to draw.
+        root: scene node of the bars.
+        spec: the scene.
+        xs: centres of the lanes [m].
+    """
 
     def __init__(
-        self, server: viser.ViserServer, root: str, cast: SceneSpec, xs: Sequence[float]
+        self, server: viser.ViserServer, root: str, spec: SceneSpec, xs: Sequence[float]
     ) -> None:
-        self._server, self._root, self._cast, self._xs = server, root, cast, xs
+        self._server, self._root, self._spec, self._xs = server, root, spec, xs
         self._shown: tuple[tuple[int, float], ...] = ()
         self._frame: viser.FrameHandle | None = None
 
     def draw(self, frame: StageFrame) -> None:
-        """Show or hide it, as the frame says; another clock has another photo."""
+        """Show or hide the bars as the frame says; redraw them if ranks or distances changed."""
         frozen = frame.phase == "photo-finish"
-        wanted = tuple((lane.rank, lane.distance_m) for lane in frame.lanes) if frozen else ()
-        if wanted == self._shown:
+        ranking = tuple((lane.rank, lane.distance_m) for lane in frame.lanes) if frozen else ()
+        if ranking == self._shown:
             return
         if self._frame is not None:
             self._frame.remove()
             self._frame = None
-        self._shown = wanted
-        if not wanted:
+        self._shown = ranking
+        if not ranking:
             return
         self._frame = self._server.scene.add_frame(self._root, show_axes=False)
-        for number, ((rank, far), x) in enumerate(zip(wanted, self._xs, strict=True)):
-            bar = strip(_BAR_M, max(abs(far), 0.002))
-            color = rgb(self._cast.roles[number].color)
+        for number, ((rank, distance_m), x) in enumerate(zip(ranking, self._xs, strict=True)):
+            bar = strip(_BAR_M, max(abs(distance_m), 0.002))
+            color = rgb(self._spec.lane_specs[number].color)
             self._server.scene.add_mesh_simple(
                 f"{self._root}/bar{number}",
                 bar.vertices,
                 bar.faces,
                 color=color,
-                position=(x, far / 2, 0.004),
+                position=(x, distance_m / 2, 0.004),
                 cast_shadow=False,
                 receive_shadow=False,
             )
             self._server.scene.add_label(
                 f"{self._root}/far{number}",
-                f"{rank}.  {far:.2f} m",
+                f"{rank}.  {distance_m:.2f} m",
                 position=(x, -0.02, 0.0),
                 anchor="top-center",
                 font_screen_scale=_TEXT_SCALE,
@@ -60,19 +67,27 @@ class PhotoFinish:
 
 
 class Ghosts:
-    """Evaluations on a lane of their own: a line for each, a pale robot for the newest."""
+    """Evaluations on a lane of their own: a line for each, a translucent robot for the newest.
+
+    Args:
+        server: where to draw.
+        root: scene node of the ghosts.
+        spec: the scene.
+        mesh: the robot.
+        x_m: centre of the lane [m].
+    """
 
     def __init__(
-        self, server: viser.ViserServer, root: str, cast: SceneSpec, mesh: RobotMesh, x_m: float
+        self, server: viser.ViserServer, root: str, spec: SceneSpec, mesh: RobotMesh, x_m: float
     ) -> None:
         self._server, self._root, self._x_m, self._mesh = server, root, x_m, mesh
-        self._width = 2 * cast.robot.home_radius_m
-        self._color, self._rest = rgb(cast.roles[0].color), rest_pose(cast)
+        self._width = 2 * spec.robot.home_radius_m
+        self._color, self._rest = rgb(spec.lane_specs[0].color), rest_pose(spec)
         self._shown: tuple[Ghost, ...] = ()
         self._frame: viser.FrameHandle | None = None
 
     def draw(self, ghosts: tuple[Ghost, ...]) -> None:
-        """Show these, from the oldest to the newest."""
+        """Show these ghosts, ordered from the oldest to the newest."""
         if ghosts == self._shown:
             return
         if self._frame is not None:
@@ -102,15 +117,15 @@ class Ghosts:
         )
 
     def _draw_robot(self, ghost: Ghost) -> None:
-        placed = self._mesh.place(self._rest).moved(0.0, ghost.distance_m)
+        body_poses = self._mesh.body_poses(self._rest).moved(0.0, ghost.distance_m)
         for number, part in enumerate(self._mesh.parts):
             self._server.scene.add_batched_meshes_simple(
                 f"{self._root}/robot/{number}",
                 part.shape.vertices,
                 part.shape.faces,
-                batched_positions=placed.places[part.links],
-                batched_wxyzs=placed.attitudes[part.links],
-                batched_colors=batched(np.array([self._color] * len(part.links), np.uint8)),
+                batched_positions=body_poses.positions[part.links],
+                batched_wxyzs=body_poses.rotations[part.links],
+                batched_colors=batch_colors(np.array([self._color] * len(part.links), np.uint8)),
                 opacity=0.4,
                 lod="off",
                 cast_shadow=False,

@@ -1,11 +1,11 @@
-"""A viser server without a listener: its stream is read within the process, and nothing is heard.
+"""A viser server without a listener: its stream is read in-process, and it receives no messages.
 
-viser 1.1.1 listens on a TCP port that asks for no credentials, and one of the messages that it
-takes there (`ShareUrlRequest`) starts a process that opens a public tunnel. So this server binds no
-socket: it keeps viser's message buffer, its thread and its encoder, and hands the encoded windows
-to the one reader in this process, the hub. No message ever reaches viser from outside.
+viser 1.1.1 listens on a TCP port without authentication, and one of the messages that it accepts
+there (`ShareUrlRequest`) starts a process that opens a public tunnel. So this server binds no
+socket: it keeps viser's message buffer, thread and encoder, and passes the encoded windows to the
+one reader in this process, the hub. No message reaches viser from outside.
 
-What this module relies on inside viser, all of it checked by `tests/viewer/test_in_process.py`:
+Internals of viser that this module relies on, all checked by `tests/viewer/test_in_process.py`:
 
 - `viser.ViserServer.__init__` makes its server by `viser._viser.infra.WebsockServer(...)`, which
   starts a thread on `_background_worker(ready)`; that worker makes `_background_event_loop`,
@@ -31,11 +31,11 @@ from viser import infra
 from viser.infra import _infra
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
-_making = threading.Lock()
+_construction_lock = threading.Lock()
 
 
 class _Broadcaster(infra.WebsockServer):
-    """viser's message buffer on its own thread and loop, without a socket."""
+    """viser's message buffer on its own thread and event loop, without a socket."""
 
     def _background_worker(self, ready_sem: threading.Semaphore) -> None:
         loop = asyncio.new_event_loop()
@@ -50,62 +50,62 @@ class _Broadcaster(infra.WebsockServer):
 
     async def _serve_until_stopped(self, stop: asyncio.Event) -> None:
         await stop.wait()
-        streams = asyncio.all_tasks() - {asyncio.current_task()}
-        for stream in streams:
-            stream.cancel()
-        await asyncio.gather(*streams, return_exceptions=True)
+        tasks = asyncio.all_tasks() - {asyncio.current_task()}
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
 
 
 class InProcessViser(viser.ViserServer):
-    """viser's scene, read by `frames` alone: no port, no clients, no tunnel."""
+    """A viser server whose scene is read through `frames` only: no port, no clients, no tunnel."""
 
     def __init__(self) -> None:
-        """Start its thread.
+        """Start viser's thread.
 
         Raises:
-            RuntimeError: This version of viser makes its server in another way.
+            RuntimeError: This version of viser creates its server in another way.
         """
-        self._readers = itertools.count()
-        # viser's constructor takes no server; it is given one without a listener by its name.
-        with _making, _without_listener(), _quiet():
+        self._client_ids = itertools.count()
+        # viser's constructor accepts no server, so the class it instantiates is replaced meanwhile.
+        with _construction_lock, _without_listener(), _quiet():
             super().__init__(host="127.0.0.1", port=0, label=None, verbose=False)
         if not isinstance(self._websock_server, _Broadcaster):
             self.stop()
             raise RuntimeError(f"viser {viser.__version__} does not take a server without a port")
 
     async def frames(self) -> AsyncGenerator[bytes, None]:
-        """Encoded frames as a newcomer gets them: all that there is, then what changes.
+        """Yield encoded frames as a new client receives them: first the scene, then its changes.
 
-        Runs on the caller's loop; viser waits with a frame until the one before it was taken, and
-        meanwhile merges what is drawn.
+        Runs on the caller's event loop, with back-pressure: viser sends a frame only after the
+        last one was consumed, and merges changes meanwhile.
 
         Raises:
             ConnectionError: viser has stopped.
         """
-        server, taken = self._websock_server, _Stream()
+        server, queue = self._websock_server, _FrameQueue()
         self._run_garbage_collector()
-        producing = _infra._message_producer(
-            taken,  # type: ignore[arg-type]  # only send() of a connection is used
+        producer = _infra._message_producer(
+            queue,  # type: ignore[arg-type]  # only send() of a connection is used
             server.get_message_buffer(),
-            next(self._readers),
+            next(self._client_ids),
             backlog_done_message=server._backlog_done_message,
         )
-        until_end = taken.until_end(producing)
+        run_producer = queue.run_producer(producer)
         try:
-            production = asyncio.run_coroutine_threadsafe(until_end, self._event_loop)
+            future = asyncio.run_coroutine_threadsafe(run_producer, self._event_loop)
         except RuntimeError as error:
-            until_end.close()
-            producing.close()
+            run_producer.close()
+            producer.close()
             raise ConnectionError("viser has stopped") from error
         try:
-            while (frame := await taken.next()) is not None:
+            while (frame := await queue.next()) is not None:
                 yield frame
         finally:
-            production.cancel()
+            future.cancel()
         raise ConnectionError("viser has stopped")
 
     def request_share_url(self, verbose: bool = True) -> str | None:
-        """Open no tunnel: what is drawn here is read through the hub only."""
+        """Do nothing and return None: no tunnel, since the scene is read through the hub only."""
         del verbose
         return None
 
@@ -113,8 +113,8 @@ class InProcessViser(viser.ViserServer):
         """Do nothing: there is never a tunnel."""
 
 
-class _Stream:
-    """Hands frames from viser's loop to the reader's, one at a time."""
+class _FrameQueue:
+    """Passes frames from viser's event loop to the reader's, one at a time (rendezvous)."""
 
     def __init__(self) -> None:
         self._loop = asyncio.get_running_loop()
@@ -122,19 +122,19 @@ class _Stream:
         self._is_first = True
 
     async def send(self, frame: bytes) -> None:
-        """Called on viser's loop; returns when the reader has taken the frame."""
+        """Pass a frame on and wait until the reader has consumed it; runs on viser's loop."""
         await asyncio.wrap_future(asyncio.run_coroutine_threadsafe(self._put(frame), self._loop))
 
-    async def until_end(self, producing: Any) -> None:
-        """Run viser's producer on viser's loop, and tell the reader when it ends."""
+    async def run_producer(self, producer: Any) -> None:
+        """Run viser's producer on viser's loop, and signal its end to the reader."""
         try:
-            await producing
+            await producer
         finally:
             with contextlib.suppress(RuntimeError):  # the reader's loop is closed
                 self._loop.call_soon_threadsafe(self._frames.put_nowait, None)
 
     async def next(self) -> bytes | None:
-        """The next frame, once the one before it was dealt with; None at the end."""
+        """Mark the last frame as consumed and return the next one; None at the end."""
         if not self._is_first:
             self._frames.task_done()
         self._is_first = False
@@ -147,18 +147,18 @@ class _Stream:
 
 @contextlib.contextmanager
 def _without_listener() -> Iterator[None]:
-    """Let viser's constructor make a server that does not listen."""
-    listening = infra.WebsockServer
+    """Replace viser's server class meanwhile, so that its constructor opens no socket."""
+    original = infra.WebsockServer
     infra.WebsockServer = _Broadcaster  # type: ignore[misc]
     try:
         yield
     finally:
-        infra.WebsockServer = listening  # type: ignore[misc]
+        infra.WebsockServer = original  # type: ignore[misc]
 
 
 @contextlib.contextmanager
 def in_process_viser() -> Iterator[InProcessViser]:
-    """Run a viser server without a port for a while."""
+    """Run a viser server without a port within a `with` block."""
     server = InProcessViser()
     try:
         yield server
@@ -169,7 +169,7 @@ def in_process_viser() -> Iterator[InProcessViser]:
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep viser from printing the address that it does not have."""
+    """Silence viser's console, which would print an address that does not exist."""
     console = rich.get_console()
     before, console.quiet = console.quiet, True
     try:

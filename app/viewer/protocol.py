@@ -1,4 +1,4 @@
-"""How uvicorn speaks to viewers: slow ones wait in the hub, not in buffers on the way to them."""
+"""uvicorn's websocket protocol for viewers: small buffers, so that the hub sees back-pressure."""
 
 import socket
 from asyncio import BaseTransport
@@ -12,14 +12,14 @@ _MESSAGE_LIMIT_BYTES = 64 * 1024
 
 
 class ViewerProtocol(WebSocketsSansIOProtocol):
-    """Small buffers, so that a slow viewer sees what is, and stalled ones are let go.
+    """Websocket protocol with small send buffers that aborts connections of stalled peers.
 
-    With the system's buffers a viewer at 40 kB/s sees the race ten seconds late, and later each
-    second; with these it is a little over a second behind, because the hub merges what waits.
+    With the system's buffers a viewer at 40 kB/s sees the race ten seconds late, and the lag grows;
+    with these it is a little over a second late, because the hub coalesces waiting frames.
     """
 
     def connection_made(self, transport: BaseTransport) -> None:
-        """Make the buffers small."""
+        """Set the size of the send buffers."""
         super().connection_made(transport)
         self.transport.set_write_buffer_limits(high=_HIGH_WATER_BYTES)
         self.transport.get_extra_info("socket").setsockopt(
@@ -27,26 +27,26 @@ class ViewerProtocol(WebSocketsSansIOProtocol):
         )
 
     def shutdown(self) -> None:
-        """Close, without waiting for someone who does not read."""
+        """Close the connection without waiting for a peer that does not read."""
         super().shutdown()
-        self._let_go()
+        self._abort_if_blocked()
 
     def keepalive_timeout(self) -> None:
-        """Close a connection that answers no pings, without waiting for it to read."""
+        """Close a connection without pongs, and do not wait for the peer to read."""
         super().keepalive_timeout()
-        self._let_go()
+        self._abort_if_blocked()
 
-    def _let_go(self) -> None:
-        # close() waits until all is written, which never comes for a peer that does not read.
+    def _abort_if_blocked(self) -> None:
+        # close() waits until the buffer is flushed, which never happens if the peer does not read.
         if self.transport.get_write_buffer_size() > 0:
             self.transport.abort()
 
 
 def websocket_options() -> dict[str, Any]:
-    """What `uvicorn.Config` needs for viewers.
+    """Return the options of `uvicorn.Config` for viewers.
 
-    No compression: viser's frames are compressed already, and doing it again doubles the CPU.
-    Nothing large is accepted, because nothing large is listened to.
+    No compression: viser's frames are compressed already, and a second time doubles the CPU load.
+    Large messages are rejected, because browsers only send short ones.
     """
     return {
         "ws": ViewerProtocol,

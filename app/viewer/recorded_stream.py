@@ -1,4 +1,4 @@
-"""A race as a film: a `.viser` file that the viewer's page plays, with a bar to move in it."""
+"""Export of a race as a `.viser` file, which the viewer's page plays with a seek bar."""
 
 from collections.abc import Sequence
 
@@ -12,28 +12,29 @@ from app.viewer.in_process import in_process_viser
 from app.viewer.scene import StageScene
 
 FRAMES_PER_S = 30
-LONGEST_S = 90.0
-"""A longer film is shown faster throughout, so that a file stays a few MB."""
-_LAST_PICTURE_S = 2.0
+MAX_LENGTH_S = 90.0
+"""Longest duration at normal speed [s]; longer races are played faster, so files stay small."""
+_LAST_FRAME_S = 2.0
 
 
 def recorded_stream(
     config: RaceConfig, lanes: Sequence[LaneRecording], name: str = "Race", clock: Clock = "paper"
 ) -> bytes:
-    """The race as the stage shows it, photo finish and all, seen with the leader.
-
-    The format is that of the installed version of viser, which the file names.
+    """Render a race as the stage shows it, photo finish included, with the camera on the leader.
 
     Args:
         config: the race.
-        lanes: its whole recording.
-        name: of the race.
-        clock: which it is timed by.
+        lanes: its complete recording.
+        name: name of the race.
+        clock: clock that times it.
+
+    Returns:
+        the file in the format of the installed viser, whose version is part of the file.
     """
     show = RaceShow(race_scene(config), config.steps, clock, lambda: lanes)
-    show.advance(0.0, None, over=True)
-    length_s = show.duration_s or 0.0
-    speed = length_s / LONGEST_S if length_s > 2 * LONGEST_S else None
+    show.advance(0.0, None, run_ended=True)
+    duration_s = show.duration_s or 0.0
+    speed = duration_s / MAX_LENGTH_S if duration_s > 2 * MAX_LENGTH_S else None
     frame_s, run_label = 1 / FRAMES_PER_S, RunLabel(None, name)
     with in_process_viser() as server:
         scene = StageScene(server)
@@ -43,8 +44,8 @@ def recorded_stream(
         while not show.ended:
             serializer.insert_sleep(frame_s)
             now += frame_s
-            show.advance(frame_s, speed, over=True)
+            show.advance(frame_s, speed, run_ended=True)
             scene.draw(show.frame(run_label), now)
-            scene.centre("leader")
-        serializer.insert_sleep(_LAST_PICTURE_S)
+            scene.centre_world_on("leader")
+        serializer.insert_sleep(_LAST_FRAME_S)
         return serializer.serialize()

@@ -1,4 +1,4 @@
-"""What a robot looks like: the visible geoms of its MJCF, joined to one mesh for each link."""
+"""Meshes of a robot: the visible geoms of its MJCF, merged into one mesh per link."""
 
 from collections.abc import Iterable
 from functools import lru_cache
@@ -13,42 +13,42 @@ from app.domain.types import FloatArray, IntArray
 from app.physics.mjcf import VISIBLE_GROUP, compile_model
 from app.viewer.shapes import Shape, antenna, geom_shape, joined
 
-_DARK = ("servo", "hip", "knee", "belly", "deck", "foot", "bracket")
-"""Words in the names of geoms that are not painted in the agent's colour."""
+_UNPAINTED = ("servo", "hip", "knee", "belly", "deck", "foot", "bracket")
+"""Substrings of the names of geoms that are not painted in the agent's colour."""
 
 
 ANTENNA_M = 0.15
-"""Height of the top over the torso's centre."""
+"""Height of the antenna's top over the torso's centre [m]."""
 
 
 class Part(NamedTuple):
-    """One shape, and all the links of the robot that look so."""
+    """A mesh, and all links of the robot that have this shape (instances of one batch)."""
 
     shape: Shape
     """In the frame of the link."""
     painted: bool
     """Whether it has the agent's colour."""
     links: IntArray
-    """Bodies of the model."""
+    """Body ids in the MuJoCo model, (n,)."""
 
 
-class Placed(NamedTuple):
-    """A robot in one pose."""
+class BodyPoses(NamedTuple):
+    """World poses of all bodies of the model in one configuration."""
 
-    places: FloatArray
-    """Of all bodies of the model, (bodies, 3) [m]."""
-    attitudes: FloatArray
-    """Of all bodies, (bodies, 4) wxyz."""
+    positions: FloatArray
+    """(bodies, 3) [m]."""
+    rotations: FloatArray
+    """Unit quaternions wxyz, (bodies, 4)."""
 
-    def moved(self, x_m: float, y_m: float = 0.0) -> "Placed":
-        """The same, elsewhere on the track."""
-        return Placed(self.places + np.array([x_m, y_m, 0.0]), self.attitudes)
+    def moved(self, x_m: float, y_m: float = 0.0) -> "BodyPoses":
+        """Return the poses translated on the track [m]."""
+        return BodyPoses(self.positions + np.array([x_m, y_m, 0.0]), self.rotations)
 
 
 class RobotMesh:
-    """Draws robots of one kind: from joint positions to where each part is.
+    """Meshes and forward kinematics of one kind of robot.
 
-    Its scratch space is its own, so each thread has its own mesh.
+    Not thread-safe: `body_poses` uses one `MjData`, so each thread needs its own instance.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -57,46 +57,48 @@ class RobotMesh:
         self.parts = _parts(robot)
 
     @property
-    def standing(self) -> FloatArray:
-        """The pose in which the model is written down, (7 + joints,)."""
+    def default_qpos(self) -> FloatArray:
+        """The model's reference configuration `qpos0`, (7 + joints,)."""
         pose: FloatArray = self._model.qpos0
         return pose
 
-    def place(self, qpos: NDArray[np.floating[Any]]) -> Placed:
-        """Where everything is in this pose."""
+    def body_poses(self, qpos: NDArray[np.floating[Any]]) -> BodyPoses:
+        """Return the poses of all bodies by forward kinematics of qpos, (7 + joints,)."""
         data = self._data
         data.qpos[:] = qpos
         mujoco.mj_kinematics(self._model, data)
-        return Placed(data.xpos.copy(), data.xquat.copy())
+        return BodyPoses(data.xpos.copy(), data.xquat.copy())
 
 
 @lru_cache(maxsize=8)
 def _parts(robot: Robot) -> tuple[Part, ...]:
-    """Links that look alike become one part, however many legs there are."""
+    """Return the parts of a robot; links of equal shape share one, whatever the number of legs."""
     model = compile_model(robot)
     links: dict[tuple[int, bool], list[Shape]] = {}
     for geom in np.flatnonzero(model.geom_group == VISIBLE_GROUP):
         link, shape = _on_link(model, int(geom))
         name = model.geom(geom).name
-        painted = not any(word in name for word in _DARK)
+        painted = not any(word in name for word in _UNPAINTED)
         links.setdefault((link, painted), []).append(shape)
-    alike: dict[tuple[bytes, bool], tuple[Shape, list[int]]] = {}
+    by_shape: dict[tuple[bytes, bool], tuple[Shape, list[int]]] = {}
     for (link, painted), shapes in links.items():
         shape = joined(shapes)
         key = ((shape.vertices.round(5) + 0.0).tobytes(), painted)  # + 0.0, since −0 is not 0 here
-        alike.setdefault(key, (shape, []))[1].append(link)
-    parts = [Part(shape, painted, np.array(on)) for (_, painted), (shape, on) in alike.items()]
+        by_shape.setdefault(key, (shape, []))[1].append(link)
+    parts = [
+        Part(shape, painted, np.array(bodies)) for (_, painted), (shape, bodies) in by_shape.items()
+    ]
     return (*parts, _antenna(model))
 
 
 def _antenna(model: mujoco.MjModel) -> Part:
-    """What carries the name plate, in the agent's colour; it is drawn only."""
+    """Return the antenna under the name label, in the agent's colour; not part of the physics."""
     torso = model.body("torso").id
     return Part(antenna(ANTENNA_M), True, np.array([torso]))
 
 
 def _on_link(model: mujoco.MjModel, geom: int) -> tuple[int, Shape]:
-    """The body that moves a geom, and the geom's shape in that body's frame."""
+    """Return the moving body that a geom is welded to, and the geom's shape in its frame."""
     body, shape = int(model.geom_bodyid[geom]), geom_shape(model, geom)
     shape = shape.moved(_matrix(model.geom_quat[geom]), model.geom_pos[geom])
     while body != model.body_weldid[body]:

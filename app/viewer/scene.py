@@ -1,4 +1,4 @@
-"""The stage in viser: one immutable frame in, messages out, all of them in one window."""
+"""Draw the stage in viser: each immutable frame becomes one atomic window of messages."""
 
 import math
 
@@ -7,125 +7,143 @@ import viser
 from app.stage.stage_frame import SceneSpec, StageFrame
 from app.viewer.footgrid import FootGridDrawing
 from app.viewer.ghosts import Ghosts, PhotoFinish
-from app.viewer.name_labels import Plate
+from app.viewer.name_labels import NameLabel
 from app.viewer.robot_mesh import RobotMesh
 from app.viewer.robots import Robots
 from app.viewer.track import LAMP, SQUARE_M, WORLD, draw_ground, draw_lanes
 
-CAST = f"{WORLD}/cast"
-_EASE_S = 0.25
-_NEARER_M = 0.45
-"""One robot leaves room to come closer to it."""
-_WIDE, _FARTHER_M = 3, 0.5
-"""More lanes than these do not fit side by side, but for each a step back."""
+SCENE_ROOT = f"{WORLD}/cast"
+_SMOOTHING_S = 0.25
+_STEP_FORWARD_M = 0.45
+"""Shift of the follow point that brings the camera nearer to a single robot [m]."""
+_LANES_IN_VIEW, _STEP_BACK_M = 3, 0.5
+"""Lanes that fit into view, and the shift that moves the camera back for each further one [m]."""
 
 Position = tuple[float, float, float]
 
 
 class StageScene:
-    """Draws on one viser server. Used by one thread; `follow_position` by any."""
+    """The stage's scene graph on one viser server.
+
+    Used by one thread; `follow_position` may be called from any.
+    """
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = server
-        self._drawn: _Drawing | None = None
-        self._followed: dict[str, Position] = {}
-        self._eased: tuple[float, float] | None = None
-        self._lit_y_m = 0.0
+        self._run_scene: _RunScene | None = None
+        self._follow_positions: dict[str, Position] = {}
+        self._smoothed: tuple[float, float] | None = None
+        self._lamp_y_m = 0.0
         with server.atomic():
             self._ground = draw_ground(server)
 
     def draw(self, frame: StageFrame, now: float = math.inf) -> bool:
-        """Show this frame.
+        """Draw a frame.
 
         Args:
-            frame: what is on stage.
-            now: time of the drawing [s], by which the camera's way is eased.
+            frame: the stage.
+            now: time of the drawing [s], for the exponential smoothing of the follow point.
 
         Returns:
             Whether anything moved.
         """
         with self._server.atomic():
-            if self._drawn is None or self._drawn.cast != frame.cast:
-                if self._drawn is not None:
-                    self._drawn.remove()
-                self._drawn, self._eased = _Drawing(self._server, frame.cast), None
-            moved = self._drawn.draw(frame)
-            moved |= self._follow(frame, self._drawn.xs, now)
+            if self._run_scene is None or self._run_scene.spec != frame.spec:
+                if self._run_scene is not None:
+                    self._run_scene.remove()
+                self._run_scene, self._smoothed = _RunScene(self._server, frame.spec), None
+            moved = self._run_scene.draw(frame)
+            moved |= self._update_follow_positions(frame, self._run_scene.xs, now)
         self._server.flush()
         return moved
 
     def follow_position(self, view: str) -> Position | None:
-        """Where what a view follows is on the track [m]: `leader`, or a lane from `1`."""
-        return self._followed.get(view)
+        """Return the follow point of a view on the track [m]: `leader`, or a lane from `1`."""
+        return self._follow_positions.get(view)
 
-    def centre(self, view: str) -> None:
-        """Move the whole world so that what a view follows comes to the middle, for everyone.
+    def centre_world_on(self, view: str) -> None:
+        """Translate the world so that a view's follow point is centred, for all clients.
 
-        On stage the hub does this for each viewer; a film has but one.
+        On the live stage the hub does this per viewer; a recorded stream has only one view.
         """
-        x, y, _ = self._followed[view]
+        x, y, _ = self._follow_positions[view]
         self._ground.world.position = (-x, -y, 0.0)
 
-    def _light(self, y_m: float) -> None:
-        """Hang the lamp over robots that are about so far along the track."""
-        if y_m != self._lit_y_m:
-            self._lit_y_m = y_m
+    def _move_lamp(self, y_m: float) -> None:
+        """Move the lamp along the track to y [m]."""
+        if y_m != self._lamp_y_m:
+            self._lamp_y_m = y_m
             x, y, z = LAMP
             self._ground.lamp.position = (x, y + y_m, z)
 
-    def _follow(self, frame: StageFrame, xs: list[float], now: float) -> bool:
-        """The leader's view goes along in the middle of the track, so that all stay in sight."""
+    def _update_follow_positions(self, frame: StageFrame, xs: list[float], now: float) -> bool:
+        """Update the follow points; True while the leader's is still moving.
+
+        The leader's is on the centre line of the track, so that all lanes stay in view, and is
+        smoothed exponentially, since the lead may change abruptly.
+        """
         leader = max(lane.distance_m for lane in frame.lanes)
         lead = next(lane for lane in frame.lanes if lane.distance_m == leader)
-        aim = float(lead.qpos[1])
-        before = self._eased
-        y = aim
-        if before is not None and now > before[0]:
-            y = aim + (before[1] - aim) * math.exp((before[0] - now) / _EASE_S)
-        self._eased = (now, y)
-        self._light(round(aim / SQUARE_M) * SQUARE_M)
-        nearer = _NEARER_M if len(frame.lanes) == 1 else -_FARTHER_M * max(0, len(xs) - _WIDE)
-        followed = {"leader": (0.0, y + nearer, 0.0)}
+        target_y = float(lead.qpos[1])
+        previous = self._smoothed
+        y_m = target_y
+        if previous is not None and now > previous[0]:
+            y_m = target_y + (previous[1] - target_y) * math.exp((previous[0] - now) / _SMOOTHING_S)
+        self._smoothed = (now, y_m)
+        self._move_lamp(round(target_y / SQUARE_M) * SQUARE_M)
+        offset_m = (
+            _STEP_FORWARD_M
+            if len(frame.lanes) == 1
+            else -_STEP_BACK_M * max(0, len(xs) - _LANES_IN_VIEW)
+        )
+        follow_positions = {"leader": (0.0, y_m + offset_m, 0.0)}
         for number, (lane, x) in enumerate(zip(frame.lanes, xs, strict=True), start=1):
-            followed[str(number)] = (x + float(lane.qpos[0]), float(lane.qpos[1]) + _NEARER_M, 0.0)
-        self._followed = followed
-        return abs(y - aim) > 1e-4
+            follow_positions[str(number)] = (
+                x + float(lane.qpos[0]),
+                float(lane.qpos[1]) + _STEP_FORWARD_M,
+                0.0,
+            )
+        self._follow_positions = follow_positions
+        return abs(y_m - target_y) > 1e-4
 
 
-class _Drawing:
-    """Everything that belongs to one cast."""
+class _RunScene:
+    """The part of the scene graph that depends on the run: lanes, robots, labels and grids."""
 
-    def __init__(self, server: viser.ViserServer, cast: SceneSpec) -> None:
-        self.cast = cast
-        self._root = server.scene.add_frame(CAST, show_axes=False)
-        width = 2 * cast.robot.home_radius_m + cast.grid.side_m + 0.08
-        # Beside who practises there is a lane for the ghosts of its evaluations.
-        lanes = len(cast.roles) + (cast.kind == "training")
+    def __init__(self, server: viser.ViserServer, spec: SceneSpec) -> None:
+        self.spec = spec
+        self._root = server.scene.add_frame(SCENE_ROOT, show_axes=False)
+        width = 2 * spec.robot.home_radius_m + spec.grid.side_m + 0.08
+        # A training has a second lane for the ghosts of its evaluations.
+        lanes = len(spec.lane_specs) + (spec.kind == "training")
         xs = [width * (lane - (lanes - 1) / 2) for lane in range(lanes)]
-        draw_lanes(server, f"{CAST}/track", xs, width)
-        self.xs = xs[: len(cast.roles)]
-        mesh = RobotMesh(cast.robot)
-        self._robots = Robots(server, f"{CAST}/robots", cast, mesh, self.xs)
-        pairs = list(zip(cast.roles, self.xs, strict=True))
-        self._plates = [
-            Plate(server, f"{CAST}/lane{n}", role, x) for n, (role, x) in enumerate(pairs)
+        draw_lanes(server, f"{SCENE_ROOT}/track", xs, width)
+        self.xs = xs[: len(spec.lane_specs)]
+        mesh = RobotMesh(spec.robot)
+        self._robots = Robots(server, f"{SCENE_ROOT}/robots", spec, mesh, self.xs)
+        pairs = list(zip(spec.lane_specs, self.xs, strict=True))
+        self._labels = [
+            NameLabel(server, f"{SCENE_ROOT}/lane{n}", lane_spec, x)
+            for n, (lane_spec, x) in enumerate(pairs)
         ]
         self._grids: dict[int, FootGridDrawing] = {}
-        self._photo = PhotoFinish(server, f"{CAST}/photo", cast, self.xs)
-        ghosts = cast.kind == "training"
-        self._ghosts = Ghosts(server, f"{CAST}/ghosts", cast, mesh, xs[-1]) if ghosts else None
+        self._photo = PhotoFinish(server, f"{SCENE_ROOT}/photo", spec, self.xs)
+        ghosts = spec.kind == "training"
+        self._ghosts = (
+            Ghosts(server, f"{SCENE_ROOT}/ghosts", spec, mesh, xs[-1]) if ghosts else None
+        )
         self._server = server
 
     def draw(self, frame: StageFrame) -> bool:
-        """Show the frame; whether a robot moved."""
+        """Draw a frame; True if a robot moved."""
         moved = self._robots.draw(frame)
-        for plate, lane in zip(self._plates, frame.lanes, strict=True):
-            plate.draw(lane)
+        for label, lane in zip(self._labels, frame.lanes, strict=True):
+            label.draw(lane)
         for number, lane in enumerate(frame.lanes):
             if lane.knowledge is not None and number not in self._grids:
-                root = f"{CAST}/lane{number}/grid"
+                root = f"{SCENE_ROOT}/lane{number}/grid"
                 x = self.xs[number]
-                self._grids[number] = FootGridDrawing(self._server, root, self.cast, x)
+                self._grids[number] = FootGridDrawing(self._server, root, self.spec, x)
             if number in self._grids:
                 self._grids[number].draw(lane)
         self._photo.draw(frame)
@@ -134,5 +152,5 @@ class _Drawing:
         return moved
 
     def remove(self) -> None:
-        """Take it all off the stage."""
+        """Remove it from viser's scene."""
         self._root.remove()

@@ -1,4 +1,4 @@
-"""The stage, viser and the hub, put together: built with the app, running with its lifespan."""
+"""Assembly of the viewer: viser, the drawing thread, the hub, and the routes of `/viewer/`."""
 
 import asyncio
 import threading
@@ -17,7 +17,7 @@ from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage.stage import Stage
-from app.viewer.client_page import ViewerPage, clean_query
+from app.viewer.client_page import ViewerPage, sanitized_query
 from app.viewer.follow import Position
 from app.viewer.hub import Hub
 from app.viewer.in_process import in_process_viser
@@ -27,7 +27,7 @@ from app.viewer.stage_loop import StageLoop
 
 
 class ViewerService:
-    """`async with theatre:` lets the show go on; viser listens nowhere."""
+    """Runs viser, the drawing thread and the hub within `async with`, for the app's lifespan."""
 
     def __init__(
         self,
@@ -39,20 +39,20 @@ class ViewerService:
         max_per_address: int | None = None,
         address_of: Callable[[Scope], str] | None = None,
     ) -> None:
-        """Start nothing yet.
+        """Create the hub; entering the context starts the rest.
 
         Args:
-            stage: says what is shown.
-            bus: is told what is shown, and how many watch.
+            stage: the stage to draw.
+            bus: receives events with the scene and with the number of viewers.
             allowed_origins: see `Hub`, as for all below.
-            max_viewers: at once.
-            max_per_address: of them, of one address.
-            address_of: a connection.
+            max_viewers: maximum number of viewers.
+            max_per_address: maximum number of viewers per address.
+            address_of: returns the address of a connection.
         """
         self._stage, self._bus = stage, bus
         self._scene: StageScene | None = None
-        self._running = ExitStack()
-        self._filming = threading.Lock()
+        self._resources = ExitStack()
+        self._recording_lock = threading.Lock()
         self.hub = Hub(
             follow_position=self._follow_position,
             allowed_origins=allowed_origins,
@@ -74,47 +74,47 @@ class ViewerService:
         traceback: TracebackType | None,
     ) -> None:
         await self.hub.stop()
-        await asyncio.to_thread(self._running.close)
+        await asyncio.to_thread(self._resources.close)
 
     def recorded_stream(
         self, config: RaceConfig, lanes: Sequence[LaneRecording], name: str, clock: Clock
     ) -> bytes:
-        """A race as a file that viser's client plays; one is made at a time."""
-        with self._filming:
+        """Return a race as a `.viser` file; only one is rendered at a time."""
+        with self._recording_lock:
             return recorded_stream(config, lanes, name, clock)
 
     def _open(self) -> None:
-        server = self._running.enter_context(in_process_viser())
+        server = self._resources.enter_context(in_process_viser())
         self.hub.upstream = server.frames
         self._scene = StageScene(server)
-        self._running.enter_context(StageLoop(self._stage, self._scene, self._bus))
+        self._resources.enter_context(StageLoop(self._stage, self._scene, self._bus))
 
     def _follow_position(self, view: str) -> Position | None:
         return None if self._scene is None else self._scene.follow_position(view)
 
 
 def viewer_routes(hub: Hub) -> list[BaseRoute]:
-    """Routes for `/viewer/`, all of them for whoever may watch. Reads viser's client once.
+    """Return the routes of `/viewer/`, which spectators may use. Reads viser's client once.
 
     Raises:
-        RuntimeError: This version of viser has a client that the skin does not fit.
+        RuntimeError: The patch does not fit the client of the installed viser.
     """
     page = ViewerPage()
 
     async def show(request: Request) -> Response:
-        cleaned = clean_query(request.query_params)
+        cleaned = sanitized_query(request.query_params)
         if cleaned is not None:
             return RedirectResponse(f"?{cleaned}")
         return page.response(request.headers)
 
     async def add_slash(request: Request) -> Response:
-        # Relative, so that it holds behind a proxy that serves the app under a prefix.
+        # Relative, so that it also works behind a proxy that serves the app under a prefix.
         return RedirectResponse(f"viewer/?{request.url.query}".removesuffix("?"))
 
     return [
         Route("/viewer", add_slash, name="viewer-slash"),
         Route("/viewer/", show, name="viewer"),
-        # viser's client leaves the slash out where the skin does not tell it better.
+        # viser's unpatched client connects to the path without the slash.
         WebSocketRoute("/viewer", hub.serve, name="viewer-socket-slash"),
         WebSocketRoute("/viewer/", hub.serve, name="viewer-socket"),
     ]

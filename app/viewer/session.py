@@ -1,4 +1,4 @@
-"""One browser that watches: what waits for it, and what it follows."""
+"""Session of one browser: its bounded queue of frames, and the view it follows."""
 
 import asyncio
 from collections import deque
@@ -12,69 +12,81 @@ from app.viewer import follow, wire
 
 @dataclass(slots=True)
 class Counters:
-    """What the hub has done since it was made."""
+    """Counters of the hub since its creation."""
 
     viewers: int = 0
-    """How many watch now."""
+    """Number of viewers connected now."""
     frames_sent: int = 0
     frames_merged: int = 0
-    """Frames whose news a viewer got as a part of a later one, or will, because it was behind."""
+    """Frames coalesced into a later one because a viewer was too slow, summed over viewers."""
     resyncs: int = 0
-    """Viewers that were told to begin anew, because viser itself did."""
+    """Viewers that were made to reconnect because viser was restarted."""
 
 
 CatchUp = Callable[["Session"], tuple[wire.Frame, int] | None]
-"""One frame with all that a session has missed, and the version it brings it to; None while there
-is nothing to show."""
+"""Returns one frame with all changes since a session's version, and the new version; None while
+there is nothing to show."""
 
 
 class Session:
-    """Sends to one accepted websocket at the speed it reads, and hears what it wants to follow.
+    """Sends frames to one accepted websocket as fast as it reads, and receives the view it chooses.
 
-    A few frames wait in order. When more would, all of them are dropped, and what they said comes
-    in one frame when the browser is ready for it; however long that takes, nothing grows here.
+    At most `MAX_QUEUED_FRAMES` are queued in order. If more arrive, the queue is dropped, and the
+    browser gets their changes coalesced into one catch-up frame when it is ready, so that memory is
+    bounded however slow it is.
+
+    Args:
+        websocket: accepted websocket.
+        view: what the browser follows at first.
+        counters: counters of the hub, updated here.
+        catch_up: makes a catch-up frame.
     """
 
-    WAITING_FRAMES = 4
+    MAX_QUEUED_FRAMES = 4
 
     def __init__(
         self, websocket: WebSocket, view: str, counters: Counters, catch_up: CatchUp
     ) -> None:
         self.view = view
         self.version: int | None = None
-        """Which one the browser has or is being sent; None before the first, the whole scene."""
+        """Version of the scene that the browser has or is being sent; None before the first."""
         self._websocket = websocket
         self._counters = counters
         self._catch_up = catch_up
-        self._waiting: deque[tuple[wire.Frame, int]] = deque()
-        self._behind = True
+        self._queue: deque[tuple[wire.Frame, int]] = deque()
+        self._is_lagging = True
         self._wake = asyncio.Event()
         self._wake.set()
-        self._closing: tuple[int, str] | None = None
+        self._close_args: tuple[int, str] | None = None
         self._sender: asyncio.Task[None] | None = None
 
     def push(self, frame: wire.Frame, version: int) -> None:
-        """Send a frame as soon as the browser is ready, by itself or in what it has missed."""
-        if not self._behind and len(self._waiting) < self.WAITING_FRAMES:
-            self._waiting.append((frame, version))
+        """Queue a frame; if the queue is full, replace all of it by a later catch-up frame.
+
+        Args:
+            frame: the frame.
+            version: version of the scene after it.
+        """
+        if not self._is_lagging and len(self._queue) < self.MAX_QUEUED_FRAMES:
+            self._queue.append((frame, version))
         else:
             if self.version is not None:
-                self._counters.frames_merged += len(self._waiting) + 1
-            self._waiting.clear()
-            self._behind = True
+                self._counters.frames_merged += len(self._queue) + 1
+            self._queue.clear()
+            self._is_lagging = True
         self._wake.set()
 
     def wake(self) -> None:
-        """Look again whether there is anything to show."""
+        """Make the sender check again whether there is anything to send."""
         self._wake.set()
 
     def close(self, code: int, reason: str) -> None:
-        """Close instead of sending what waits. Browsers reconnect by themselves."""
-        self._closing = (code, reason)
+        """Close the websocket and drop queued frames. Browsers reconnect by themselves."""
+        self._close_args = (code, reason)
         self._wake.set()
 
     async def closed(self, timeout_s: float) -> None:
-        """Wait until nothing is sent any more; past the time, stop a send that does not end."""
+        """Wait until the sender has ended; cancel it after the timeout [s]."""
         if self._sender is not None:
             await asyncio.wait([self._sender], timeout=timeout_s)
             self._sender.cancel()
@@ -86,49 +98,49 @@ class Session:
             on_view: Called after the browser has chosen another view.
         """
         self._sender = asyncio.create_task(self._send())
-        listener = asyncio.create_task(self._listen(on_view))
-        both = (self._sender, listener)
+        receiver = asyncio.create_task(self._receive(on_view))
+        tasks = (self._sender, receiver)
         try:
-            await asyncio.wait(both, return_when=asyncio.FIRST_COMPLETED)
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:
-            for task in both:
+            for task in tasks:
                 task.cancel()
-            outcomes = await asyncio.gather(*both, return_exceptions=True)
+            outcomes = await asyncio.gather(*tasks, return_exceptions=True)
         for outcome in outcomes:
             if isinstance(outcome, Exception):
                 raise outcome
 
     async def _send(self) -> None:
         try:
-            while self._closing is None:
-                following = self._next()
-                if following is None:
+            while self._close_args is None:
+                queued = self._next()
+                if queued is None:
                     self._wake.clear()
                     await self._wake.wait()
                     continue
-                frame, self.version = following
+                frame, self.version = queued
                 await self._websocket.send_bytes(frame.raw)
                 self._counters.frames_sent += 1
-            await self._websocket.close(*self._closing)
+            await self._websocket.close(*self._close_args)
         except (WebSocketDisconnect, RuntimeError):
-            # Gone; a RuntimeError is how uvicorn refuses to send when it closed by itself.
+            # Disconnected; uvicorn raises RuntimeError for a send after it closed by itself.
             return
 
     def _next(self) -> tuple[wire.Frame, int] | None:
-        if self._waiting:
-            return self._waiting.popleft()
-        if not self._behind:
+        if self._queue:
+            return self._queue.popleft()
+        if not self._is_lagging:
             return None
-        missed = self._catch_up(self)
-        self._behind = missed is None
-        return missed
+        catch_up = self._catch_up(self)
+        self._is_lagging = catch_up is None
+        return catch_up
 
-    async def _listen(self, on_view: Callable[["Session"], None]) -> None:
+    async def _receive(self, on_view: Callable[["Session"], None]) -> None:
         while True:
             message = await self._websocket.receive()
             if message["type"] == "websocket.disconnect":
                 return
-            view = follow.chosen_view(message.get("bytes"))
+            view = follow.decode_view(message.get("bytes"))
             if view is not None and view != self.view:
                 self.view = view
                 on_view(self)

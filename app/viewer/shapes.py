@@ -1,6 +1,6 @@
-"""Triangle meshes of the few shapes that the stage is made of.
+"""Triangle meshes of primitive shapes.
 
-Sharp edges share no vertices, since viser's client smooths over those that do.
+Faces at sharp edges share no vertices, since viser's client smooths normals over shared ones.
 """
 
 from typing import Any, NamedTuple
@@ -13,35 +13,35 @@ from numpy.typing import NDArray
 from app.domain.types import FloatArray
 
 _ROUND = 20
-"""Corners of what should look round."""
+"""Number of corners of a polygon that approximates a circle."""
 
 
 class Shape(NamedTuple):
-    """Triangles."""
+    """Triangle mesh."""
 
     vertices: NDArray[np.float32]
     """(v, 3) [m]"""
     faces: NDArray[np.uint32]
     """(f, 3) rows of `vertices`."""
 
-    def moved(self, rotation: FloatArray, place: FloatArray) -> "Shape":
-        """Turned by a matrix (3, 3), then put elsewhere, (3,) [m]."""
-        vertices = self.vertices @ rotation.T + place
+    def moved(self, rotation: FloatArray, translation: FloatArray) -> "Shape":
+        """Return the mesh rotated by a matrix (3, 3), then translated by a vector (3,) [m]."""
+        vertices = self.vertices @ rotation.T + translation
         return Shape(vertices.astype(np.float32), self.faces)
 
 
 def joined(shapes: list[Shape]) -> Shape:
-    """Several shapes as one."""
+    """Concatenate several meshes into one."""
     sizes = np.cumsum([0, *(len(shape.vertices) for shape in shapes)])[:-1]
     faces = [shape.faces + np.uint32(start) for shape, start in zip(shapes, sizes, strict=True)]
     return Shape(np.concatenate([s.vertices for s in shapes]), np.concatenate(faces))
 
 
 def geom_shape(model: mujoco.MjModel, geom: int) -> Shape:
-    """What a geom looks like, in its own frame.
+    """Return the mesh of a MuJoCo geom in its own frame.
 
     Raises:
-        ValueError: if it is of a type that no robot of ours is made of.
+        ValueError: if the geom's type is not supported.
     """
     kind, size = mujoco.mjtGeom(int(model.geom_type[geom])), model.geom_size[geom]
     types = mujoco.mjtGeom
@@ -59,7 +59,7 @@ def geom_shape(model: mujoco.MjModel, geom: int) -> Shape:
 
 
 def box(half: FloatArray) -> Shape:
-    """Centred on the origin; half its edges, (3,) [m]."""
+    """Return a box centred on the origin, from the halves of its edges, (3,) [m]."""
     sides = []
     for axis in range(3):
         across, up = (axis + 1) % 3, (axis + 2) % 3
@@ -73,12 +73,12 @@ def box(half: FloatArray) -> Shape:
 
 
 def cylinder(radius: float, half_height: float) -> Shape:
-    """Around z, centred on the origin."""
-    around = 2 * np.pi * np.arange(_ROUND) / _ROUND
-    rim = radius * np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)
+    """Return a cylinder around z, centred on the origin [m]."""
+    angles = 2 * np.pi * np.arange(_ROUND) / _ROUND
+    rim = radius * np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
     up = np.array([0.0, 0.0, half_height])
-    here, there = np.arange(_ROUND), (np.arange(_ROUND) + 1) % _ROUND
-    quads = [[here, there, _ROUND + there], [here, _ROUND + there, _ROUND + here]]
+    index, next_index = np.arange(_ROUND), (np.arange(_ROUND) + 1) % _ROUND
+    quads = [[index, next_index, _ROUND + next_index], [index, _ROUND + next_index, _ROUND + index]]
     side = np.concatenate([np.stack(quad, axis=1) for quad in quads])
     top, flipped = disc(radius), np.diag([1.0, -1.0, -1.0])
     wall = _smooth(np.concatenate([rim - up, rim + up]), side)
@@ -86,31 +86,31 @@ def cylinder(radius: float, half_height: float) -> Shape:
 
 
 def disc(radius: float, corners: int = _ROUND) -> Shape:
-    """Flat on the ground, facing up."""
-    around = 2 * np.pi * np.arange(corners) / corners
-    rim = radius * np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)
+    """Return a disc in the plane z = 0, facing up; radius in m."""
+    angles = 2 * np.pi * np.arange(corners) / corners
+    rim = radius * np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
     vertices = np.concatenate([[[0.0, 0.0, 0.0]], rim])
-    here = np.arange(corners)
-    faces = np.stack([0 * here, 1 + here, 1 + (here + 1) % corners], axis=1)
+    index = np.arange(corners)
+    faces = np.stack([0 * index, 1 + index, 1 + (index + 1) % corners], axis=1)
     return _smooth(vertices, faces)
 
 
 def strip(width: float, depth: float) -> Shape:
-    """A rectangle flat on the ground, facing up, x by y, centred on the origin."""
+    """Return a rectangle in the plane z = 0, facing up, x by y [m], centred on the origin."""
     x, y = width / 2, depth / 2
     corners = np.array([[-x, -y, 0], [x, -y, 0], [x, y, 0], [-x, y, 0]])
     return _smooth(corners, np.array([[0, 1, 2], [0, 2, 3]]))
 
 
 def antenna(height: float) -> Shape:
-    """A thin mast on the ground with a ball on its top."""
+    """Return a thin mast from z = 0 to a height [m], with a ball on its top."""
     mast = cylinder(0.003, height / 2).moved(np.eye(3), np.array([0, 0, height / 2]))
     ball = trimesh.creation.icosphere(subdivisions=2, radius=0.016)
     return joined([mast, _smooth(ball.vertices + np.array([0, 0, height]), ball.faces)])
 
 
 def flag(height: float) -> Shape:
-    """A pole on the ground with a pennant towards +x."""
+    """Return a pole from z = 0 to a height [m], with a pennant towards +x."""
     pole = cylinder(0.02 * height, height / 2).moved(np.eye(3), np.array([0, 0, height / 2]))
     top, low, out = height, 0.62 * height, 0.55 * height
     lean = 0.2 * height  # towards the light, which comes from above

@@ -1,8 +1,9 @@
-"""The newest message per thing: what a late joiner needs, and what a laggard has missed.
+"""Compacted state of the scene: the newest message per key, for late joiners and slow viewers.
 
-viser's own replay walks every message id ever issued, which after a day of racing stalls everyone
-for seconds. What makes a message redundant is viser's own rule, read from its message classes: a
-scene node or a GUI element is created, updated and removed, each newer word replacing an older one.
+viser's own replay iterates over all message ids ever issued, which after a day of racing blocks all
+viewers for seconds. Which messages are redundant follows viser's own rule, read from its message
+classes: a scene node or GUI element is created, updated and removed, and a newer message replaces
+an older one with the same key. Removals are kept as tombstones until all viewers have seen them.
 """
 
 import itertools
@@ -13,16 +14,16 @@ from viser import _messages
 
 from app.viewer import wire
 
-UNWANTED = frozenset(
+BLOCKED_TYPES = frozenset(
     {
         # Runs as a script in every browser; nothing we draw needs it.
         "RunJavascriptMessage",
-        # Ask the browser for an answer, which the hub would not pass on.
+        # Request a reply from the browser, which the hub would not relay.
         "GetRenderRequestMessage",
         "LocalStorageGetItemRequestMessage",
     }
 )
-"""Types that are kept from every browser."""
+"""Message types that are not relayed to browsers."""
 
 _REPLAY_DONE = "ReplayDoneMessage"
 
@@ -37,7 +38,7 @@ _Entity = tuple[str, str, str]
 _Key = tuple[str, ...]
 
 
-class _Kept(NamedTuple):
+class _StoredMessage(NamedTuple):
     message: wire.Message
     buffers: list[memoryview]
     version: int
@@ -47,29 +48,29 @@ _LIFECYCLES = {
     cls.__name__: _Lifecycle(cls.entity_type, cls.lifecycle_phase, cls.entity_id_field)
     for cls in _messages.Message.get_subclasses()
 }
-_NONE = _Lifecycle(None, None, None)
+_NO_LIFECYCLE = _Lifecycle(None, None, None)
 
 
 class Snapshot:
-    """All that is to be seen now, and since when each thing is as it is.
+    """The newest message per key, each with the version (frame number) at which it arrived.
 
-    One serves every viewer, so one who lags costs nothing until it can take what it has missed.
+    One instance serves all viewers: a slow viewer needs no buffer of its own, only its version.
     """
 
     def __init__(self) -> None:
         self.version = 0
-        """How many frames were taken in."""
+        """Number of frames applied."""
         self.timestamp_s = 0.0
-        """When viser sent the newest of them, by its clock."""
+        """When viser sent the newest frame, by viser's clock [s]."""
         self.complete = False
-        """Whether viser has said that it has now told all there was, which its client waits for."""
+        """Whether viser's backlog is complete (`ReplayDoneMessage`), which its client waits for."""
         # Each is ordered by version.
-        self._kept: dict[_Key, _Kept] = {}
-        self._removed: dict[_Entity, _Kept] = {}
+        self._newest: dict[_Key, _StoredMessage] = {}
+        self._tombstones: dict[_Entity, _StoredMessage] = {}
         self._keys_of: dict[_Entity, set[_Key]] = {}
 
     def apply(self, frame: wire.Frame) -> None:
-        """Take in what a newer frame says."""
+        """Apply the messages of a newer frame."""
         self.version += 1
         self.timestamp_s = frame.timestamp_s
         for message in frame.messages:
@@ -78,58 +79,62 @@ class Snapshot:
             else:
                 self._apply(message, frame.buffers)
 
-    def pack(self, since: int | None = None, more: Iterable[wire.Message] = ()) -> wire.Frame:
-        """One frame that brings a viewer up to date.
+    def pack(self, since: int | None = None, extra: Iterable[wire.Message] = ()) -> wire.Frame:
+        """Encode one catch-up frame that brings a viewer up to date.
 
         Args:
-            since: The version that the viewer has; None for one who has nothing yet.
-            more: Messages without arrays for the end of the frame.
+            since: The version that the viewer has; None for a new viewer.
+            extra: Messages without arrays to append.
         """
         if since is None:
-            missed = list(self._kept.values())
+            missed = list(self._newest.values())
         else:
-            # Removals first: a thing that was made after its namesake was removed comes later.
-            missed = [*_newer(self._removed, since), *_newer(self._kept, since)]
+            # Tombstones first, since a name may have been created again after its removal.
+            missed = [*_newer_than(self._tombstones, since), *_newer_than(self._newest, since)]
         buffers: list[memoryview] = []
-        messages = [wire.rewire(kept.message, kept.buffers, buffers) for kept in missed]
+        messages = [
+            wire.remap_buffers(stored.message, stored.buffers, buffers) for stored in missed
+        ]
         if since is None and self.complete:
             messages.append({"type": _REPLAY_DONE})
-        return wire.pack([*messages, *more], buffers, self.timestamp_s)
+        return wire.pack([*messages, *extra], buffers, self.timestamp_s)
 
     @property
-    def removals(self) -> int:
-        """How many things are remembered only because they are gone."""
-        return len(self._removed)
+    def tombstones(self) -> int:
+        """Number of tombstones."""
+        return len(self._tombstones)
 
-    def forget_removals(self, until: int) -> None:
-        """Forget what was gone at that version, once no viewer is older than that."""
-        self._removed = {
-            entity: kept for entity, kept in self._removed.items() if kept.version > until
+    def drop_tombstones(self, until: int) -> None:
+        """Drop tombstones up to a version, once no viewer has an older one."""
+        self._tombstones = {
+            entity: stored for entity, stored in self._tombstones.items() if stored.version > until
         }
 
     def _apply(self, message: wire.Message, buffers: tuple[memoryview, ...]) -> None:
-        lifecycle = _LIFECYCLES.get(message["type"], _NONE)
+        lifecycle = _LIFECYCLES.get(message["type"], _NO_LIFECYCLE)
         entity = _entity(message, lifecycle)
         if entity is not None and lifecycle.phase in ("create", "remove"):
             for key in self._keys_of.pop(entity, ()):
-                del self._kept[key]
-        own: list[memoryview] = []
-        kept = _Kept(wire.rewire(message, buffers, own), own, self.version)
-        # To the end, because what is said later may rest on what was said before.
+                del self._newest[key]
+        own_buffers: list[memoryview] = []
+        stored = _StoredMessage(
+            wire.remap_buffers(message, buffers, own_buffers), own_buffers, self.version
+        )
+        # Moved to the end, because later messages may depend on earlier ones.
         if entity is not None and lifecycle.phase == "remove":
-            self._removed.pop(entity, None)
-            self._removed[entity] = kept
+            self._tombstones.pop(entity, None)
+            self._tombstones[entity] = stored
             return
         key = _key(message, lifecycle, entity)
-        self._kept.pop(key, None)
-        self._kept[key] = kept
+        self._newest.pop(key, None)
+        self._newest[key] = stored
         if entity is not None:
             self._keys_of.setdefault(entity, set()).add(key)
 
 
-def _newer(kept: dict[Any, _Kept], since: int) -> list[_Kept]:
-    newest_first = reversed(kept.values())
-    return list(itertools.takewhile(lambda one: one.version > since, newest_first))[::-1]
+def _newer_than(stored: dict[Any, _StoredMessage], since: int) -> list[_StoredMessage]:
+    newest_first = reversed(stored.values())
+    return list(itertools.takewhile(lambda message: message.version > since, newest_first))[::-1]
 
 
 def _entity(message: wire.Message, lifecycle: _Lifecycle) -> _Entity | None:
@@ -137,15 +142,15 @@ def _entity(message: wire.Message, lifecycle: _Lifecycle) -> _Entity | None:
     if lifecycle.entity is not None and lifecycle.id_field is not None:
         return (lifecycle.entity, message[lifecycle.id_field], owner)
     if "name" in message:
-        # What says something of a scene node beside its life, such as how it can be clicked.
+        # A message on a scene node outside its lifecycle, such as whether it can be clicked.
         return ("scene", message["name"], owner)
     return None
 
 
 def _key(message: wire.Message, lifecycle: _Lifecycle, entity: _Entity | None) -> _Key:
-    about = entity or (message["type"], str(message.get("uuid", "")), "")
+    subject = entity or (message["type"], str(message.get("uuid", "")), "")
     if lifecycle.phase == "create":
-        return (*about, lifecycle.phase)
+        return (*subject, lifecycle.phase)
     if lifecycle.phase == "update_dict":
-        return (*about, message["type"], *sorted(message["updates"]))
-    return (*about, message["type"], str(message.get("bone_index", "")))
+        return (*subject, message["type"], *sorted(message["updates"]))
+    return (*subject, message["type"], str(message.get("bone_index", "")))

@@ -1,4 +1,4 @@
-"""The thread that keeps the picture moving."""
+"""The drawing thread: advances the stage and draws its frames at a fixed rate."""
 
 import logging
 import threading
@@ -10,31 +10,36 @@ from app.viewer.scene import StageScene
 
 FRAMES_PER_S, IDLE_FRAMES_PER_S, SCENES_PER_S = 30.0, 10.0, 5.0
 _STILL_FRAMES = 15
-"""A pause between two steps is no reason to go slower."""
+"""Number of frames without motion before the rate drops; longer than a pause between steps."""
 
 _logger = logging.getLogger(__name__)
 
 
 class StageLoop:
-    """Draws the stage 30 times a second, and tells the page what is on it five times.
+    """Draws the stage 30 times a second, and publishes a `scene` event at most five times a second.
 
-    `with loop:` runs it. While nothing moves it goes slower and says nothing.
+    `with loop:` runs it. Without motion the frame rate drops and no events are published.
+
+    Args:
+        stage: advanced by each frame.
+        scene: draws the frames.
+        bus: receives the events.
     """
 
     def __init__(self, stage: Stage, scene: StageScene, bus: EventBus) -> None:
         self._stage, self._scene, self._bus = stage, scene, bus
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="stage", daemon=True)
-        self._told: dict[str, object] | None = None
-        self._told_s = -1.0
-        self._failing = False
+        self._published: dict[str, object] | None = None
+        self._published_s = -1.0
+        self._has_failed = False
 
     def start(self) -> None:
-        """Begin; once only."""
+        """Start the thread; may be called once."""
         self._thread.start()
 
     def stop(self) -> None:
-        """End, and wait for it. May be called twice, or without a start."""
+        """Stop the thread and wait for it. May be called twice, or without a start."""
         self._stop.set()
         if self._thread.is_alive():
             self._thread.join()
@@ -51,7 +56,7 @@ class StageLoop:
         while not self._stop.is_set():
             still = 0 if self._draw() else still + 1
             due_s += 1 / (FRAMES_PER_S if still < _STILL_FRAMES else IDLE_FRAMES_PER_S)
-            # One late frame is made up for; more are left out, the show goes by the clock anyway.
+            # One late frame is caught up; more are skipped, since playback follows the clock.
             due_s = max(due_s, time.monotonic() - 1 / FRAMES_PER_S)
             self._stop.wait(max(0.0, due_s - time.monotonic()))
 
@@ -60,18 +65,18 @@ class StageLoop:
         try:
             frame = self._stage.frame()
             moved = self._scene.draw(frame, now)
-            if now - self._told_s >= 1 / SCENES_PER_S:
+            if now - self._published_s >= 1 / SCENES_PER_S:
                 scene = frame.scene()
-                if scene != self._told:
+                if scene != self._published:
                     self._bus.publish("scene", scene)
-                self._told, self._told_s = scene, now
+                self._published, self._published_s = scene, now
         except Exception:
-            # A fault in one frame must not end the show; but say it once, not 30 times a second.
-            if not self._failing:
+            # An error in one frame must not end the thread; it is logged once, not at each frame.
+            if not self._has_failed:
                 _logger.exception("drawing the stage failed, going on")
-            self._failing = True
+            self._has_failed = True
             return False
-        if self._failing:
+        if self._has_failed:
             _logger.info("drawing the stage works again")
-        self._failing = False
+        self._has_failed = False
         return moved

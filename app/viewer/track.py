@@ -1,4 +1,4 @@
-"""The track: ground with a horizon, squares of half a metre, start and finish with a word."""
+"""The track: ground with a grid of 0.5 m, lights, lanes with ticks, start and finish line."""
 
 from typing import NamedTuple
 
@@ -10,33 +10,33 @@ from app.viewer.colormap import Rgb
 from app.viewer.shapes import strip
 
 WORLD = "/world"
-"""The frame that everything is drawn under, for the follow camera."""
+"""Root node of the scene, which the follow camera translates."""
 
 SQUARE_M, TICK_M = 0.5, 0.05
 LAMP = (-0.7, -0.5, 3.2)
-"""Where the stage's lamp hangs over robots on the start line [m]."""
+"""Position of the lamp for robots on the start line [m]."""
 _BEFORE_M, _BEYOND_M = -0.5, 2.0
 _GROUND: Rgb = (112, 128, 150)
 _LINE: Rgb = (120, 138, 164)
 _TICK: Rgb = (150, 165, 188)
 _GREEN: Rgb = (12, 110, 36)
 _RED: Rgb = (176, 16, 20)
-"""Darker than they look under the stage's light."""
+"""Darker than intended, since the lamp brightens them."""
 
 
 class Ground(NamedTuple):
-    """What of it moves."""
+    """Handles of the parts that move."""
 
     world: viser.FrameHandle
-    """The frame that everything is drawn under."""
+    """Root node of the scene."""
     lamp: viser.SpotLightHandle
 
 
 def draw_ground(server: viser.ViserServer) -> Ground:
-    """What stays whatever is on stage: ground, lights, where a camera begins.
+    """Draw the parts that do not depend on the run: ground, lights, initial camera.
 
-    The ground is half transparent and fades out, so that it takes the page's light or dark
-    background for its sky: the theme is each viewer's own, and the scene is everyone's.
+    The ground is translucent and fades out into the page's background, since the light or dark
+    theme is a setting of each viewer, while the scene is shared by all.
     """
     scene = server.scene
     scene.set_up_direction("+z")
@@ -65,8 +65,8 @@ def draw_ground(server: viser.ViserServer) -> Ground:
 
 
 def _light(scene: viser.SceneApi) -> viser.SpotLightHandle:
-    # viser's own sun has three shadow maps, which make a machine without a graphics card three
-    # times slower than this lamp with its one.
+    # viser's default directional light has three shadow maps, which render three times slower on
+    # a machine without a GPU than this spot light with one.
     scene.configure_default_lights(enabled=False)
     lamp = scene.add_light_spot(
         f"{WORLD}/lamp",
@@ -86,7 +86,14 @@ def _light(scene: viser.SceneApi) -> viser.SpotLightHandle:
 
 
 def draw_lanes(server: viser.ViserServer, root: str, xs: list[float], width: float) -> None:
-    """Lanes of the same width [m] around these x, with ticks, start and finish line."""
+    """Draw lanes of equal width with ticks, start and finish line.
+
+    Args:
+        server: where to draw.
+        root: scene node of the lanes.
+        xs: centres of the lanes, ascending [m].
+        width: width of each lane [m].
+    """
     scene, left, right = server.scene, xs[0] - width / 2, xs[-1] + width / 2
     borders = [x - width / 2 for x in xs] + [right]
     scene.add_line_segments(

@@ -1,4 +1,4 @@
-"""What one update of the stage costs, as the hub sees it."""
+"""Benchmark of one update of the stage: time to draw it, and size of its frame for the hub."""
 
 import asyncio
 import contextlib
@@ -15,49 +15,50 @@ from app.stage.show import RunLabel
 from app.viewer.in_process import InProcessViser, in_process_viser
 from app.viewer.scene import StageScene
 
-_BETWEEN_S = 1 / 60
-_SETTLED_S = 0.5
+_UPDATE_INTERVAL_S = 1 / 60
+_QUIET_S = 0.5
 
 
 def measure_stage_update(updates: int = 200) -> tuple[float, float]:
-    """Milliseconds to make, and bytes to send, one update with three robots that walk.
-
-    Each is the median over updates that viser's reader receives; the time is that of
-    the drawing thread from the stage's frame to viser's queue.
+    """Measure the cost of one update with three walking robots.
 
     Args:
-        updates: how many are measured.
+        updates: number of updates measured.
+
+    Returns:
+        median time of the drawing thread from the stage's frame to viser's queue [ms], and median
+        size of the frames that viser's reader receives [bytes].
     """
-    show = _walking_show()
+    show = _walking_race()
     with in_process_viser() as server, _Receiver(server) as receiver:
         scene = StageScene(server)
         scene.draw(show.frame(RunLabel(None, "Race")), now=0.0)
         receiver.wait_until_quiet()
-        spent_ms = []
+        elapsed_ms = []
         for number in range(1, updates + 1):
-            began = time.perf_counter()
+            started_s = time.perf_counter()
             show.seek(1.0 + 10.0 * number / updates)
-            scene.draw(show.frame(RunLabel(None, "Race")), now=number * _BETWEEN_S)
-            spent_ms.append(1000 * (time.perf_counter() - began))
-            time.sleep(_BETWEEN_S)
+            scene.draw(show.frame(RunLabel(None, "Race")), now=number * _UPDATE_INTERVAL_S)
+            elapsed_ms.append(1000 * (time.perf_counter() - started_s))
+            time.sleep(_UPDATE_INTERVAL_S)
         receiver.wait_until_quiet()
         sizes = receiver.sizes[-updates:]
-    return statistics.median(spent_ms), statistics.median(sizes)
+    return statistics.median(elapsed_ms), statistics.median(sizes)
 
 
-def _walking_show() -> RaceShow:
-    """A race without thinking, so that every robot moves in every frame."""
+def _walking_race() -> RaceShow:
+    """Return a race without thinking times, so that every robot moves in every frame."""
     lanes = tuple(LaneConfig(agent=agent) for agent in PAPERS_LANES)
     config = RaceConfig(gait="left-right-origin", simulator="kinematic", lanes=lanes)
     walkers = build_walkers(config, [None] * len(lanes))
     recorded = list(record_race(walkers, config, time.perf_counter))[-1]
     show = RaceShow(race_scene(config), config.steps, "free", lambda: recorded)
-    show.advance(0.0, None, over=True)
+    show.advance(0.0, None, run_ended=True)
     return show
 
 
 class _Receiver:
-    """A reader of viser's stream that only counts what it gets."""
+    """A reader of viser's stream that records the size of each frame."""
 
     def __init__(self, server: InProcessViser) -> None:
         self.sizes: list[int] = []
@@ -75,11 +76,11 @@ class _Receiver:
         self._thread.join()
 
     def wait_until_quiet(self) -> None:
-        """Wait until nothing has come for a while."""
+        """Wait until no frame has arrived for `_QUIET_S`."""
         before = -1
         while before != len(self.sizes):
             before = len(self.sizes)
-            time.sleep(_SETTLED_S)
+            time.sleep(_QUIET_S)
 
     def _run(self) -> None:
         with contextlib.suppress(asyncio.CancelledError):

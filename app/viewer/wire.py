@@ -15,14 +15,14 @@ import viser
 import zstandard
 
 SUBPROTOCOL = f"viser-v{viser.__version__}"
-"""What both ends must offer. The format has no version of its own: it changes with viser's."""
+"""Websocket subprotocol of both ends. The format is versioned only by viser's own version."""
 
 Message = dict[str, Any]
 """One decoded message; its `type` is the name of viser's class."""
 
 _SIZES = struct.Struct("<QQ")
 _ALIGNMENT_BYTES = 8
-_INDEX = "__binary_index"
+_INDEX_KEY = "__binary_index"
 
 _decoder = msgspec.msgpack.Decoder(dict[str, Any])
 _encoder = msgspec.msgpack.Encoder()
@@ -32,26 +32,26 @@ _compressor = zstandard.ZstdCompressor(level=1)
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """One websocket frame, encoded and decoded."""
+    """One websocket frame, in encoded and in decoded form."""
 
     raw: bytes
     """The bytes on the wire."""
     messages: tuple[Message, ...]
-    """What they say, in order. Shared by all who hold the frame: never changed."""
+    """The decoded messages in order. Shared, so they must not be mutated."""
     buffers: tuple[memoryview, ...]
-    """The arrays that the messages name by index."""
+    """The arrays that the messages reference by index."""
     timestamp_s: float
-    """When viser sent it, by its own clock; browsers pace what they show by the differences."""
+    """When viser sent it, by viser's clock [s]; browsers schedule frames by the differences."""
 
-    def without(self, types: Collection[str]) -> "Frame":
-        """The frame less the messages of these types; itself if there is none of them."""
-        kept = tuple(message for message in self.messages if message["type"] not in types)
-        if len(kept) == len(self.messages):
+    def without_types(self, types: Collection[str]) -> "Frame":
+        """Return the frame without messages of these types; itself if it has none of them."""
+        remaining = tuple(message for message in self.messages if message["type"] not in types)
+        if len(remaining) == len(self.messages):
             return self
-        return pack(kept, self.buffers, self.timestamp_s)
+        return pack(remaining, self.buffers, self.timestamp_s)
 
-    def extended(self, *messages: Message) -> "Frame":
-        """The frame with messages without arrays at its end; itself if there are none."""
+    def with_messages(self, *messages: Message) -> "Frame":
+        """Return the frame with messages (without arrays) appended; itself if there are none."""
         if not messages:
             return self
         return pack((*self.messages, *messages), self.buffers, self.timestamp_s)
@@ -61,56 +61,62 @@ def parse(raw: bytes) -> Frame:
     """Decode a frame.
 
     Raises:
-        ValueError: It is cut short, or not in the format.
+        ValueError: The frame is truncated or malformed.
     """
     try:
         inner_size, packed_size = _SIZES.unpack_from(raw)
         packed = raw[_SIZES.size : _SIZES.size + packed_size]
         body = _decoder.decode(_decompressor.decompress(packed, max_output_size=inner_size))
         lengths = body["binaryBufferLengths"]
-        buffers = _split(raw, _SIZES.size + packed_size, lengths)
+        buffers = _split_buffers(raw, _SIZES.size + packed_size, lengths)
         return Frame(raw, tuple(body["messages"]), buffers, body["timestampSec"])
     except (struct.error, zstandard.ZstdError, msgspec.DecodeError, KeyError) as error:
         raise ValueError(f"not a frame of {SUBPROTOCOL}: {error}") from error
 
 
 def pack(messages: Iterable[Message], buffers: Sequence[memoryview], timestamp_s: float) -> Frame:
-    """Encode messages and the arrays they name."""
+    """Encode messages and the arrays they reference.
+
+    Args:
+        messages: with array indices into `buffers`.
+        buffers: the arrays.
+        timestamp_s: time of the frame by viser's clock [s].
+    """
     messages = tuple(messages)
-    inner = _encoder.encode(
+    body = _encoder.encode(
         {
             "messages": messages,
             "timestampSec": timestamp_s,
             "binaryBufferLengths": [buffer.nbytes for buffer in buffers],
         }
     )
-    packed = _compressor.compress(inner)
-    raw = bytearray(_SIZES.pack(len(inner), len(packed)) + packed)
+    packed = _compressor.compress(body)
+    raw = bytearray(_SIZES.pack(len(body), len(packed)) + packed)
     for buffer in buffers:
         raw += bytes(-len(raw) % _ALIGNMENT_BYTES)
         raw += buffer
     return Frame(bytes(raw), messages, tuple(buffers), timestamp_s)
 
 
-def rewire(value: Any, source: Sequence[memoryview], target: list[memoryview]) -> Any:
-    """A copy of a message, or of a part of one, whose arrays lie in another list.
+def remap_buffers(value: Any, source: Sequence[memoryview], target: list[memoryview]) -> Any:
+    """Copy a message, or a part of one, with its array indices remapped to another list.
 
     Args:
-        value: It names arrays in `source`. It is not changed.
-        source: The arrays that it names.
-        target: Grows by each array that it names, to whose place there the copy's index points.
+        value: References arrays in `source` by index; not mutated.
+        source: The arrays that it references.
+        target: Each referenced array is appended; the copy's index points to it there.
     """
     if isinstance(value, dict):
-        if _INDEX in value:
-            target.append(source[value[_INDEX]])
-            return {**value, _INDEX: len(target) - 1}
-        return {key: rewire(item, source, target) for key, item in value.items()}
+        if _INDEX_KEY in value:
+            target.append(source[value[_INDEX_KEY]])
+            return {**value, _INDEX_KEY: len(target) - 1}
+        return {key: remap_buffers(item, source, target) for key, item in value.items()}
     if isinstance(value, list):
-        return [rewire(item, source, target) for item in value]
+        return [remap_buffers(item, source, target) for item in value]
     return value
 
 
-def _split(raw: bytes, start: int, lengths: Iterable[int]) -> tuple[memoryview, ...]:
+def _split_buffers(raw: bytes, start: int, lengths: Iterable[int]) -> tuple[memoryview, ...]:
     whole = memoryview(raw)
     buffers = []
     for length in lengths:

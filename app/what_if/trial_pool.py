@@ -1,4 +1,4 @@
-"""Processes that run trials for who waits for them, ready from one question to the next."""
+"""Pool of worker processes that run trials for interactive requests, and shut down when idle."""
 
 import multiprocessing
 import os
@@ -18,180 +18,186 @@ from app.jobs.process_setup import set_up_process
 from app.storage.errors import Busy
 
 IDLE_S = 60.0
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 NICENESS = 10
-"""Someone waits for the answer, so that it goes before jobs."""
-_CHUNK = 3
+"""Less than that of jobs, since a user waits for the reply."""
+_CHUNK_SIZE = 3
 _CLOSE_S = 3.0
 
-_Answer = list[TrialResult] | str
+_Reply = list[TrialResult] | str
 
 
-class _Question(NamedTuple):
+class _Request(NamedTuple):
     configs: Sequence[TrialConfig]
-    answer: "Future[list[TrialResult]]"
+    future: "Future[list[TrialResult]]"
 
 
-class _Process(NamedTuple):
+class _Worker(NamedTuple):
     process: SpawnProcess
     pipe: Connection
 
 
-class _Gone(Exception):
-    """A process ended, or takes too long."""
+class _WorkerLost(Exception):
+    """Raised if a worker process exited or exceeded the timeout."""
 
 
 class TrialPool:
-    """Some processes, started for the first question and ended when there was none for a while.
+    """Worker processes, started on the first request and shut down after an idle timeout.
 
-    They end with the server, however that ends.
+    They die with the server, however that ends.
     """
 
     def __init__(self, count: int | None = None, idle_s: float = IDLE_S) -> None:
-        """Start nothing yet.
+        """Create the pool; the first request starts the processes.
 
         Args:
-            count: how many; one for each core by default.
-            idle_s: how long they wait for a question.
+            count: number of processes; by default one per core.
+            idle_s: time without a request after which they are shut down [s].
         """
         self._count, self._idle_s = count or os.cpu_count() or 1, idle_s
-        self._questions: queue.SimpleQueue[_Question | None] = queue.SimpleQueue()
-        self._processes: list[_Process] = []
-        # The kernel ends a process with the thread that started it, so that one thread starts all.
-        self._keeper: threading.Thread | None = None
+        self._requests: queue.SimpleQueue[_Request | None] = queue.SimpleQueue()
+        self._workers: list[_Worker] = []
+        # PR_SET_PDEATHSIG kills a child when the *thread* that started it ends, so one long-lived
+        # thread starts all of them.
+        self._thread: threading.Thread | None = None
         self._lock = threading.Lock()
         self._closed = False
 
     @property
     def pids(self) -> list[int]:
-        """Of the processes that there are now."""
-        return [one.process.pid for one in list(self._processes) if one.process.pid is not None]
+        """Process ids of the running workers."""
+        return [
+            worker.process.pid for worker in list(self._workers) if worker.process.pid is not None
+        ]
 
     def run(self, configs: Sequence[TrialConfig]) -> list[TrialResult]:
-        """Run trials, and wait for them; one question after another, from any thread.
+        """Run trials and wait for them; callable from any thread, requests are serialised.
+
+        Args:
+            configs: the trials.
 
         Returns:
-            their results, in order.
+            their results, in the same order.
 
         Raises:
-            InvalidInput: if a trial cannot be.
-            Busy: if the processes end, or take too long, or are closed.
+            InvalidInput: if a trial is invalid.
+            Busy: if a worker exits, the timeout passes, or the pool is closed.
         """
-        question = _Question(configs, Future())
+        request = _Request(configs, Future())
         with self._lock:
             if self._closed:
                 raise Busy("the server is stopping; try again later", 1)
-            if self._keeper is None:
-                self._keeper = threading.Thread(target=self._keep, name="trial pool", daemon=True)
-                self._keeper.start()
-            self._questions.put(question)
-        return question.answer.result()
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._serve, name="trial pool", daemon=True)
+                self._thread.start()
+            self._requests.put(request)
+        return request.future.result()
 
     def close(self) -> None:
-        """End the processes; there are no more questions."""
+        """Kill the processes and reject further requests."""
         with self._lock:
             self._closed = True
-            self._questions.put(None)
-            keeper = self._keeper
-        for one in list(self._processes):
-            with suppress(ValueError):  # it is gone already
-                one.process.kill()
-        if keeper is not None:
-            keeper.join(_CLOSE_S)
+            self._requests.put(None)
+            thread = self._thread
+        for worker in list(self._workers):
+            with suppress(ValueError):  # it has exited, and its handle is closed
+                worker.process.kill()
+        if thread is not None:
+            thread.join(_CLOSE_S)
 
-    def _keep(self) -> None:
+    def _serve(self) -> None:
         while True:
             try:
-                question = self._questions.get(timeout=self._idle_s)
+                request = self._requests.get(timeout=self._idle_s)
             except queue.Empty:
-                self._end()
+                self._stop_workers()
                 continue
-            if question is None:
-                self._end()
+            if request is None:
+                self._stop_workers()
                 return
             try:
-                question.answer.set_result(self._ask(question.configs))
+                request.future.set_result(self._run(request.configs))
             except HexapodError as error:
-                question.answer.set_exception(error)
-            except (_Gone, OSError) as error:
-                self._end()
-                said = f"the processes that try it are gone ({error}); try again"
-                question.answer.set_exception(Busy(said, 1))
+                request.future.set_exception(error)
+            except (_WorkerLost, OSError) as error:
+                self._stop_workers()
+                message = f"the processes that try it are gone ({error}); try again"
+                request.future.set_exception(Busy(message, 1))
 
-    def _ask(self, configs: Sequence[TrialConfig]) -> list[TrialResult]:
-        while len(self._processes) < self._count:
-            self._processes.append(_start())
-        chunks = [configs[i : i + _CHUNK] for i in range(0, len(configs), _CHUNK)]
-        answers: dict[int, list[TrialResult]] = {}
-        idle = [one.pipe for one in self._processes]
-        asked: dict[Connection, int] = {}
-        wrong: str | None = None
-        deadline = time.monotonic() + PATIENCE_S
+    def _run(self, configs: Sequence[TrialConfig]) -> list[TrialResult]:
+        while len(self._workers) < self._count:
+            self._workers.append(_start())
+        chunks = [configs[i : i + _CHUNK_SIZE] for i in range(0, len(configs), _CHUNK_SIZE)]
+        results: dict[int, list[TrialResult]] = {}
+        idle = [worker.pipe for worker in self._workers]
+        in_flight: dict[Connection, int] = {}
+        error: str | None = None
+        deadline = time.monotonic() + TIMEOUT_S
         number = 0
-        while number < len(chunks) or asked:
-            # What is wrong with one trial is wrong with all.
-            while idle and number < len(chunks) and wrong is None:
+        while number < len(chunks) or in_flight:
+            # After the first error no more chunks are sent: all trials of a request share it.
+            while idle and number < len(chunks) and error is None:
                 idle[-1].send(chunks[number])
-                asked[idle.pop()] = number
+                in_flight[idle.pop()] = number
                 number += 1
-            if not asked:
+            if not in_flight:
                 break
-            for pipe in _ready(asked, deadline):
-                answer = _received(pipe)
-                if isinstance(answer, str):
-                    wrong = answer
+            for pipe in _ready(in_flight, deadline):
+                reply = _receive(pipe)
+                if isinstance(reply, str):
+                    error = reply
                 else:
-                    answers[asked[pipe]] = answer
-                del asked[pipe]
+                    results[in_flight[pipe]] = reply
+                del in_flight[pipe]
                 idle.append(pipe)
-        if wrong is not None:
-            raise InvalidInput(wrong)
-        return [result for place in sorted(answers) for result in answers[place]]
+        if error is not None:
+            raise InvalidInput(error)
+        return [result for number in sorted(results) for result in results[number]]
 
-    def _end(self) -> None:
-        for one in self._processes:
-            one.process.kill()
-            one.process.join()
-            one.process.close()
-            one.pipe.close()
-        self._processes.clear()
+    def _stop_workers(self) -> None:
+        for worker in self._workers:
+            worker.process.kill()
+            worker.process.join()
+            worker.process.close()
+            worker.pipe.close()
+        self._workers.clear()
 
 
-def _start() -> _Process:
+def _start() -> _Worker:
     context = multiprocessing.get_context("spawn")
-    pipe, its_pipe = context.Pipe()
-    # A daemon, so that who never closes this is not kept from ending.
-    process = context.Process(target=main, args=(its_pipe,), name="trials", daemon=True)
+    pipe, child_pipe = context.Pipe()
+    # A daemon, so that a program that never calls `close` can still exit.
+    process = context.Process(target=main, args=(child_pipe,), name="trials", daemon=True)
     process.start()
-    its_pipe.close()
-    return _Process(process, pipe)
+    child_pipe.close()
+    return _Worker(process, pipe)
 
 
-def _ready(asked: dict[Connection, int], deadline: float) -> list[Connection]:
-    found = wait(list(asked), timeout=max(0.0, deadline - time.monotonic()))
-    if not found:
-        raise _Gone(f"it takes over {PATIENCE_S:.0f} s")
-    return [pipe for pipe in asked if pipe in found]
+def _ready(in_flight: dict[Connection, int], deadline: float) -> list[Connection]:
+    readable = wait(list(in_flight), timeout=max(0.0, deadline - time.monotonic()))
+    if not readable:
+        raise _WorkerLost(f"it takes over {TIMEOUT_S:.0f} s")
+    return [pipe for pipe in in_flight if pipe in readable]
 
 
-def _received(pipe: Connection) -> _Answer:
+def _receive(pipe: Connection) -> _Reply:
     try:
-        answer: _Answer = pipe.recv()
+        reply: _Reply = pipe.recv()
     except (EOFError, OSError) as error:
-        raise _Gone("one of them ended") from error
-    return answer
+        raise _WorkerLost("one of them ended") from error
+    return reply
 
 
 def main(pipe: Connection) -> None:
-    """Answer questions until nobody asks any more; this is one of the processes."""
+    """Entry point of a worker process: run chunks of trials until the pipe is closed."""
     set_up_process(NICENESS)
     with suppress(EOFError, OSError):
         while True:
-            pipe.send(_answer(pipe.recv()))
+            pipe.send(_run_chunk(pipe.recv()))
     os._exit(0)
 
 
-def _answer(configs: Sequence[TrialConfig]) -> _Answer:
+def _run_chunk(configs: Sequence[TrialConfig]) -> _Reply:
     try:
         return [run_trial(config) for config in configs]
     except HexapodError as error:

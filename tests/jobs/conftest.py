@@ -1,4 +1,4 @@
-"""What tests of the services stand on, where they need no other."""
+"""Fixtures of the jobs' tests: a store in memory, and jobs that run one process at a time."""
 
 from collections.abc import Iterator
 
@@ -17,7 +17,7 @@ def store() -> MemoryStore:
 
 @pytest.fixture
 def jobs(store: MemoryStore) -> Iterator[Jobs]:
-    made = Jobs(store, Recordings(), EventBus(), cores=1)
-    made.open()
-    yield made
-    made.close()
+    jobs = Jobs(store, Recordings(), EventBus(), cores=1)
+    jobs.open()
+    yield jobs
+    jobs.close()

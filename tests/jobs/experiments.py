@@ -1,4 +1,4 @@
-"""Small kinematic experiments, and what they come to by a plain loop."""
+"""Small kinematic experiments, and their expected results from a plain loop."""
 
 from typing import Any
 
@@ -9,20 +9,20 @@ from app.storage.store import RunStore
 
 
 def sweep(seeds: int = 3, **more: Any) -> ExperimentConfig:
-    """One gait, and greedy beside it."""
-    given = {"gaits": ("left-right-origin",), "steps": (60,), **more}
-    return experiment_config("sweep", {"seeds": seeds, "simulator": "kinematic", **given})
+    """Return a sweep over one gait with the greedy baseline."""
+    fields = {"gaits": ("left-right-origin",), "steps": (60,), **more}
+    return experiment_config("sweep", {"seeds": seeds, "simulator": "kinematic", **fields})
 
 
 def tried(config: ExperimentConfig) -> dict[str, Any]:
-    """All trials in this process, by key, in plain types but for lists."""
+    """Run all trials in this process; results by key, with tuples in place of lists."""
     return {trial.key: run_trial(trial.config).as_json() for trial in Plan(config).trials()}
 
 
-def stored(store: RunStore, run_id: str) -> dict[str, Any]:
-    """The results in a store, by key; those that come out of a database have lists."""
-    found: dict[str, Any] = {}
+def stored_results(store: RunStore, run_id: str) -> dict[str, Any]:
+    """Return the results in a store by key, with the lists of a database turned into tuples."""
+    results: dict[str, Any] = {}
     for row in store.trials(run_id):
         assert row["set_aside"] is None
-        found[row["key"]] = {**row["result"], "distances_m": tuple(row["result"]["distances_m"])}
-    return found
+        results[row["key"]] = {**row["result"], "distances_m": tuple(row["result"]["distances_m"])}
+    return results

@@ -1,4 +1,4 @@
-"""Experiments as jobs: their trials, and what survives whatever ends them."""
+"""Experiments as jobs: pause, stop, crash and resume, invalid trials, limits on size."""
 
 import json
 import os
@@ -21,17 +21,17 @@ from app.storage.errors import Conflict, StorageFull
 from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
 from app.storage.store import REPORT, SUMMARY, UNENDED, Run
-from tests.jobs.experiments import stored, sweep, tried
-from tests.jobs.waiting import ended, until
+from tests.jobs.experiments import stored_results, sweep, tried
+from tests.jobs.waiting import wait_until, wait_until_ended
 
 
-def after(store: MemoryStore, run: Run, done: int) -> None:
-    until(lambda: len(store.trials(run.id)) > done or store.get(run.id).state not in UNENDED)
+def wait_for_more_trials(store: MemoryStore, run: Run, done: int) -> None:
+    wait_until(lambda: len(store.trials(run.id)) > done or store.get(run.id).state not in UNENDED)
     assert store.get(run.id).state == "running"
 
 
-def settled(store: MemoryStore, run: Run) -> Sequence[Mapping[str, Any]]:
-    """Its trials, once those that had come in are with the server."""
+def wait_until_settled(store: MemoryStore, run: Run) -> Sequence[Mapping[str, Any]]:
+    """Wait until no more trials arrive at the server, and return them."""
     rows: Sequence[Mapping[str, Any]] | None = None
     while rows != store.trials(run.id):
         rows = store.trials(run.id)
@@ -39,35 +39,35 @@ def settled(store: MemoryStore, run: Run) -> Sequence[Mapping[str, Any]]:
     return rows
 
 
-def family() -> set[int]:
-    """Every process below this one but the server's own helper of `multiprocessing`."""
-    found = set()
-    for one in psutil.Process().children(recursive=True):
-        with suppress(psutil.Error):  # it ends while it is looked at
-            if "spawn_main" in " ".join(one.cmdline()):
-                found.add(one.pid)
-    return found
+def worker_pids() -> set[int]:
+    """Return ids of all spawned descendants, without `multiprocessing`'s resource tracker."""
+    pids = set()
+    for process in psutil.Process().children(recursive=True):
+        with suppress(psutil.Error):  # it may exit meanwhile
+            if "spawn_main" in " ".join(process.cmdline()):
+                pids.add(process.pid)
+    return pids
 
 
 @pytest.mark.timeout(300)
-def test_whatever_ends_it_nothing_is_repeated_and_nothing_else_comes_out(
+def test_interrupted_experiment_resumes_without_repeating_trials(
     jobs: Jobs, store: MemoryStore
 ) -> None:
-    """Paused, stopped, killed, and in the end as if nothing had been."""
-    before = family()
+    """Paused, stopped, killed and resumed, it gives the results of an uninterrupted run."""
+    before = worker_pids()
     config = sweep(seeds=40, steps=(1000,))
     run = jobs.experiment(ExperimentStart(config, workers=1))
     assert (run.name, run.total, run.kind) == ("Sweep, 40 seeds", 41, "experiment")
 
-    after(store, run, 0)
+    wait_for_more_trials(store, run, 0)
     jobs.pause(run.id)
-    # Not even its cluster stays.
-    until(lambda: len(family() - before) == 1)
-    paused = settled(store, run)
+    # A pause shuts the cluster down.
+    wait_until(lambda: len(worker_pids() - before) == 1)
+    paused = wait_until_settled(store, run)
     time.sleep(0.3)
     assert store.trials(run.id) == paused
     jobs.resume(run.id)
-    after(store, run, len(paused))
+    wait_for_more_trials(store, run, len(paused))
 
     stopped = jobs.stop(run.id)
     assert (stopped.state, stopped.error) == ("stopped", None)
@@ -78,28 +78,28 @@ def test_whatever_ends_it_nothing_is_repeated_and_nothing_else_comes_out(
     assert stopped.result["files"][0] == SUMMARY
     for name in stopped.result["files"]:
         assert store.artifact(run.id, name), name
-    until(lambda: family() == before)
+    wait_until(lambda: worker_pids() == before)
 
-    again = jobs.resume(run.id)
-    assert (again.state, again.done, again.result) == ("queued", len(kept), None)
-    after(store, run, len(kept))
+    resumed = jobs.resume(run.id)
+    assert (resumed.state, resumed.done, resumed.result) == ("queued", len(kept), None)
+    wait_for_more_trials(store, run, len(kept))
     job = jobs._supervisor.find(run.id)
     assert job is not None
     os.kill(job.process.pid or 0, signal.SIGKILL)
-    died = ended(store, run)
-    assert died.state == "failed"
-    assert "SIGKILL" in (died.error or "")
-    until(lambda: family() == before)
+    killed = wait_until_ended(store, run)
+    assert killed.state == "failed"
+    assert "SIGKILL" in (killed.error or "")
+    wait_until(lambda: worker_pids() == before)
 
     jobs.resume(run.id)
-    finished = ended(store, run)
+    finished = wait_until_ended(store, run)
     assert (finished.state, finished.done, finished.error) == ("finished", 41, None)
-    assert stored(store, run.id) == tried(config)
+    assert stored_results(store, run.id) == tried(config)
     times = {row["key"]: row["compute_s"] for row in store.trials(run.id)}
     assert all(times[row["key"]] == row["compute_s"] for row in kept), "some were repeated"
     with pytest.raises(Conflict, match="failed or interrupted or paused or stopped"):
         jobs.resume(run.id)
-    until(lambda: family() == before)
+    wait_until(lambda: worker_pids() == before)
     check_summary(store, run, config)
 
 
@@ -107,7 +107,7 @@ def check_summary(store: MemoryStore, run: Run, config: ExperimentConfig) -> Non
     summary = json.loads(store.artifact(run.id, SUMMARY) or b"")
     assert summary["trials"]["done"] == 41
     assert summary["config"]["seeds"] == config.seeds
-    learner = next(one for one in summary["settings"] if one["role"] == "learner")
+    learner = next(process for process in summary["settings"] if process["role"] == "learner")
     assert learner["n"] == 40
     cost = summary["cost"]
     assert cost["workers"] == 1
@@ -118,8 +118,8 @@ def check_summary(store: MemoryStore, run: Run, config: ExperimentConfig) -> Non
     assert (store.artifact(run.id, REPORT) or b"").startswith(b"<!doctype html>")
 
 
-class SmallStore(MemoryStore):
-    """A store that is full for a while."""
+class FullStore(MemoryStore):
+    """Fake store without disk space for trials until `room` is set."""
 
     room = 0
 
@@ -130,28 +130,28 @@ class SmallStore(MemoryStore):
         super().append_trials(run_id, rows)
 
 
-def test_a_full_disk_fails_it_in_a_sentence_and_once_there_is_room_it_goes_on() -> None:
-    store = SmallStore()
+def test_full_disk_fails_the_run_which_resumes_once_there_is_space() -> None:
+    store = FullStore()
     jobs = Jobs(store, Recordings(), EventBus(), cores=1)
     jobs.open()
     try:
         run = jobs.experiment(ExperimentStart(sweep(), workers=1))
-        failed = ended(store, run)
+        failed = wait_until_ended(store, run)
         assert failed.state == "failed"
         assert "the disk of the data folder is full" in (failed.error or "")
         store.room = 1_000
         jobs.resume(run.id)
-        assert ended(store, run).state == "finished"
-        assert stored(store, run.id) == tried(sweep())
+        assert wait_until_ended(store, run).state == "finished"
+        assert stored_results(store, run.id) == tried(sweep())
     finally:
         jobs.close()
 
 
-def test_a_trial_that_cannot_be_is_set_aside_and_the_others_are_kept(
+def test_invalid_trials_are_set_aside_and_the_others_are_kept(
     jobs: Jobs, store: MemoryStore
 ) -> None:
     config = sweep(agents=("q-learning", "tests.own_agents:Clumsy"))
-    run = ended(store, jobs.experiment(ExperimentStart(config, name="Mine")))
+    run = wait_until_ended(store, jobs.experiment(ExperimentStart(config, name="Mine")))
     assert (run.name, run.state, run.done) == ("Mine", "finished", run.total)
     assert run.result is not None
     assert run.result["trials"] == {"done": 4, "total": 7, "failed": 0, "set_aside": 3}
@@ -160,32 +160,35 @@ def test_a_trial_that_cannot_be_is_set_aside_and_the_others_are_kept(
         assert row["result"] is not None or "I tripped" in row["set_aside"]
 
 
-def test_one_that_waits_or_has_not_begun_stops_at_once(jobs: Jobs, store: MemoryStore) -> None:
+def test_queued_or_starting_experiment_stops_at_once(jobs: Jobs, store: MemoryStore) -> None:
     config = sweep(seeds=100, steps=(2000,))
     first, second = (jobs.experiment(ExperimentStart(config)) for _ in range(2))
     assert jobs.stop(second.id).state == "stopped"
-    until(lambda: store.get(first.id).state == "running")
+    wait_until(lambda: store.get(first.id).state == "running")
     stopped = jobs.stop(first.id)
     assert stopped.state == "stopped"
     assert stopped.done < 101
 
 
-def test_a_grid_that_no_server_should_lay_out_is_refused(jobs: Jobs) -> None:
-    many = tuple(n / 1000 for n in range(1, 101))
-    for given, words in (
-        ({"alpha": many, "gamma": many, "epsilon_start": many, "epsilon_end": many}, "settings"),
-        ({"alpha": many, "seeds": 10_000}, "trials"),
+def test_too_large_or_unreachable_grid_is_rejected(jobs: Jobs) -> None:
+    values = tuple(n / 1000 for n in range(1, 101))
+    for lists, message in (
+        (
+            {"alpha": values, "gamma": values, "epsilon_start": values, "epsilon_end": values},
+            "settings",
+        ),
+        ({"alpha": values, "seeds": 10_000}, "trials"),
     ):
-        asked = {"simulator": "kinematic", **given}
-        with pytest.raises(InvalidInput, match=words):
-            jobs.experiment(ExperimentStart(experiment_config("sweep", asked)))
+        fields = {"simulator": "kinematic", **lists}
+        with pytest.raises(InvalidInput, match=message):
+            jobs.experiment(ExperimentStart(experiment_config("sweep", fields)))
     with pytest.raises(Unreachable):
         jobs.experiment(ExperimentStart(sweep(grid_side_m=(0.3,))))
     with pytest.raises(InvalidInput, match="cores of this machine"):
         jobs.experiment(ExperimentStart(sweep(), workers=512))
 
 
-def test_the_papers_experiments_fit_a_server(jobs: Jobs) -> None:
+def test_experiments_of_the_paper_are_within_the_limits(jobs: Jobs) -> None:
     for name, total in (("table1", 1008), ("figure4", 248)):
         run = jobs.experiment(ExperimentStart(experiment_config(name, {})))
         assert run.total == total == Plan(experiment_config(name, {})).total

@@ -1,38 +1,38 @@
-"""What an experiment's process is told between two trials."""
+"""Commands that the process of an experiment executes between two trials."""
 
 import queue
 
 import pytest
 
-from app.jobs.experiment_worker import _Listener
+from app.jobs.experiment_worker import _TrialControl
 from app.jobs.messages import Command
 
 
 @pytest.fixture
-def words() -> "queue.SimpleQueue[Command]":
+def commands() -> "queue.SimpleQueue[Command]":
     return queue.SimpleQueue()
 
 
-def test_a_pause_holds_until_somebody_has_waited(words: "queue.SimpleQueue[Command]") -> None:
-    """Else a cluster that winds down for a pause would take what is left for done."""
-    listener = _Listener(words)
-    assert listener.wait()
-    assert listener.go_on()
-    words.put(Command("pause"))
-    assert not listener.go_on()
-    words.put(Command("resume"))
-    assert not listener.go_on()
-    assert listener.held
-    assert listener.wait()
-    assert listener.go_on()
-    assert not listener.held
+def test_draining_lasts_until_the_next_wait(commands: "queue.SimpleQueue[Command]") -> None:
+    """Otherwise a quick resume would make a draining engine look finished."""
+    control = _TrialControl(commands)
+    assert control.wait()
+    assert control.may_continue()
+    commands.put(Command("pause"))
+    assert not control.may_continue()
+    commands.put(Command("resume"))
+    assert not control.may_continue()
+    assert control.draining
+    assert control.wait()
+    assert control.may_continue()
+    assert not control.draining
 
 
 @pytest.mark.parametrize("verb", ["stop", "leave"])
-def test_an_end_comes_before_a_pause(verb: str, words: "queue.SimpleQueue[Command]") -> None:
-    listener = _Listener(words)
-    for said in (Command("pause"), Command("resume"), Command("pause"), Command(verb)):  # type: ignore[arg-type]
-        words.put(said)
-    assert not listener.wait()
-    assert listener.stopped == (verb == "stop")
-    assert listener.leaving == (verb == "leave")
+def test_stop_or_leave_overrides_pause(verb: str, commands: "queue.SimpleQueue[Command]") -> None:
+    control = _TrialControl(commands)
+    for command in (Command("pause"), Command("resume"), Command("pause"), Command(verb)):  # type: ignore[arg-type]
+        commands.put(command)
+    assert not control.wait()
+    assert control.stopped == (verb == "stop")
+    assert control.exiting == (verb == "leave")

@@ -1,4 +1,4 @@
-"""Jobs in real processes: their order, their end, and what becomes of one that dies."""
+"""Jobs in real processes: queue order, commands, crashes, store failures and shutdown."""
 
 import os
 import signal
@@ -20,7 +20,7 @@ from app.storage.errors import Busy, Conflict, StorageFailed
 from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
 from app.storage.store import QUEUED, Run
-from tests.jobs.waiting import ended, moving, until
+from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 
 WALK = WalkingProblem(gait="left-right-origin", simulator="kinematic")
 
@@ -40,11 +40,9 @@ def pid_of(jobs: Jobs, run: Run) -> int:
     return job.process.pid
 
 
-def test_they_start_in_the_order_in_which_they_were_asked_for(
-    jobs: Jobs, store: MemoryStore
-) -> None:
+def test_runs_start_in_order_of_submission(jobs: Jobs, store: MemoryStore) -> None:
     runs = [jobs.train(training()) for _ in range(3)]
-    last = ended(store, runs[-1])
+    last = wait_until_ended(store, runs[-1])
     starts = [store.get(run.id).started_at for run in runs]
     assert starts == sorted(starts, key=str)
     ends = [store.get(run.id).ended_at for run in runs]
@@ -52,9 +50,9 @@ def test_they_start_in_the_order_in_which_they_were_asked_for(
     assert last.state == "finished"
 
 
-def test_the_queue_is_bounded(jobs: Jobs, store: MemoryStore) -> None:
+def test_queue_is_bounded(jobs: Jobs, store: MemoryStore) -> None:
     first = jobs.train(endless())
-    moving(store, first)
+    wait_for_progress(store, first)
     for _ in range(MAX_QUEUED):
         jobs.train(endless())
     with pytest.raises(Busy, match="32") as error:
@@ -73,42 +71,42 @@ def test_the_queue_is_bounded(jobs: Jobs, store: MemoryStore) -> None:
     jobs.stop(first.id)
 
 
-def test_a_paused_job_gives_its_place_away(jobs: Jobs, store: MemoryStore) -> None:
+def test_paused_job_frees_its_core(jobs: Jobs, store: MemoryStore) -> None:
     first = jobs.train(endless())
-    moving(store, first)
+    wait_for_progress(store, first)
     second = jobs.train(training())
     assert store.get(second.id).state == "queued"
     jobs.pause(first.id)
-    assert ended(store, second).state == "finished"
+    assert wait_until_ended(store, second).state == "finished"
     done = store.get(first.id).done
     time.sleep(0.3)
     assert store.get(first.id).done - done <= 1, "it was paused"
     jobs.resume(first.id)
-    until(lambda: store.get(first.id).done > done + 1)
+    wait_until(lambda: store.get(first.id).done > done + 1)
     assert jobs.stop(first.id).state == "stopped"
 
 
-def test_words_are_obeyed_between_two_steps(jobs: Jobs, store: MemoryStore) -> None:
+def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: MemoryStore) -> None:
     mujoco = WalkingProblem(gait="left-right-origin")
     start = TrainingStart(TrainingConfig(**vars(mujoco), steps=1_000_000, evaluate_every=0))
     run = jobs.train(start)
-    moving(store, run)
+    wait_for_progress(store, run)
     began = time.monotonic()
     changed = jobs.change(run.id, {"alpha": 0.2})
     assert changed.changes[0]["alpha"] == 0.2
     stopped = jobs.stop(run.id)
     assert stopped.state == "stopped"
     assert stopped.result is not None
-    # The promise is one second; a step takes 2 ms, so whatever is over this is no busy machine.
+    # The requirement is 1 s and a step takes 2 ms; 10 s allows for a busy machine.
     assert time.monotonic() - began < 10
 
 
-def test_an_evaluation_is_no_excuse(jobs: Jobs, store: MemoryStore) -> None:
-    """Its look-ahead rival would take half a minute at eight divisions."""
+def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: MemoryStore) -> None:
+    """Its look-ahead baseline would take half a minute at eight divisions."""
     slow = WalkingProblem(gait="left-right-origin", divisions=8, grid_side_m=0.03)
     config = TrainingConfig(**vars(slow), steps=100, evaluate_every=1, steps_per_episode=1)
     run = jobs.train(TrainingStart(config))
-    moving(store, run)
+    wait_for_progress(store, run)
     time.sleep(0.5)
     assert jobs.pause(run.id).state == "paused"
     changed = jobs.change(run.id, {"gamma": 0.5})
@@ -119,66 +117,64 @@ def test_an_evaluation_is_no_excuse(jobs: Jobs, store: MemoryStore) -> None:
     assert stopped.result["greedy_distance_m"] is None
 
 
-def test_one_that_has_not_begun_stops_at_once(jobs: Jobs, store: MemoryStore) -> None:
+def test_starting_run_stops_at_once(jobs: Jobs, store: MemoryStore) -> None:
     run = jobs.train(endless())
-    until(lambda: store.get(run.id).state == "running")
+    wait_until(lambda: store.get(run.id).state == "running")
     stopped = jobs.stop(run.id)
     assert stopped.state == "stopped"
     assert stopped.done <= 1
 
 
-def test_a_killed_process_is_a_failed_run_that_names_the_signal(
-    jobs: Jobs, store: MemoryStore
-) -> None:
+def test_killed_process_fails_its_run_and_names_the_signal(jobs: Jobs, store: MemoryStore) -> None:
     run = jobs.train(endless())
-    moving(store, run)
+    wait_for_progress(store, run)
     began = time.monotonic()
     os.kill(pid_of(jobs, run), signal.SIGKILL)
-    now = ended(store, run)
+    now = wait_until_ended(store, run)
     assert time.monotonic() - began < 5
     assert now.state == "failed"
     assert "SIGKILL" in (now.error or "")
-    assert ended(store, jobs.train(training())).state == "finished", "others go on"
+    assert wait_until_ended(store, jobs.train(training())).state == "finished", "others go on"
 
 
-def test_a_race_fails_with_its_practice(jobs: Jobs, store: MemoryStore) -> None:
+def test_race_fails_if_its_training_fails(jobs: Jobs, store: MemoryStore) -> None:
     race = jobs.race(RaceStart(WALK, [LaneStart("q-learning", training=endless())], 50, 0))
-    practice = store.get(race.waiting_for[0])
-    moving(store, practice)
-    os.kill(pid_of(jobs, practice), signal.SIGSEGV)
-    now = ended(store, race)
+    race_training = store.get(race.waiting_for[0])
+    wait_for_progress(store, race_training)
+    os.kill(pid_of(jobs, race_training), signal.SIGSEGV)
+    now = wait_until_ended(store, race)
     assert now.state == "failed"
-    assert practice.id in (now.error or "")
+    assert race_training.id in (now.error or "")
     assert "SIGSEGV" in (now.error or "")
 
 
-def test_one_of_many_that_stop_it_wins(jobs: Jobs, store: MemoryStore) -> None:
+def test_one_of_many_concurrent_stops_succeeds(jobs: Jobs, store: MemoryStore) -> None:
     run = jobs.train(endless())
-    moving(store, run)
-    won, lost = [], []
+    wait_for_progress(store, run)
+    stopped, conflicts = [], []
 
     def stop() -> None:
         try:
-            won.append(jobs.stop(run.id))
+            stopped.append(jobs.stop(run.id))
         except Conflict as conflict:
-            lost.append(conflict)
+            conflicts.append(conflict)
 
     threads = [threading.Thread(target=stop) for _ in range(16)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    assert (len(won), len(lost)) == (1, 15)
+    assert (len(stopped), len(conflicts)) == (1, 15)
 
 
-def test_a_race_says_if_it_shared_the_machine(store: MemoryStore) -> None:
+def test_race_result_reports_a_shared_machine(store: MemoryStore) -> None:
     jobs = Jobs(store, Recordings(), EventBus(), cores=2)
     jobs.open()
     try:
-        alone = ended(store, jobs.race(RaceStart(WALK, [LaneStart("greedy")], 5, 0)))
+        alone = wait_until_ended(store, jobs.race(RaceStart(WALK, [LaneStart("greedy")], 5, 0)))
         other = jobs.train(endless())
-        moving(store, other)
-        shared = ended(store, jobs.race(RaceStart(WALK, [LaneStart("greedy")], 5, 0)))
+        wait_for_progress(store, other)
+        shared = wait_until_ended(store, jobs.race(RaceStart(WALK, [LaneStart("greedy")], 5, 0)))
         assert alone.result is not None
         assert shared.result is not None
         assert (alone.result["shared_machine"], shared.result["shared_machine"]) == (False, True)
@@ -186,40 +182,40 @@ def test_a_race_says_if_it_shared_the_machine(store: MemoryStore) -> None:
         jobs.close()
 
 
-def test_closing_leaves_no_process(store: MemoryStore) -> None:
+def test_close_leaves_no_process(store: MemoryStore) -> None:
     jobs = Jobs(store, Recordings(), EventBus(), cores=2)
     jobs.open()
     runs = [jobs.train(endless()) for _ in range(3)]
     for run in runs[:2]:
-        moving(store, run)
+        wait_for_progress(store, run)
     children = [psutil.Process(pid_of(jobs, run)) for run in runs[:2]]
     jobs.close()
     assert not any(child.is_running() for child in children)
     assert [store.get(run.id).state for run in runs] == ["interrupted"] * 3
 
 
-def test_the_server_goes_before_its_jobs(store: MemoryStore) -> None:
+def test_worker_process_has_lower_priority_than_the_server(store: MemoryStore) -> None:
     jobs = Jobs(store, Recordings(), EventBus(), niceness=15)
     jobs.open()
     try:
         run = jobs.train(endless())
-        moving(store, run)
+        wait_for_progress(store, run)
         assert psutil.Process(pid_of(jobs, run)).nice() == psutil.Process().nice() + 15
     finally:
         jobs.close()
 
 
-def test_an_agent_without_rates_has_none_to_change(jobs: Jobs) -> None:
+def test_agent_that_does_not_learn_cannot_be_trained(jobs: Jobs) -> None:
     with pytest.raises(InvalidInput, match="does not learn"):
         jobs.train(training(agent="greedy"))
 
 
-class ShakyStore(MemoryStore):
-    """A store that cannot be used for a while."""
+class FailingStore(MemoryStore):
+    """Fake store that raises `StorageFailed` on some writes."""
 
     failures = 0
     fail_after: int | None = None
-    """So many changes are made before one fails."""
+    """Number of writes that succeed before one fails; None for none."""
 
     def change(self, *args: Any, **fields: Any) -> Run:
         if self.fail_after == 0:
@@ -233,9 +229,9 @@ class ShakyStore(MemoryStore):
         return super().change(*args, **fields)
 
 
-def test_a_start_that_fails_halfway_leaves_no_run_in_the_queue() -> None:
-    """A race that goes on after its practice: the practice is queued, then the store fails."""
-    store = ShakyStore()
+def test_submission_that_fails_halfway_leaves_no_run_queued() -> None:
+    """Two runs are resumed together; the store fails after the first was written."""
+    store = FailingStore()
     ids = ["a", "b"]
     config = TrainingConfig(**vars(WALK), steps=10)
     for run_id in ids:
@@ -251,26 +247,26 @@ def test_a_start_that_fails_halfway_leaves_no_run_in_the_queue() -> None:
     assert [store.get(run_id).state for run_id in ids] == ["interrupted", "interrupted"]
 
 
-def test_a_store_that_cannot_be_used_for_a_while_costs_no_run() -> None:
-    store = ShakyStore()
+def test_runs_survive_temporary_store_failures() -> None:
+    store = FailingStore()
     jobs = Jobs(store, Recordings(), EventBus(), cores=1)
     jobs.open()
     try:
         store.failures = 1
         late = jobs.train(training())
-        assert ended(store, late).state == "finished"
+        assert wait_until_ended(store, late).state == "finished"
         run = jobs.train(endless())
-        moving(store, run)
+        wait_for_progress(store, run)
         store.failures = 2
         os.kill(pid_of(jobs, run), signal.SIGKILL)
-        assert "SIGKILL" in (ended(store, run).error or "")
-        assert ended(store, jobs.train(training())).state == "finished"
+        assert "SIGKILL" in (wait_until_ended(store, run).error or "")
+        assert wait_until_ended(store, jobs.train(training())).state == "finished"
     finally:
         jobs.close()
 
 
-class DyingStore(MemoryStore):
-    """Kills a run's process, and sees it fail, just before the run is marked as running."""
+class WorkerKillingStore(MemoryStore):
+    """Fake store that kills a run's process just before the run is written as `running`."""
 
     pid: int | None = None
 
@@ -278,20 +274,20 @@ class DyingStore(MemoryStore):
         if self.pid is not None and args[1] == "running":
             pid, self.pid = self.pid, None
             os.kill(pid, signal.SIGKILL)
-            until(lambda: self.get(run_id).state == "failed")
+            wait_until(lambda: self.get(run_id).state == "failed")
         return super().change(run_id, *args, **fields)
 
 
-def test_one_that_dies_as_it_is_resumed_is_queued_again() -> None:
-    store = DyingStore()
+def test_run_whose_process_dies_during_resume_is_queued_again() -> None:
+    store = WorkerKillingStore()
     jobs = Jobs(store, Recordings(), EventBus(), cores=1)
     jobs.open()
     try:
         run = jobs.train(endless())
-        moving(store, run)
+        wait_for_progress(store, run)
         jobs.pause(run.id)
         store.pid = pid_of(jobs, run)
         assert jobs.resume(run.id).state == "queued"
-        until(lambda: store.get(run.id).state == "running")
+        wait_until(lambda: store.get(run.id).state == "running")
     finally:
         jobs.close()

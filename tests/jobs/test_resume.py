@@ -1,4 +1,4 @@
-"""What was interrupted goes on: trainings where they were, races from their start."""
+"""Resuming unfinished runs: trainings from their checkpoint, races from their start."""
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -18,7 +18,7 @@ from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
 from app.storage.store import CHECKPOINT, TABLE, Run, RunStore
 from tests.jobs.test_jobs import WALK
-from tests.jobs.waiting import ended, moving, until
+from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 from tests.storage.stores import training
 
 SLOW = TrainingConfig(**vars(WALK), steps=100_000, pace=30, evaluate_every=20)
@@ -27,7 +27,7 @@ SHORT = TrainingConfig(**vars(WALK), steps=60, evaluate_every=20)
 
 @pytest.fixture
 def open_jobs(store: MemoryStore) -> Iterator[Callable[[], Jobs]]:
-    """Opens the jobs of one server after another."""
+    """Return a function that opens the jobs of another server on the same store."""
     with ExitStack() as stack:
 
         def make() -> Jobs:
@@ -39,35 +39,35 @@ def open_jobs(store: MemoryStore) -> Iterator[Callable[[], Jobs]]:
         yield make
 
 
-def interrupted(store: RunStore, run: Run) -> Run:
+def create(store: RunStore, run: Run) -> Run:
     store.create(run)
     return run
 
 
-def test_a_training_goes_on_from_its_checkpoint(
+def test_training_resumes_from_its_checkpoint(
     store: MemoryStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     first = open_jobs()
     run = first.train(TrainingStart(SLOW))
-    until(lambda: store.get(run.id).done > 45)
+    wait_until(lambda: store.get(run.id).done > 45)
     first.close()
-    left = store.get(run.id)
-    assert (left.state, left.done > 45) == ("interrupted", True)
-    assert left.ended_at is not None
+    before = store.get(run.id)
+    assert (before.state, before.done > 45) == ("interrupted", True)
+    assert before.ended_at is not None
     store.append_evaluations(run.id, [{"step": 10_000, "distance_m": 9.0, "epsilon": 0.0}])
 
     second = open_jobs()
-    again = second.resume(run.id)
-    assert (again.state, again.done, again.error, again.ended_at) == (
+    resumed = second.resume(run.id)
+    assert (resumed.state, resumed.done, resumed.error, resumed.ended_at) == (
         "queued",
-        left.done,
+        before.done,
         None,
         None,
     )
-    until(lambda: store.get(run.id).done > left.done)
+    wait_until(lambda: store.get(run.id).done > before.done)
     assert [row["step"] for row in store.evaluations(run.id)][:2] == [20, 40]
     assert max(row["step"] for row in store.evaluations(run.id)) < 10_000
-    assert store.get(run.id).started_at == left.started_at
+    assert store.get(run.id).started_at == before.started_at
     recording = second._recordings.training(run.id)
     assert recording is not None
     steps = [step.step for step in recording.steps]
@@ -78,30 +78,34 @@ def test_a_training_goes_on_from_its_checkpoint(
         second.resume(run.id)
 
 
-def test_one_without_a_checkpoint_begins_anew_with_its_table(
+def test_training_without_a_checkpoint_restarts_from_its_table(
     store: MemoryStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     jobs = open_jobs()
-    table = ended(store, jobs.train(TrainingStart(SHORT)))
-    direct = ended(store, jobs.train(TrainingStart(SHORT, continue_from=table.id)))
-    late = training("zz", config=SHORT, total=60, state="interrupted", continued_from=table.id)
-    interrupted(store, late)
-    assert jobs.resume(late.id).state == "queued"
-    assert ended(store, late).state == "finished"
-    assert store.artifact(late.id, TABLE) == store.artifact(direct.id, TABLE)
+    table = wait_until_ended(store, jobs.train(TrainingStart(SHORT)))
+    direct = wait_until_ended(store, jobs.train(TrainingStart(SHORT, continue_from=table.id)))
+    unfinished = training(
+        "zz", config=SHORT, total=60, state="interrupted", continued_from=table.id
+    )
+    create(store, unfinished)
+    assert jobs.resume(unfinished.id).state == "queued"
+    assert wait_until_ended(store, unfinished).state == "finished"
+    assert store.artifact(unfinished.id, TABLE) == store.artifact(direct.id, TABLE)
 
 
-def test_one_whose_table_is_gone_says_so(store: MemoryStore, open_jobs: Callable[[], Jobs]) -> None:
-    run = interrupted(store, training("a", state="interrupted", continued_from="gone"))
+def test_training_whose_table_was_deleted_cannot_resume(
+    store: MemoryStore, open_jobs: Callable[[], Jobs]
+) -> None:
+    run = create(store, training("a", state="interrupted", continued_from="gone"))
     with pytest.raises(InvalidInput, match="gone"):
         open_jobs().resume(run.id)
     assert store.get(run.id).state == "interrupted"
 
 
-def test_a_damaged_checkpoint_is_refused_by_name(
+def test_damaged_checkpoint_is_rejected_by_name(
     store: MemoryStore, open_jobs: Callable[[], Jobs]
 ) -> None:
-    run = interrupted(store, training("a", state="interrupted"))
+    run = create(store, training("a", state="interrupted"))
     store.put_artifact(run.id, CHECKPOINT, b"nonsense")
     with pytest.raises(DamagedFile, match="checkpoint of training a"):
         open_jobs().resume(run.id)
@@ -111,10 +115,10 @@ def test_a_damaged_checkpoint_is_refused_by_name(
 @pytest.mark.parametrize(
     "meta", [{"changes": None}, {"step": 10**9}, {"step": "1"}, {"agent": "greedy"}, {"legs": 4}]
 )
-def test_a_checkpoint_that_does_not_fit_its_training_is_refused(
+def test_checkpoint_that_does_not_fit_its_training_is_rejected(
     meta: dict[str, object], store: MemoryStore, open_jobs: Callable[[], Jobs]
 ) -> None:
-    run = interrupted(store, training("a", config=SHORT, total=60, state="interrupted"))
+    run = create(store, training("a", config=SHORT, total=60, state="interrupted"))
     good = snapshot(build_learner(SHORT), SHORT, changes=[])
     data = to_bytes(replace(good, meta={**good.meta, **meta}))
     store.put_artifact(run.id, CHECKPOINT, data)
@@ -124,27 +128,29 @@ def test_a_checkpoint_that_does_not_fit_its_training_is_refused(
     assert open_jobs().resume(run.id).state == "queued"
 
 
-def test_a_race_takes_its_practice_along(store: MemoryStore, open_jobs: Callable[[], Jobs]) -> None:
+def test_resumed_race_resumes_its_training_first(
+    store: MemoryStore, open_jobs: Callable[[], Jobs]
+) -> None:
     first = open_jobs()
     lanes = [LaneStart("q-learning", training=TrainingStart(SLOW)), LaneStart("greedy")]
     race = first.race(RaceStart(WALK, lanes, steps=5, seed=0))
     (practice_id,) = race.waiting_for
-    moving(store, store.get(practice_id))
+    wait_for_progress(store, store.get(practice_id))
     first.close()
     assert store.get(race.id).state == store.get(practice_id).state == "interrupted"
     assert store.get(race.id).waiting_for == ()
 
     second = open_jobs()
-    again = second.resume(race.id)
-    assert (again.state, again.waiting_for) == ("queued", (practice_id,))
-    until(lambda: store.get(practice_id).state == "running")
+    resumed = second.resume(race.id)
+    assert (resumed.state, resumed.waiting_for) == ("queued", (practice_id,))
+    wait_until(lambda: store.get(practice_id).state == "running")
     with pytest.raises(Conflict):
         second.resume(practice_id)
     second.stop(race.id)
-    assert ended(store, race).state == "stopped"
+    assert wait_until_ended(store, race).state == "stopped"
 
 
-def test_a_race_begins_anew(store: MemoryStore, open_jobs: Callable[[], Jobs]) -> None:
+def test_race_restarts_from_its_start(store: MemoryStore, open_jobs: Callable[[], Jobs]) -> None:
     config = RaceConfig(**vars(WALK), lanes=(LaneConfig(agent="greedy"),), steps=5)
     run = Run(
         id="r",
@@ -156,13 +162,13 @@ def test_a_race_begins_anew(store: MemoryStore, open_jobs: Callable[[], Jobs]) -
         total=5,
         lane_training_ids=(None,),
     )
-    interrupted(store, run)
+    create(store, run)
     jobs = open_jobs()
     assert jobs.resume("r").done == 0
-    assert ended(store, run).state == "finished"
+    assert wait_until_ended(store, run).state == "finished"
 
 
-def test_a_race_goes_on_with_a_practice_that_failed(
+def test_race_resumes_its_failed_training(
     store: MemoryStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     practice = TrainingConfig(gait="left-right-origin", simulator="kinematic", steps=20)
@@ -171,12 +177,12 @@ def test_a_race_goes_on_with_a_practice_that_failed(
     run = Run(id="r", kind="race", name="r", config=config, total=50, lane_training_ids=("t",))
     store.create(replace(run, state="failed", error="Its training t failed."))
     open_jobs().resume("r")
-    assert ended(store, run).state == "finished"
+    assert wait_until_ended(store, run).state == "finished"
     assert store.get("t").state == "finished"
 
 
 @pytest.mark.parametrize("state", ["stopped", None])
-def test_a_race_whose_practice_is_lost_cannot_go_on(
+def test_race_whose_training_is_lost_cannot_resume(
     state: str | None, store: MemoryStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     if state is not None:
@@ -191,16 +197,16 @@ def test_a_race_whose_practice_is_lost_cannot_go_on(
         total=50,
         lane_training_ids=("t",),
     )
-    interrupted(store, run)
+    create(store, run)
     with pytest.raises(Conflict, match=r"training t"):
         open_jobs().resume("r")
 
 
-def test_what_waits_when_the_server_ends_waits_again(
+def test_run_queued_at_shutdown_can_be_queued_again(
     store: MemoryStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     first = open_jobs()
-    moving(store, first.train(TrainingStart(SLOW)))
+    wait_for_progress(store, first.train(TrainingStart(SLOW)))
     waiting = first.train(TrainingStart(SHORT))
     first.close()
     now = store.get(waiting.id)
@@ -208,4 +214,4 @@ def test_what_waits_when_the_server_ends_waits_again(
     assert "before its turn" in (now.error or "")
     second = open_jobs()
     second.resume(waiting.id)
-    assert ended(store, waiting).state == "finished"
+    assert wait_until_ended(store, waiting).state == "finished"

@@ -1,4 +1,4 @@
-"""Waits for what jobs do in processes of their own."""
+"""Polling waits for effects of jobs, which run in processes of their own."""
 
 import time
 from collections.abc import Callable
@@ -8,23 +8,23 @@ from app.storage.store import UNENDED, Run, RunStore
 from tests.patience import LONG_S, Patience
 
 
-def until(is_so: Callable[[], Any]) -> None:
-    """Wait for something."""
+def wait_until(is_so: Callable[[], Any]) -> None:
+    """Poll until a predicate is true; fail after `LONG_S`."""
     deadline = time.monotonic() + LONG_S
     while not is_so():
         assert time.monotonic() < deadline
         time.sleep(0.005)
 
 
-def ended(store: RunStore, run: Run) -> Run:
-    """The run once it has ended."""
-    patience = Patience()
+def wait_until_ended(store: RunStore, run: Run) -> Run:
+    """Wait until a run has ended, and return it; fail if it makes no progress."""
+    stall_check = Patience()
     while (now := store.get(run.id)).state in UNENDED:
-        patience.check((now.state, now.done))
+        stall_check.check((now.state, now.done))
         time.sleep(0.005)
     return now
 
 
-def moving(store: RunStore, run: Run) -> None:
-    """Wait until it has done something."""
-    until(lambda: store.get(run.id).done > 0)
+def wait_for_progress(store: RunStore, run: Run) -> None:
+    """Wait until a run has done its first step."""
+    wait_until(lambda: store.get(run.id).done > 0)

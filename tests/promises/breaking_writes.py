@@ -134,7 +134,7 @@ def finish(store: SqlStore, folder: Path) -> None:
     job = Job(run, order, store, recordings, EventBus(), shutdown=shutdown, niceness=0)
     learner = build_learner(CONFIG)
     rest = learner.walker.simulator.pose(learner.walker.state).astype(np.float32)
-    take = job._take
+    take = job._handle
     take(Began((rest,), 0))
     records = list(train(learner, CONFIG, record=True))
     take(Batch(tuple(r for r in records if isinstance(r, StepTaken | Evaluated)), CONFIG.steps))

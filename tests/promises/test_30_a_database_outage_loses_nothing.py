@@ -19,7 +19,7 @@ from app.jobs.jobs import Jobs
 from app.jobs.submissions import TrainingStart
 from app.runs.config import TrainingConfig, WalkingProblem
 from app.storage.recordings import Recordings
-from tests.jobs.waiting import ended, moving, until
+from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 from tests.postgresql import PostgresServer, postgres_server
 from tests.promises.length import at_length
 from tests.served import BODY, LONG_S, Served
@@ -106,14 +106,14 @@ def test_after_the_longest_wait_a_job_is_interrupted_and_can_be_resumed(
         jobs.open()
         try:
             run = jobs.train(TrainingStart(config))
-            moving(store, run)
+            wait_for_progress(store, run)
             outage(own_postgresql, "stops", 4.0)
-            until(lambda: ready_store(jobs))
-            left = ended(store, run)
+            wait_until(lambda: ready_store(jobs))
+            left = wait_until_ended(store, run)
             assert left.state == "interrupted"
             assert "PostgreSQL" in (left.error or "")
             jobs.resume(run.id)
-            assert ended(store, run).state == "finished"
+            assert wait_until_ended(store, run).state == "finished"
         finally:
             jobs.close()
 

@@ -1,4 +1,4 @@
-"""A stage with a clock of its own, and real runs to show: computed by the kinematic simulator."""
+"""Test set-up: a stage with a fake clock, and runs computed by the kinematic simulator."""
 
 import time
 from collections.abc import Callable
@@ -19,24 +19,24 @@ from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
 from app.storage.store import Run
 
-WalkingProblem = Callable[[], bool]
-"""Takes a run's next step; False at the end."""
+AdvanceRun = Callable[[], bool]
+"""Computes a run's next step; False at the end."""
 
 FRAME_S = 1 / 30
 GAIT = "left-right-origin"
 
 
 class StageParts:
-    """Runs are made step by step, and the stage is watched frame by frame."""
+    """A stage with its store, recordings and bus; runs advance by steps, playback by frames."""
 
     def __init__(self) -> None:
         self.now = 100.0
         self.store, self.recordings, self.bus = MemoryStore(), Recordings(), EventBus()
         self.stage = Stage(self.store, self.recordings, self.bus, now=lambda: self.now)
-        self._made = 0
+        self._run_count = 0
 
     def watch(self, seconds: float) -> list[StageFrame]:
-        """Every frame for so long."""
+        """Advance the clock and return every frame."""
         frames = []
         for _ in range(round(seconds / FRAME_S)):
             self.now += FRAME_S
@@ -44,39 +44,41 @@ class StageParts:
         return frames
 
     def watch_to_end(self, at_most_s: float = 200.0) -> list[StageFrame]:
-        """Every frame until the show has ended."""
+        """Return every frame until the show has ended."""
         frames: list[StageFrame] = []
         while not self.stage.state()["ended"]:
             frames += self.watch(FRAME_S)
             assert len(frames) < at_most_s / FRAME_S, "the show does not end"
         return frames
 
-    def look(self) -> StageFrame:
-        """The frame of a moment later, with what the store knows by then."""
+    def next_frame(self) -> StageFrame:
+        """Return the frame 0.2 s later, after the stage has read the store again."""
         return self.watch(0.2)[-1]
 
     def create(self, config: TrainingConfig | RaceConfig, **fields: Any) -> Run:
-        """A queued run of which nothing is recorded."""
-        self._made += 1
+        """Store a queued run without a recording."""
+        self._run_count += 1
         kind = "race" if isinstance(config, RaceConfig) else "training"
-        fields = {"name": f"{kind.title()} {self._made}", "total": config.steps, **fields}
-        run = Run(id=f"{kind}{self._made:03}", kind=kind, config=config, **fields)  # type: ignore[arg-type]
+        fields = {"name": f"{kind.title()} {self._run_count}", "total": config.steps, **fields}
+        run = Run(id=f"{kind}{self._run_count:03}", kind=kind, config=config, **fields)  # type: ignore[arg-type]
         self.store.create(run)
         return run
 
     def set_state(self, run: Run, state: Any) -> None:
-        """Whatever its state is now."""
+        """Change a run's state from any state."""
         self.store.change(run.id, [self.store.get(run.id).state], state)
 
-    def race(self, agents: tuple[str, ...] = ("greedy", "two-step"), steps: int = 12) -> Run:
-        """A race that is over."""
-        run, walk = self.racing(agents, steps)
-        return self._finish(run, walk)
-
-    def racing(
+    def finished_race(
         self, agents: tuple[str, ...] = ("greedy", "two-step"), steps: int = 12
-    ) -> tuple[Run, WalkingProblem]:
-        """A running race, and what takes its next step of one lane; that is False at the end."""
+    ) -> Run:
+        """Compute a whole race."""
+        run, advance = self.running_race(agents, steps)
+        return self._finish(run, advance)
+
+    def running_race(
+        self, agents: tuple[str, ...] = ("greedy", "two-step"), steps: int = 12
+    ) -> tuple[Run, AdvanceRun]:
+        """Return a running race, and a function that computes the next step of one lane."""
         lanes = tuple(LaneConfig(agent=agent) for agent in agents)
         config = RaceConfig(gait=GAIT, simulator="kinematic", lanes=lanes, steps=steps)
         run = self.create(config, state="running")
@@ -87,27 +89,27 @@ class StageParts:
         )
         records = race(walkers, steps, time.perf_counter)
 
-        def walk() -> bool:
+        def advance() -> bool:
             record = next(records, None)
             if record is not None:
                 self.recordings.add(run.id, record)
             return record is not None
 
-        return run, walk
+        return run, advance
 
-    def _finish(self, run: Run, walk: WalkingProblem) -> Run:
-        while walk():
+    def _finish(self, run: Run, advance: AdvanceRun) -> Run:
+        while advance():
             pass
         self.set_state(run, "finished")
         return run
 
-    def training(self, steps: int = 100, **fields: Any) -> Run:
-        """A training that is over."""
-        run, walk = self.practising(steps, **fields)
-        return self._finish(run, walk)
+    def finished_training(self, steps: int = 100, **fields: Any) -> Run:
+        """Compute a whole training."""
+        run, advance = self.running_training(steps, **fields)
+        return self._finish(run, advance)
 
-    def practising(self, steps: int = 100, **fields: Any) -> tuple[Run, WalkingProblem]:
-        """A running training, and what takes its next step; that is False at the end."""
+    def running_training(self, steps: int = 100, **fields: Any) -> tuple[Run, AdvanceRun]:
+        """Return a running training, and a function that computes its next step."""
         config = TrainingConfig(gait=GAIT, simulator="kinematic", steps=steps, **fields)
         run = self.create(config, state="running")
         learner = build_learner(config)
@@ -115,11 +117,11 @@ class StageParts:
         self.recordings.begin_training(run.id, pose.astype(np.float32))
         records = train(learner, config, record=True)
 
-        def walk() -> bool:
+        def advance() -> bool:
             for record in records:
                 self.recordings.add(run.id, record)
                 if isinstance(record, StepTaken):
                     return True
             return False
 
-        return run, walk
+        return run, advance

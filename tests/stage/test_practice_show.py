@@ -1,4 +1,4 @@
-"""A training as it is shown."""
+"""Playback of a training: time-lapse, live pace, ghosts, gaps in the recording."""
 
 import numpy as np
 import pytest
@@ -12,8 +12,8 @@ def parts() -> StageParts:
     return StageParts()
 
 
-def test_a_time_lapse_begins_slowly_and_gets_faster(parts: StageParts) -> None:
-    parts.stage.show(parts.training(500).id)
+def test_time_lapse_accelerates_after_ten_slow_steps(parts: StageParts) -> None:
+    parts.stage.show(parts.finished_training(500).id)
     frames = parts.watch_to_end()
     speeds = [frame.shown_speed for frame in frames]
     tenth = next(n for n, frame in enumerate(frames) if frame.lanes[0].step > 10)
@@ -26,8 +26,8 @@ def test_a_time_lapse_begins_slowly_and_gets_faster(parts: StageParts) -> None:
     assert frames[-1].phase == "finished"
 
 
-def test_a_long_training_takes_hardly_longer_and_skips_what_is_not_kept(parts: StageParts) -> None:
-    parts.stage.show(parts.training(3000, evaluate_every=0).id)
+def test_long_training_skips_steps_whose_motion_is_not_recorded(parts: StageParts) -> None:
+    parts.stage.show(parts.finished_training(3000, evaluate_every=0).id)
     frames = parts.watch_to_end()
     steps = [frame.lanes[0].step for frame in frames]
 
@@ -37,8 +37,8 @@ def test_a_long_training_takes_hardly_longer_and_skips_what_is_not_kept(parts: S
     assert steps[-1] == 3000
 
 
-def test_every_evaluation_leaves_a_ghost(parts: StageParts) -> None:
-    run = parts.training(200)
+def test_each_evaluation_adds_a_ghost(parts: StageParts) -> None:
+    run = parts.finished_training(200)
     parts.stage.show(run.id)
     frames = parts.watch_to_end()
     recording = parts.recordings.training(run.id)
@@ -54,8 +54,8 @@ def test_every_evaluation_leaves_a_ghost(parts: StageParts) -> None:
     assert {frame.phase for frame in frames} == {"practice", "evaluation", "finished"}
 
 
-def test_only_so_many_ghosts_as_can_be_told_apart(parts: StageParts) -> None:
-    parts.stage.show(parts.training(60, evaluate_every=3).id)
+def test_number_of_ghosts_is_limited_to_the_newest(parts: StageParts) -> None:
+    parts.stage.show(parts.finished_training(60, evaluate_every=3).id)
 
     ghosts = parts.watch_to_end()[-1].ghosts
 
@@ -64,7 +64,7 @@ def test_only_so_many_ghosts_as_can_be_told_apart(parts: StageParts) -> None:
 
 
 def test_each_episode_is_drawn_from_the_start_line(parts: StageParts) -> None:
-    run = parts.training(400, steps_per_episode=20)
+    run = parts.finished_training(400, steps_per_episode=20)
     recording = parts.recordings.training(run.id)
     assert recording is not None
     assert abs(recording.steps[-1].distance_m) > 0.1, "it has wandered off"
@@ -73,13 +73,13 @@ def test_each_episode_is_drawn_from_the_start_line(parts: StageParts) -> None:
 
     for episode in range(1, 20):
         parts.stage.set(time_s=(20 * episode + 0.01) * 0.32)
-        lane = parts.look().lanes[0]
+        lane = parts.next_frame().lanes[0]
         assert np.abs(lane.qpos[:2]).max() < 0.005
         assert lane.distance_m == pytest.approx(0, abs=0.005)
 
 
-def test_poses_within_an_episode_go_without_a_jump(parts: StageParts) -> None:
-    parts.stage.show(parts.training(60).id)
+def test_poses_within_an_episode_are_continuous(parts: StageParts) -> None:
+    parts.stage.show(parts.finished_training(60).id)
     parts.stage.set(speed=1)
     frames = parts.watch(10.0)
     poses = np.array([frame.lanes[0].qpos for frame in frames])
@@ -88,43 +88,43 @@ def test_poses_within_an_episode_go_without_a_jump(parts: StageParts) -> None:
     assert np.abs(np.diff(poses[:, 7:], axis=0)).max() < 0.4
 
 
-def test_live_at_full_pace_it_never_shows_what_is_not_yet_there(parts: StageParts) -> None:
-    run, practise = parts.practising(60)
+def test_live_training_is_never_shown_beyond_its_newest_step(parts: StageParts) -> None:
+    run, advance = parts.running_training(60)
     parts.stage.show(run.id)
-    assert parts.look().phase == "start-line"
+    assert parts.next_frame().phase == "start-line"
     for _ in range(5):
-        practise()
+        advance()
     frame = parts.watch(10.0)[-1]
 
     assert frame.lanes[0].step == 5
     assert frame.time_s == pytest.approx(5 * 0.32)
     assert not parts.stage.state()["ended"]
 
-    while practise():
+    while advance():
         pass
     parts.set_state(run, "finished")
     assert parts.watch_to_end()[-1].lanes[0].step == 60
 
 
-def test_at_a_numeric_pace_it_is_shown_as_it_happens(parts: StageParts) -> None:
-    run, practise = parts.practising(400, pace=2)
+def test_training_at_a_numeric_pace_is_shown_live(parts: StageParts) -> None:
+    run, advance = parts.running_training(400, pace=2)
     parts.stage.show(run.id)
-    behind = []
+    lag_steps = []
     for step in range(1, 60):
-        practise()
+        advance()
         frame = parts.watch(0.16)[-1]
         if step > 20:
-            behind.append(step - frame.time_s / 0.32)
+            lag_steps.append(step - frame.time_s / 0.32)
 
-    assert max(behind) < 6
-    assert min(behind) >= 0
+    assert max(lag_steps) < 6
+    assert min(lag_steps) >= 0
     assert frame.shown_speed == pytest.approx(2, rel=0.3)
 
 
-def test_a_changed_pace_is_followed(parts: StageParts) -> None:
-    run, practise = parts.practising(400)
+def test_playback_follows_a_change_of_pace(parts: StageParts) -> None:
+    run, advance = parts.running_training(400)
     for _ in range(200):
-        practise()
+        advance()
     parts.stage.show(run.id)
     parts.watch(1.0)
     parts.store.update(run.id, changes=({"step": 200, "pace": 1.0},))
@@ -135,17 +135,17 @@ def test_a_changed_pace_is_followed(parts: StageParts) -> None:
     assert frame.shown_speed <= 2.5
 
 
-def test_a_seek_into_a_gap_goes_to_what_is_kept(parts: StageParts) -> None:
-    parts.stage.show(parts.training(1000, evaluate_every=0).id)
+def test_seek_into_a_gap_goes_to_the_next_recorded_step(parts: StageParts) -> None:
+    parts.stage.show(parts.finished_training(1000, evaluate_every=0).id)
     parts.stage.set(playing=False, time_s=200 * 0.32)
 
-    assert parts.look().lanes[0].step == 501
+    assert parts.next_frame().lanes[0].step == 501
 
 
-def test_the_colour_scale_only_grows(parts: StageParts) -> None:
-    parts.stage.show(parts.training(200).id)
-    known = [frame.lanes[0].knowledge for frame in parts.watch_to_end()]
-    highs = [view.high_m for view in known if view]
+def test_colour_scale_only_grows(parts: StageParts) -> None:
+    parts.stage.show(parts.finished_training(200).id)
+    views = [frame.lanes[0].knowledge for frame in parts.watch_to_end()]
+    highs = [view.high_m for view in views if view]
 
     assert highs == sorted(highs)
-    assert all(view is None or view.low_m <= 0 <= view.high_m for view in known)
+    assert all(view is None or view.low_m <= 0 <= view.high_m for view in views)

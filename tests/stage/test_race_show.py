@@ -1,4 +1,4 @@
-"""A race as it is shown."""
+"""Playback of a race: speed, photo finish, clocks, races that are still computed."""
 
 from itertools import pairwise
 
@@ -20,13 +20,13 @@ def parts() -> StageParts:
     return StageParts()
 
 
-def shown(parts: StageParts) -> list[StageFrame]:
-    parts.stage.show(parts.race(LANES).id)
+def show_to_end(parts: StageParts) -> list[StageFrame]:
+    parts.stage.show(parts.finished_race(LANES).id)
     return parts.watch_to_end()
 
 
-def test_it_is_shown_at_twice_its_speed_and_the_last_lane_at_eight(parts: StageParts) -> None:
-    frames = shown(parts)
+def test_automatic_speed_is_two_and_eight_for_the_last_lane(parts: StageParts) -> None:
+    frames = show_to_end(parts)
     speeds = [b.time_s - a.time_s for a, b in pairwise(frames)]
 
     assert frames[5].shown_speed == SPEED
@@ -35,23 +35,23 @@ def test_it_is_shown_at_twice_its_speed_and_the_last_lane_at_eight(parts: StageP
     assert speeds[-10] == pytest.approx(LAST_LANE_SPEED * FRAME_S)
 
 
-def test_the_first_finish_is_frozen_for_three_seconds(parts: StageParts) -> None:
-    frames = shown(parts)
+def test_photo_finish_freezes_the_first_finish_for_three_seconds(parts: StageParts) -> None:
+    frames = show_to_end(parts)
     frozen = [frame for frame in frames if frame.phase == "photo-finish"]
     lanes = parts.recordings.race(frozen[0].run_id or "") or []
     result = race_result(lanes, 12)["lanes"]
 
     assert len(frozen) * FRAME_S == pytest.approx(PHOTO_FINISH_S, abs=2 * FRAME_S)
     assert {frame.time_s for frame in frozen} == {finish_s(lanes, 12, "paper")}
-    under = [lane["clocks"]["paper"] for lane in result]
+    by_lane = [lane["clocks"]["paper"] for lane in result]
     assert [lane.distance_m for lane in frozen[0].lanes] == pytest.approx(
-        [lane["finished_distance_m"] for lane in under]
+        [lane["finished_distance_m"] for lane in by_lane]
     )
-    assert [lane.rank for lane in frames[-1].lanes] == [lane["rank"] for lane in under]
+    assert [lane.rank for lane in frames[-1].lanes] == [lane["rank"] for lane in by_lane]
 
 
-def test_poses_go_from_rest_to_the_recordings_end_without_a_jump(parts: StageParts) -> None:
-    frames = shown(parts)
+def test_poses_are_continuous_from_rest_to_the_end_of_the_recording(parts: StageParts) -> None:
+    frames = show_to_end(parts)
     lanes = parts.recordings.race(frames[0].run_id or "") or []
 
     for number, lane in enumerate(lanes):
@@ -63,8 +63,8 @@ def test_poses_go_from_rest_to_the_recordings_end_without_a_jump(parts: StagePar
     assert frames[-1].phase == "finished"
 
 
-def test_a_lane_that_thinks_counts_its_futures(parts: StageParts) -> None:
-    frames = shown(parts)
+def test_thinking_lane_counts_its_simulated_transitions(parts: StageParts) -> None:
+    frames = show_to_end(parts)
     thinking = [frame.lanes[2] for frame in frames if frame.lanes[2].thinking]
 
     assert {lane.futures_total for lane in thinking} == {156}
@@ -75,11 +75,11 @@ def test_a_lane_that_thinks_counts_its_futures(parts: StageParts) -> None:
     assert not any(frame.lanes[0].thinking for frame in frames), "a table needs no thought"
 
 
-def test_another_clock_retimes_the_same_race_at_the_same_place(parts: StageParts) -> None:
-    parts.stage.show(parts.race(LANES).id)
+def test_change_of_clock_keeps_the_moment_of_the_leader(parts: StageParts) -> None:
+    parts.stage.show(parts.finished_race(LANES).id)
     before = parts.watch(1.5)[-1]
     parts.stage.set(playing=False, clock="free")
-    after = parts.look()
+    after = parts.next_frame()
 
     assert after.clock == "free"
     assert after.time_s == before.time_s, "the leader does not think"
@@ -87,50 +87,50 @@ def test_another_clock_retimes_the_same_race_at_the_same_place(parts: StageParts
     assert not any(lane.thinking for lane in after.lanes)
 
     parts.stage.set(clock="paper")
-    assert parts.look().time_s == pytest.approx(before.time_s)
+    assert parts.next_frame().time_s == pytest.approx(before.time_s)
 
 
-def test_the_clock_at_the_end_and_at_the_photo_finish(parts: StageParts) -> None:
-    run = parts.race(LANES)
+def test_change_of_clock_at_the_photo_finish_and_at_the_end(parts: StageParts) -> None:
+    run = parts.finished_race(LANES)
     lanes = parts.recordings.race(run.id) or []
     parts.stage.show(run.id)
-    while parts.look().phase != "photo-finish":
+    while parts.next_frame().phase != "photo-finish":
         pass
     parts.stage.set(clock="free")
-    assert parts.look().phase == "photo-finish"
-    assert parts.look().time_s == finish_s(lanes, 12, "free")
+    assert parts.next_frame().phase == "photo-finish"
+    assert parts.next_frame().time_s == finish_s(lanes, 12, "free")
 
     parts.watch_to_end()
     parts.stage.set(clock="wall")
     assert parts.stage.state()["ended"]
 
 
-def test_skip_goes_to_the_end(parts: StageParts) -> None:
-    parts.stage.show(parts.race(LANES).id)
-    duration = parts.look().duration_s
+def test_seek_to_the_duration_ends_the_race(parts: StageParts) -> None:
+    parts.stage.show(parts.finished_race(LANES).id)
+    duration = parts.next_frame().duration_s
     assert duration is not None
     parts.stage.set(time_s=duration)
 
-    assert parts.look().phase == "finished"
+    assert parts.next_frame().phase == "finished"
 
 
-def test_a_chosen_speed_holds_throughout(parts: StageParts) -> None:
-    parts.stage.show(parts.race(LANES).id)
+def test_chosen_speed_applies_to_the_whole_race(parts: StageParts) -> None:
+    parts.stage.show(parts.finished_race(LANES).id)
     parts.stage.set(speed=16)
     frames = parts.watch_to_end()
 
     assert {frame.shown_speed for frame in frames} == {16.0, 0.0}
 
     parts.stage.set(time_s=0, speed="time-lapse")
-    assert parts.look().shown_speed == SPEED
+    assert parts.next_frame().shown_speed == SPEED
 
 
-def test_it_waits_for_a_lane_that_still_computes(parts: StageParts) -> None:
-    run, walk = parts.racing(("greedy", "two-step"))
+def test_playback_waits_for_a_lane_that_is_still_computed(parts: StageParts) -> None:
+    run, advance = parts.running_race(("greedy", "two-step"))
     parts.stage.show(run.id)
-    assert parts.look().phase == "waiting"
+    assert parts.next_frame().phase == "waiting"
     for _ in range(3):  # greedy has two steps, two-step one
-        walk()
+        advance()
     frame = parts.watch(10.0)[-1]
     lanes = parts.recordings.race(run.id) or []
 
@@ -140,29 +140,29 @@ def test_it_waits_for_a_lane_that_still_computes(parts: StageParts) -> None:
     assert frame.lanes[0].thinking
     assert not parts.stage.state()["ended"]
 
-    while walk():
+    while advance():
         pass
     parts.set_state(run, "finished")
     assert parts.watch_to_end()[-1].lanes[1].step == 12
 
 
-def test_before_anything_is_recorded_they_stand_on_the_start_line(parts: StageParts) -> None:
-    config = parts.race().config
+def test_robots_stand_on_the_start_line_before_anything_is_recorded(parts: StageParts) -> None:
+    config = parts.finished_race().config
     assert isinstance(config, RaceConfig)
     parts.stage.show(parts.create(config).id)
 
-    frame = parts.look()
+    frame = parts.next_frame()
 
     assert frame.phase == "start-line"
     assert [lane.step for lane in frame.lanes] == [0, 0]
     assert not parts.stage.state()["ended"]
 
 
-def test_a_race_that_failed_shows_what_it_has_and_ends(parts: StageParts) -> None:
-    run, walk = parts.racing()
+def test_failed_race_is_shown_up_to_its_last_step(parts: StageParts) -> None:
+    run, advance = parts.running_race()
     parts.stage.show(run.id)
     for _ in range(4):
-        walk()
+        advance()
     parts.set_state(run, "failed")
 
     frame = parts.watch_to_end()[-1]
@@ -171,9 +171,9 @@ def test_a_race_that_failed_shows_what_it_has_and_ends(parts: StageParts) -> Non
     assert [lane.done for lane in frame.lanes] == [True, True]
 
 
-def test_who_gains_nothing_marches_on_the_spot(parts: StageParts) -> None:
-    """An untrained table with every value equal wanders without getting anywhere fast."""
-    parts.stage.show(parts.race(LANES, steps=40).id)
+def test_lane_without_progress_is_marked_as_marching(parts: StageParts) -> None:
+    """An untrained agent, whose action values are all equal, makes hardly any progress."""
+    parts.stage.show(parts.finished_race(LANES, steps=40).id)
     frames = parts.watch_to_end(400)
     greedy = [frame.lanes[1] for frame in frames]
     idle = [frame.lanes[0] for frame in frames]
@@ -183,27 +183,27 @@ def test_who_gains_nothing_marches_on_the_spot(parts: StageParts) -> None:
     assert not any(lane.marching for lane in idle if lane.step <= 10)
 
 
-def test_a_race_that_computes_slowly_is_shown_without_stopping_at_each_step(
+def test_slowly_computed_race_is_played_without_stops(
     parts: StageParts,
 ) -> None:
-    run, walk = parts.racing(("greedy",), steps=40)
+    run, advance = parts.running_race(("greedy",), steps=40)
     parts.stage.show(run.id)
     frames = []
     for _ in range(30):
-        walk()
+        advance()
         frames += parts.watch(0.4)
-    gone = np.diff([frame.time_s for frame in frames])[100:]
+    progress = np.diff([frame.time_s for frame in frames])[100:]
 
-    assert gone.min() > 0
-    assert gone.max() < 4 * gone.mean()
+    assert progress.min() > 0
+    assert progress.max() < 4 * progress.mean()
 
 
-def test_a_robot_that_cannot_stand_is_shown_all_the_same(parts: StageParts) -> None:
+def test_race_with_an_unreachable_stance_is_shown(parts: StageParts) -> None:
     config = RaceConfig(
         gait="left-right-origin", robot=Robot(tibia_m=0.001), lanes=(LaneConfig(agent="greedy"),)
     )
     run = parts.create(config, state="failed")
     parts.stage.show(run.id)
 
-    assert parts.look().lanes[0].qpos.shape == (25,)
+    assert parts.next_frame().lanes[0].qpos.shape == (25,)
     assert parts.stage.state()["ended"]

@@ -1,4 +1,4 @@
-"""Who has the stage, and what may be commanded."""
+"""The stage: which run is shown, and playback commands."""
 
 import asyncio
 import json
@@ -17,27 +17,35 @@ def parts() -> StageParts:
     return StageParts()
 
 
-def test_at_first_the_papers_three_stand_on_the_start_line(parts: StageParts) -> None:
-    frame = parts.look()
+def test_idle_stage_shows_the_three_agents_of_the_paper(parts: StageParts) -> None:
+    frame = parts.next_frame()
 
-    assert [role.name for role in frame.cast.roles] == ["Q-learning", "Greedy", "Two-step"]
-    assert [role.color for role in frame.cast.roles] == ["#E69F00", "#56B4E9", "#009E73"]
+    assert [lane_spec.name for lane_spec in frame.spec.lane_specs] == [
+        "Q-learning",
+        "Greedy",
+        "Two-step",
+    ]
+    assert [lane_spec.color for lane_spec in frame.spec.lane_specs] == [
+        "#E69F00",
+        "#56B4E9",
+        "#009E73",
+    ]
     assert (frame.phase, frame.run_id) == ("start-line", None)
     assert all(lane.qpos[1] == 0 and lane.qpos[2] > 0.05 for lane in frame.lanes)
 
 
-def test_a_started_run_gets_the_idle_stage(parts: StageParts) -> None:
-    run, _ = parts.racing()
+def test_offered_run_takes_an_idle_stage(parts: StageParts) -> None:
+    run, _ = parts.running_race()
 
     assert parts.stage.offer(run.id)
     assert parts.stage.state()["run_id"] == run.id
     assert parts.stage.state()["live"]
 
 
-def test_a_live_run_keeps_the_stage_and_a_finished_one_does_not(parts: StageParts) -> None:
-    first, _ = parts.racing()
+def test_offer_is_rejected_only_while_a_live_run_is_on_stage(parts: StageParts) -> None:
+    first, _ = parts.running_race()
     parts.stage.offer(first.id)
-    second, _ = parts.racing()
+    second, _ = parts.running_race()
 
     assert not parts.stage.offer(second.id)
     assert parts.stage.state()["run_id"] == first.id
@@ -47,29 +55,29 @@ def test_a_live_run_keeps_the_stage_and_a_finished_one_does_not(parts: StagePart
     assert parts.stage.state()["run_id"] == second.id
 
 
-def test_whoever_asks_for_it_takes_the_stage_from_a_live_run(parts: StageParts) -> None:
-    first, _ = parts.racing()
+def test_set_replaces_a_live_run(parts: StageParts) -> None:
+    first, _ = parts.running_race()
     parts.stage.offer(first.id)
-    second = parts.race()
+    second = parts.finished_race()
 
     parts.stage.set(run_id=second.id)
 
-    assert parts.look().run_id == second.id
+    assert parts.next_frame().run_id == second.id
 
 
-def test_a_race_is_shown_after_its_own_training(parts: StageParts) -> None:
-    training, practise = parts.practising(60)
+def test_race_is_shown_after_its_own_training(parts: StageParts) -> None:
+    training, advance = parts.running_training(60)
     lanes = (LaneConfig(agent="q-learning"), LaneConfig(agent="greedy"))
     config = RaceConfig(gait=GAIT, simulator="kinematic", lanes=lanes, steps=5)
     race = parts.create(config, waiting_for=(training.id,))
 
     assert parts.stage.offer(race.id)
-    assert parts.look().cast.kind == "training"
+    assert parts.next_frame().spec.kind == "training"
     assert parts.stage.state()["next_run_id"] == race.id
     assert parts.stage.offer(race.id), "it is on the bill already"
-    while practise():
+    while advance():
         pass
-    assert parts.watch(0.5)[-1].cast.kind == "training"
+    assert parts.watch(0.5)[-1].spec.kind == "training"
 
     parts.set_state(training, "finished")
     frames = parts.watch(12.0)
@@ -78,42 +86,42 @@ def test_a_race_is_shown_after_its_own_training(parts: StageParts) -> None:
     assert max(frame.time_s for frame in frames if frame.run_id == training.id) > 18
 
 
-def test_after_twenty_seconds_of_nothing_the_newest_finished_race_is_replayed(
+def test_newest_finished_race_is_replayed_after_twenty_idle_seconds(
     parts: StageParts,
 ) -> None:
-    parts.race()
-    newest = parts.race()
-    parts.stage.show(parts.training(5).id)
-    shown = parts.watch_to_end()
+    parts.finished_race()
+    newest = parts.finished_race()
+    parts.stage.show(parts.finished_training(5).id)
+    frames = parts.watch_to_end()
 
-    assert not any(frame.replay for frame in shown)
-    assert parts.watch(REPLAY_AFTER_S - 1)[-1].cast.kind == "training"
+    assert not any(frame.replay for frame in frames)
+    assert parts.watch(REPLAY_AFTER_S - 1)[-1].spec.kind == "training"
     frame = parts.watch(2.0)[-1]
     assert (frame.run_id, frame.replay) == (newest.id, True)
 
-    started, _ = parts.racing()
+    started, _ = parts.running_race()
     assert parts.stage.offer(started.id), "a replay gives way"
-    assert not parts.look().replay
+    assert not parts.next_frame().replay
 
 
-def test_an_idle_stage_without_a_finished_race_stays_as_it_is(parts: StageParts) -> None:
+def test_idle_stage_without_a_finished_race_does_not_change(parts: StageParts) -> None:
     assert parts.watch(REPLAY_AFTER_S + 5)[-1].phase == "start-line"
 
 
-def test_a_run_that_is_deleted_leaves_the_stage(parts: StageParts) -> None:
-    run = parts.race()
+def test_deleted_run_is_removed_from_the_stage(parts: StageParts) -> None:
+    run = parts.finished_race()
     parts.stage.show(run.id)
-    parts.look()
+    parts.next_frame()
     parts.store.delete(run.id)
     parts.recordings.discard(run.id)
 
-    frame = parts.look()
+    frame = parts.next_frame()
 
     assert (frame.run_id, frame.phase) == (None, "start-line")
 
 
-def test_it_can_be_paused_and_played_again(parts: StageParts) -> None:
-    parts.stage.show(parts.race().id)
+def test_playback_can_be_paused_and_continued(parts: StageParts) -> None:
+    parts.stage.show(parts.finished_race().id)
     parts.watch(1.0)
     parts.stage.set(playing=False)
     frames = parts.watch(1.0)
@@ -125,31 +133,31 @@ def test_it_can_be_paused_and_played_again(parts: StageParts) -> None:
     assert parts.watch(1.0)[-1].time_s > frames[-1].time_s
 
 
-def test_to_play_what_has_ended_begins_again(parts: StageParts) -> None:
-    parts.stage.show(parts.race().id)
+def test_play_after_the_end_restarts_the_show(parts: StageParts) -> None:
+    parts.stage.show(parts.finished_race().id)
     parts.watch_to_end()
 
     parts.stage.set(playing=True)
 
-    assert parts.look().time_s < 1
+    assert parts.next_frame().time_s < 1
 
 
-def test_a_stall_of_the_process_skips_nothing(parts: StageParts) -> None:
-    parts.stage.show(parts.race().id)
-    parts.look()
+def test_stall_of_the_process_skips_no_motion(parts: StageParts) -> None:
+    parts.stage.show(parts.finished_race().id)
+    parts.next_frame()
     parts.now += 60
 
-    assert parts.look().time_s < 2
+    assert parts.next_frame().time_s < 2
 
 
 @pytest.mark.parametrize("speed", [0, 0.2, 65, -1, float("nan"), "fast", True])
-def test_a_speed_that_is_none_is_refused(parts: StageParts, speed: float | str) -> None:
+def test_invalid_speed_is_rejected(parts: StageParts, speed: float | str) -> None:
     with pytest.raises(InvalidInput, match=r"0\.25 to 64, or time-lapse"):
         parts.stage.set(speed=speed)
 
 
-def test_other_bad_commands_are_refused_and_change_nothing(parts: StageParts) -> None:
-    run = parts.race()
+def test_invalid_commands_are_rejected_and_change_nothing(parts: StageParts) -> None:
+    run = parts.finished_race()
     parts.stage.show(run.id)
     before = parts.stage.state()
 
@@ -163,32 +171,32 @@ def test_other_bad_commands_are_refused_and_change_nothing(parts: StageParts) ->
     assert parts.stage.state() == before
 
 
-def test_changes_are_told_to_everyone(parts: StageParts) -> None:
-    run = parts.race()
+def test_changes_are_published_on_the_bus(parts: StageParts) -> None:
+    run = parts.finished_race()
 
-    async def hear() -> dict[str, object]:
-        heard = parts.bus.subscribe()
+    async def next_stage_event() -> dict[str, object]:
+        events = parts.bus.subscribe()
         parts.stage.show(run.id)
-        async for event in heard:
+        async for event in events:
             if event.event == "stage":
-                told: dict[str, object] = json.loads(event.data)
-                return told
+                state: dict[str, object] = json.loads(event.data)
+                return state
         raise AssertionError("nothing was told")
 
-    assert asyncio.run(hear()) == parts.stage.state()
+    assert asyncio.run(next_stage_event()) == parts.stage.state()
 
 
-def test_a_scene_is_plain_json(parts: StageParts) -> None:
-    for run in (parts.race(("q-learning", "greedy")), parts.training(30)):
+def test_scene_is_plain_json(parts: StageParts) -> None:
+    for run in (parts.finished_race(("q-learning", "greedy")), parts.finished_training(30)):
         parts.stage.show(run.id)
         parts.watch(1.0)
         scene = json.loads(json.dumps(parts.stage.scene(), allow_nan=False))
 
         assert scene["run_id"] == run.id
         assert scene["lanes"][0]["color"] == "#E69F00"
-        known = scene["knowledge"]
-        assert len(known["values_m"]) == len(known["pairs"]) == 3
-        for pair, current in enumerate(known["current"]):
-            assert known["values_m"][pair][current] is None
-        assert known["cell_names"][0] == "home"
-        assert known["next"]["cell"] != known["current"][known["next"]["pair"]]
+        view = scene["knowledge"]
+        assert len(view["values_m"]) == len(view["pairs"]) == 3
+        for pair, current in enumerate(view["current"]):
+            assert view["values_m"][pair][current] is None
+        assert view["cell_names"][0] == "home"
+        assert view["next"]["cell"] != view["current"][view["next"]["pair"]]

@@ -1,4 +1,4 @@
-"""viser itself: what the hub reads here is what it reads on stage."""
+"""Fixtures: a real in-process viser server, and robots drawn on it."""
 
 from collections.abc import Iterator
 
@@ -9,12 +9,12 @@ from tests.viewer.serving import Robots, start_viser
 
 
 @pytest.fixture
-def stage() -> Iterator[InProcessViser]:
+def viser_server() -> Iterator[InProcessViser]:
     server = start_viser()
     yield server
     server.stop()
 
 
 @pytest.fixture
-def robots(stage: InProcessViser) -> Robots:
-    return Robots(stage)
+def robots(viser_server: InProcessViser) -> Robots:
+    return Robots(viser_server)

@@ -1,4 +1,4 @@
-"""A hub on a real server, and real clients to it, all on loopback."""
+"""Test set-up: a hub on a real uvicorn server, and websocket clients, all on loopback."""
 
 import asyncio
 import socket
@@ -27,46 +27,46 @@ from app.viewer.service import viewer_routes
 T = TypeVar("T")
 
 PATIENCE_S = 30.0
-"""No test depends on how long anything takes; this only ends one that would hang."""
+"""Timeout of waits; only ends a test that would hang."""
 
 
 def start_viser() -> InProcessViser:
-    """viser, drawing everything under the frame that followers move."""
-    stage = InProcessViser()
-    stage.scene.add_frame("/world", show_axes=False)
-    return stage
+    """Start an in-process viser with the root node that the follow camera translates."""
+    viser_server = InProcessViser()
+    viser_server.scene.add_frame("/world", show_axes=False)
+    return viser_server
 
 
 class Upstream:
-    """viser's stream to the hub, which can be lost, and is found again."""
+    """viser's stream to the hub, with connection loss on demand."""
 
-    def __init__(self, stage: InProcessViser) -> None:
-        self._stage, self._is_lost = stage, False
+    def __init__(self, viser_server: InProcessViser) -> None:
+        self._viser_server, self._lose_next = viser_server, False
 
     async def frames(self) -> AsyncGenerator[bytes, None]:
-        async with aclosing(self._stage.frames()) as frames:
+        async with aclosing(self._viser_server.frames()) as frames:
             async for frame in frames:
-                if self._is_lost:
-                    self._is_lost = False
+                if self._lose_next:
+                    self._lose_next = False
                     raise ConnectionError("lost by the test")
                 yield frame
 
     def lose(self) -> None:
-        self._is_lost = True
-        self._stage.scene.add_frame("/lost", show_axes=False)
+        self._lose_next = True
+        self._viser_server.scene.add_frame("/lost", show_axes=False)
 
 
 class Robots:
-    """A batch of boxes that stand where they are told, like the stage's robots."""
+    """A batched mesh that is moved like the stage's robots."""
 
     NAME = "/world/robots"
 
-    def __init__(self, stage: viser.ViserServer, count: int = 4) -> None:
+    def __init__(self, viser_server: viser.ViserServer, count: int = 4) -> None:
         corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float32)
         faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], np.uint32)
-        self._stage = stage
+        self._viser_server = viser_server
         self._shape = (count, 3)
-        self._handle = stage.scene.add_batched_meshes_simple(
+        self._handle = viser_server.scene.add_batched_meshes_simple(
             self.NAME,
             corners,
             faces,
@@ -74,28 +74,28 @@ class Robots:
             batched_positions=np.zeros(self._shape, np.float32),
         )
 
-    def stand_at(self, place: float) -> None:
-        """All of them, on the diagonal; sent at once."""
-        with self._stage.atomic():
+    def move_to(self, place: float) -> None:
+        """Set all positions to (place, place, place) and flush."""
+        with self._viser_server.atomic():
             self._handle.batched_positions = np.full(self._shape, place, np.float32)
-        self._stage.flush()
+        self._viser_server.flush()
 
 
-def eventually(holds: Callable[[], object]) -> None:
-    """Wait until it holds.
+def wait_until(predicate: Callable[[], object]) -> None:
+    """Poll until a predicate is true.
 
     Raises:
-        TimeoutError: It never did.
+        TimeoutError: It did not become true in time.
     """
     end = time.monotonic() + PATIENCE_S
-    while not holds():
+    while not predicate():
         if time.monotonic() > end:
             raise TimeoutError
         time.sleep(0.005)
 
 
-class Address:
-    """Where a hub is served, and who it is."""
+class ServedHub:
+    """A served hub with its address."""
 
     def __init__(self, hub: Hub, port: int) -> None:
         self.hub = hub
@@ -104,12 +104,12 @@ class Address:
         self.page = f"http://{self.host}/viewer/"
 
     def watch(self, view: str | None = None, **options: Any) -> "Viewer":
-        """A browser's socket, without the browser."""
+        """Connect a websocket as a browser does."""
         query = "" if view is None else f"?view={view}"
         return Viewer(f"ws://{self.host}/viewer/{query}", **options)
 
     def watch_slowly(self, view: str | None = None) -> "Viewer":
-        """One that reads no further than its few and small buffers hold, until it is asked to."""
+        """Connect a slow viewer, which reads only into small buffers until `frame` is called."""
         sock = socket.socket()
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
         sock.connect(("127.0.0.1", self.port))
@@ -117,13 +117,13 @@ class Address:
 
 
 class Reader:
-    """Reads viser's own stream, as the hub does, from a thread that has no loop."""
+    """Synchronous reader of viser's stream; runs the hub's asynchronous reader in a thread."""
 
-    def __init__(self, stage: InProcessViser) -> None:
+    def __init__(self, viser_server: InProcessViser) -> None:
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
         self._thread.start()
-        self._frames = stage.frames()
+        self._frames = viser_server.frames()
 
     def __enter__(self) -> "Reader":
         return self
@@ -135,10 +135,10 @@ class Reader:
         self._loop.close()
 
     def frame(self) -> wire.Frame:
-        """The next frame.
+        """Return the next frame.
 
         Raises:
-            ConnectionError: There is none any more.
+            ConnectionError: viser has stopped.
         """
         return wire.parse(self._wait(self._next()))
 
@@ -157,7 +157,7 @@ class Reader:
 
 
 class Viewer:
-    """A raw client that decodes what it gets."""
+    """A raw websocket client that decodes frames."""
 
     def __init__(self, url: str, protocol: str = wire.SUBPROTOCOL, **options: Any) -> None:
         self.socket: ClientConnection = connect(
@@ -176,10 +176,10 @@ class Viewer:
         self.socket.close()
 
     def frame(self) -> wire.Frame:
-        """The next frame.
+        """Return the next frame.
 
         Raises:
-            websockets.exceptions.ConnectionClosed: There is none any more.
+            websockets.exceptions.ConnectionClosed: The connection was closed.
         """
         return wire.parse(self.socket.recv(PATIENCE_S, decode=False))
 
@@ -192,8 +192,10 @@ class Viewer:
 
 
 @contextmanager
-def serving(hub: Hub, *, more_routes: Sequence[BaseRoute] = (), **config: Any) -> Iterator[Address]:
-    """Serve the hub by uvicorn in a thread, as the app does."""
+def serving(
+    hub: Hub, *, more_routes: Sequence[BaseRoute] = (), **config: Any
+) -> Iterator[ServedHub]:
+    """Serve the hub by uvicorn in a thread, with the app's options."""
 
     @asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncIterator[None]:
@@ -212,28 +214,28 @@ def serving(hub: Hub, *, more_routes: Sequence[BaseRoute] = (), **config: Any) -
     thread = threading.Thread(target=server.run, daemon=True)
     thread.start()
     try:
-        eventually(lambda: server.started)
-        yield Address(hub, server.servers[0].sockets[0].getsockname()[1])
+        wait_until(lambda: server.started)
+        yield ServedHub(hub, server.servers[0].sockets[0].getsockname()[1])
     finally:
         server.should_exit = True
         thread.join(PATIENCE_S)
         assert not thread.is_alive(), "the server hangs at shutdown"
 
 
-def says(type_: str, **fields: object) -> Callable[[wire.Frame], bool]:
-    """Whether a frame has a message of that type, with those fields."""
+def has_message(type_: str, **fields: object) -> Callable[[wire.Frame], bool]:
+    """Return a predicate: whether a frame has a message of this type with these fields."""
 
-    def holds(frame: wire.Frame) -> bool:
+    def predicate(frame: wire.Frame) -> bool:
         return any(
             message["type"] == type_ and fields.items() <= message.items()
             for message in frame.messages
         )
 
-    return holds
+    return predicate
 
 
 def array(frame: wire.Frame, name: str, field: str) -> NDArray[np.float32] | None:
-    """The newest value of a node's property in a frame; None if it says nothing of it."""
+    """Return the newest value of a node's array property in a frame, None if there is none."""
     value = None
     for message in frame.messages:
         if message.get("name") == name:

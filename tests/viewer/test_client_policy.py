@@ -1,4 +1,4 @@
-"""What may run on the viewer's page is what stands in it, packed or not."""
+"""The Content-Security-Policy allows exactly the page's scripts, the packed one included."""
 
 import re
 from pathlib import Path
@@ -7,7 +7,7 @@ import pytest
 import viser
 import zstandard
 
-from app.viewer.client_page import ViewerPage, skin_script
+from app.viewer.client_page import ViewerPage, patch_script
 from app.viewer.client_policy import content_policy
 
 CLIENT = (Path(viser.__file__).parent / "client/build/index.html").read_text("utf-8")
@@ -25,7 +25,7 @@ def in_base_88(data: bytes) -> str:
 
 
 def page(code: str, style: str = "", size: int | None = None) -> str:
-    """A page as viser makes it."""
+    """Return a page in viser's format."""
     packed = in_base_88(zstandard.compress((style + code).encode()))
     sizes = len(style.encode()), len(code.encode()) if size is None else size
     attributes = f'data-p="{packed}" data-ss="{sizes[0]}" data-cs="{sizes[1]}"'
@@ -37,7 +37,7 @@ def hashes(policy: str) -> list[str]:
 
 
 @pytest.mark.parametrize("tail", ["", "1", "12", "123", "1234"])
-def test_it_has_a_hash_for_each_script_the_packed_one_too(tail: str) -> None:
+def test_policy_has_a_hash_for_each_script_and_the_packed_one(tail: str) -> None:
     policies = [content_policy(page(code)) for code in ("app()" + tail, "app() " + tail)]
 
     one, other = map(hashes, policies)
@@ -46,11 +46,11 @@ def test_it_has_a_hash_for_each_script_the_packed_one_too(tail: str) -> None:
     assert len({*one, *other}) == 4
 
 
-def test_the_style_is_no_part_of_the_script() -> None:
+def test_packed_style_is_not_part_of_the_hash() -> None:
     assert content_policy(page("α()", "b { --β: 1 }")) == content_policy(page("α()"))
 
 
-def test_the_installed_client_may_run_three_scripts_and_none_that_is_not_hashed() -> None:
+def test_installed_client_has_three_scripts_and_all_are_hashed() -> None:
     headers = ViewerPage().response({}).headers
     policy = headers["content-security-policy"]
 
@@ -77,13 +77,13 @@ def test_the_installed_client_may_run_three_scripts_and_none_that_is_not_hashed(
         (page("app()").replace(" data-cs", " data-x data-cs"), "0 hold the client"),
     ],
 )
-def test_another_client_is_refused(html: str, what: str) -> None:
+def test_unsupported_client_raises(html: str, what: str) -> None:
     with pytest.raises(RuntimeError, match=what):
         content_policy(html)
 
 
-def test_the_browser_s_own_unpacker_has_these_digits() -> None:
-    said = re.search(r'const A="((?:[^"\\]|\\.)+)"', CLIENT)
-    assert said is not None
-    assert said[1].replace("\\\\", "\\") == DIGITS
-    assert "</script" not in skin_script()
+def test_base_88_digits_are_those_of_visers_loader() -> None:
+    digits = re.search(r'const A="((?:[^"\\]|\\.)+)"', CLIENT)
+    assert digits is not None
+    assert digits[1].replace("\\\\", "\\") == DIGITS
+    assert "</script" not in patch_script()

@@ -7,19 +7,19 @@ import numpy as np
 import pytest
 
 from app import assets
-from app.viewer.colormap import VIRIDIS, batched, rgb, value_colors
+from app.viewer.colormap import VIRIDIS, batch_colors, rgb, value_colors
 
 
-def test_the_page_and_the_stage_use_the_same_scale() -> None:
+def test_page_and_stage_use_the_same_scale() -> None:
     script = (assets.static_dir() / "js" / "colormap.js").read_text("utf-8")
-    found = re.search(r"STOPS = (\[.*?\]);", script, re.DOTALL)
-    assert found is not None
-    stops = json.loads(re.sub(r",\s*\]", "]", found[1]))
+    match = re.search(r"STOPS = (\[.*?\]);", script, re.DOTALL)
+    assert match is not None
+    stops = json.loads(re.sub(r",\s*\]", "]", match[1]))
 
     assert [tuple(stop) for stop in stops] == [rgb(color) for color in VIRIDIS]
 
 
-def test_values_go_from_the_scales_low_end_to_its_high_end() -> None:
+def test_values_map_from_the_low_to_the_high_end() -> None:
     colors = value_colors(np.array([-1.0, 0.0, 0.05, 0.1, 9.0, np.nan]), 0.0, 0.1)
 
     assert tuple(colors[0]) == tuple(colors[1]) == tuple(colors[5]) == rgb(VIRIDIS[0])
@@ -27,10 +27,10 @@ def test_values_go_from_the_scales_low_end_to_its_high_end() -> None:
     assert tuple(colors[3]) == tuple(colors[4]) == rgb(VIRIDIS[-1])
 
 
-def test_a_scale_without_extent_has_one_colour() -> None:
+def test_scale_without_extent_has_one_colour() -> None:
     assert np.ptp(value_colors(np.zeros((3, 5)), 0.0, 0.0), axis=(0, 1)).max() == 0
 
 
 @pytest.mark.parametrize(("dimmed", "expected"), [(1.0, 255), (0.5, 128)])
-def test_white_stays_white_in_a_batch_unless_it_is_dimmed(dimmed: float, expected: int) -> None:
-    assert batched(np.full((1, 3), 255, np.uint8), dimmed).tolist() == [[expected] * 3]
+def test_batch_colors_keeps_white_unless_dimmed(dimmed: float, expected: int) -> None:
+    assert batch_colors(np.full((1, 3), 255, np.uint8), dimmed).tolist() == [[expected] * 3]

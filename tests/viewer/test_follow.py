@@ -1,4 +1,4 @@
-"""The one thing that a browser may say, and nothing beside it."""
+"""Decoding of follow messages, the only ones accepted from browsers."""
 
 import msgspec
 import pytest
@@ -7,13 +7,13 @@ from viser import _messages
 from app.viewer import follow
 
 
-def said(message: object) -> str | None:
-    return follow.chosen_view(msgspec.msgpack.encode(message))
+def decode(message: object) -> str | None:
+    return follow.decode_view(msgspec.msgpack.encode(message))
 
 
 @pytest.mark.parametrize("view", ["leader", "free", "1", "8"])
-def test_a_view_is_chosen_by_name(view: str) -> None:
-    assert said({"type": "FollowMessage", "view": view}) == view
+def test_valid_view_is_decoded(view: str) -> None:
+    assert decode({"type": "FollowMessage", "view": view}) == view
     assert follow.valid_view(view) == view
 
 
@@ -33,17 +33,17 @@ def test_a_view_is_chosen_by_name(view: str) -> None:
         None,
     ],
 )
-def test_anything_else_is_nothing(message: object) -> None:
-    assert said(message) is None
+def test_other_messages_are_ignored(message: object) -> None:
+    assert decode(message) is None
 
 
 @pytest.mark.parametrize("data", [None, b"", b"\xc1", b"\x81", b"\xff" * 30, b"\0" * 100_000])
-def test_bytes_that_say_nothing_are_nothing(data: bytes | None) -> None:
-    assert follow.chosen_view(data) is None
+def test_invalid_bytes_are_ignored(data: bytes | None) -> None:
+    assert follow.decode_view(data) is None
 
 
-def test_following_moves_the_ground_under_the_robot() -> None:
-    message = follow.centring("/world", (2.0, -1.0, 0.4))
+def test_centring_message_translates_the_world() -> None:
+    message = follow.centring_message("/world", (2.0, -1.0, 0.4))
 
     assert message["type"] == _messages.SetPositionMessage.__name__
     assert (message["name"], message["position"]) == ("/world", (-2.0, 1.0, 0.0))

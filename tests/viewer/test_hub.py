@@ -1,4 +1,4 @@
-"""Every browser sees what viser draws; none can say anything to it."""
+"""The hub: relaying, slow viewers, refusals, reconnection, follow camera."""
 
 import logging
 from collections.abc import Iterator
@@ -14,31 +14,31 @@ from app.viewer import follow, wire
 from app.viewer.hub import Hub
 from app.viewer.in_process import InProcessViser
 from tests.viewer.serving import (
-    Address,
     Robots,
+    ServedHub,
     Viewer,
     array,
-    eventually,
-    says,
+    has_message,
     serving,
     start_viser,
+    wait_until,
 )
 
-FULL = says("ReplayDoneMessage")
+is_complete = has_message("ReplayDoneMessage")
 
 
 @pytest.fixture
-def address(stage: InProcessViser, robots: Robots) -> Iterator[Address]:
-    with serving(Hub(stage.frames)) as address:
-        yield address
+def served(viser_server: InProcessViser, robots: Robots) -> Iterator[ServedHub]:
+    with serving(Hub(viser_server.frames)) as served:
+        yield served
 
 
-def stands_at(place: float) -> Any:
-    def holds(frame: wire.Frame) -> bool:
-        places = array(frame, Robots.NAME, "batched_positions")
-        return places is not None and bool(np.all(places == place))
+def robots_at(place: float) -> Any:
+    def predicate(frame: wire.Frame) -> bool:
+        positions = array(frame, Robots.NAME, "batched_positions")
+        return positions is not None and bool(np.all(positions == place))
 
-    return holds
+    return predicate
 
 
 def close_code(viewer: Viewer) -> tuple[int, str]:
@@ -48,97 +48,101 @@ def close_code(viewer: Viewer) -> tuple[int, str]:
     return closed.value.rcvd.code, closed.value.rcvd.reason
 
 
-def test_a_late_joiner_gets_everything_in_one_frame(address: Address, robots: Robots) -> None:
-    with address.watch() as early:
+def test_late_joiner_gets_the_whole_scene_in_one_frame(served: ServedHub, robots: Robots) -> None:
+    with served.watch() as early:
         early.frame()
-        robots.stand_at(5)
-        early.frames_until(stands_at(5))
-        with address.watch() as late:
+        robots.move_to(5)
+        early.frames_until(robots_at(5))
+        with served.watch() as late:
             frame = late.frame()
 
-    assert FULL(frame)
-    assert says("BatchedMeshesMessage", name=Robots.NAME)(frame)
-    assert stands_at(5)(frame)
+    assert is_complete(frame)
+    assert has_message("BatchedMeshesMessage", name=Robots.NAME)(frame)
+    assert robots_at(5)(frame)
 
 
-def test_all_get_the_same_bytes(address: Address, robots: Robots) -> None:
-    with address.watch() as one, address.watch() as other:
+def test_all_viewers_get_the_same_bytes(served: ServedHub, robots: Robots) -> None:
+    with served.watch() as one, served.watch() as other:
         one.frame()
         other.frame()
         for place in range(1, 20):
-            robots.stand_at(place)
-            frames = one.frames_until(stands_at(place))
+            robots.move_to(place)
+            frames = one.frames_until(robots_at(place))
             assert [frame.raw for frame in frames] == [
-                frame.raw for frame in other.frames_until(stands_at(place))
+                frame.raw for frame in other.frames_until(robots_at(place))
             ]
 
 
-def test_viewers_are_counted(stage: InProcessViser) -> None:
+def test_viewers_are_counted(viser_server: InProcessViser) -> None:
     counts: list[int] = []
-    hub = Hub(stage.frames, on_viewers_changed=counts.append)
-    with serving(hub) as address:
-        with address.watch() as one, address.watch() as other:
+    hub = Hub(viser_server.frames, on_viewers_changed=counts.append)
+    with serving(hub) as served:
+        with served.watch() as one, served.watch() as other:
             one.frame()
             other.frame()
-        eventually(lambda: hub.counters.viewers == 0)
+        wait_until(lambda: hub.counters.viewers == 0)
 
     assert counts == [1, 2, 1, 0]
     assert hub.counters.frames_sent >= 2
 
 
-def test_who_does_not_read_is_merged_and_harms_nobody(address: Address, robots: Robots) -> None:
-    counters = address.hub.counters
-    with address.watch() as quick, address.watch_slowly() as slow:
+def test_slow_viewer_gets_coalesced_frames_and_does_not_slow_others(
+    served: ServedHub, robots: Robots
+) -> None:
+    counters = served.hub.counters
+    with served.watch() as quick, served.watch_slowly() as slow:
         quick.frame()
         place = 0
-        seen = []
+        quick_frames = []
         while counters.frames_merged < 50:
             place += 1
-            robots.stand_at(place)
-            seen += quick.frames_until(stands_at(place))
-        caught_up = slow.frames_until(stands_at(place))
+            robots.move_to(place)
+            quick_frames += quick.frames_until(robots_at(place))
+        caught_up = slow.frames_until(robots_at(place))
 
-        # Each frame one by one for the one, fewer but never an old one last for the other.
-        assert len(seen) >= place
-        assert len(caught_up) < len(seen)
-        robots.stand_at(-1)
-        slow.frames_until(stands_at(-1))
+        # The quick viewer gets each frame, the slow one fewer, the newest last.
+        assert len(quick_frames) >= place
+        assert len(caught_up) < len(quick_frames)
+        robots.move_to(-1)
+        slow.frames_until(robots_at(-1))
         assert counters.viewers == 2
         assert counters.resyncs == 0
 
 
-def test_who_answers_no_ping_is_let_go(stage: InProcessViser, robots: Robots) -> None:
-    hub = Hub(stage.frames)
+def test_viewer_without_pongs_is_disconnected(viser_server: InProcessViser, robots: Robots) -> None:
+    hub = Hub(viser_server.frames)
     with (
-        # The one who answers may be slow to, beside other work on the machine.
-        serving(hub, ws_ping_interval=0.2, ws_ping_timeout=3.0) as address,
-        address.watch() as quick,
-        address.watch_slowly(),
+        # A generous timeout, since the responsive viewer may be slow on a busy machine.
+        serving(hub, ws_ping_interval=0.2, ws_ping_timeout=3.0) as served,
+        served.watch() as quick,
+        served.watch_slowly(),
     ):
         quick.frame()
-        eventually(lambda: hub.counters.viewers == 2)
+        wait_until(lambda: hub.counters.viewers == 2)
         place = 0
         while hub.counters.viewers == 2:
             place += 1
-            robots.stand_at(place)
-            quick.frames_until(stands_at(place))
+            robots.move_to(place)
+            quick.frames_until(robots_at(place))
 
-        robots.stand_at(-1)
-        quick.frames_until(stands_at(-1))
+        robots.move_to(-1)
+        quick.frames_until(robots_at(-1))
         assert hub.counters.viewers == 1
 
 
-def test_stalled_viewers_do_not_hold_up_the_end(stage: InProcessViser, robots: Robots) -> None:
-    hub = Hub(stage.frames)
-    with serving(hub) as address:
-        slow = address.watch_slowly()
-        quick = address.watch()
+def test_stalled_viewers_do_not_delay_shutdown(
+    viser_server: InProcessViser, robots: Robots
+) -> None:
+    hub = Hub(viser_server.frames)
+    with serving(hub) as served:
+        slow = served.watch_slowly()
+        quick = served.watch()
         quick.frame()
         place = 0
         while hub.counters.frames_merged == 0:
             place += 1
-            robots.stand_at(place)
-            quick.frames_until(stands_at(place))
+            robots.move_to(place)
+            quick.frames_until(robots_at(place))
 
     assert hub.counters.viewers == 0
     with pytest.raises(ConnectionClosed):
@@ -146,11 +150,13 @@ def test_stalled_viewers_do_not_hold_up_the_end(stage: InProcessViser, robots: R
     slow.socket.close()
 
 
-def test_nobody_is_heard_by_viser(stage: InProcessViser, address: Address) -> None:
-    heard: list[object] = []
-    stage.on_client_connect(heard.append)
-    box = stage.gui.add_checkbox("box", initial_value=False)
-    with address.watch() as viewer:
+def test_messages_of_browsers_do_not_reach_viser(
+    viser_server: InProcessViser, served: ServedHub
+) -> None:
+    connected_clients: list[object] = []
+    viser_server.on_client_connect(connected_clients.append)
+    box = viser_server.gui.add_checkbox("box", initial_value=False)
+    with served.watch() as viewer:
         viewer.frame()
         for message in (
             {"type": "GuiUpdateMessage", "uuid": box._impl.uuid, "updates": {"value": True}},
@@ -160,108 +166,108 @@ def test_nobody_is_heard_by_viser(stage: InProcessViser, address: Address) -> No
             viewer.socket.send(msgspec.msgpack.encode(message))
         viewer.socket.send(b"\xc1 not msgpack")
         viewer.socket.send("text")
-        # Answered after all that was said before it.
+        # The pong arrives after all earlier messages were processed.
         viewer.socket.ping().wait(10)
 
         box.label = "still there"
-        viewer.frames_until(says("GuiUpdateMessage", updates={"label": "still there"}))
+        viewer.frames_until(has_message("GuiUpdateMessage", updates={"label": "still there"}))
 
     assert box.value is False
-    assert heard == []
+    assert connected_clients == []
 
 
-def test_something_large_is_not_even_read(address: Address) -> None:
-    with address.watch() as viewer:
+def test_large_message_closes_the_connection(served: ServedHub) -> None:
+    with served.watch() as viewer:
         viewer.frame()
         viewer.socket.send(bytes(100_000))
 
         assert close_code(viewer)[0] == 1009
-    eventually(lambda: address.hub.counters.viewers == 0)
+    wait_until(lambda: served.hub.counters.viewers == 0)
 
 
 @pytest.mark.parametrize("protocol", ["viser-v0.0.1", "chat"])
-def test_another_version_is_told_to_reload(address: Address, protocol: str) -> None:
-    with Viewer(f"ws://{address.host}/viewer/", protocol) as viewer:
+def test_wrong_subprotocol_is_refused_with_reload(served: ServedHub, protocol: str) -> None:
+    with Viewer(f"ws://{served.host}/viewer/", protocol) as viewer:
         assert close_code(viewer) == (1002, "reload")
 
 
-def test_a_full_house_says_so_and_has_room_again(stage: InProcessViser) -> None:
-    with serving(Hub(stage.frames, max_viewers=1)) as address:
-        with address.watch() as first:
+def test_viewer_over_the_limit_is_refused_until_one_leaves(viser_server: InProcessViser) -> None:
+    with serving(Hub(viser_server.frames, max_viewers=1)) as served:
+        with served.watch() as first:
             first.frame()
-            with address.watch() as second:
+            with served.watch() as second:
                 assert close_code(second) == (1013, "full")
-        eventually(lambda: address.hub.counters.viewers == 0)
-        with address.watch() as third:
-            assert FULL(third.frame())
+        wait_until(lambda: served.hub.counters.viewers == 0)
+        with served.watch() as third:
+            assert is_complete(third.frame())
 
 
 @pytest.mark.parametrize("origin", ["http://evil.example", "http://127.0.0.1", "null"])
-def test_foreign_pages_get_nothing(address: Address, origin: str) -> None:
+def test_foreign_origin_is_rejected(served: ServedHub, origin: str) -> None:
     with pytest.raises(InvalidStatus) as refused:
-        address.watch(origin=origin)
+        served.watch(origin=origin)
 
     assert refused.value.response.status_code == 403
 
 
-def test_our_own_page_and_a_named_one_get_in(stage: InProcessViser) -> None:
-    hub = Hub(stage.frames, allowed_origins=["https://race.example"])
-    with serving(hub) as address:
-        for origin in (f"http://{address.host}", "https://race.example"):
-            with address.watch(origin=origin) as viewer:
-                assert FULL(viewer.frame())
+def test_own_and_allowed_origins_are_accepted(viser_server: InProcessViser) -> None:
+    hub = Hub(viser_server.frames, allowed_origins=["https://race.example"])
+    with serving(hub) as served:
+        for origin in (f"http://{served.host}", "https://race.example"):
+            with served.watch(origin=origin) as viewer:
+                assert is_complete(viewer.frame())
 
 
-def test_scripts_reach_no_browser(stage: InProcessViser, address: Address) -> None:
-    with address.watch() as early:
+def test_script_messages_are_not_relayed(viser_server: InProcessViser, served: ServedHub) -> None:
+    with served.watch() as early:
         early.frame()
-        with stage.atomic():
+        with viser_server.atomic():
             script = _messages.RunJavascriptMessage("document.title = 'hacked'")
-            stage._websock_server.queue_message(script)
-            stage.scene.add_label("/world/beside", "it")
-        live = early.frames_until(says("LabelMessage"))
-        with address.watch() as late:
+            viser_server._websock_server.queue_message(script)
+            viser_server.scene.add_label("/world/beside", "it")
+        live = early.frames_until(has_message("LabelMessage"))
+        with served.watch() as late:
             snapshot = late.frame()
 
-    assert not any(says("RunJavascriptMessage")(frame) for frame in [*live, snapshot])
-    assert says("LabelMessage", name="/world/beside")(snapshot)
+    assert not any(has_message("RunJavascriptMessage")(frame) for frame in [*live, snapshot])
+    assert has_message("LabelMessage", name="/world/beside")(snapshot)
 
 
-def test_viser_s_return_is_seen_by_all(caplog: pytest.LogCaptureFixture) -> None:
+def test_viewers_reconnect_after_a_restart_of_viser(caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.WARNING, "app.viewer.hub")
-    stage = start_viser()
-    hub = Hub(stage.frames)
-    with serving(hub) as address, address.watch() as before:
-        assert FULL(before.frame())
-        stage.stop()
-        with address.watch() as meanwhile:
-            again = start_viser()
-            hub.upstream = again.frames
-            again.scene.add_label("/world/again", "here")
+    viser_server = start_viser()
+    hub = Hub(viser_server.frames)
+    with serving(hub) as served, served.watch() as before:
+        assert is_complete(before.frame())
+        viser_server.stop()
+        with served.watch() as meanwhile:
+            restarted = start_viser()
+            hub.upstream = restarted.frames
+            restarted.scene.add_label("/world/again", "here")
 
             assert close_code(before) == (1012, "resync")
-            everything = [meanwhile.frame()]
-            if not says("LabelMessage")(everything[0]):
-                everything += meanwhile.frames_until(says("LabelMessage"))
-            assert address.hub.counters.resyncs == 1
-            with address.watch() as after:
-                assert says("LabelMessage", name="/world/again")(after.frame())
-        again.stop()
-    assert FULL(everything[0])
+            frames = [meanwhile.frame()]
+            if not has_message("LabelMessage")(frames[0]):
+                frames += meanwhile.frames_until(has_message("LabelMessage"))
+            assert served.hub.counters.resyncs == 1
+            with served.watch() as after:
+                assert has_message("LabelMessage", name="/world/again")(after.frame())
+        restarted.stop()
+    assert is_complete(frames[0])
     assert "lost viser" in caplog.text
 
 
-def test_viewers_wait_for_viser() -> None:
+def test_viewers_wait_until_viser_is_connected() -> None:
     hub = Hub()
-    with serving(hub) as address, address.watch() as viewer:
-        stage = start_viser()
-        hub.upstream = stage.frames
-        assert FULL(viewer.frame())
-        stage.stop()
+    with serving(hub) as served, served.watch() as viewer:
+        viser_server = start_viser()
+        hub.upstream = viser_server.frames
+        assert is_complete(viewer.frame())
+        viser_server.stop()
 
 
-class Race:
-    """Where the robots are that viewers follow."""
+class FollowPositions:
+    """Fake of the positions of the robots that viewers follow."""
 
     def __init__(self) -> None:
         self.positions: dict[str, follow.Position] = {"leader": (3.0, 1.0, 0.5), "2": (1.0, 0, 0)}
@@ -271,18 +277,20 @@ class Race:
 
 
 @pytest.fixture
-def race() -> Race:
-    return Race()
+def follow_positions() -> FollowPositions:
+    return FollowPositions()
 
 
 @pytest.fixture
-def followed(stage: InProcessViser, robots: Robots, race: Race) -> Iterator[Address]:
-    with serving(Hub(stage.frames, follow_position=race)) as address:
-        yield address
+def served_with_follow(
+    viser_server: InProcessViser, robots: Robots, follow_positions: FollowPositions
+) -> Iterator[ServedHub]:
+    with serving(Hub(viser_server.frames, follow_position=follow_positions)) as served:
+        yield served
 
 
 def centred_on(frame: wire.Frame) -> tuple[float, float] | None:
-    """Where the followed robot is, to which the frame moves the world."""
+    """Return the position on which a frame centres the world, None if it does not."""
     [*_, position] = [None] + [
         message["position"]
         for message in frame.messages
@@ -291,14 +299,16 @@ def centred_on(frame: wire.Frame) -> tuple[float, float] | None:
     return None if position is None else (-position[0], -position[1])
 
 
-def test_each_sees_what_it_follows_and_no_other(followed: Address, robots: Robots) -> None:
+def test_each_viewer_is_centred_on_its_own_view(
+    served_with_follow: ServedHub, robots: Robots
+) -> None:
     views = {"leader": (3, 1), "2": (1, 0), "7": None, "free": None, None: None, "bogus": None}
-    viewers = {view: followed.watch(view) for view in views}
+    viewers = {view: served_with_follow.watch(view) for view in views}
     for viewer in viewers.values():
         viewer.frame()
 
-    robots.stand_at(4)
-    frames = {view: viewer.frames_until(stands_at(4))[-1] for view, viewer in viewers.items()}
+    robots.move_to(4)
+    frames = {view: viewer.frames_until(robots_at(4))[-1] for view, viewer in viewers.items()}
 
     assert {view: centred_on(frame) for view, frame in frames.items()} == views
     assert frames["free"].raw == frames["7"].raw == frames[None].raw
@@ -307,46 +317,49 @@ def test_each_sees_what_it_follows_and_no_other(followed: Address, robots: Robot
         viewer.socket.close()
 
 
-def test_a_newcomer_sees_the_robot_in_the_middle_at_once(followed: Address) -> None:
-    with followed.watch("leader") as viewer:
+def test_first_frame_is_centred(served_with_follow: ServedHub) -> None:
+    with served_with_follow.watch("leader") as viewer:
         frame = viewer.frame()
 
-    assert FULL(frame)
+    assert is_complete(frame)
     assert centred_on(frame) == (3, 1)
 
 
-def test_another_view_needs_no_new_connection(
-    followed: Address, robots: Robots, race: Race
+def test_view_can_be_changed_without_a_new_connection(
+    served_with_follow: ServedHub, robots: Robots, follow_positions: FollowPositions
 ) -> None:
     def choose(view: str) -> None:
         viewer.socket.send(msgspec.msgpack.encode({"type": "FollowMessage", "view": view}))
 
-    with followed.watch("free") as viewer:
+    with served_with_follow.watch("free") as viewer:
         viewer.frame()
         choose("2")
         assert centred_on(viewer.frame()) == (1, 0)
 
-        race.positions["2"] = (1.5, 0.25, 0)
-        robots.stand_at(1)
-        assert centred_on(viewer.frames_until(stands_at(1))[-1]) == (1.5, 0.25)
+        follow_positions.positions["2"] = (1.5, 0.25, 0)
+        robots.move_to(1)
+        assert centred_on(viewer.frames_until(robots_at(1))[-1]) == (1.5, 0.25)
 
         choose("nonsense")
         choose("free")
         viewer.socket.ping().wait(10)
-        robots.stand_at(2)
-        assert centred_on(viewer.frames_until(stands_at(2))[-1]) is None
+        robots.move_to(2)
+        assert centred_on(viewer.frames_until(robots_at(2))[-1]) is None
 
 
-def test_a_fault_of_ours_does_not_end_the_show(
-    followed: Address, robots: Robots, race: Race, caplog: pytest.LogCaptureFixture
+def test_error_while_relaying_makes_viewers_reconnect(
+    served_with_follow: ServedHub,
+    robots: Robots,
+    follow_positions: FollowPositions,
+    caplog: pytest.LogCaptureFixture,
 ) -> None:
-    with followed.watch("leader") as viewer:
+    with served_with_follow.watch("leader") as viewer:
         viewer.frame()
-        race.positions["leader"] = ("far",)  # type: ignore[assignment]
-        robots.stand_at(1)
-        eventually(lambda: "relaying failed" in caplog.text)
-        race.positions["leader"] = (1.0, 1.0, 0.0)
+        follow_positions.positions["leader"] = ("far",)  # type: ignore[assignment]
+        robots.move_to(1)
+        wait_until(lambda: "relaying failed" in caplog.text)
+        follow_positions.positions["leader"] = (1.0, 1.0, 0.0)
 
         assert close_code(viewer)[0] == 1012
-    with followed.watch("leader") as viewer:
-        assert stands_at(1)(viewer.frame())
+    with served_with_follow.watch("leader") as viewer:
+        assert robots_at(1)(viewer.frame())

@@ -1,4 +1,4 @@
-"""The page in a real browser, in an iframe of a dashboard, over a real server and a real viser."""
+"""The page in a real browser, in an iframe of a dashboard, with a real server and a real viser."""
 
 import re
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ from starlette.routing import Route
 from app.viewer import follow, wire
 from app.viewer.hub import Hub
 from app.viewer.in_process import InProcessViser
-from tests.viewer.serving import Address, Upstream, eventually, serving, start_viser
+from tests.viewer.serving import ServedHub, Upstream, serving, start_viser, wait_until
 
 DASHBOARD = """
 <!doctype html>
@@ -31,7 +31,7 @@ POSITIONS: dict[str, follow.Position] = {"1": (1.0, 0.5, 0.0), "2": (2.0, 0.0, 0
 
 
 class Recording:
-    """What the server has of a race that was, in viser's own format."""
+    """Endpoint that serves a recorded stream in viser's format."""
 
     data = b""
 
@@ -45,25 +45,27 @@ def recording() -> Recording:
 
 
 @pytest.fixture
-def upstream(stage: InProcessViser) -> Upstream:
-    return Upstream(stage)
+def upstream(viser_server: InProcessViser) -> Upstream:
+    return Upstream(viser_server)
 
 
 @pytest.fixture
-def address(stage: InProcessViser, upstream: Upstream, recording: Recording) -> Iterator[Address]:
-    stage.scene.add_box("/world/box", color=(255, 255, 255), dimensions=(2, 2, 2))
+def served(
+    viser_server: InProcessViser, upstream: Upstream, recording: Recording
+) -> Iterator[ServedHub]:
+    viser_server.scene.add_box("/world/box", color=(255, 255, 255), dimensions=(2, 2, 2))
     more_routes = [
         Route("/", lambda _: HTMLResponse(DASHBOARD)),
         Route("/api/v1/races/{id}/recording", recording.send),
     ]
     hub = Hub(upstream.frames, follow_position=POSITIONS.get)
-    with serving(hub, more_routes=more_routes) as address:
-        yield address
+    with serving(hub, more_routes=more_routes) as served:
+        yield served
 
 
 @pytest.fixture
-def dashboard(page: Page, address: Address) -> Page:
-    page.goto(f"http://{address.host}/")
+def dashboard(page: Page, served: ServedHub) -> Page:
+    page.goto(f"http://{served.host}/")
     page.wait_for_function("heard.some((message) => message.status === 'connected')")
     return page
 
@@ -71,16 +73,16 @@ def dashboard(page: Page, address: Address) -> Page:
 @pytest.fixture
 def viewer(dashboard: Page) -> Frame:
     frame = dashboard.frames[1]
-    has(frame, "/world/box")
+    wait_for_node(frame, "/world/box")
     return frame
 
 
-def has(frame: Frame | Page, name: str) -> None:
-    """Wait until viser's client has that scene node."""
+def wait_for_node(frame: Frame | Page, name: str) -> None:
+    """Wait until viser's client has a scene node."""
     frame.wait_for_function("name => window.__viserSceneTree?.getState()[name]?.message", arg=name)
 
 
-def is_centred_on(frame: Frame, x: float, y: float) -> None:
+def wait_until_centred_on(frame: Frame, x: float, y: float) -> None:
     frame.wait_for_function(
         """([x, y]) => {
             const [a, b] = __viserMutable.nodePoseData["/world"].position;
@@ -91,12 +93,12 @@ def is_centred_on(frame: Frame, x: float, y: float) -> None:
 
 
 def drawn_pixels(frame: Frame | Page) -> int:
-    """How much of the picture the box takes, read from the canvas itself."""
+    """Return the number of opaque pixels of the canvas."""
     return int(
         frame.evaluate(
             """async () => {
                 const canvas = document.querySelector("canvas[data-engine]");
-                // What is drawn can be read only until the browser has put it on screen.
+                // A WebGL canvas can be read only before the browser composites the frame.
                 await new Promise(requestAnimationFrame);
                 __viserMutable.requestRender();
                 await new Promise(requestAnimationFrame);
@@ -111,12 +113,15 @@ def drawn_pixels(frame: Frame | Page) -> int:
     )
 
 
-def heard(dashboard: Page, type_: str) -> list[dict[str, Any]]:
+def received_messages(dashboard: Page, type_: str) -> list[dict[str, Any]]:
     return [message for message in dashboard.evaluate("heard") if message.get("type") == type_]
 
 
 def socket_addresses(page: Page) -> list[str]:
-    """Grows by each websocket that viser's client opens; Playwright sees none in a worker."""
+    """Return a growing list of websocket addresses, from viser's console messages.
+
+    Playwright does not report websockets of a worker.
+    """
     addresses: list[str] = []
     announcement = re.compile(r"Connecting to: (\S+) with protocol")
 
@@ -128,16 +133,16 @@ def socket_addresses(page: Page) -> list[str]:
     return addresses
 
 
-def test_the_picture_changes_with_the_scene(viewer: Frame, stage: InProcessViser) -> None:
-    eventually(lambda: drawn_pixels(viewer) > 0)
+def test_picture_changes_with_the_scene(viewer: Frame, viser_server: InProcessViser) -> None:
+    wait_until(lambda: drawn_pixels(viewer) > 0)
     before = drawn_pixels(viewer)
 
-    stage.scene.add_box("/world/box", color=(255, 255, 255), dimensions=(4, 4, 4))
+    viser_server.scene.add_box("/world/box", color=(255, 255, 255), dimensions=(4, 4, 4))
 
-    eventually(lambda: drawn_pixels(viewer) > 2 * before)
+    wait_until(lambda: drawn_pixels(viewer) > 2 * before)
 
 
-def test_only_the_picture_is_shown(viewer: Frame) -> None:
+def test_no_controls_of_viser_are_visible(viewer: Frame) -> None:
     shown = viewer.evaluate(
         """() => [...document.querySelectorAll("#root *, body > *")]
             .filter((element) => element.checkVisibility() && element.innerText?.trim())
@@ -148,37 +153,33 @@ def test_only_the_picture_is_shown(viewer: Frame) -> None:
     assert viewer.locator("[title='About Viser']").is_hidden()
 
 
-def test_the_view_changes_without_a_reload(
-    dashboard: Page, viewer: Frame, address: Address
-) -> None:
-    is_centred_on(viewer, 1, 0.5)
+def test_view_changes_without_a_reload(dashboard: Page, viewer: Frame, served: ServedHub) -> None:
+    wait_until_centred_on(viewer, 1, 0.5)
     viewer.evaluate("window.sameDocument = true")
 
     dashboard.evaluate("show({ view: '2' })")
 
-    is_centred_on(viewer, 2, 0)
+    wait_until_centred_on(viewer, 2, 0)
     assert viewer.evaluate("window.sameDocument")
-    assert address.hub.counters.viewers == 1
+    assert served.hub.counters.viewers == 1
 
 
-def test_the_view_outlives_a_lost_connection(
-    dashboard: Page, viewer: Frame, upstream: Upstream
-) -> None:
+def test_view_survives_a_reconnection(dashboard: Page, viewer: Frame, upstream: Upstream) -> None:
     dashboard.evaluate("show({ view: '2' })")
-    is_centred_on(viewer, 2, 0)
+    wait_until_centred_on(viewer, 2, 0)
     viewer.evaluate("__viserMutable.nodePoseData['/world'].position = [9, 9, 9]")
     dashboard.evaluate("heard.length = 0")
 
-    # The hub loses viser, and then sends its viewers back to the door.
+    # The hub loses viser, and then makes its viewers reconnect.
     upstream.lose()
 
     dashboard.wait_for_function("heard.some((message) => message.status === 'connected')")
-    is_centred_on(viewer, 2, 0)
-    statuses = [message["status"] for message in heard(dashboard, "hexapods:status")]
+    wait_until_centred_on(viewer, 2, 0)
+    statuses = [message["status"] for message in received_messages(dashboard, "hexapods:status")]
     assert statuses[0] == "reconnecting"
 
 
-def test_the_theme_is_the_dashboards(dashboard: Page, viewer: Frame) -> None:
+def test_theme_follows_the_dashboard(dashboard: Page, viewer: Frame) -> None:
     def background() -> str:
         return str(viewer.evaluate("getComputedStyle(document.documentElement).backgroundColor"))
 
@@ -186,7 +187,7 @@ def test_the_theme_is_the_dashboards(dashboard: Page, viewer: Frame) -> None:
 
     dashboard.evaluate("show({ theme: 'light' })")
 
-    eventually(lambda: background() == "rgb(238, 241, 245)")
+    wait_until(lambda: background() == "rgb(238, 241, 245)")
     opaque = viewer.evaluate(
         """() => {
             const opaque = [];
@@ -199,27 +200,27 @@ def test_the_theme_is_the_dashboards(dashboard: Page, viewer: Frame) -> None:
     assert opaque == []
 
 
-def test_shortcuts_reach_the_dashboard(dashboard: Page, viewer: Frame) -> None:
+def test_shortcuts_are_forwarded_to_the_dashboard(dashboard: Page, viewer: Frame) -> None:
     dashboard.locator("iframe").click()
     for key in (" ", "r", "3", "?", "Control+y", "ArrowUp", "Shift", "Escape"):
         dashboard.keyboard.press(key)
 
     dashboard.wait_for_function("heard.some((message) => message.key === 'Escape')")
-    keys = heard(dashboard, "hexapods:key")
+    keys = received_messages(dashboard, "hexapods:key")
     assert [message["key"] for message in keys] == [" ", "r", "3", "?", "Escape"]
     assert keys[2] == {"type": "hexapods:key", "key": "3", "code": "Digit3", "shiftKey": False}
 
 
-def test_a_page_of_another_version_reloads_once(
-    page: Page, address: Address, monkeypatch: pytest.MonkeyPatch
+def test_page_of_another_version_reloads_once(
+    page: Page, served: ServedHub, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     loads: list[str] = []
     page.on("load", lambda loaded: loads.append(loaded.url))
     attempts = socket_addresses(page)
-    eventually(lambda: address.hub.live)
+    wait_until(lambda: served.hub.live)
     monkeypatch.setattr(wire, "SUBPROTOCOL", "viser-v999")
 
-    page.goto(address.page)
+    page.goto(served.page)
     while len(loads) < 2 or len(attempts) < 4:
         page.wait_for_timeout(10)
 
@@ -227,38 +228,38 @@ def test_a_page_of_another_version_reloads_once(
 
 
 @pytest.mark.parametrize(("places", "share", "told"), [(0, None, "full"), (5, 0, "address full")])
-def test_a_full_house_is_told_to_the_dashboard(
-    page: Page, stage: InProcessViser, places: int, share: int | None, told: str
+def test_refusal_is_reported_to_the_dashboard(
+    page: Page, viser_server: InProcessViser, places: int, share: int | None, told: str
 ) -> None:
     root = Route("/", lambda _: HTMLResponse(DASHBOARD))
-    hub = Hub(stage.frames, max_viewers=places, max_per_address=share)
-    with serving(hub, more_routes=[root]) as address:
-        page.goto(f"http://{address.host}/")
+    hub = Hub(viser_server.frames, max_viewers=places, max_per_address=share)
+    with serving(hub, more_routes=[root]) as served:
+        page.goto(f"http://{served.host}/")
 
         page.wait_for_function(f"heard.some((message) => message.status === '{told}')")
 
 
-def test_other_pages_cannot_have_it_in_them(address: Address, browser: Browser) -> None:
-    # Another origin: the same server, by another name.
+def test_foreign_pages_cannot_embed_the_viewer(served: ServedHub, browser: Browser) -> None:
+    # The same server under another host name is another origin.
     with browser.new_context() as context:
         foreign = context.new_page()
-        foreign.goto(f"http://{address.host}/")
+        foreign.goto(f"http://{served.host}/")
         with foreign.expect_event("console", lambda said: "frame-ancestors" in said.text):
             foreign.evaluate(
                 "address => { document.querySelector('iframe').src = address; }",
-                f"http://localhost:{address.port}/viewer/",
+                f"http://localhost:{served.port}/viewer/",
             )
-        assert address.hub.counters.viewers <= 1
+        assert served.hub.counters.viewers <= 1
 
 
-def test_other_pages_change_nothing(page: Page, address: Address) -> None:
-    page.goto(f"http://{address.host}/")
+def test_messages_of_foreign_pages_are_ignored(page: Page, served: ServedHub) -> None:
+    page.goto(f"http://{served.host}/")
     with page.expect_popup() as opening:
-        page.evaluate(f"window.other = open('http://localhost:{address.port}/viewer/?view=2')")
+        page.evaluate(f"window.other = open('http://localhost:{served.port}/viewer/?view=2')")
     other = opening.value
-    has(other, "/world/box")
+    wait_for_node(other, "/world/box")
     page.evaluate("other.postMessage({ type: 'hexapods:show', theme: 'light' }, '*')")
-    # Messages arrive in order, so once this one is there, so was the other.
+    # Messages arrive in order, so once this one has arrived, so has the other.
     other.evaluate("addEventListener('message', () => { window.told = true; })")
     page.evaluate("other.postMessage(0, '*')")
     other.wait_for_function("window.told")
@@ -266,37 +267,37 @@ def test_other_pages_change_nothing(page: Page, address: Address) -> None:
     assert other.evaluate("document.documentElement.dataset.theme") is None
 
 
-def test_nothing_comes_from_elsewhere(page: Page, address: Address) -> None:
-    asked: list[str] = []
+def test_all_requests_go_to_the_own_origin(page: Page, served: ServedHub) -> None:
+    requested: list[str] = []
     errors: list[str] = []
-    page.on("request", lambda request: asked.append(request.url))
+    page.on("request", lambda request: requested.append(request.url))
     sockets = socket_addresses(page)
     page.on("pageerror", lambda error: errors.append(str(error)))
 
-    page.goto(f"{address.page}?websocket=ws://evil.example&playbackPath=https://evil.example/x")
-    has(page, "/world/box")
+    page.goto(f"{served.page}?websocket=ws://evil.example&playbackPath=https://evil.example/x")
+    wait_for_node(page, "/world/box")
 
-    own = (f"http://{address.host}/", f"blob:http://{address.host}/", "data:")
-    assert [url for url in asked if not url.startswith(own)] == []
-    assert sockets == [f"ws://{address.host}/viewer/?view=leader"]
+    own = (f"http://{served.host}/", f"blob:http://{served.host}/", "data:")
+    assert [url for url in requested if not url.startswith(own)] == []
+    assert sockets == [f"ws://{served.host}/viewer/?view=leader"]
     assert errors == []
     page.reload()
-    has(page, "/world/box")
+    wait_for_node(page, "/world/box")
 
 
-def test_a_recording_plays_with_its_transport_bar(
-    page: Page, address: Address, recording: Recording
+def test_recording_plays_with_a_seek_bar(
+    page: Page, served: ServedHub, recording: Recording
 ) -> None:
-    stage = start_viser()
-    serializer = stage.get_scene_serializer()
+    viser_server = start_viser()
+    serializer = viser_server.get_scene_serializer()
     for step in range(10):
-        stage.scene.add_box("/world/step", dimensions=(step + 1, 1, 1))
+        viser_server.scene.add_box("/world/step", dimensions=(step + 1, 1, 1))
         serializer.insert_sleep(0.1)
     recording.data = serializer.serialize()
-    stage.stop()
+    viser_server.stop()
 
-    page.goto(f"{address.page}?playbackPath=/api/v1/races/7/recording")
+    page.goto(f"{served.page}?playbackPath=/api/v1/races/7/recording")
 
-    has(page, "/world/step")
+    wait_for_node(page, "/world/step")
     page.wait_for_selector(".mantine-Slider-root", state="visible")
-    assert address.hub.counters.viewers == 0
+    assert served.hub.counters.viewers == 0

@@ -1,6 +1,6 @@
-"""viser without a listener: says what viser says on its own port, hears nothing, opens nothing.
+"""viser without a listener: the same stream as on viser's own port, but no socket and no tunnel.
 
-Each test names what `app.viewer.in_process` relies on inside viser, for whoever upgrades it.
+The tests pin the internals of viser that `app.viewer.in_process` relies on, for upgrades of viser.
 """
 
 import asyncio
@@ -22,14 +22,14 @@ from websockets.typing import Subprotocol
 from app.viewer import wire
 from app.viewer.in_process import InProcessViser, in_process_viser
 from app.viewer.snapshot import Snapshot
-from tests.viewer.serving import Reader, Robots, array, eventually, says
+from tests.viewer.serving import Reader, Robots, array, has_message, wait_until
 
-DONE = says("ReplayDoneMessage")
+is_complete = has_message("ReplayDoneMessage")
 
 
 @pytest.fixture
-def listening() -> Iterator[viser.ViserServer]:
-    """viser as it comes, with its port on loopback."""
+def listening_viser() -> Iterator[viser.ViserServer]:
+    """An unmodified viser server, with its port on loopback."""
     server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
     yield server
     server.stop()
@@ -39,25 +39,25 @@ def draw(server: viser.ViserServer) -> None:
     server.scene.add_frame("/world", show_axes=False)
     server.scene.add_label("/world/label", "a word")
     server.initial_camera.position = (0.0, -1.5, 0.8)
-    Robots(server).stand_at(3)
+    Robots(server).move_to(3)
     server.scene.add_frame("/world/gone").remove()
 
 
-def everything(frames: list[wire.Frame]) -> list[bytes]:
-    """What a newcomer is told, less what is made of chance."""
+def compacted(frames: list[wire.Frame]) -> list[bytes]:
+    """Return the compacted messages of a stream, without random ids, as sorted JSON."""
     snapshot = Snapshot()
     for frame in frames:
         snapshot.apply(frame)
     packed = snapshot.pack()
-    said = [plain(message, packed) for message in packed.messages]
-    return sorted(msgspec.json.encode({**one, "uuid": "", "run_id": ""}) for one in said)
+    messages = [plain(message, packed) for message in packed.messages]
+    return sorted(msgspec.json.encode({**item, "uuid": "", "run_id": ""}) for item in messages)
 
 
 def plain(value: Any, frame: wire.Frame) -> Any:
     if isinstance(value, dict) and "__binary_index" in value:
         return bytes(frame.buffers[value["__binary_index"]]).hex()
     if isinstance(value, dict):
-        return {key: plain(one, frame) for key, one in value.items()}
+        return {key: plain(item, frame) for key, item in value.items()}
     return value
 
 
@@ -65,72 +65,72 @@ def sockets() -> set[Any]:
     return set(psutil.Process().net_connections(kind="inet"))
 
 
-def test_a_newcomer_is_told_what_visers_own_client_is_told(
-    listening: viser.ViserServer,
+def test_stream_equals_the_one_on_visers_own_port(
+    listening_viser: viser.ViserServer,
 ) -> None:
-    draw(listening)
-    with in_process_viser() as stage, Reader(stage) as reader:
-        draw(stage)
-        here = reader.frames_until(DONE)
-    there: list[wire.Frame] = []
-    url, protocol = f"ws://127.0.0.1:{listening.get_port()}/", Subprotocol(wire.SUBPROTOCOL)
+    draw(listening_viser)
+    with in_process_viser() as viser_server, Reader(viser_server) as reader:
+        draw(viser_server)
+        in_process = reader.frames_until(is_complete)
+    over_socket: list[wire.Frame] = []
+    url, protocol = f"ws://127.0.0.1:{listening_viser.get_port()}/", Subprotocol(wire.SUBPROTOCOL)
     with connect(url, subprotocols=[protocol], compression=None, max_size=None, proxy=None) as ws:
-        while not (there and DONE(there[-1])):
-            there.append(wire.parse(ws.recv(30, decode=False)))
+        while not (over_socket and is_complete(over_socket[-1])):
+            over_socket.append(wire.parse(ws.recv(30, decode=False)))
 
-    assert everything(here) == everything(there)
+    assert compacted(in_process) == compacted(over_socket)
 
 
 def test_no_socket_is_opened() -> None:
     before = sockets()
     with in_process_viser() as server, Reader(server) as reader:
-        reader.frames_until(DONE)
+        reader.frames_until(is_complete)
 
         assert sockets() == before
 
 
-def test_the_constructor_takes_the_server_that_does_not_listen(stage: InProcessViser) -> None:
-    made_by = inspect.getsource(viser.ViserServer.__init__)
+def test_constructor_uses_the_server_without_a_listener(viser_server: InProcessViser) -> None:
+    constructor = inspect.getsource(viser.ViserServer.__init__)
 
-    assert "infra.WebsockServer(" in made_by
-    assert type(stage._websock_server) is not infra.WebsockServer
-    assert type(stage._websock_server)._background_worker is not (
+    assert "infra.WebsockServer(" in constructor
+    assert type(viser_server._websock_server) is not infra.WebsockServer
+    assert type(viser_server._websock_server)._background_worker is not (
         infra.WebsockServer._background_worker
     )
     assert infra.WebsockServer is _infra.WebsockServer
 
 
-def test_nothing_else_of_viser_listens_or_connects() -> None:
-    """A new listener, or another way to the tunnel, is to be looked at before an upgrade."""
-    listens = inspect.getsource(infra.WebsockServer)
-    assert listens.count("websockets.asyncio.server.serve(") == 1
+def test_viser_has_one_listener_and_one_way_to_the_tunnel() -> None:
+    """Fails if an upgrade of viser adds a listener or another way to open the tunnel."""
+    server_source = inspect.getsource(infra.WebsockServer)
+    assert server_source.count("websockets.asyncio.server.serve(") == 1
     assert "serve(" in inspect.getsource(infra.WebsockServer._background_worker)
-    whole = inspect.getsource(inspect.getmodule(viser.ViserServer))  # type: ignore[arg-type]
-    assert whole.count("ViserTunnel(") == 1
+    module_source = inspect.getsource(inspect.getmodule(viser.ViserServer))  # type: ignore[arg-type]
+    assert module_source.count("ViserTunnel(") == 1
     assert "ViserTunnel(" in inspect.getsource(viser.ViserServer.request_share_url)
 
 
-def test_a_request_for_a_tunnel_does_nothing(stage: InProcessViser) -> None:
+def test_share_url_request_opens_no_tunnel(viser_server: InProcessViser) -> None:
     children, before = psutil.Process().children(recursive=True), sockets()
-    loop, server = stage._event_loop, stage._websock_server
+    loop, server = viser_server._event_loop, viser_server._websock_server
     for message in (_messages.ShareUrlRequest(), _messages.ShareUrlDisconnect()):
         handling = server._handle_incoming_message(_infra.ClientId(0), message)
         asyncio.run_coroutine_threadsafe(handling, loop).result(10)
-    stage._thread_executor.submit(lambda: None).result(10)
+    viser_server._thread_executor.submit(lambda: None).result(10)
 
-    assert stage.request_share_url() is None
-    stage.disconnect_share_url()
-    assert stage._share_tunnel is None
+    assert viser_server.request_share_url() is None
+    viser_server.disconnect_share_url()
+    assert viser_server._share_tunnel is None
     assert psutil.Process().children(recursive=True) == children
     assert sockets() == before
 
 
-def test_a_reader_that_waits_is_told_the_newest_and_no_more(stage: InProcessViser) -> None:
-    robots = Robots(stage)
-    with Reader(stage) as reader:
-        reader.frames_until(DONE)
+def test_slow_reader_gets_coalesced_frames(viser_server: InProcessViser) -> None:
+    robots = Robots(viser_server)
+    with Reader(viser_server) as reader:
+        reader.frames_until(is_complete)
         for place in range(200):
-            robots.stand_at(place)
+            robots.move_to(place)
         frames = reader.frames_until(
             lambda frame: (
                 (places := array(frame, Robots.NAME, "batched_positions")) is not None
@@ -141,17 +141,17 @@ def test_a_reader_that_waits_is_told_the_newest_and_no_more(stage: InProcessVise
     assert len(frames) < 20
 
 
-def test_readers_come_and_go(stage: InProcessViser) -> None:
+def test_readers_can_be_closed_and_opened_again(viser_server: InProcessViser) -> None:
     for _ in range(3):
-        with Reader(stage) as reader:
-            assert DONE(reader.frames_until(DONE)[-1])
-    eventually(lambda: not stage._websock_server.get_message_buffer().generator_cursors)
+        with Reader(viser_server) as reader:
+            assert is_complete(reader.frames_until(is_complete)[-1])
+    wait_until(lambda: not viser_server._websock_server.get_message_buffer().generator_cursors)
 
 
-def test_the_end_of_viser_ends_its_stream() -> None:
+def test_stream_ends_when_viser_stops() -> None:
     with in_process_viser() as server:
         reader = Reader(server)
-        reader.frames_until(DONE)
+        reader.frames_until(is_complete)
     with reader, pytest.raises(ConnectionError, match="viser has stopped"):
         reader.frame()
     with Reader(server) as late, pytest.raises(ConnectionError, match="viser has stopped"):
@@ -159,7 +159,7 @@ def test_the_end_of_viser_ends_its_stream() -> None:
     assert not server._websock_server._server_thread.is_alive()  # type: ignore[union-attr]
 
 
-def test_a_reader_whose_loop_ends_holds_nothing_up() -> None:
+def test_reader_with_a_closed_loop_does_not_block_viser() -> None:
     async def read_some(server: InProcessViser) -> None:
         async with contextlib.aclosing(server.frames()) as frames:
             await anext(frames)
@@ -167,7 +167,7 @@ def test_a_reader_whose_loop_ends_holds_nothing_up() -> None:
     threads = threading.active_count()
     with in_process_viser() as server:
         asyncio.run(read_some(server))
-        Robots(server).stand_at(1)
+        Robots(server).move_to(1)
         with Reader(server) as reader:
-            reader.frames_until(DONE)
+            reader.frames_until(is_complete)
     assert threading.active_count() <= threads

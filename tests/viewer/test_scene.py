@@ -1,4 +1,4 @@
-"""The stage drawn in a real viser, as a real client is told it."""
+"""The stage drawn in a real viser, checked by the scene graph that a client receives."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -29,8 +29,8 @@ def server() -> Iterator[InProcessViser]:
         yield started
 
 
-def told(server: InProcessViser) -> dict[str, dict[str, Any]]:
-    """Every node of the scene with its properties, as a newcomer is told them."""
+def scene_nodes(server: InProcessViser) -> dict[str, dict[str, Any]]:
+    """Return all nodes of the scene with their properties, as a new client receives them."""
     snapshot = Snapshot()
     with Reader(server) as reader:
         while not snapshot.complete:
@@ -41,12 +41,12 @@ def told(server: InProcessViser) -> dict[str, dict[str, Any]]:
             continue
         node = nodes.setdefault(message["name"], {})
         properties = message.get("props") or message.get("updates") or message
-        node.update({name: plain(value, frame) for name, value in properties.items()})
+        node.update({name: resolved(value, frame) for name, value in properties.items()})
     return nodes
 
 
-def plain(value: Any, frame: wire.Frame) -> Any:
-    """A property, or the array that it names."""
+def resolved(value: Any, frame: wire.Frame) -> Any:
+    """Return a property with an array reference resolved."""
     if isinstance(value, dict) and "__binary_index" in value:
         return np.frombuffer(frame.buffers[value["__binary_index"]], value["dtype"])
     return value
@@ -60,79 +60,79 @@ def race_of(lanes: int, robot: Robot | None = None) -> SceneSpec:
     return race_scene(config)
 
 
-def standing(cast: SceneSpec) -> StageFrame:
-    lane = LaneView(rest_pose(cast), 3, 50, 0.0)
-    return StageFrame(cast, "run", "race", "Race", (lane,) * len(cast.roles))
+def frame_at_rest(spec: SceneSpec) -> StageFrame:
+    lane = LaneView(rest_pose(spec), 3, 50, 0.0)
+    return StageFrame(spec, "run", "race", "Race", (lane,) * len(spec.lane_specs))
 
 
-def knowing(cast: SceneSpec, current: tuple[int, ...] = (0, 1, 2)) -> ActionValuesView:
-    values = np.linspace(-0.01, 0.06, 3 * len(cast.grid)).reshape(3, -1)
+def action_values(spec: SceneSpec, current: tuple[int, ...] = (0, 1, 2)) -> ActionValuesView:
+    values = np.linspace(-0.01, 0.06, 3 * len(spec.grid)).reshape(3, -1)
     values[range(3), current] = np.nan
     return ActionValuesView(values, values, current, None, -0.01, 0.06)
 
 
-def test_everything_is_under_one_frame_and_no_robot_is_many_nodes(
+def test_number_of_robot_nodes_does_not_depend_on_the_lanes(
     server: InProcessViser,
 ) -> None:
-    StageScene(server).draw(standing(race_of(3)))
-    three = {name for name in told(server) if "/robots/" in name}
+    StageScene(server).draw(frame_at_rest(race_of(3)))
+    three = {name for name in scene_nodes(server) if "/robots/" in name}
 
-    StageScene(server).draw(standing(race_of(6)))
-    six = {name for name in told(server) if "/robots/" in name}
+    StageScene(server).draw(frame_at_rest(race_of(6)))
+    six = {name for name in scene_nodes(server) if "/robots/" in name}
 
     assert three == six
     assert len(three) < 12
 
 
 @pytest.mark.parametrize("legs", [4, 6, 8])
-def test_a_robot_of_any_number_of_legs_stands_where_its_pose_says(legs: int) -> None:
+def test_robot_with_any_number_of_legs_follows_its_pose(legs: int) -> None:
     robot = Robot(legs=ring(legs))
     mesh = RobotMesh(robot)
-    pose = mesh.standing.copy()
+    pose = mesh.default_qpos.copy()
     pose[:3] = 0.3, 0.4, 0.1
 
-    places, attitudes = mesh.place(pose)
+    positions, rotations = mesh.body_poses(pose)
 
     assert sum(len(part.links) for part in mesh.parts) < 2 + 1 + 6 * legs
     links = np.unique(np.concatenate([part.links for part in mesh.parts]))
     assert len(links) == 1 + 3 * legs, "torso, and coxa, femur and tibia of every leg"
-    assert places[links[0]] == pytest.approx([0.3, 0.4, 0.1])
-    assert np.linalg.norm(attitudes[links], axis=1) == pytest.approx(np.ones(len(links)))
+    assert positions[links[0]] == pytest.approx([0.3, 0.4, 0.1])
+    assert np.linalg.norm(rotations[links], axis=1) == pytest.approx(np.ones(len(links)))
     for part in mesh.parts:
         assert np.isfinite(part.shape.vertices).all()
         assert part.shape.faces.max() < len(part.shape.vertices)
 
 
-def test_lanes_stand_side_by_side_in_their_agents_colours(server: InProcessViser) -> None:
-    cast = race_of(3)
+def test_lanes_are_side_by_side_with_their_labels(server: InProcessViser) -> None:
+    spec = race_of(3)
     scene = StageScene(server)
-    scene.draw(standing(cast))
+    scene.draw(frame_at_rest(spec))
     xs = [(scene.follow_position(view) or (np.nan,))[0] for view in ("1", "2", "3")]
 
     assert np.diff(xs) == pytest.approx([xs[2], xs[2]])
     assert xs[0] == -xs[2]
-    assert xs[2] > 2 * cast.robot.home_radius_m, "they cannot touch"
+    assert xs[2] > 2 * spec.robot.home_radius_m, "they cannot touch"
     assert scene.follow_position("4") is None
-    plates = [m["text"] for n, m in told(server).items() if n.endswith("/plate")]
-    assert plates == [f"{role.name}\n0.00 m, step 3" for role in cast.roles]
+    labels = [m["text"] for n, m in scene_nodes(server).items() if n.endswith("/plate")]
+    assert labels == [f"{lane_spec.name}\n0.00 m, step 3" for lane_spec in spec.lane_specs]
 
 
-def test_start_and_finish_have_a_word(server: InProcessViser) -> None:
-    StageScene(server).draw(standing(race_of(1)))
-    nodes = told(server)
-    words = {m["text"] for n, m in nodes.items() if n.endswith("/word")}
+def test_start_and_finish_lines_are_labelled_and_coloured(server: InProcessViser) -> None:
+    StageScene(server).draw(frame_at_rest(race_of(1)))
+    nodes = scene_nodes(server)
+    labels = {m["text"] for n, m in nodes.items() if n.endswith("/word")}
 
-    assert words == {"Start", "Finish"}
+    assert labels == {"Start", "Finish"}
     red, green = nodes["/world/cast/track/finish"], nodes["/world/cast/track/start"]
     assert np.argmax(red["color"]) == 0
     assert np.argmax(green["color"]) == 1
 
 
-def test_the_view_goes_along_with_the_leader(server: InProcessViser) -> None:
-    cast, scene = race_of(2), StageScene(server)
-    ahead = rest_pose(cast).copy()
+def test_follow_point_of_the_leader_moves_smoothly(server: InProcessViser) -> None:
+    spec, scene = race_of(2), StageScene(server)
+    ahead = rest_pose(spec).copy()
     ahead[1] = 0.4
-    first = standing(cast)
+    first = frame_at_rest(spec)
     moved = replace(first, lanes=(first.lanes[0], LaneView(ahead, 9, 50, 0.4)))
 
     scene.draw(first, now=0.0)
@@ -147,8 +147,8 @@ def test_the_view_goes_along_with_the_leader(server: InProcessViser) -> None:
     assert ys[-1] == pytest.approx(0.4, abs=0.01)
 
 
-def test_nothing_is_sent_while_nothing_moves(server: InProcessViser) -> None:
-    scene, frame = StageScene(server), standing(race_of(3))
+def test_unchanged_frame_sends_no_messages(server: InProcessViser) -> None:
+    scene, frame = StageScene(server), frame_at_rest(race_of(3))
     serializer = server.get_scene_serializer()
     assert scene.draw(frame, now=0.0)
     once = len(serializer._messages)
@@ -157,37 +157,37 @@ def test_nothing_is_sent_while_nothing_moves(server: InProcessViser) -> None:
     assert len(serializer._messages) == once
 
 
-def test_a_new_cast_leaves_nothing_of_the_old(server: InProcessViser) -> None:
+def test_change_of_scene_removes_all_old_nodes(server: InProcessViser) -> None:
     scene = StageScene(server)
     practice = training_scene(TrainingConfig(gait=GAIT, divisions=3))
     ghosts = (Ghost(50, 0.1), Ghost(100, 0.3))
 
     def show_all() -> None:
-        scene.draw(standing(idle_scene()))
-        scene.draw(replace(standing(practice), ghosts=ghosts))
-        scene.draw(replace(standing(race_of(3)), phase="photo-finish"))
-        scene.draw(standing(race_of(6, Robot(legs=ring(8)))))
-        scene.draw(standing(race_of(2)))
+        scene.draw(frame_at_rest(idle_scene()))
+        scene.draw(replace(frame_at_rest(practice), ghosts=ghosts))
+        scene.draw(replace(frame_at_rest(race_of(3)), phase="photo-finish"))
+        scene.draw(frame_at_rest(race_of(6, Robot(legs=ring(8)))))
+        scene.draw(frame_at_rest(race_of(2)))
 
     show_all()
-    nodes = told(server)
+    nodes = scene_nodes(server)
     for _ in range(3):
         show_all()
 
-    assert told(server).keys() == nodes.keys()
+    assert scene_nodes(server).keys() == nodes.keys()
     assert len(nodes) < 40
 
 
-def test_cells_take_the_colour_of_their_value_and_the_present_one_none(
+def test_cells_are_coloured_by_value_but_for_the_current_one(
     server: InProcessViser,
 ) -> None:
-    cast, scene = race_of(1), StageScene(server)
-    lane = replace(standing(cast).lanes[0], knowledge=knowing(cast))
-    scene.draw(replace(standing(cast), lanes=(lane,)))
-    fills = told(server)["/world/cast/lane0/grid/others/fills"]
+    spec, scene = race_of(1), StageScene(server)
+    lane = replace(frame_at_rest(spec).lanes[0], knowledge=action_values(spec))
+    scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
+    fills = scene_nodes(server)["/world/cast/lane0/grid/others/fills"]
     colors = fills["batched_colors"].reshape(6, 4, 3)
 
-    leader, partner = cast.gait.pairs[2]
+    leader, partner = spec.gait.pairs[2]
     assert (colors[leader - 1] == colors[partner - 1]).all(), "a pair is of one mind"
     best, present = colors[leader - 1, 3], colors[leader - 1, 1]
     assert best[0] > 120
@@ -196,50 +196,50 @@ def test_cells_take_the_colour_of_their_value_and_the_present_one_none(
 
 
 @pytest.mark.parametrize("divisions", [2, 3, 8])
-def test_cells_of_every_grid_can_be_drawn(server: InProcessViser, divisions: int) -> None:
-    cast = replace(race_of(1), grid=FootGrid(0.04, divisions))
-    lane = replace(standing(cast).lanes[0], knowledge=knowing(cast))
+def test_grids_of_all_sizes_can_be_drawn(server: InProcessViser, divisions: int) -> None:
+    spec = replace(race_of(1), grid=FootGrid(0.04, divisions))
+    lane = replace(frame_at_rest(spec).lanes[0], knowledge=action_values(spec))
 
-    StageScene(server).draw(replace(standing(cast), lanes=(lane,)))
+    StageScene(server).draw(replace(frame_at_rest(spec), lanes=(lane,)))
 
-    assert sum(name.endswith("/fills") for name in told(server)) == 2
+    assert sum(name.endswith("/fills") for name in scene_nodes(server)) == 2
 
 
-def test_a_photo_finish_draws_every_distance_and_goes_again(server: InProcessViser) -> None:
-    cast, scene = race_of(2), StageScene(server)
-    far = replace(standing(cast).lanes[0], distance_m=0.375, rank=1)
-    frame = replace(standing(cast), lanes=(far, replace(far, distance_m=-0.01, rank=2)))
+def test_photo_finish_shows_distances_and_is_removed(server: InProcessViser) -> None:
+    spec, scene = race_of(2), StageScene(server)
+    far = replace(frame_at_rest(spec).lanes[0], distance_m=0.375, rank=1)
+    frame = replace(frame_at_rest(spec), lanes=(far, replace(far, distance_m=-0.01, rank=2)))
 
     scene.draw(replace(frame, phase="photo-finish"))
-    said = [m["text"] for n, m in told(server).items() if "/photo/far" in n]
-    assert said == ["1.  0.38 m", "2.  -0.01 m"]
+    texts = [m["text"] for n, m in scene_nodes(server).items() if "/photo/far" in n]
+    assert texts == ["1.  0.38 m", "2.  -0.01 m"]
 
     scene.draw(frame)
-    assert not [name for name in told(server) if "/photo" in name]
+    assert not [name for name in scene_nodes(server) if "/photo" in name]
 
 
-def test_a_photo_finish_under_another_clock_is_another_photo(server: InProcessViser) -> None:
-    scene, frame = StageScene(server), standing(race_of(3))
+def test_photo_finish_is_redrawn_under_another_clock(server: InProcessViser) -> None:
+    scene, frame = StageScene(server), frame_at_rest(race_of(3))
     scene.draw(replace(frame, phase="photo-finish"))
     retimed = tuple(replace(lane, distance_m=0.25, rank=2) for lane in frame.lanes)
     scene.draw(replace(frame, phase="photo-finish", lanes=retimed))
 
-    said = [m["text"] for n, m in told(server).items() if "/photo/far" in n]
-    assert said == ["2.  0.25 m"] * 3
+    texts = [m["text"] for n, m in scene_nodes(server).items() if "/photo/far" in n]
+    assert texts == ["2.  0.25 m"] * 3
 
 
-def test_a_finished_lane_shows_its_flag(server: InProcessViser) -> None:
-    cast, scene = race_of(1), StageScene(server)
-    frame = standing(cast)
+def test_finished_lane_shows_its_flag(server: InProcessViser) -> None:
+    spec, scene = race_of(1), StageScene(server)
+    frame = frame_at_rest(spec)
     scene.draw(frame)
-    assert not told(server)["/world/cast/lane0/flag"]["visible"]
+    assert not scene_nodes(server)["/world/cast/lane0/flag"]["visible"]
 
     scene.draw(replace(frame, lanes=(replace(frame.lanes[0], done=True),)))
-    assert told(server)["/world/cast/lane0/flag"]["visible"]
+    assert scene_nodes(server)["/world/cast/lane0/flag"]["visible"]
 
 
-def test_an_update_of_three_walking_robots_is_small() -> None:
-    spent_ms, size = measure_stage_update(updates=30)
+def test_update_of_three_walking_robots_is_small() -> None:
+    elapsed_ms, size = measure_stage_update(updates=30)
 
-    assert spent_ms > 0
+    assert elapsed_ms > 0
     assert 500 < size <= 4096

@@ -1,4 +1,4 @@
-"""A snapshot says the same as all the frames it was made of, and no more."""
+"""A snapshot is equivalent to the frames applied to it, without redundant messages."""
 
 from collections.abc import Callable, Iterator
 
@@ -7,20 +7,20 @@ import pytest
 from app.viewer import wire
 from app.viewer.in_process import InProcessViser
 from app.viewer.snapshot import Snapshot
-from tests.viewer.serving import Reader, Robots, array, says
+from tests.viewer.serving import Reader, Robots, array, has_message
 
 Record = Callable[[], list[wire.Frame]]
 
 
 @pytest.fixture
-def record(stage: InProcessViser) -> Iterator[Record]:
-    """Every frame that viser has sent since the test began, up to now."""
-    reader = Reader(stage)
-    frames = reader.frames_until(says("ReplayDoneMessage"))
+def record(viser_server: InProcessViser) -> Iterator[Record]:
+    """Return a function that reads all frames that viser has sent so far."""
+    reader = Reader(viser_server)
+    frames = reader.frames_until(has_message("ReplayDoneMessage"))
 
     def so_far() -> list[wire.Frame]:
-        stage.scene.set_up_direction("-y")
-        mark = says("SetOrientationMessage", name="")
+        viser_server.scene.set_up_direction("-y")
+        mark = has_message("SetOrientationMessage", name="")
         frames.extend(reader.frames_until(mark))
         return frames
 
@@ -28,158 +28,168 @@ def record(stage: InProcessViser) -> Iterator[Record]:
         yield so_far
 
 
-def folded(frames: list[wire.Frame], since: int | None = None) -> wire.Frame:
-    """What a viewer needs who has that many of these frames; None for a newcomer."""
+def catch_up_frame(frames: list[wire.Frame], since: int | None = None) -> wire.Frame:
+    """Return the catch-up frame for a viewer that has the first `since` frames; None for none."""
     snapshot = Snapshot()
     for frame in frames:
         snapshot.apply(frame)
-    # What goes over the wire, rather than what we believe it to be.
+    # Encoded and decoded again, so that the bytes on the wire are tested.
     return wire.parse(snapshot.pack(since).raw)
 
 
-def about(frame: wire.Frame, name: str) -> list[str]:
+def message_types(frame: wire.Frame, name: str) -> list[str]:
     return [message["type"] for message in frame.messages if message.get("name") == name]
 
 
 def test_only_the_newest_pose_is_kept(
-    stage: InProcessViser, robots: Robots, record: Record
+    viser_server: InProcessViser, robots: Robots, record: Record
 ) -> None:
-    frame_of_robot = stage.scene.add_frame("/world/frame")
+    frame_of_robot = viser_server.scene.add_frame("/world/frame")
     for place in range(10):
-        robots.stand_at(place)
+        robots.move_to(place)
         frame_of_robot.position = (place, 0, 0)
 
-    all_in_one = folded(record())
+    all_in_one = catch_up_frame(record())
 
     positions = array(all_in_one, Robots.NAME, "batched_positions")
     assert positions is not None
     assert positions.tolist() == [9] * 12
-    assert about(all_in_one, Robots.NAME).count("SceneNodeUpdateMessage") == 1
-    assert about(all_in_one, "/world/frame").count("SetPositionMessage") == 1
-    assert says("SetPositionMessage", name="/world/frame", position=[9.0, 0.0, 0.0])(all_in_one)
+    assert message_types(all_in_one, Robots.NAME).count("SceneNodeUpdateMessage") == 1
+    assert message_types(all_in_one, "/world/frame").count("SetPositionMessage") == 1
+    assert has_message("SetPositionMessage", name="/world/frame", position=[9.0, 0.0, 0.0])(
+        all_in_one
+    )
 
 
-def test_a_thing_is_made_before_it_is_changed(stage: InProcessViser, record: Record) -> None:
-    label = stage.scene.add_label("/world/plate", "one")
+def test_creation_precedes_updates(viser_server: InProcessViser, record: Record) -> None:
+    label = viser_server.scene.add_label("/world/plate", "one")
     label.text = "two"
     label.visible = False
 
-    types = about(folded(record()), "/world/plate")
+    types = message_types(catch_up_frame(record()), "/world/plate")
 
     assert types[0] == "LabelMessage"
     assert set(types[1:]) >= {"SceneNodeUpdateMessage", "SetSceneNodeVisibilityMessage"}
 
 
-def test_what_is_gone_is_forgotten(stage: InProcessViser, record: Record) -> None:
-    parent = stage.scene.add_frame("/world/ghost")
-    child = stage.scene.add_label("/world/ghost/name", "gone")
+def test_removed_nodes_and_gui_elements_are_dropped(
+    viser_server: InProcessViser, record: Record
+) -> None:
+    parent = viser_server.scene.add_frame("/world/ghost")
+    child = viser_server.scene.add_label("/world/ghost/name", "gone")
     child.text = "still gone"
-    folder = stage.gui.add_folder("folder")
+    folder = viser_server.gui.add_folder("folder")
     with folder:
-        slider = stage.gui.add_slider("speed", 0, 1, 0.1, 0.5)
+        slider = viser_server.gui.add_slider("speed", 0, 1, 0.1, 0.5)
     slider.visible = False
     before = record()[:]
     parent.remove()
     folder.remove()
 
-    now = folded([*before, *record()])
+    snapshot = catch_up_frame([*before, *record()])
 
-    assert about(now, "/world/ghost") == about(now, "/world/ghost/name") == []
+    assert (
+        message_types(snapshot, "/world/ghost")
+        == message_types(snapshot, "/world/ghost/name")
+        == []
+    )
     assert not {"GuiFolderMessage", "GuiSliderMessage", "GuiUpdateMessage", "GuiRemoveMessage"} & {
-        message["type"] for message in now.messages
+        message["type"] for message in snapshot.messages
     }
 
 
-def test_who_saw_it_is_told_that_it_is_gone(stage: InProcessViser, record: Record) -> None:
-    ghost = stage.scene.add_frame("/world/ghost")
-    seen = len(record())
+def test_viewer_that_has_a_node_gets_its_removal(
+    viser_server: InProcessViser, record: Record
+) -> None:
+    ghost = viser_server.scene.add_frame("/world/ghost")
+    version = len(record())
     ghost.position = (1, 2, 3)
     ghost.remove()
 
-    news = folded(record(), seen)
+    update = catch_up_frame(record(), version)
 
-    assert about(news, "/world/ghost") == ["RemoveSceneNodeMessage"]
+    assert message_types(update, "/world/ghost") == ["RemoveSceneNodeMessage"]
 
 
-def test_a_successor_comes_after_the_removal(stage: InProcessViser, record: Record) -> None:
-    ghost = stage.scene.add_frame("/world/ghost")
-    seen = len(record())
+def test_recreated_node_follows_the_removal(viser_server: InProcessViser, record: Record) -> None:
+    ghost = viser_server.scene.add_frame("/world/ghost")
+    version = len(record())
     ghost.remove()
     record()
-    stage.scene.add_label("/world/ghost", "another")
+    viser_server.scene.add_label("/world/ghost", "another")
 
-    types = about(folded(record(), seen), "/world/ghost")
+    types = message_types(catch_up_frame(record(), version), "/world/ghost")
 
     assert types[:2] == ["RemoveSceneNodeMessage", "LabelMessage"]
 
 
-def test_a_replacement_takes_the_old_ones_changes_with_it(
-    stage: InProcessViser, record: Record
+def test_replacement_drops_the_updates_of_the_old_node(
+    viser_server: InProcessViser, record: Record
 ) -> None:
-    stage.scene.add_label("/world/plate", "old").font_screen_scale = 7
-    stage.scene.add_label("/world/plate", "new")
+    viser_server.scene.add_label("/world/plate", "old").font_screen_scale = 7
+    viser_server.scene.add_label("/world/plate", "new")
 
-    now = folded(record())
+    snapshot = catch_up_frame(record())
 
-    assert "font_screen_scale" not in str([m for m in now.messages if "updates" in m])
-    assert about(now, "/world/plate").count("LabelMessage") == 1
+    assert "font_screen_scale" not in str([m for m in snapshot.messages if "updates" in m])
+    assert message_types(snapshot, "/world/plate").count("LabelMessage") == 1
 
 
-def test_it_ends_with_the_word_that_viser_s_client_waits_for(record: Record) -> None:
+def test_full_snapshot_ends_with_replay_done(record: Record) -> None:
     frames = record()
 
-    assert folded(frames).messages[-1] == {"type": "ReplayDoneMessage"}
-    assert not says("ReplayDoneMessage")(folded(frames, 0))
-    assert not says("ReplayDoneMessage")(folded(frames[-1:]))
+    assert catch_up_frame(frames).messages[-1] == {"type": "ReplayDoneMessage"}
+    assert not has_message("ReplayDoneMessage")(catch_up_frame(frames, 0))
+    assert not has_message("ReplayDoneMessage")(catch_up_frame(frames[-1:]))
 
 
-def test_a_laggard_gets_what_it_has_missed_and_no_more(robots: Robots, record: Record) -> None:
-    robots.stand_at(1)
-    seen = len(record())
-    robots.stand_at(2)
+def test_slow_viewer_gets_only_what_it_has_missed(robots: Robots, record: Record) -> None:
+    robots.move_to(1)
+    version = len(record())
+    robots.move_to(2)
     record()
-    robots.stand_at(3)
+    robots.move_to(3)
     frames = record()
 
-    news = folded(frames, seen)
+    update = catch_up_frame(frames, version)
 
-    positions = array(news, Robots.NAME, "batched_positions")
+    positions = array(update, Robots.NAME, "batched_positions")
     assert positions is not None
     assert positions.tolist() == [3] * 12
-    assert about(news, Robots.NAME) == ["SceneNodeUpdateMessage"]
-    assert folded(frames, len(frames)).messages == ()
+    assert message_types(update, Robots.NAME) == ["SceneNodeUpdateMessage"]
+    assert catch_up_frame(frames, len(frames)).messages == ()
 
 
 @pytest.mark.parametrize("since", [1, 3, 7, 12])
-def test_catching_up_is_as_good_as_having_seen_all(
-    stage: InProcessViser, robots: Robots, record: Record, since: int
+def test_catch_up_is_equivalent_to_all_frames(
+    viser_server: InProcessViser, robots: Robots, record: Record, since: int
 ) -> None:
     for step in range(6):
-        robots.stand_at(step)
-        stage.scene.add_label("/world/plate", f"step {step}").visible = False
+        robots.move_to(step)
+        viser_server.scene.add_label("/world/plate", f"step {step}").visible = False
         record()
-        ghost = stage.scene.add_frame("/world/ghost")
+        ghost = viser_server.scene.add_frame("/world/ghost")
         record()
         ghost.remove()
     frames = record()
 
-    caught_up = folded([*frames[:since], folded(frames, since)])
+    caught_up = catch_up_frame([*frames[:since], catch_up_frame(frames, since)])
 
-    assert meaning(caught_up) == meaning(folded(frames))
+    assert decoded_content(caught_up) == decoded_content(catch_up_frame(frames))
 
 
-def meaning(frame: wire.Frame) -> list[str]:
-    """What a frame says, array by array, whatever the order."""
+def decoded_content(frame: wire.Frame) -> list[str]:
+    """Return a frame's messages with their arrays, independent of order and indices."""
 
-    def own(message: wire.Message) -> str:
+    def content(message: wire.Message) -> str:
         buffers: list[memoryview] = []
-        rewired = wire.rewire(message, frame.buffers, buffers)
+        rewired = wire.remap_buffers(message, frame.buffers, buffers)
         return f"{rewired} {[bytes(buffer) for buffer in buffers]}"
 
-    return sorted(map(own, frame.messages))
+    return sorted(map(content, frame.messages))
 
 
-def test_more_can_be_said_at_the_end(record: Record) -> None:
+def test_extra_messages_are_appended(record: Record) -> None:
     snapshot = Snapshot()
     for frame in record():
         snapshot.apply(frame)
@@ -187,20 +197,22 @@ def test_more_can_be_said_at_the_end(record: Record) -> None:
     assert snapshot.pack(None, [{"type": "X"}]).messages[-1] == {"type": "X"}
 
 
-def test_what_was_gone_for_all_viewers_is_forgotten(stage: InProcessViser, record: Record) -> None:
+def test_tombstones_are_dropped_once_all_viewers_have_seen_them(
+    viser_server: InProcessViser, record: Record
+) -> None:
     snapshot = Snapshot()
     for number in range(3):
-        ghost = stage.scene.add_frame(f"/world/ghost{number}")
+        ghost = viser_server.scene.add_frame(f"/world/ghost{number}")
         record()
         ghost.remove()
         record()
     for frame in record():
         snapshot.apply(frame)
-    assert snapshot.removals == 3
+    assert snapshot.tombstones == 3
 
-    first_gone = snapshot.version - 5
-    snapshot.forget_removals(first_gone)
-    assert 0 < snapshot.removals < 3
+    first_removal = snapshot.version - 5
+    snapshot.drop_tombstones(first_removal)
+    assert 0 < snapshot.tombstones < 3
 
-    snapshot.forget_removals(snapshot.version)
-    assert snapshot.removals == 0
+    snapshot.drop_tombstones(snapshot.version)
+    assert snapshot.tombstones == 0

@@ -1,4 +1,4 @@
-"""The thread that draws."""
+"""The drawing thread: start, stop, errors while drawing, published scenes."""
 
 import asyncio
 import json
@@ -17,63 +17,65 @@ from app.viewer.in_process import in_process_viser
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop
 from tests.stage.stage_parts import StageParts
-from tests.viewer.serving import eventually
+from tests.viewer.serving import wait_until
 
 
-class ThrowsAtFirst(StageScene):
-    """A scene with a fault in its first frames."""
+class FailingScene(StageScene):
+    """A scene that raises in its first frames."""
 
-    faults = 3
+    failures = 3
 
     def draw(self, frame: StageFrame, now: float = 0.0) -> bool:
-        if self.faults:
-            self.faults -= 1
+        if self.failures:
+            self.failures -= 1
             raise RuntimeError("a fault in a frame")
         return super().draw(frame, now)
 
 
-def test_it_draws_until_it_is_stopped() -> None:
+def test_loop_draws_until_it_is_stopped() -> None:
     stage, bus = Stage(MemoryStore(), Recordings(), EventBus()), EventBus()
     with in_process_viser() as server:
         scene = StageScene(server)
         with StageLoop(stage, scene, bus) as loop:
-            eventually(lambda: scene.follow_position("leader"))
+            wait_until(lambda: scene.follow_position("leader"))
         loop.stop()
 
     assert "stage" not in {thread.name for thread in threading.enumerate()}
 
 
-def test_a_fault_in_a_frame_does_not_end_the_show(caplog: pytest.LogCaptureFixture) -> None:
+def test_error_in_a_frame_is_logged_once_and_drawing_continues(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
     stage, bus = Stage(MemoryStore(), Recordings(), EventBus()), EventBus()
     with in_process_viser() as server, caplog.at_level(logging.INFO):
-        scene = ThrowsAtFirst(server)
+        scene = FailingScene(server)
         with StageLoop(stage, scene, bus):
-            eventually(lambda: scene.follow_position("leader"))
+            wait_until(lambda: scene.follow_position("leader"))
 
-    said = [record.message for record in caplog.records if "stage" in record.name]
-    assert said == ["drawing the stage failed, going on", "drawing the stage works again"]
+    messages = [record.message for record in caplog.records if "stage" in record.name]
+    assert messages == ["drawing the stage failed, going on", "drawing the stage works again"]
 
 
-def test_a_race_moves_and_the_page_is_told() -> None:
+def test_moving_race_publishes_scenes() -> None:
     parts = StageParts()
-    run = parts.race()
+    run = parts.finished_race()
     stage = Stage(parts.store, parts.recordings, parts.bus)
     stage.show(run.id)
 
-    async def hear() -> list[dict[str, Any]]:
-        heard, scenes = parts.bus.subscribe(), []
-        async for event in heard:
+    async def first_scenes() -> list[dict[str, Any]]:
+        events, scenes = parts.bus.subscribe(), []
+        async for event in events:
             if event.event == "scene":
                 scenes.append(json.loads(event.data))
             if len(scenes) == 3:
-                heard.close()
+                events.close()
         return scenes
 
     with in_process_viser() as server:
         scene = StageScene(server)
         with StageLoop(stage, scene, parts.bus):
-            scenes = asyncio.run(hear())
-            eventually(lambda: (scene.follow_position("1") or (0, 0))[1] > 0.001)
+            scenes = asyncio.run(first_scenes())
+            wait_until(lambda: (scene.follow_position("1") or (0, 0))[1] > 0.001)
 
     assert [scene["run_id"] for scene in scenes] == [run.id] * 3
     times = [scene["time_s"] for scene in scenes]
@@ -81,7 +83,7 @@ def test_a_race_moves_and_the_page_is_told() -> None:
     assert len(set(times)) == 3
 
 
-def test_a_loop_that_never_began_can_be_stopped() -> None:
+def test_loop_can_be_stopped_without_a_start() -> None:
     stage = Stage(MemoryStore(), Recordings(), EventBus())
     with in_process_viser() as server:
         StageLoop(stage, StageScene(server), EventBus()).stop()

@@ -12,7 +12,7 @@ from sqlalchemy import text
 
 from app.storage.database.engine import SQLITE_FILES, Database, sqlite_engine
 from app.storage.database.fair_semaphore import FairSemaphore
-from tests.jobs.waiting import until
+from tests.jobs.waiting import wait_until
 from tests.promises.files import database_files
 
 THREADS = 40
@@ -51,7 +51,7 @@ def test_semaphore_is_handed_over_in_order_of_arrival() -> None:
         for number in range(5):
             threads.append(threading.Thread(target=take, args=(number,)))
             threads[-1].start()
-            until(lambda: semaphore.waiting == len(threads))
+            wait_until(lambda: semaphore.waiting == len(threads))
         with pytest.raises(TimeoutError), semaphore.acquired(0.01, TimeoutError):
             pass
     for thread in threads:
