@@ -123,7 +123,7 @@ def _samples(robot: Robot, gait: Gait, frames: FloatArray) -> _Samples:
     all_legs, swinging_legs = np.arange(count), np.array(gait.pairs) - 1
     swing_phase = np.repeat(np.arange(1, swing + 1) / swing, 2)
     shift_phase = np.repeat(np.arange(1, shift + 1) / shift, count)
-    standing_share = np.zeros(count)
+    zeros = np.zeros(count)
     legs, order = [], []
     for pair in swinging_legs:
         legs.append(np.concatenate((all_legs, np.tile(pair, swing), np.tile(all_legs, shift))))
@@ -139,10 +139,10 @@ def _samples(robot: Robot, gait: Gait, frames: FloatArray) -> _Samples:
     return _Samples(
         mirrored[:, :, sample_legs],
         np.stack([pair_of + part * 2 * len(swinging_legs) for part in range(4)]),
-        np.concatenate((standing_share, ease(swing_phase), ease(shift_phase))),
+        np.concatenate((zeros, ease(swing_phase), ease(shift_phase))),
         np.concatenate(
             (
-                standing_share,
+                zeros,
                 robot.step_height_m * np.sin(np.pi * swing_phase),
                 np.zeros_like(shift_phase),
             )
