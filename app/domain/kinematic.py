@@ -83,8 +83,8 @@ class KinematicSimulator:
         phase = np.arange(1, robot.shift_substeps + 1) / robot.shift_substeps
         place = np.full(len(angles), distance_m)
         place[robot.swing_substeps :] += plan.advance_m * ease(phase)
-        kept = recorded_substeps(robot)
-        time_s, qpos = (kept + 1) * robot.dt_s, self._qpos(place[kept], angles[kept])
+        indices = recorded_substeps(robot)
+        time_s, qpos = (indices + 1) * robot.dt_s, self._qpos(place[indices], angles[indices])
         return Motion(time_s.astype(np.float32), qpos.astype(np.float32))
 
     def _qpos(self, distance_m: FloatArray, angles: FloatArray) -> FloatArray:

@@ -170,8 +170,8 @@ def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
     numbers = {f.name for f in fields(Robot)} - {"name", "legs"}
     for name, number in given.items():
         if name not in numbers:
-            known = ["preset", "n_legs", "mount_radius_m", "legs", *sorted(numbers)]
-            raise UnknownName("robot field", name, known)
+            valid = ["preset", "n_legs", "mount_radius_m", "legs", *sorted(numbers)]
+            raise UnknownName("robot field", name, valid)
         given[name] = _number(name, number)
     changed = replace(base, legs=legs, **given)
     return changed if changed == base else replace(changed, name=f"{base.name} (modified)")

@@ -40,13 +40,13 @@ def invisible_ranges() -> tuple[tuple[int, int], ...]:
 
     Surrogates are excluded: they cannot occur in UTF-8.
     """
-    found: list[tuple[int, int]] = []
+    ranges: list[tuple[int, int]] = []
     for point in range(sys.maxunicode + 1):
         if not _is_invisible(chr(point)) or 0xD800 <= point <= 0xDFFF:
             continue
-        is_next = bool(found) and found[-1][1] == point - 1
-        found.append((found.pop()[0] if is_next else point, point))
-    return tuple(found)
+        is_next = bool(ranges) and ranges[-1][1] == point - 1
+        ranges.append((ranges.pop()[0] if is_next else point, point))
+    return tuple(ranges)
 
 
 def visible(text: str) -> str:

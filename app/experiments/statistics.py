@@ -101,7 +101,7 @@ def interval(
     value = float(statistic(*arrays))
     if min(len(points) for points in strata) < MIN_SEEDS:
         return Interval(value)
-    found = stats.bootstrap(
+    confidence_interval = stats.bootstrap(
         arrays,
         statistic,
         n_resamples=RESAMPLES,
@@ -111,7 +111,7 @@ def interval(
         vectorized=True,
         rng=np.random.default_rng(seed),
     ).confidence_interval
-    return Interval(value, float(found.low), float(found.high))
+    return Interval(value, float(confidence_interval.low), float(confidence_interval.high))
 
 
 def paired_interval(
@@ -184,8 +184,8 @@ def improvement(
 
     def mean_probability(*samples: FloatArray, axis: int = -1) -> FloatArray:
         pairs = zip(samples[: len(a)], samples[len(a) :], strict=True)
-        found = [_probability(one, other, axis) for one, other in pairs]
-        return np.asarray(np.mean(found, axis=0), dtype=np.float64)
+        probabilities = [_probability(one, other, axis) for one, other in pairs]
+        return np.asarray(np.mean(probabilities, axis=0), dtype=np.float64)
 
     return interval((*a, *b), mean_probability, seed, confidence)
 
@@ -195,15 +195,15 @@ def quantile_of(published: float, points: Sequence[float]) -> float:
     return float(stats.percentileofscore(points, published, kind="mean")) / _PERCENT
 
 
-def bootstrap_exceeds(found: Interval, threshold: float, fewest: int) -> Verdict:
+def bootstrap_exceeds(estimate: Interval, threshold: float, fewest: int) -> Verdict:
     """Return `Interval.exceeds` for a bootstrap interval, if it has enough seeds to decide.
 
     Args:
-        found: the bootstrap interval.
+        estimate: the bootstrap interval.
         threshold: to compare with.
         fewest: number of seeds in the smallest stratum; below `MIN_RESAMPLED` nothing is decided.
     """
-    return found.exceeds(threshold) if fewest >= MIN_RESAMPLED else "not established"
+    return estimate.exceeds(threshold) if fewest >= MIN_RESAMPLED else "not established"
 
 
 def _probability(a: FloatArray, b: FloatArray, axis: int) -> FloatArray:

@@ -45,8 +45,8 @@ class Case:
 
     def curve(self, gait: str) -> Mapping[str, Any] | None:
         """Return Q-learning's learning curve in a gait, or None if it has no trials yet."""
-        found = (c for c in self.curves if (c["gait"], c["agent"]) == (gait, PAPERS_AGENT))
-        return next((one for one in found if one["steps"]), None)
+        curves = (c for c in self.curves if (c["gait"], c["agent"]) == (gait, PAPERS_AGENT))
+        return next((one for one in curves if one["steps"]), None)
 
 
 def cases_of(summary: Mapping[str, Any]) -> list[Case]:

@@ -69,8 +69,9 @@ def compare_closeness(a: Case, b: Case) -> tuple[Verdict, Interval] | None:
         mine, theirs = samples[: len(ours)], samples[len(ours) :]
         return _mean_error(theirs, others, axis) - _mean_error(mine, ours, axis)
 
-    found = interval([one.points for one in (*ours, *others)], difference, a.seed)
-    return bootstrap_exceeds(found, 0, min(len(one.points) for one in (*ours, *others))), found
+    estimate = interval([one.points for one in (*ours, *others)], difference, a.seed)
+    fewest = min(len(one.points) for one in (*ours, *others))
+    return bootstrap_exceeds(estimate, 0, fewest), estimate
 
 
 def _printed(case: Case) -> list[_Printed]:

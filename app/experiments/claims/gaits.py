@@ -70,8 +70,8 @@ def total_distances(case: Case, gait: str, steps: int) -> Points:
 
 
 def _others(case: Case, steps: int) -> list[Points] | None:
-    found = [total_distances(case, gait, steps) for gait in OTHER_GAITS]
-    return found if all(found) else None
+    walks = [total_distances(case, gait, steps) for gait in OTHER_GAITS]
+    return walks if all(walks) else None
 
 
 def _alike(case: Case, steps: int) -> Finding | None:
@@ -83,23 +83,23 @@ def _alike(case: Case, steps: int) -> Finding | None:
         middles = np.stack([iqm(one, axis) for one in walks])
         return np.asarray(middles.min(axis=0) / middles.max(axis=0), dtype=np.float64)
 
-    found = interval(others, worst_of_best, case.seed)
+    ratio = interval(others, worst_of_best, case.seed)
     middles = [float(iqm(np.asarray(points))) for points in others]
     return Finding.of(
-        bootstrap_exceeds(found, ALIKE_RATIO, min(map(len, others))),
+        bootstrap_exceeds(ratio, ALIKE_RATIO, min(map(len, others))),
         f"The other three cover {span(middles)} after "
-        f"{steps:,} steps; the worst {shares(found)} of the best.",
+        f"{steps:,} steps; the worst {shares(ratio)} of the best.",
     )
 
 
 def _slow(case: Case, steps: int) -> Finding | None:
-    found = odd_gait_ratio(case, steps)
-    if found is None:
+    ratio = odd_gait_ratio(case, steps)
+    if ratio is None:
         return None
     odd = total_distances(case, ODD_GAIT, steps)
     fewest = min(len(odd), *(len(total_distances(case, gait, steps)) for gait in OTHER_GAITS))
     return Finding.of(
-        bootstrap_exceeds(-found, -SLOW_RATIO, fewest),
+        bootstrap_exceeds(-ratio, -SLOW_RATIO, fewest),
         f"It covers {metres(float(iqm(np.asarray(odd))))} after {steps:,} steps, "
-        f"{shares(found)} of the other three.",
+        f"{shares(ratio)} of the other three.",
     )

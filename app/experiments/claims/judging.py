@@ -60,8 +60,8 @@ def judge(summary: Mapping[str, Any], claims: Sequence[Claim]) -> list[dict[str,
     cases = cases_of(summary)
     judged = []
     for one in claims:
-        found = [(case, one.find(case)) for case in cases]
-        findings = [(case, finding) for case, finding in found if finding is not None]
+        results = [(case, one.find(case)) for case in cases]
+        findings = [(case, finding) for case, finding in results if finding is not None]
         if findings:
             judged.append(_judged(one, findings))
     return judged

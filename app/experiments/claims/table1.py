@@ -33,11 +33,11 @@ def _dominates(case: Case) -> Finding | None:
     if not raced:
         return None
     verdicts = {one["beats_greedy_total"]["verdict"] for one in raced}
-    found: Verdict = (
+    verdict: Verdict = (
         "no" if "yes" in verdicts else "yes" if verdicts == {"no"} else ("not established")
     )
     pools = [(steps, case.pool(steps)) for steps in AFTER]
-    shown = [
+    shares_of_greedy = [
         f"{shares(pool['relative'])} of greedy's total after {steps:,} steps"
         for steps, pool in pools
         if pool and pool["relative"]
@@ -45,8 +45,9 @@ def _dominates(case: Case) -> Finding | None:
     n = sum(one["n"] for one in raced)
     wins = sum(one["n"] * one["beats_greedy_total"]["share"] for one in raced)
     return Finding.of(
-        found,
-        f"Q-learning covers {listed(shown)}; {wins:.0f} of its {n} seeds came further than greedy.",
+        verdict,
+        f"Q-learning covers {listed(shares_of_greedy)}; {wins:.0f} of its {n} seeds came further "
+        "than greedy.",
     )
 
 
@@ -54,12 +55,12 @@ def _real_time(case: Case, steps: int) -> Finding | None:
     pool = case.pool(steps)
     if pool is None or pool["relative_finished"] is None:
         return None
-    shown = pool["relative_finished"]
-    middle = Interval(shown["iqm"], shown["low"], shown["high"])
+    relative = pool["relative_finished"]
+    middle = Interval(relative["iqm"], relative["low"], relative["high"])
     fewest = min(one["n"] for one in case.settings if one["steps"] == steps)
     return Finding.of(
         bootstrap_exceeds(middle, REACHED_SHARE, fewest),
-        f"When Q-learning has taken its 50 steps it has come {shares(shown)} as far as greedy, "
+        f"When Q-learning has taken its 50 steps it has come {shares(relative)} as far as greedy, "
         f"and {percent(pool['beats_greedy']['share'])} of the seeds are ahead. The paper's own "
         f"four gaits average {percent(_papers_share(steps))}.",
     )
@@ -94,12 +95,12 @@ def _on_par(case: Case) -> Finding | None:
     pool = case.pool(AFTER[0])
     if pool is None or pool["reaches_greedy"] is None:
         return None
-    found = pool["reaches_greedy"]
+    reached = pool["reaches_greedy"]
     finished = pool["beats_greedy"]
     also = f" At time-out {percent(finished['share'])} are ahead of greedy." if finished else ""
     return Finding.of(
-        Interval(found["share"], found["low"], found["high"]).exceeds(0.5),
-        f"After 500 steps {shares(found)} of {counted(pool['n'], 'seed')} reach "
+        Interval(reached["share"], reached["low"], reached["high"]).exceeds(0.5),
+        f"After 500 steps {shares(reached)} of {counted(pool['n'], 'seed')} reach "
         f"{percent(REACHED_SHARE)} of greedy's total distance.{also}",
     )
 
@@ -109,10 +110,10 @@ def _two_step(case: Case) -> Finding | None:
     if not thinks:
         return None
     slowest, fastest = max(share for share, _ in thinks), min(share for share, _ in thinks)
-    found: Verdict = "yes" if fastest > 1 else "no" if slowest < 1 else "not established"
+    verdict: Verdict = "yes" if fastest > 1 else "no" if slowest < 1 else "not established"
     seconds = median(decided_s for _, decided_s in thinks)
     return Finding.of(
-        found,
+        verdict,
         f"On this machine two-step thought {seconds:.2g} s in 50 steps, between "
         f"{percent(fastest)} and {percent(slowest)} of the time that it walked, in "
         f"{counted(len(thinks), 'timed race')}."

@@ -20,7 +20,7 @@ def describe_best_and_worst(cases: Sequence[Case]) -> str | None:
     pools = [(case, one) for case in cases for one in case.pooled if one["walkers"]]
     if len(pools) < 2:
         return None
-    ordered = sorted(pools, key=lambda found: float(found[1]["relative"]["iqm"]))
+    ordered = sorted(pools, key=lambda pool: float(pool[1]["relative"]["iqm"]))
     sentences = [
         f"The {word} is {combination_name(one, [pool for _, pool in pools])} with {case.label}: "
         f"{shares(one['relative'])} of greedy's distance, {percent(one['walkers']['share'])} of "

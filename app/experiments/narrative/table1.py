@@ -76,16 +76,16 @@ def compare_observations(cases: Sequence[Case]) -> str | None:
     sentences = []
     for robot, pair in by_robot.items():
         pools = [(case, case.pool(1000)) for case in pair]
-        shown = [
+        phrases = [
             f"{shares(pool['relative'])} with {_observation_label(case)} "
             f"({percent(pool['walkers']['share'])} of the seeds walk)"
             for case, pool in pools
             if pool and pool["relative"]
         ]
-        if len(shown) == 2:
+        if len(phrases) == 2:
             sentence = (
                 f"On the {robot} robot Q-learning covers, of greedy's distance after 1,000 "
-                f"steps, {listed(shown)}."
+                f"steps, {listed(phrases)}."
             )
             sentences.append(" ".join([sentence, *_describe_nearer(pair)]))
     if not sentences:
@@ -127,15 +127,15 @@ def compare_text_with_table(cases: Sequence[Case]) -> str | None:
     gaits = ("left-right-origin", "front-back-origin")
     sentences = []
     for case in cases:
-        found = [case.setting(gait, 1000) for gait in gaits]
-        shown = [
+        settings = [case.setting(gait, 1000) for gait in gaits]
+        phrases = [
             f"{shares(one['beats_greedy'])} in {gait_name(one['gait'])} "
             f"({_VERDICTS[one['beats_greedy']['verdict']]})"
-            for one in found
+            for one in settings
             if one and one["beats_greedy"]
         ]
-        if len(shown) == 2:
-            sentences.append(f"With {case.label}: {listed(shown)}.")
+        if len(phrases) == 2:
+            sentences.append(f"With {case.label}: {listed(phrases)}.")
     if not sentences:
         return None
     return (

@@ -74,9 +74,9 @@ def figure_style() -> Iterator[None]:
 
 def figure(width_in: float, height_in: float) -> Figure:
     """Create an empty figure with the Agg canvas, which needs no display."""
-    made = Figure(figsize=(width_in, height_in), layout="constrained")
-    FigureCanvasAgg(made)
-    return made
+    fig = Figure(figsize=(width_in, height_in), layout="constrained")
+    FigureCanvasAgg(fig)
+    return fig
 
 
 def agent_colours(agents: Sequence[str]) -> dict[str, str]:
@@ -88,31 +88,31 @@ def agent_colours(agents: Sequence[str]) -> dict[str, str]:
     return {**AGENT_COLOURS, **further}
 
 
-def render(made: Figure, kind: str) -> bytes:
+def render(fig: Figure, kind: str) -> bytes:
     """Render a figure to bytes, reproducibly: without dates and with a fixed hash salt.
 
     Args:
-        made: the figure.
+        fig: the figure.
         kind: one of `FORMATS`.
     """
     out = BytesIO()
     with figure_style(), rc_context({"svg.fonttype": "path"}):
-        made.savefig(out, format=kind, dpi=150, metadata=dict(_NO_METADATA[kind]))
+        fig.savefig(out, format=kind, dpi=150, metadata=dict(_NO_METADATA[kind]))
     return out.getvalue()
 
 
-def inline_svg(made: Figure, prefix: str) -> str:
+def inline_svg(fig: Figure, prefix: str) -> str:
     """Render a figure as SVG for embedding in the page.
 
     Text stays text in the page's font, the greys become CSS variables, and ids are unique.
 
     Args:
-        made: the figure.
+        fig: the figure.
         prefix: prefix of every id, since a page has several figures.
     """
     out = BytesIO()
     with figure_style(), rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):
-        made.savefig(out, format="svg", transparent=True, metadata=dict(_NO_METADATA["svg"]))
+        fig.savefig(out, format="svg", transparent=True, metadata=dict(_NO_METADATA["svg"]))
     text = out.getvalue().decode()
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>\s*", "", text, flags=re.DOTALL)
@@ -125,9 +125,9 @@ def inline_svg(made: Figure, prefix: str) -> str:
     return re.sub(r"\n\s*", "\n", text)
 
 
-def _font(found: re.Match[str]) -> str:
-    weight = "700" if "bold" in found[1] or "700" in found[1] else "400"
-    return f"font-weight: {weight}; font-size: {found[2]}px"
+def _font(match: re.Match[str]) -> str:
+    weight = "700" if "bold" in match[1] or "700" in match[1] else "400"
+    return f"font-weight: {weight}; font-size: {match[2]}px"
 
 
 def jitter(count: int, height: float) -> list[float]:

@@ -18,14 +18,14 @@ PANEL_IN = (3.0, 2.7)
 
 def panels(case: Case, highest_m: float, name: str) -> list[Picture]:
     """Draw one picture per gait."""
-    made = []
+    pictures = []
     for number, gait in enumerate(_gaits(case)):
         one = figure(*PANEL_IN)
         ax = one.subplots()
         draw(ax, case, gait, highest_m)
         ax.set_title(gait_name(gait), pad=12)
-        made.append(Picture(f"{name}-{number + 1}", gait_name(gait), _alt(case, gait), one))
-    return made
+        pictures.append(Picture(f"{name}-{number + 1}", gait_name(gait), _alt(case, gait), one))
+    return pictures
 
 
 def sheet(cases: Sequence[Case]) -> Picture:

@@ -29,9 +29,9 @@ def panel(case: Case, name: str) -> Picture:
 
 def chosen(case: Case) -> tuple[list[Mapping[str, Any]], int]:
     """Return the combinations to draw, and the number of those left out."""
-    found = [one for one in case.pooled if one["relative"]]
-    best = sorted(found, key=lambda one: -float(one["relative"]["iqm"]))[:MOST]
-    return [one for one in found if one in best], len(found) - len(best)
+    pools = [one for one in case.pooled if one["relative"]]
+    best = sorted(pools, key=lambda one: -float(one["relative"]["iqm"]))[:MOST]
+    return [one for one in pools if one in best], len(pools) - len(best)
 
 
 def _draw(ax: Axes, rows: Sequence[Mapping[str, Any]], case: Case) -> None:

@@ -29,13 +29,13 @@ _POINTS = 0.28
 
 def panels(cases: Sequence[Case]) -> list[Picture]:
     """Draw one picture per case."""
-    made = []
+    pictures = []
     limits = _limits(cases)
     for number, case in enumerate(cases):
         one = figure(*_size(case))
         draw(one.subplots(), case, limits)
-        made.append(Picture(f"table1-{number + 1}", case.label, _alt(case), one))
-    return made
+        pictures.append(Picture(f"table1-{number + 1}", case.label, _alt(case), one))
+    return pictures
 
 
 def sheet(cases: Sequence[Case]) -> Picture:
@@ -81,14 +81,14 @@ def draw(ax: Axes, case: Case, limits: tuple[float, float]) -> None:
 
 
 def _row(ax: Axes, one: Setting, at: float, colour: str) -> None:
-    found = one["total"]
-    if found is not None:
-        points = sorted(found["points_m"])
+    distances = one["total"]
+    if distances is not None:
+        points = sorted(distances["points_m"])
         heights = [at + off for off in jitter(len(points), _POINTS)]
         ax.plot(points, heights, "o", ms=4, mew=0, color=colour, alpha=0.55)
-        if found["low_m"] is not None:
-            ax.plot([found["low_m"], found["high_m"]], [at, at], color=INK, lw=2.2)
-        ax.plot([found["iqm_m"]], [at], "o", ms=5.5, color=INK)
+        if distances["low_m"] is not None:
+            ax.plot([distances["low_m"], distances["high_m"]], [at, at], color=INK, lw=2.2)
+        ax.plot([distances["iqm_m"]], [at], "o", ms=5.5, color=INK)
     if one["published"] and one["published"]["total_m"] is not None:
         ax.plot([one["published"]["total_m"]], [at], "D", ms=7.5, mfc=PAPER, mec=INK, mew=1.4)
 

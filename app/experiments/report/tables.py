@@ -75,7 +75,7 @@ def table1(case: Case) -> dict[str, Any]:
 
 def _table1_cell(case: Case, gait: str, kind: str, agent: str, steps: int) -> Cell:
     one, greedy = case.setting(gait, steps, agent), case.setting(gait, 0, "greedy")
-    found = one[kind] if one else None
+    distances = one[kind] if one else None
     half_m = next(s["half_side_m"] for s in case.settings)
     papers = _papers_value(gait, kind, agent, steps)
     numbers = []
@@ -84,7 +84,7 @@ def _table1_cell(case: Case, gait: str, kind: str, agent: str, steps: int) -> Ce
         ("h", half_m, half_m),
         ("r", _iqm_m(greedy, kind), _papers_value(gait, kind, "greedy", 0)),
     ):
-        value, span = _in_unit(unit, found, by)
+        value, span = _in_unit(unit, distances, by)
         numbers.append(Number(unit, value, span, _printed_text(unit, papers, papers_by, gait)))
     quantile = one["published"][f"{kind}_quantile"] if one and one["published"] else None
     tail = (1 - CONFIDENCE) / 2
@@ -95,13 +95,13 @@ def _table1_cell(case: Case, gait: str, kind: str, agent: str, steps: int) -> Ce
     )
 
 
-def _in_unit(unit: str, found: Mapping[str, Any] | None, by: float | None) -> tuple[str, str]:
-    if found is None or not by:
+def _in_unit(unit: str, distances: Mapping[str, Any] | None, by: float | None) -> tuple[str, str]:
+    if distances is None or not by:
         return _NONE, ""
-    value = _format(unit, found["iqm_m"] / by)
-    if found["low_m"] is None:
+    value = _format(unit, distances["iqm_m"] / by)
+    if distances["low_m"] is None:
         return value, ""
-    return value, _range_text(*(_format(unit, found[end] / by) for end in ("low_m", "high_m")))
+    return value, _range_text(*(_format(unit, distances[end] / by) for end in ("low_m", "high_m")))
 
 
 def _range_text(low: str, high: str) -> str:
@@ -135,10 +135,10 @@ def _iqm_m(one: Mapping[str, Any] | None, kind: str) -> float | None:
 
 def curves(case: Case) -> dict[str, Any]:
     """Build the table of Figure 4: one row per curve, at a few steps of practice."""
-    shown = [one for one in case.curves if one["steps"]]
-    steps = shown[0]["steps"] if shown else []
+    drawn = [one for one in case.curves if one["steps"]]
+    steps = drawn[0]["steps"] if drawn else []
     chosen = [at for at in (250, 500, 1000, 2000) if at in steps] or steps
-    several = len({one["agent"] for one in shown}) > 1
+    several = len({one["agent"] for one in drawn}) > 1
     return {
         "label": case.label,
         "columns": [f"{at:,} steps" for at in chosen] + ["Walk", "Greedy"],
@@ -152,7 +152,7 @@ def curves(case: Case) -> dict[str, Any]:
                     (_NONE if one["greedy_m"] is None else number(one["greedy_m"]), ""),
                 ],
             }
-            for one in shown
+            for one in drawn
         ],
         "left_out": 0,
     }
@@ -165,8 +165,8 @@ def _curve_cell(curve: Mapping[str, Any], block: int) -> tuple[str, str]:
 
 def sweep(case: Case) -> dict[str, Any]:
     """Build the table of a sweep: every combination over all gaits, best first."""
-    found = [one for one in case.pooled if one["relative"]]
-    best = sorted(found, key=lambda one: -float(one["relative"]["iqm"]))
+    pools = [one for one in case.pooled if one["relative"]]
+    best = sorted(pools, key=lambda one: -float(one["relative"]["iqm"]))
     return {
         "label": case.label,
         "columns": ["Of greedy's distance", "Walk", "Ahead at time-out", "Seeds"],
@@ -186,11 +186,11 @@ def sweep(case: Case) -> dict[str, Any]:
     }
 
 
-def _share(found: Mapping[str, Any] | None, middle: str = "share") -> tuple[str, str]:
-    if found is None:
+def _share(share: Mapping[str, Any] | None, middle: str = "share") -> tuple[str, str]:
+    if share is None:
         return _NONE, ""
-    low, high = found["low"], found["high"]
-    value = percent(found[middle])
+    low, high = share["low"], share["high"]
+    value = percent(share[middle])
     return value, "" if low is None else _range_text(*(number(100 * end, 0) for end in (low, high)))
 
 
