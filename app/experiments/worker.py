@@ -35,7 +35,7 @@ def run_batch(configs: Sequence[TrialConfig], expected: Mapping[str, str]) -> li
         expected: versions of the submitting process, as by `versions`.
 
     Raises:
-        OtherResults: if this worker has other versions than were expected.
+        VersionMismatch: if this worker has other versions than were expected.
     """
     differs = difference(expected, versions())
     if differs is not None:
