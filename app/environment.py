@@ -1,4 +1,4 @@
-"""The walking problem as a Gymnasium environment, for learners that are not of this product.
+"""The walking problem as a Gymnasium environment, for learners outside this product.
 
 Importing this module registers it; the package `gymnasium` comes with `racing-hexapods[gym]`:
 
@@ -29,21 +29,21 @@ WALK_ID = "RacingHexapods/Walk-v0"
 
 
 class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
-    """A hexapod that earns what it comes forward, step by step, as in a training.
+    """Gymnasium environment of a walking hexapod, with the rewards of a training.
 
-    - Observation: `MultiDiscrete`, the cell of the foot grid on which each leg pair is seen.
+    - Observation: `MultiDiscrete`, the observed cell of the foot grid of each leg pair.
     - Action: `Discrete`, pair × cells + cell: move that pair to that cell. `info["action_mask"]`
-      marks what is legal now, as `action_space.sample(mask)` takes it. To send a pair to the cell
-      on which it is seen is no action of the walking problem: it is carried out as nothing, so
-      that the robot stays as it is and earns 0, and the step counts.
+      marks the legal actions, as `action_space.sample(mask)` expects. Sending a pair to its
+      observed cell is illegal in the walking problem: it is carried out as a no-op with reward 0,
+      which counts as a step.
     - Reward: displacement of the torso's centre in the robot's forward direction [m], as the
       simulator measures it.
     - `info["distance_m"]`: displacement along the track since the start.
-    - An episode starts from rest and has no end of its own: `gymnasium.make` truncates it after
-      50 steps, as long as a race, or after `max_episode_steps`.
+    - An episode starts from rest and never terminates: `gymnasium.make` truncates it after 50
+      steps, the length of a race, or after `max_episode_steps`.
 
-    Nothing in it is left to chance, so that every seed gives the same episodes. It draws nothing;
-    the stage of `hexapods serve` does.
+    The environment is deterministic: every seed gives the same episodes. It has no render mode;
+    use the stage of `hexapods serve`.
     """
 
     def __init__(
@@ -59,15 +59,15 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
         """Build the robot and put it at rest.
 
         Args:
-            gait: a name, or how the robot is oriented and its legs pair up.
-            robot: a preset's name, or what differs from one.
+            gait: a name, or a specification of orientation and leg pairs.
+            robot: a preset's name, or overrides of one.
             simulator: `mujoco` or `kinematic`.
-            divisions: of the foot grid.
-            grid_side_m: of the foot grid.
+            divisions: points along a side of the foot grid.
+            grid_side_m: side length of the foot grid.
             observation: `measured` or `commanded`, how the state is read.
 
         Raises:
-            InvalidInput: if a value cannot be; the message says what can.
+            InvalidInput: if a value is invalid; the message names the valid ones.
         """
         check_observation(observation)
         walk = WalkingProblem(
@@ -90,34 +90,34 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
         """Put the robot at rest on the start line; there are no options."""
         super().reset(seed=seed, options=options)
         self._state = self._simulator.rest()
-        return self._seen()
+        return self._observation_and_info()
 
     def step(self, action: SupportsInt) -> tuple[IntArray, float, bool, bool, dict[str, Any]]:
-        """Carry out one action, or nothing where it is illegal.
+        """Carry out one action, or a no-op if it is illegal.
 
         Raises:
-            InvalidInput: if the action is none of the action space.
-            Diverged: if the physics breaks.
+            InvalidInput: if the action is not in the action space.
+            Diverged: if the physics diverges.
         """
         if not self.action_space.contains(action):
             raise InvalidInput(f"an action is one of {self.action_space}, not {action!r}")
         chosen, reward_m = Action(*divmod(int(action), self._cells)), 0.0
         if chosen in self._legal():
             self._state, reward_m, _ = self._simulator.step(self._state, chosen)
-        seen, info = self._seen()
-        return seen, reward_m, False, False, info
+        cells, info = self._observation_and_info()
+        return cells, reward_m, False, False, info
 
     def _legal(self) -> Sequence[Action]:
-        seen = observe(self._simulator, self._state, self._observation)
-        return legal_actions(seen, self._cells)
+        cells = observe(self._simulator, self._state, self._observation)
+        return legal_actions(cells, self._cells)
 
-    def _seen(self) -> tuple[IntArray, dict[str, Any]]:
-        """The observation, and what goes with it."""
-        seen = observe(self._simulator, self._state, self._observation)
-        legal = np.ones((len(seen), self._cells), np.int8)
-        legal[np.arange(len(seen)), seen] = 0
+    def _observation_and_info(self) -> tuple[IntArray, dict[str, Any]]:
+        """Return the current observation and its `info`."""
+        cells = observe(self._simulator, self._state, self._observation)
+        legal = np.ones((len(cells), self._cells), np.int8)
+        legal[np.arange(len(cells)), cells] = 0
         info = {"action_mask": legal.ravel(), "distance_m": self._state.distance_m}
-        return np.array(seen, np.int64), info
+        return np.array(cells, np.int64), info
 
 
 gymnasium.register(WALK_ID, f"{__name__}:{WalkEnv.__name__}", max_episode_steps=RACE_STEPS)

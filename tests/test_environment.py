@@ -1,4 +1,4 @@
-"""The Gymnasium environment is the walking problem of the product, and good Gymnasium."""
+"""The Gymnasium environment is the product's walking problem, and follows Gymnasium's API."""
 
 import subprocess
 import sys
@@ -34,7 +34,7 @@ def make(**settings: Any) -> gymnasium.Env[Any, Any]:
     ],
     ids=["as it comes", "another gait and robot", "a finer grid", "eight legs"],
 )
-def test_it_passes_gymnasiums_own_check_without_a_warning(settings: dict[str, Any]) -> None:
+def test_it_passes_gymnasiums_check_env_without_a_warning(settings: dict[str, Any]) -> None:
     check_env(make(**settings).unwrapped)
 
 
@@ -47,20 +47,20 @@ def test_it_passes_gymnasiums_own_check_without_a_warning(settings: dict[str, An
     ],
     ids=["mujoco", "commanded", "a finer grid"],
 )
-def test_each_step_is_to_the_last_bit_that_of_a_training(settings: dict[str, Any]) -> None:
+def test_each_step_equals_that_of_a_training_to_the_last_bit(settings: dict[str, Any]) -> None:
     config = TrainingConfig(**settings, steps=60, evaluate_every=0)
     walk = make(**settings, max_episode_steps=60)
-    seen, info = walk.reset()
-    for taken in train(build_learner(config), config):
-        if isinstance(taken, StepTaken):
-            assert tuple(seen) == taken.observation
-            number = taken.action.pair * len(config.grid) + taken.action.cell
+    observation, info = walk.reset()
+    for record in train(build_learner(config), config):
+        if isinstance(record, StepTaken):
+            assert tuple(observation) == record.observation
+            number = record.action.pair * len(config.grid) + record.action.cell
             assert info["action_mask"][number] == 1
-            seen, reward_m, _, _, info = walk.step(number)
-            assert (reward_m, info["distance_m"]) == (taken.reward_m, taken.distance_m)
+            observation, reward_m, _, _, info = walk.step(number)
+            assert (reward_m, info["distance_m"]) == (record.reward_m, record.distance_m)
 
 
-def test_an_episode_is_a_race_long_and_starts_from_rest() -> None:
+def test_an_episode_has_the_length_of_a_race_and_starts_from_rest() -> None:
     walk = make(simulator="kinematic")
     walk.action_space.seed(0)
     start = walk.reset(seed=0)
@@ -70,34 +70,34 @@ def test_an_episode_is_a_race_long_and_starts_from_rest() -> None:
         _, _, terminated, ended, info = walk.step(walk.action_space.sample(info["action_mask"]))
         steps += 1
         assert not terminated
-    seen, info = walk.reset(seed=1)
+    observation, info = walk.reset(seed=1)
 
     assert steps == 50
-    assert seen.tolist() == start[0].tolist() == [0, 0, 0]
+    assert observation.tolist() == start[0].tolist() == [0, 0, 0]
     assert info["distance_m"] == 0
 
 
 def test_an_action_is_a_pair_and_a_cell() -> None:
     walk = make(simulator="kinematic", observation="commanded", divisions=3)
     walk.reset()
-    seen, *_ = walk.step(1 * 9 + 5)
+    observation, *_ = walk.step(1 * 9 + 5)
 
     assert isinstance(walk.action_space, gymnasium.spaces.Discrete)
     assert walk.action_space.n == 3 * 9
-    assert seen.tolist() == [0, 5, 0]
+    assert observation.tolist() == [0, 5, 0]
 
 
-def test_to_stay_where_one_is_is_marked_illegal_and_earns_nothing_but_takes_its_time() -> None:
+def test_an_illegal_action_is_a_no_op_with_zero_reward_that_counts_as_a_step() -> None:
     walk = make(simulator="kinematic", max_episode_steps=2)
     walk.reset()
     moved, _, _, _, before = walk.step(2)  # the first pair to its second cell
     present = np.arange(3) * 5 + moved
-    seen, reward_m, _, truncated, info = walk.step(present[0])
+    observation, reward_m, _, truncated, info = walk.step(present[0])
 
     assert np.flatnonzero(before["action_mask"] == 0).tolist() == present.tolist()
     assert before["distance_m"] > 0
     assert (reward_m, truncated) == (0.0, True)
-    assert seen.tolist() == moved.tolist()
+    assert observation.tolist() == moved.tolist()
     assert info["distance_m"] == before["distance_m"]
 
 
@@ -112,19 +112,19 @@ def test_to_stay_where_one_is_is_marked_illegal_and_earns_nothing_but_takes_its_
         ({"grid_side_m": 0.5}, "leg 1"),
     ],
 )
-def test_what_cannot_be_says_what_can(settings: dict[str, Any], message: str) -> None:
+def test_an_invalid_setting_names_the_valid_values(settings: dict[str, Any], message: str) -> None:
     with pytest.raises(InvalidInput, match=message):
         make(**settings)
 
 
 @pytest.mark.parametrize("action", [-1, 15, 0.5, None])
-def test_an_action_out_of_range_says_what_is_in_it(action: Any) -> None:
+def test_an_action_out_of_range_names_the_action_space(action: Any) -> None:
     walk = make(simulator="kinematic").unwrapped
     walk.reset()
     with pytest.raises(InvalidInput, match=r"an action is one of Discrete\(15\)"):
         walk.step(action)
 
 
-def test_the_name_of_the_module_is_enough_to_register_it() -> None:
+def test_gymnasium_can_import_and_register_it_by_module_name() -> None:
     code = "import gymnasium; gymnasium.make('app.environment:RacingHexapods/Walk-v0')"
     subprocess.run([sys.executable, "-W", "error", "-c", code], check=True, timeout=60)

@@ -1,1 +1,10 @@
-"""The walking problem itself: feet, gaits, legs, steps. NumPy only, no input or output."""
+"""The walking problem: robots, gaits, kinematics and steps. NumPy only, no input or output.
+
+- `types`: arrays, cells and actions; `errors`: the exception hierarchy; `text`: validation and
+  escaping of names.
+- `robot`: morphology, servos and presets; `gait`: orientation and leg pairs; `grid`: the foot
+  grid; `observation`: how the state is read, and the legal actions.
+- `feet`: foot offsets and the kinematic law of a step; `kinematics`: inverse and forward
+  kinematics of the legs; `motion`: servo commands of a step.
+- `simulator`: the simulator protocol; `kinematic`: the simulator without slip.
+"""

@@ -1,38 +1,38 @@
-"""The one tree of errors. Each message is a sentence for the user that names what is valid."""
+"""Exception hierarchy. Each message is a sentence for the user that names the valid choices."""
 
 from collections.abc import Iterable
 
 
 class HexapodError(Exception):
-    """Anything that this product refuses or fails at, in one sentence."""
+    """Base class of all errors that are reported to the user, as one sentence."""
 
 
 class InvalidInput(HexapodError):
-    """The user asked for something that cannot be; the message says what can."""
+    """The user's input is invalid; the message names the valid choices."""
 
 
 class UnknownName(InvalidInput):
-    """A name that is not registered, of a gait, an agent, a robot, a field and so on."""
+    """A name that is not registered: of a gait, an agent, a robot, a field and so on."""
 
     def __init__(self, kind: str, name: object, valid: Iterable[str]) -> None:
         super().__init__(f"unknown {kind} {name!r}; choose one of: {', '.join(valid)}")
 
 
 class Unreachable(InvalidInput):
-    """A leg of this robot cannot put its foot where the foot grid wants it."""
+    """A cell of the foot grid is out of reach of a leg of this robot."""
 
 
 class TableMismatch(InvalidInput):
-    """A Q-table that was learned for another problem than the one it is asked to solve."""
+    """A Q-table was learned for another walking problem than the one it is used for."""
 
 
 class DamagedFile(InvalidInput):
-    """A file that is not what it claims to be, or not whole."""
+    """A file is truncated, or its content is not of the expected format."""
 
 
 class IllegalAction(HexapodError):
-    """An agent chose what cannot be done where it is."""
+    """An agent chose an action that is illegal in the current state."""
 
 
 class Diverged(HexapodError):
-    """The physics left the finite numbers; whatever it computed since is meaningless."""
+    """The physics simulation diverged to non-finite numbers."""

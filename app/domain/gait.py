@@ -1,7 +1,7 @@
-"""Gaits in the paper's narrow sense: which way is forward, and which two legs move together.
+"""Gaits in the paper's sense: the robot's forward direction, and the pairs of its legs.
 
-In the field a gait is a pattern of footfalls over time. Here (paper §4, Figure 2) it is an
-orientation of the robot and a symmetry that pairs its legs; the pattern over time is learned.
+Elsewhere in the field a gait is a pattern of footfalls over time. Here (paper §4, Figure 2) it is
+an orientation of the robot and a symmetry that pairs its legs; the pattern over time is learned.
 """
 
 from collections.abc import Sequence
@@ -19,13 +19,18 @@ _SAME_DIRECTION_DEG = 1e-6
 
 @dataclass(frozen=True)
 class GaitSpec:
-    """What a user says of a gait; `resolve` makes it concrete for a robot.
+    """Specification of a gait, independent of a robot; `resolve` applies it to one.
 
     Attributes:
         right_leg, left_leg: forward is the bisector of the anticlockwise arc from the right to
             the left leg; legs count from 1, anticlockwise seen from above.
-        symmetry: how legs pair up, by symmetry of their azimuths, or
-        pairs: the pairs themselves, given by hand.
+        symmetry: how legs are paired by their azimuths: `origin` pairs opposite legs, `vertical`
+            mirror images about the forward axis. Either this or `pairs` is given.
+        pairs: the explicit pairs.
+
+    Raises:
+        InvalidInput: if both or neither of symmetry and pairs are given.
+        UnknownName: if the symmetry is unknown.
     """
 
     right_leg: int
@@ -53,9 +58,9 @@ class Gait:
     """A gait of one robot.
 
     Attributes:
-        name: its name, or a description where the user made it.
+        name: its name, or a description of a user's specification.
         forward_deg: the forward direction in the body frame, anticlockwise from body x.
-        azimuths_deg: of each leg relative to forward, anticlockwise, in (−180, 180].
+        azimuths_deg: each leg's azimuth relative to forward, anticlockwise, in (−180, 180].
         pairs: the leg pairs, in the order of the state vector.
     """
 
@@ -66,7 +71,7 @@ class Gait:
 
 
 def gait_spec(gait: str | GaitSpec) -> GaitSpec:
-    """The specification behind a gait's name.
+    """Return the specification of a named gait; a specification is returned unchanged.
 
     Raises:
         UnknownName: if there is no gait of this name.
@@ -79,11 +84,11 @@ def gait_spec(gait: str | GaitSpec) -> GaitSpec:
 
 
 def resolve(gait: str | GaitSpec, body_azimuths_deg: Sequence[float]) -> Gait:
-    """Make a gait concrete for a robot whose legs point in these directions.
+    """Apply a gait to a robot with the given leg azimuths.
 
     Args:
-        gait: a name out of `NAMED_GAITS`, or a specification.
-        body_azimuths_deg: of each leg in the body frame, anticlockwise from body x.
+        gait: a name of `NAMED_GAITS`, or a specification.
+        body_azimuths_deg: each leg's azimuth in the body frame, anticlockwise from body x.
 
     Raises:
         UnknownName: if there is no gait of this name.
@@ -119,7 +124,7 @@ def _name(gait: str | GaitSpec) -> str:
 
 
 def _wrap(angle_deg: float) -> float:
-    """The same direction in (−180, 180]; rounded, since azimuths are compared."""
+    """Wrap an angle to (−180, 180], rounded to 1e-9°, since azimuths are compared exactly."""
     wrapped = round((angle_deg + 180) % 360 - 180, 9)
     return 180.0 if wrapped == -180 else wrapped
 
@@ -135,7 +140,7 @@ def _leg_at(azimuth_deg: float, azimuths: Sequence[float], of_leg: int, symmetry
 
 
 def _origin_pairs(azimuths: Sequence[float]) -> tuple[Pair, ...]:
-    """Opposite legs; the lower number leads, in order."""
+    """Pair opposite legs; the lower number leads, in ascending order."""
     partners = {
         leg: _leg_at(a + 180, azimuths, leg, "origin") for leg, a in enumerate(azimuths, start=1)
     }
@@ -143,7 +148,10 @@ def _origin_pairs(azimuths: Sequence[float]) -> tuple[Pair, ...]:
 
 
 def _vertical_pairs(azimuths: Sequence[float]) -> tuple[Pair, ...]:
-    """Mirror images, the right leg leads, from front to back; the pair on the axis comes last."""
+    """Pair mirror images about the forward axis; the right leg leads.
+
+    Pairs are ordered from front to back; a pair on the axis comes last.
+    """
     numbered = dict(enumerate(azimuths, start=1))
     right = [leg for leg, a in numbered.items() if -180 < a < 0]
     right.sort(key=lambda leg: -numbered[leg])

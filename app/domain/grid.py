@@ -1,4 +1,4 @@
-"""The foot grid: the few places, around its home position, to which a foot may go (paper §4)."""
+"""The foot grid: the discrete positions around home to which a foot may step (paper §4)."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,11 +14,14 @@ MIN_SIDE_M, MAX_SIDE_M = 0.005, 10.0
 
 @dataclass(frozen=True)
 class FootGrid:
-    """Displacements from home on a square centred on home, in the robot frame (y forward).
+    """Cells on a square centred on a foot's home position, in the robot frame (y forward).
 
-    `divisions` × `divisions` evenly spaced points, and home where they miss it. Cell 0 is home;
-    the others go row by row from front to back, each from left to right.
-    The grid is closed under x → −x.
+    The cells are `divisions` × `divisions` evenly spaced points, and home if it is not one of
+    them. Cell 0 is home; the others are ordered row by row from front to back, each from left to
+    right. The grid is closed under x → −x.
+
+    Raises:
+        InvalidInput: if the side or the divisions are out of range.
     """
 
     side_m: float = 0.04
@@ -40,13 +43,13 @@ class FootGrid:
 
     @property
     def half_side_m(self) -> float:
-        """Half the side, the h in which distances are compared across grids [m]."""
+        """Half the side length [m], the unit h in which distances are compared across grids."""
         return self.side_m / 2
 
     @cached_property
     def cells(self) -> FloatArray:
         """Displacement of each cell from home [m], (cells, 2): x right, y forward."""
-        last = self.divisions - 1  # whole numbers first, so that the middle is exactly 0
+        last = self.divisions - 1  # scaled from integers, so that the middle is exactly 0
         ticks = self.half_side_m * (2 * np.arange(self.divisions) - last) / last
         points = [(x, y) for y in ticks[::-1] for x in ticks if (x, y) != (0.0, 0.0)]
         cells = np.array([(0.0, 0.0), *points])
@@ -67,11 +70,11 @@ class FootGrid:
         return tuple(self.nearest(-x, y) for x, y in self.places_m)
 
     def nearest(self, x_m: float, y_m: float) -> int:
-        """The cell nearest to an offset from home; a tie goes to home, then the lower index.
+        """Return the cell nearest to an offset from home; ties go to home, then the lower index.
 
-        In plain floats: asked for three pairs a step, that is quicker than arrays.
+        In plain floats, which are faster than arrays for the three pairs of a step.
         """
-        # Offsets that tie on paper differ in their last bits.
+        # Exact ties differ in their last bits by rounding.
         tie = 1e-9 * self.side_m * self.side_m
         nearest, least = 0, float("inf")
         for cell, (x, y) in enumerate(self.places_m):
@@ -81,7 +84,7 @@ class FootGrid:
         return nearest
 
     def name(self, cell: int) -> str:
-        """A cell in words: "home", "front left", or its displacement in millimetres."""
+        """Return a cell's name: "home", "front left", or its displacement in millimetres."""
         if cell == 0:
             return "home"
         x, y = self.cells[cell]

@@ -1,4 +1,4 @@
-"""The kinematic simulator: the law of a step without slip (`app.domain.feet`), exact and quick."""
+"""The kinematic simulator: steps without slip by the law of `app.domain.feet`, without physics."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from app.domain.types import Action, Cells, FloatArray
 
 @dataclass(frozen=True, slots=True)
 class KinematicState:
-    """Where the feet are, and how far the body came."""
+    """State of the kinematic simulator: foot offsets, body displacement [m], steps taken."""
 
     feet: Feet
     distance_m: float = 0.0
@@ -30,7 +30,7 @@ class KinematicState:
 
 
 class KinematicSimulator:
-    """Implements `Simulator` by the kinematic law; rewards need no physics."""
+    """Implements `Simulator` by the kinematic law: a step's reward is the body's displacement."""
 
     def __init__(self, robot: Robot, gait: Gait, grid: FootGrid) -> None:
         check_reach(robot, gait, grid)
@@ -83,12 +83,17 @@ class KinematicSimulator:
         phase = np.arange(1, robot.shift_substeps + 1) / robot.shift_substeps
         place = np.full(len(angles), distance_m)
         place[robot.swing_substeps :] += plan.advance_m * ease(phase)
-        kept = recorded_substeps(robot)
-        time_s, qpos = (kept + 1) * robot.dt_s, self._qpos(place[kept], angles[kept])
+        indices = recorded_substeps(robot)
+        time_s, qpos = (indices + 1) * robot.dt_s, self._qpos(place[indices], angles[indices])
         return Motion(time_s.astype(np.float32), qpos.astype(np.float32))
 
     def _qpos(self, distance_m: FloatArray, angles: FloatArray) -> FloatArray:
-        """(k, 7 + 3 · legs): upright, forward along the track, at body height over the feet."""
+        """Return generalised positions (k, 7 + 3 · legs): the torso upright at body height.
+
+        Args:
+            distance_m: displacement along the track (world +y), (k,).
+            angles: joint angles [rad], (k, 3 · legs).
+        """
         qpos = np.zeros((len(distance_m), 7 + angles.shape[1]))
         qpos[:, 1] = distance_m
         qpos[:, 2] = self.robot.body_height_m + self.robot.foot_radius_m

@@ -1,4 +1,4 @@
-"""Leg kinematics: joint angles for a foot's place, and back.
+"""Inverse and forward kinematics of the legs.
 
 A leg is coxa (yaw), femur (pitch), tibia (pitch). Its foot lies in the vertical plane that the
 coxa turns; in that plane femur and tibia are a two-link arm with the knee above. Positive pitch
@@ -18,13 +18,13 @@ from app.domain.robot import Robot
 from app.domain.types import FloatArray
 
 JOINT_LIMITS_RAD = {"coxa": (-1.2, 1.2), "femur": (-1.4, 1.9), "tibia": (-2.8, 0.0)}
-"""How far each servo turns; the model's joint ranges and the check of reach both use it."""
+"""Joint limits (low, high), used by the model's joint ranges and by `check_reach`."""
 
 
 class Legs:
-    """The legs of one robot under one gait.
+    """Kinematics of the legs of one robot under one gait.
 
-    Everything is elementwise, so a result does not depend on how many are computed at once.
+    All operations are elementwise, so that results do not depend on the batch size.
     """
 
     def __init__(self, robot: Robot, gait: Gait) -> None:
@@ -34,12 +34,13 @@ class Legs:
         sin, cos = np.sin(azimuth), np.cos(azimuth)
         home = robot.home_radius_m - mounts
         self.frames: FloatArray = np.array([(home, 0 * home), (-sin, -cos), (cos, -sin)])
-        """From the robot frame to the frame of each leg, (3, 2, legs): where home is from the coxa
-        joint [m], what x adds to that, what y adds; each along the leg, and across."""
+        """Affine map from the robot frame to each leg's frame, (3, 2, legs): home's position from
+        the coxa joint [m], the coefficients of x, the coefficients of y; each along the leg, and
+        across."""
         self._frames = [frame.ravel().tolist() for frame in np.moveaxis(self.frames, -1, 0)]
 
     def joint_angles(self, offsets: FloatArray) -> FloatArray:
-        """Inverse kinematics of all feet.
+        """Compute the inverse kinematics of all feet.
 
         Args:
             offsets: of the feet from home, (..., legs, 3) in the robot frame [m].
@@ -53,19 +54,20 @@ class Legs:
             return self.solve(np.array((x, y)), z, frames)
 
     def solve(self, places: FloatArray, heights: FloatArray, frames: FloatArray) -> FloatArray:
-        """Inverse kinematics of any feet, each in the frame of its leg.
+        """Compute the inverse kinematics of any feet, each in the frame of its leg.
 
-        The coordinates come apart and contiguous: NumPy's loops over strided numbers are slower,
-        and may differ in the last bit. Few calls, since a step of training makes them anew.
+        Coordinates are separate contiguous arrays: NumPy's loops over strided arrays are slower,
+        and may differ in the last bit. As few NumPy calls as possible, since every training step
+        pays their overhead.
 
         Args:
             places: offsets from home to the right and forward in the robot frame [m], (2, ...).
-            heights: over the ground [m]; broadcasts with them.
+            heights: heights above the ground [m]; broadcasts with `places`.
             frames: a column of `self.frames` for each foot, (3, 2, ...).
 
         Returns:
-            (..., 3) coxa, femur, tibia [rad]; NaN where a foot is out of reach, with NumPy's
-            warning: `check_reach` has made sure that none is.
+            (..., 3) coxa, femur, tibia [rad]; NaN with a NumPy warning where a foot is out of
+            reach, which `check_reach` rules out beforehand.
         """
         home, of_x, of_y = frames
         feet = home + (of_x * places[0] + of_y * places[1])  # (2, ...): along the leg, across
@@ -82,9 +84,9 @@ class Legs:
         return angles
 
     def foot_offsets(self, angles: Sequence[float]) -> list[tuple[float, float, float]]:
-        """Forward kinematics, the inverse of `joint_angles`, for one pose.
+        """Compute the forward kinematics of one pose, the inverse of `joint_angles`.
 
-        In plain floats: asked once a step, that is quicker than arrays of six.
+        In plain floats, which are faster than arrays for the six legs of one pose.
 
         Args:
             angles: coxa, femur, tibia of leg 1, of leg 2, and so on [rad].
@@ -110,32 +112,37 @@ class Legs:
 
 
 def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> None:
-    """Make sure that no sequence of actions can ask a leg for more than it can do.
+    """Check that every foot offset that can occur is within each leg's reach and joint limits.
 
-    A foot's true forward offset drifts as the body re-centres; with P pairs it stays strictly
-    within (P − 1) h of home, since offsets add up to nothing and each was once sent to within h.
+    A foot's actual forward offset drifts as the body re-centres. With P pairs it stays strictly
+    within (P − 1) h of home, since the offsets sum to zero and each was last commanded to within
+    h (half the grid's side).
 
     Raises:
         Unreachable: naming the leg and the cell.
     """
     legs, drift = Legs(robot, gait), len(gait.pairs) - 1
     for cell, (x, y) in enumerate(grid.cells):
-        ways = (("", y), (" after the body has re-centred", drift * y), (" on the way there", 0.0))
-        for why, forward in ways:
+        passages = (
+            ("", y),
+            (" after the body has re-centred", drift * y),
+            (" on the way there", 0.0),
+        )
+        for why, forward in passages:
             for height in (0.0, robot.step_height_m):
                 offset = np.array([x, forward, height])
                 angles = legs.joint_angles(np.tile(offset, (len(robot.legs), 1)))
                 for leg, joints in enumerate(angles, start=1):
-                    trouble = _trouble(joints)
-                    if trouble:
+                    problem = _reach_problem(joints)
+                    if problem:
                         raise Unreachable(
                             f"leg {leg} cannot reach cell {cell} ({grid.name(cell)}){why}: "
-                            f"{trouble}; choose a smaller grid_side_m than {grid.side_m:g}, a "
+                            f"{problem}; choose a smaller grid_side_m than {grid.side_m:g}, a "
                             "lower step_height_m, or other link lengths, home radius or body height"
                         )
 
 
-def _trouble(joints: FloatArray) -> str:
+def _reach_problem(joints: FloatArray) -> str:
     if np.isnan(joints).any():
         return "it is out of the reach of its links"
     for (name, (low, high)), angle in zip(JOINT_LIMITS_RAD.items(), joints, strict=True):

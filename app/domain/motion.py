@@ -1,7 +1,7 @@
-"""The motion of one step: swing two feet to their new cell, then shift the body over the feet.
+"""Servo commands of a step: swing a pair of feet to its new cell, then shift the body over them.
 
-From a plan of where the feet go to the commands of the servos, substep by substep, for many steps
-at once: a whole layer of a look-ahead.
+Turns plans of foot offsets into joint targets per substep, vectorised over many steps, such as a
+whole layer of a look-ahead.
 """
 
 from collections.abc import Sequence
@@ -19,21 +19,21 @@ from app.domain.types import Action, FloatArray, IntArray
 
 
 class StepPlan(NamedTuple):
-    """What one step does to the feet, if nothing slips."""
+    """Foot offsets at the phases of one step, without slip."""
 
     pair: int
-    """The one that swings."""
+    """The pair that swings."""
     start: Feet
     landed: Feet
     """After the swing."""
     end: Feet
     """After the shift."""
     advance_m: float
-    """How far the body moves in the shift."""
+    """Displacement of the body in the shift."""
 
 
 class StepMotion:
-    """Plans steps of one robot under one gait on one foot grid."""
+    """Plans steps and their joint targets, for one robot, gait and foot grid."""
 
     def __init__(self, robot: Robot, gait: Gait, grid: FootGrid) -> None:
         self.legs = Legs(robot, gait)
@@ -43,40 +43,45 @@ class StepMotion:
         self._substeps = robot.swing_substeps + robot.shift_substeps
 
     def at_home(self) -> Feet:
-        """Every foot at home."""
+        """Return the offsets with every foot at home."""
         return Feet.at_home(self._pairs)
 
     def plan(self, start: Feet, action: Action) -> StepPlan:
-        """Where the feet go in a step (`app.domain.feet` has the law)."""
+        """Plan a step from the feet's offsets, by the kinematic law of `app.domain.feet`."""
         pair, cell = action
         landed = start.landed(pair, cell, self._places[cell])
         end, advance = landed.centred()
         return StepPlan(pair, start, landed, end, advance)
 
     def joint_targets(self, plans: Sequence[StepPlan]) -> FloatArray:
-        """Commands for the position servos over the substeps of each step.
+        """Compute the commands of the position servos over the substeps of each step.
+
+        Args:
+            plans: the n steps.
 
         Returns:
             (n, substeps, legs · 3) [rad]; in each row legs in order, coxa, femur, tibia.
         """
         samples, swinging = self._samples, [plan.pair for plan in plans]
-        ways = np.array([_ways(plan) for plan in plans])  # (n, 4, 2 · pairs)
+        endpoints = np.array([_phase_endpoints(plan) for plan in plans])  # (n, 4, 2 · pairs)
         source = samples.source.take(swinging, 1)  # (4, n, samples)
         order = samples.order.take(swinging, 0)  # (n, substeps · legs)
-        if len(plans) > 1:  # each has its own part of the flat arrays
+        if len(plans) > 1:  # offset the indices to each plan's part of the flat arrays
             rows = np.arange(len(plans))[:, None]
-            source += rows * ways[0].size
+            source += rows * endpoints[0].size
             order += rows * samples.share.size
-        way = ways.take(source)
-        places = way[:2] + samples.share * (way[2:] - way[:2])  # of the leader, (2, n, samples)
+        sample_endpoints = endpoints.take(source)
+        places = sample_endpoints[:2] + samples.share * (
+            sample_endpoints[2:] - sample_endpoints[:2]
+        )  # of the leader, (2, n, samples)
         frames = samples.frames.take(swinging, 2)
         angles = self.legs.solve(places, samples.lift, frames)
         targets: FloatArray = angles.reshape(-1, 3).take(order, 0)
         return targets.reshape(len(plans), self._substeps, -1)
 
 
-def _ways(plan: StepPlan) -> tuple[tuple[float, ...], ...]:
-    """From x, from y, to x, to y: of every pair in the swing, then of every pair in the shift."""
+def _phase_endpoints(plan: StepPlan) -> tuple[tuple[float, ...], ...]:
+    """Return from x, from y, to x, to y [m] of every pair in the swing, then in the shift."""
     start, landed, end = plan.start, plan.landed, plan.end
     return (
         start.lateral_m + landed.lateral_m,
@@ -87,61 +92,72 @@ def _ways(plan: StepPlan) -> tuple[tuple[float, ...], ...]:
 
 
 class _Samples(NamedTuple):
-    """The few places of feet for which a step needs inverse kinematics, all found in one call.
+    """The distinct foot positions of a step, for which inverse kinematics is solved in one call.
 
-    Feet that stand through the swing need one. In a look-ahead planning stays a small part.
-    What depends on which pair swings has a row for each pair.
+    Feet that stand through the swing need a single sample, which keeps planning cheap in a
+    look-ahead. Fields that depend on which pair swings have a row for each pair.
     """
 
     frames: FloatArray
     """`Legs.frames` of the sample's leg, mirrored for a partner, (3, 2, pairs, samples)."""
     source: IntArray
-    """Where `_ways` has the sample's from x, from y, to x, to y, (4, pairs, samples)."""
+    """Indices of each sample's from x, from y, to x, to y in the flattened result of
+    `_phase_endpoints`, (4, pairs, samples)."""
     share: FloatArray
-    """How much of its way in this phase the foot has gone, (samples,)."""
+    """Interpolation parameter of each sample within its phase, 0 to 1, (samples,)."""
     lift: FloatArray
-    """How high it is lifted [m], (samples,)."""
+    """Height of each sample above the ground [m], (samples,)."""
     order: IntArray
-    """Which sample commands which leg at which substep, (pairs, substeps · legs)."""
+    """Index of the sample that commands each leg at each substep, (pairs, substeps · legs)."""
 
 
 def _samples(robot: Robot, gait: Gait, frames: FloatArray) -> _Samples:
-    """A half cosine forward and a half sine up in the swing, a half cosine in the shift."""
+    """Sample the trajectory of a step: easing by half a cosine, lifting by half a sine.
+
+    Args:
+        robot: for the number of substeps and the step height.
+        gait: for the pairs.
+        frames: `Legs.frames`.
+    """
     count, swing, shift = len(robot.legs), robot.swing_substeps, robot.shift_substeps
-    everyone, movers = np.arange(count), np.array(gait.pairs) - 1
-    swung = np.repeat(np.arange(1, swing + 1) / swing, 2)
-    shifted = np.repeat(np.arange(1, shift + 1) / shift, count)
-    still = np.zeros(count)
+    all_legs, swinging_legs = np.arange(count), np.array(gait.pairs) - 1
+    swing_phase = np.repeat(np.arange(1, swing + 1) / swing, 2)
+    shift_phase = np.repeat(np.arange(1, shift + 1) / shift, count)
+    zeros = np.zeros(count)
     legs, order = [], []
-    for pair in movers:
-        legs.append(np.concatenate((everyone, np.tile(pair, swing), np.tile(everyone, shift))))
-        in_swing = np.tile(everyone, (swing, 1))
+    for pair in swinging_legs:
+        legs.append(np.concatenate((all_legs, np.tile(pair, swing), np.tile(all_legs, shift))))
+        in_swing = np.tile(all_legs, (swing, 1))
         in_swing[:, pair] = count + np.arange(2 * swing).reshape(swing, 2)
         in_shift = count + 2 * swing + np.arange(count * shift)
         order.append(np.concatenate((in_swing.ravel(), in_shift)))
-    whose, place = np.array(legs), np.argsort(movers.ravel())
+    sample_legs, place_in_gait = np.array(legs), np.argsort(swinging_legs.ravel())
     mirrored = frames.copy()
-    mirrored[1] *= np.where(place % 2, -1.0, 1.0)  # a partner is at (−x, y)
-    in_phase = np.repeat((0, 0, len(movers)), (count, 2 * swing, count * shift))
-    pair_of = (place // 2)[whose] + in_phase  # (pairs, samples)
+    mirrored[1] *= np.where(place_in_gait % 2, -1.0, 1.0)  # a partner is at (−x, y)
+    in_phase = np.repeat((0, 0, len(swinging_legs)), (count, 2 * swing, count * shift))
+    pair_of = (place_in_gait // 2)[sample_legs] + in_phase  # (pairs, samples)
     return _Samples(
-        mirrored[:, :, whose],
-        np.stack([pair_of + part * 2 * len(movers) for part in range(4)]),
-        np.concatenate((still, ease(swung), ease(shifted))),
+        mirrored[:, :, sample_legs],
+        np.stack([pair_of + part * 2 * len(swinging_legs) for part in range(4)]),
+        np.concatenate((zeros, ease(swing_phase), ease(shift_phase))),
         np.concatenate(
-            (still, robot.step_height_m * np.sin(np.pi * swung), np.zeros_like(shifted))
+            (
+                zeros,
+                robot.step_height_m * np.sin(np.pi * swing_phase),
+                np.zeros_like(shift_phase),
+            )
         ),
         np.array(order),
     )
 
 
 def ease(phase: FloatArray) -> FloatArray:
-    """From 0 to 1 along a half cosine: starts and ends at rest."""
+    """Interpolate from 0 to 1 along half a cosine, with zero velocity at both ends."""
     return (1 - np.cos(np.pi * phase)) / 2
 
 
 def recorded_substeps(robot: Robot) -> IntArray:
-    """Which substeps of a step a recording keeps, counted from 0; always the last."""
+    """Return the indices of a step's substeps that are recorded, always including the last."""
     total = robot.swing_substeps + robot.shift_substeps
     stride = max(1, round(1 / (RECORDING_HZ * robot.dt_s)))
     return np.unique(np.append(np.arange(stride - 1, total, stride), total - 1))

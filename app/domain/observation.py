@@ -1,7 +1,7 @@
-"""What an agent sees: one cell per leg pair, read in one of two ways.
+"""Observations of an agent: one cell per leg pair, measured or commanded; and the legal actions.
 
-After each step the body re-centres over the feet, so a foot's true offset from home drifts off
-the cell it was sent to. The paper does not say which of the two its state holds.
+After each step the body re-centres over the feet, so a foot's actual offset from home drifts from
+its commanded cell. The paper does not say which of the two its state holds.
 """
 
 from functools import lru_cache
@@ -20,13 +20,17 @@ OBSERVATIONS: tuple[Observation, ...] = get_args(Observation)
 
 
 def check_observation(name: str) -> None:
-    """Raise `UnknownName` unless this is a way to read the state."""
+    """Check that an observation exists.
+
+    Raises:
+        UnknownName: if it does not.
+    """
     if name not in OBSERVATIONS:
         raise UnknownName("observation", name, OBSERVATIONS)
 
 
 def observe(simulator: Simulator[S], state: S, how: Observation) -> Cells:
-    """The cells that an agent sees in this state."""
+    """Return the cells that an agent observes in a state, one per pair."""
     if how == "commanded":
         return state.commanded
     nearest = simulator.grid.nearest
@@ -35,18 +39,18 @@ def observe(simulator: Simulator[S], state: S, how: Observation) -> Cells:
 
 @lru_cache(maxsize=1 << 10)
 def legal_actions(cells: Cells, cell_count: int) -> tuple[Action, ...]:
-    """Every (pair, cell) but the cell that the pair is seen on, pair by pair."""
-    parts = [_but(pair, present, cell_count) for pair, present in enumerate(cells)]
+    """Return all legal actions, pair by pair: every cell but the pair's observed one."""
+    parts = [_actions_except(pair, present, cell_count) for pair, present in enumerate(cells)]
     return tuple(chain.from_iterable(parts))
 
 
 @lru_cache(maxsize=1 << 12)
-def _but(pair: int, present: int, cell_count: int) -> tuple[Action, ...]:
-    """The actions of a pair that is seen on a cell. States share them: there are many states."""
-    every = _every(pair, cell_count)
+def _actions_except(pair: int, present: int, cell_count: int) -> tuple[Action, ...]:
+    """Return a pair's actions except the one to its observed cell; cached, shared by states."""
+    every = _all_actions(pair, cell_count)
     return every[:present] + every[present + 1 :]
 
 
 @lru_cache(maxsize=1 << 7)
-def _every(pair: int, cell_count: int) -> tuple[Action, ...]:
+def _all_actions(pair: int, cell_count: int) -> tuple[Action, ...]:
     return tuple(Action(pair, cell) for cell in range(cell_count))

@@ -1,4 +1,4 @@
-"""Robots: morphology, servos and step timing, with named presets and what may differ from them."""
+"""Robots: morphology, servos and step timing, with named presets and validated overrides."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -12,7 +12,7 @@ MIN_LEGS, MAX_LEGS = 4, 12
 
 @dataclass(frozen=True)
 class LegMount:
-    """Where a leg's coxa joint sits on the torso: polar coordinates in the body frame."""
+    """Position of a leg's coxa joint on the torso, in polar coordinates of the body frame."""
 
     azimuth_deg: float
     """Anticlockwise from body x, seen from above."""
@@ -20,7 +20,7 @@ class LegMount:
 
 
 def ring(legs: int, radius_m: float = 0.10) -> tuple[LegMount, ...]:
-    """Mounts of a regular ring, leg 1 along body x, numbered anticlockwise.
+    """Return the mounts of a regular ring, leg 1 along body x, numbered anticlockwise.
 
     Raises:
         InvalidInput: if the number of legs is odd or out of range.
@@ -32,13 +32,16 @@ def ring(legs: int, radius_m: float = 0.10) -> tuple[LegMount, ...]:
 
 @dataclass(frozen=True)
 class Robot:
-    """All that a simulator must know of a robot. Lengths in m, masses in kg, times in s.
+    """Parameters of a robot. Lengths in m, masses in kg, times in s.
 
-    The defaults are the `stiff` hexapod. The numbers of a leg are those of all its legs.
+    The defaults are the `stiff` hexapod. All legs have the same dimensions.
+
+    Raises:
+        InvalidInput: if a value is out of range.
     """
 
     name: str = "stiff"
-    """The preset that it is, or that it started from and `(modified)`."""
+    """Name of the preset; with the suffix `(modified)` if fields differ from it."""
     legs: tuple[LegMount, ...] = ring(6)
     torso_radius_m: float = 0.10
     torso_half_height_m: float = 0.02
@@ -54,9 +57,9 @@ class Robot:
     home_radius_m: float = 0.25
     """Horizontal distance of a foot at home from the torso's centre."""
     body_height_m: float = 0.09
-    """Height of the torso's centre over the centres of the feet."""
+    """Height of the torso's centre above the centres of the feet."""
     step_height_m: float = 0.03
-    """How far a foot lifts at the middle of its swing."""
+    """Height of a foot at the middle of its swing."""
     swing_s: float = 0.2
     shift_s: float = 0.12
     servo_kp: float = 40.0
@@ -65,13 +68,13 @@ class Robot:
     """Velocity gain [N·m·s/rad]."""
     servo_torque_nm: float = 1.5
     joint_armature: float = 0.002
-    """Rotor inertia seen at the joint [kg·m²]."""
+    """Rotor inertia reflected to the joint [kg·m²]."""
     joint_damping: float = 0.05
     """[N·m·s/rad]."""
     friction: float = 1.0
     """Sliding friction between feet and ground."""
     dt_s: float = 0.004
-    """A substep of the physics; 0.008 s begins to drift."""
+    """Time step of the physics; with 0.008 s results begin to drift."""
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
@@ -90,7 +93,7 @@ class Robot:
 
     @property
     def azimuths_deg(self) -> tuple[float, ...]:
-        """Of each leg in the body frame, anticlockwise from body x."""
+        """Each leg's azimuth in the body frame, anticlockwise from body x."""
         return tuple(leg.azimuth_deg for leg in self.legs)
 
     @property
@@ -144,7 +147,7 @@ MOUNT_RADIUS, AZIMUTH = (0.0, 2.0), (-360.0, 360.0)
 
 
 def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
-    """A robot from what a user writes: a preset's name, or what differs from a preset.
+    """Build a robot from user input: a preset's name, or overrides of a preset.
 
     A mapping may have `preset` (default `stiff`), any number of `Robot`'s fields, and its legs
     either as `n_legs` (a regular ring, with `mount_radius_m`) or as `legs`, a list of
@@ -167,15 +170,15 @@ def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
     numbers = {f.name for f in fields(Robot)} - {"name", "legs"}
     for name, number in given.items():
         if name not in numbers:
-            known = ["preset", "n_legs", "mount_radius_m", "legs", *sorted(numbers)]
-            raise UnknownName("robot field", name, known)
+            valid = ["preset", "n_legs", "mount_radius_m", "legs", *sorted(numbers)]
+            raise UnknownName("robot field", name, valid)
         given[name] = _number(name, number)
     changed = replace(base, legs=legs, **given)
     return changed if changed == base else replace(changed, name=f"{base.name} (modified)")
 
 
 def as_mapping(value: Robot) -> dict[str, Any]:
-    """What `robot` reads back as the same robot: plain types, fit for JSON."""
+    """Return a robot as its preset and overrides, fit for JSON; the inverse of `robot`."""
     if PRESETS.get(value.name) == value:
         return {"preset": value.name}
     preset = value.name.removesuffix(" (modified)")
@@ -193,7 +196,7 @@ def _preset(name: object) -> Robot:
 
 
 def _legs(given: dict[str, Any], base: Robot) -> tuple[LegMount, ...]:
-    """Takes `n_legs`, `mount_radius_m` and `legs` out of what is given."""
+    """Pop `n_legs`, `mount_radius_m` and `legs` from the input and return the mounts."""
     count, radius = given.pop("n_legs", None), given.pop("mount_radius_m", None)
     mounts = given.pop("legs", None)
     if mounts is not None:

@@ -1,4 +1,4 @@
-"""What every simulator offers: immutable states, one step, and many steps at once."""
+"""The simulator protocol: immutable states, single steps, and batches of steps."""
 
 from collections.abc import Sequence
 from typing import Generic, NamedTuple, Protocol, TypeVar
@@ -15,7 +15,7 @@ RECORDING_HZ = 50
 
 
 class WalkState(Protocol):
-    """A robot in the world, as an immutable value; simulators add what they need to go on."""
+    """Immutable state of a walk between two steps; simulators add the fields that they need."""
 
     @property
     def commanded(self) -> Cells:
@@ -23,47 +23,48 @@ class WalkState(Protocol):
 
     @property
     def distance_m(self) -> float:
-        """Displacement of the torso's centre along the track since the start."""
+        """Displacement of the torso's centre along the track (world +y) since the start."""
 
     @property
     def steps(self) -> int:
-        """How many steps led from rest to here."""
+        """Number of steps taken since rest."""
 
 
 S = TypeVar("S", bound=WalkState)
 
 
 class Motion(NamedTuple):
-    """What a robot did during a step, at `RECORDING_HZ`."""
+    """Recorded motion of a robot during a step, at `RECORDING_HZ`."""
 
     time_s: NDArray[np.float32]
-    """(k,) since the step's start; the last is the step's end."""
+    """Times since the step's start, (k,); the last is the step's end."""
     qpos: NDArray[np.float32]
-    """(k, 7 + 3 · legs): place of the torso [m], its attitude (wxyz), joint angles [rad]."""
+    """Torso position [m], its rotation (quaternion wxyz), joint angles [rad],
+    (k, 7 + 3 · legs)."""
 
 
 class Step(NamedTuple, Generic[S]):
-    """What came of one step."""
+    """Result of one step: the next state, its reward, and the motion if recorded."""
 
     state: S
     reward_m: float
     """Displacement along the robot's own forward direction at the start of the step."""
     motion: Motion | None
-    """In between, where it was asked for."""
+    """The motion between the two states, if `record` was set."""
 
 
 class Expansion(NamedTuple, Generic[S]):
-    """What came of many steps, each from a state of its own."""
+    """Results of n independent steps."""
 
     states: list[S]
     rewards_m: FloatArray
-    """(n,)"""
+    """As `Step.reward_m`, (n,)."""
 
 
 class Simulator(Protocol[S]):
-    """A robot on the track under one gait and foot grid.
+    """Simulator of a robot on the track, under one gait and foot grid.
 
-    Results repeat to the last bit, and do not depend on how many are computed at once.
+    Results are deterministic to the last bit, and do not depend on the batch size.
     """
 
     robot: Robot
@@ -71,29 +72,33 @@ class Simulator(Protocol[S]):
     grid: FootGrid
 
     def rest(self) -> S:
-        """The robot at rest on the start line, every foot at home."""
+        """Return the state at rest on the start line, with every foot at home."""
 
     def step(self, state: S, action: Action, record: bool = False) -> Step[S]:
         """Carry out one action.
 
         Raises:
-            Diverged: if the physics breaks; the message names the step.
+            Diverged: if the physics diverges; the message names the step.
         """
 
     def expand(self, states: Sequence[S], actions: Sequence[Action]) -> Expansion[S]:
-        """Carry out one action from each state, as `step` would."""
+        """Carry out one action from each state, with the results of `step`.
+
+        Raises:
+            Diverged: if the physics diverges.
+        """
 
     def pair_offsets(self, state: S) -> Sequence[tuple[float, float]]:
-        """Where the feet truly are: offsets (x, y) from home in the robot frame [m].
+        """Return the feet's actual offsets (x, y) from home in the robot frame [m], per pair.
 
-        For each pair the mean of its leader's and its mirrored partner's.
+        Each is the mean of the leader's offset and the partner's mirrored one.
         """
 
     def pose(self, state: S) -> FloatArray:
-        """Place and attitude of the torso and the joint angles, (7 + 3 · legs,)."""
+        """Return torso position [m], rotation (wxyz) and joint angles [rad], (7 + 3 · legs,)."""
 
     def dump(self, state: S) -> dict[str, FloatArray]:
-        """All of a state as arrays, for a file."""
+        """Serialise a state as named arrays, for storage."""
 
     def load(self, arrays: dict[str, FloatArray]) -> S:
-        """The state that `dump` wrote, to the last bit."""
+        """Restore a state from the arrays of `dump`, to the last bit."""

@@ -1,4 +1,4 @@
-"""Text that people see: which characters a name may have, and what stands for the others."""
+"""Validation and escaping of text that users see: allowed characters in names, and CSV cells."""
 
 import sys
 import unicodedata
@@ -11,20 +11,20 @@ NAMES = (
     f"text of at most {MAX_NAME} characters, without control characters, marks of writing "
     "direction or other invisible characters"
 )
-"""What a name may be."""
+"""Description of a valid name, for messages."""
 _INVISIBLE = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
 """Unicode categories: controls, format controls (bidirectional marks, joiners, tags), surrogates,
-and separators of lines and paragraphs. A name with one reads as another than it is."""
+and separators of lines and paragraphs. With them a name could be spoofed to look like another."""
 _BLANK_LETTERS = frozenset("\u115f\u1160\u3164\uffa0")
-"""Fillers of Hangul: letters by their category, and drawn as nothing."""
+"""Hangul fillers: in a category of letters, but rendered as blank."""
 _REPLACEMENT = "\ufffd"
 
 
 def check_name(name: str) -> str:
-    """A name as it is kept, without spaces around it.
+    """Validate a name, and return it without leading and trailing whitespace.
 
     Raises:
-        InvalidInput: if it is too long, or has a character that cannot be seen.
+        InvalidInput: if it is too long, or has an invisible character.
     """
     if len(name) > MAX_NAME:
         raise InvalidInput(f"a name must be {NAMES}; it has {len(name):,} characters")
@@ -36,21 +36,21 @@ def check_name(name: str) -> str:
 
 @cache
 def invisible_ranges() -> tuple[tuple[int, int], ...]:
-    """First and last code points of the characters that a name may not have, in order.
+    """Return the ranges of code points not allowed in a name, as sorted (first, last).
 
-    Halves of surrogate pairs are left out: no UTF-8 has them.
+    Surrogates are excluded: they cannot occur in UTF-8.
     """
-    found: list[tuple[int, int]] = []
+    ranges: list[tuple[int, int]] = []
     for point in range(sys.maxunicode + 1):
         if not _is_invisible(chr(point)) or 0xD800 <= point <= 0xDFFF:
             continue
-        is_next = bool(found) and found[-1][1] == point - 1
-        found.append((found.pop()[0] if is_next else point, point))
-    return tuple(found)
+        is_next = bool(ranges) and ranges[-1][1] == point - 1
+        ranges.append((ranges.pop()[0] if is_next else point, point))
+    return tuple(ranges)
 
 
 def visible(text: str) -> str:
-    """The text with a mark in place of each character that a name may not have."""
+    """Replace each invisible character by U+FFFD, the replacement character."""
     if text.isascii() and text.isprintable():
         return text
     return "".join(_REPLACEMENT if _is_invisible(one) else one for one in text)
@@ -61,16 +61,19 @@ def _is_invisible(character: str) -> bool:
 
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "\uff1d", "\uff0b", "\uff0d", "\uff20")
-"""With these a formula may begin; the last four are the full-width forms of the first."""
+"""First characters of spreadsheet formulas; the last four are full-width forms of the first."""
 
 
 def text_cell(value: str) -> str:
-    """Text as a cell: with a quote before it where it would be computed."""
+    """Escape text for a CSV cell by a leading quote, if a spreadsheet would evaluate it.
+
+    Prevents CSV (formula) injection.
+    """
     return f"'{value}" if value.startswith(_FORMULA) else value
 
 
 def is_formula(cell: str) -> bool:
-    """Whether a cell would be computed; a number with its sign would not."""
+    """Whether a spreadsheet would evaluate a cell as a formula; a signed number is none."""
     if not cell.startswith(_FORMULA):
         return False
     try:

@@ -1,4 +1,4 @@
-"""The few types that every floor speaks in."""
+"""Basic types shared by all packages."""
 
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 Cells = tuple[int, ...]
-"""One cell of the foot grid per leg pair: what an agent sees of the world."""
+"""One cell of the foot grid per leg pair: an agent's observation."""
 
 
 class Action(NamedTuple):

@@ -1,4 +1,4 @@
-"""The machines that trials run on: this one's cores, or a Dask cluster that is there already."""
+"""Connect to the Dask cluster that runs trials: a local one on this machine, or an existing one."""
 
 import asyncio
 import logging
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 MAX_WORKERS = 512
 ANSWER_S = 8.0
-"""How long a scheduler may take to answer."""
+"""Timeout for connecting to a scheduler and for its answers."""
 
 _ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d{1,5}")
 _HOW_TO_START = (
@@ -32,18 +32,21 @@ _HOW_TO_START = (
 
 
 class ClusterLost(HexapodError):
-    """The cluster is gone, or has no worker left; the message says what is kept."""
+    """The connection to the scheduler was lost, or no worker is left; finished results are kept."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ClusterSpec:
-    """On which machines trials run.
+    """The cluster that trials run on.
 
     Attributes:
-        workers: processes of a cluster on this machine; None for one a core.
-        scheduler: of a cluster that is there already, such as `tcp://10.0.0.7:8786`, or `tls://`;
-            None for this machine.
-        tls_ca, tls_cert, tls_key: PEM files, for a `tls://` scheduler.
+        workers: number of processes of a local cluster; None for one per core.
+        scheduler: address of an existing cluster's scheduler, such as `tcp://10.0.0.7:8786` or
+            `tls://…`; None for a local cluster.
+        tls_ca, tls_cert, tls_key: paths of PEM files, for a `tls://` scheduler.
+
+    Raises:
+        InvalidInput: if the fields are out of range or contradict each other.
     """
 
     workers: int | None = None
@@ -80,10 +83,11 @@ class ClusterSpec:
 
 
 @contextmanager
-def connect(where: ClusterSpec) -> "Iterator[Client]":
-    """A client of the cluster, which is started first where it is this machine's own.
+def connect(spec: ClusterSpec) -> "Iterator[Client]":
+    """Yield a client of the cluster; a local cluster is started first.
 
-    Whoever leaves drops what is still computed. Its processes end with this one, however it ends.
+    Leaving the context cancels the tasks in progress. A local cluster's processes end with this
+    one, even if this one is killed.
 
     Raises:
         InvalidInput: if the scheduler does not answer, or a worker would compute other results.
@@ -92,26 +96,26 @@ def connect(where: ClusterSpec) -> "Iterator[Client]":
     from distributed.utils import silence_logging_cmgr  # noqa: PLC0415
 
     with ExitStack() as stack:
-        # It would tell of every worker that dies, which the engine reports in its own words.
+        # Silences Dask's log of every worker that dies; the engine reports these itself.
         stack.enter_context(silence_logging_cmgr(logging.CRITICAL))
-        if where.scheduler is None:
-            yield stack.enter_context(own_cluster(where.workers or cores()))
+        if spec.scheduler is None:
+            yield stack.enter_context(own_cluster(spec.workers or cores()))
         else:
-            yield stack.enter_context(_foreign(where))
+            yield stack.enter_context(_existing_cluster(spec))
 
 
 @contextmanager
-def _foreign(where: ClusterSpec) -> "Iterator[Client]":
+def _existing_cluster(spec: ClusterSpec) -> "Iterator[Client]":
     from distributed import Client  # noqa: PLC0415
 
-    address = str(where.scheduler)
-    security = _security(where)
+    address = str(spec.scheduler)
+    security = _security(spec)
     try:
         _probe(address, security)
         client = Client(address, security=security, timeout=ANSWER_S, set_as_default=False)
     except (OSError, OverflowError, ValueError, TypeError) as error:
         raise InvalidInput(
-            f"no scheduler answers at {address} ({_reason(error)}); {_HOW_TO_START}"
+            f"no scheduler answers at {address} ({_first_line(error)}); {_HOW_TO_START}"
         ) from error
     with client:
         _check_workers(client, address)
@@ -119,9 +123,10 @@ def _foreign(where: ClusterSpec) -> "Iterator[Client]":
 
 
 def _probe(address: str, security: "Security") -> None:
-    """Find out at once that nobody is there, and in time that it is no scheduler.
+    """Check that a scheduler answers at the address, within `ANSWER_S`.
 
-    Dask goes on trying where nobody listens, and waits forever for who does not answer.
+    Dask's own client retries a refused connection, and waits without a timeout for a server that
+    accepts the connection but does not answer.
     """
     from distributed.comm.core import connect as shake_hands  # noqa: PLC0415
 
@@ -129,26 +134,26 @@ def _probe(address: str, security: "Security") -> None:
     with socket.create_connection((host.strip("[]"), int(port)), ANSWER_S):
         pass
 
-    async def knock() -> None:
+    async def handshake() -> None:
         arguments = security.get_connection_args("client")
         comm = await asyncio.wait_for(shake_hands(address, ANSWER_S, **arguments), ANSWER_S)
         await comm.close()
 
-    # In a thread, since a notebook has a loop in its own.
+    # In a thread of its own, since a notebook's main thread already runs an event loop.
     with ThreadPoolExecutor(1) as thread:
-        thread.submit(lambda: asyncio.run(knock())).result()
+        thread.submit(lambda: asyncio.run(handshake())).result()
 
 
-def _security(where: ClusterSpec) -> "Security":
+def _security(spec: ClusterSpec) -> "Security":
     from distributed.security import Security  # noqa: PLC0415
 
-    if where.tls_ca is None:
+    if spec.tls_ca is None:
         return Security()
     return Security(
         require_encryption=True,
-        tls_ca_file=where.tls_ca,
-        tls_client_cert=where.tls_cert,
-        tls_client_key=where.tls_key,
+        tls_ca_file=spec.tls_ca,
+        tls_client_cert=spec.tls_cert,
+        tls_client_key=spec.tls_key,
     )
 
 
@@ -161,11 +166,11 @@ def _check_workers(client: "Client", address: str) -> None:
             "--nthreads 1`"
         ) from error
     here = versions()
-    found: dict[str, Any] = client.run(versions, on_error="return")
-    for worker, there in found.items():
+    versions_by_worker: dict[str, Any] = client.run(versions, on_error="return")
+    for worker, there in versions_by_worker.items():
         if not isinstance(there, dict):
             raise InvalidInput(
-                f"the worker at {worker} cannot run trials ({_reason(there)}); install "
+                f"the worker at {worker} cannot run trials ({_first_line(there)}); install "
                 f"racing-hexapods {here['racing-hexapods']} there"
             )
         differs = difference(here, there)
@@ -175,5 +180,5 @@ def _check_workers(client: "Client", address: str) -> None:
             )
 
 
-def _reason(error: BaseException) -> str:
+def _first_line(error: BaseException) -> str:
     return str(error).strip().split("\n")[0] or type(error).__name__

@@ -1,8 +1,9 @@
-"""Dask's scheduler and worker without their HTTP servers, which ask for no certificate.
+"""Dask's scheduler and worker without their HTTP servers, which require no client certificate.
 
-Importing this takes half a second, which whoever computes nothing need not spend. It relies on
-`distributed.node.ServerNode.start_http_server` being what starts them, and on nothing else using
-what that sets; promise 29 looks at every port of a cluster.
+A module of its own, since importing Dask takes half a second. It relies on
+`distributed.node.ServerNode.start_http_server` being the only place that starts the HTTP servers,
+and on no other code using the attributes that it sets; the test of promise 29 checks every port
+of a cluster.
 """
 
 from typing import Any
@@ -10,16 +11,16 @@ from typing import Any
 from distributed import Scheduler, Worker
 
 
-class NoPages:
-    """Listens for the cluster's own messages only."""
+class NoHttpServer:
+    """Mixin that starts no HTTP server: only the port of Dask's own protocol is open."""
 
     def start_http_server(self, *args: Any, **options: Any) -> None:
-        """Start none."""
+        """Do nothing."""
 
 
-class PagelessScheduler(NoPages, Scheduler):
-    """A scheduler whose only port wants a certificate."""
+class SchedulerWithoutHttp(NoHttpServer, Scheduler):
+    """A scheduler whose only port requires a client certificate."""
 
 
-class PagelessWorker(NoPages, Worker):
-    """A worker whose only port wants a certificate."""
+class WorkerWithoutHttp(NoHttpServer, Worker):
+    """A worker whose only port requires a client certificate."""

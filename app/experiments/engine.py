@@ -1,4 +1,4 @@
-"""Runs trials on a cluster: a sliding window of tasks, and an answer for each that dies."""
+"""Run trials on a cluster: a sliding window of tasks, with retries for trials whose worker died."""
 
 import queue
 import time
@@ -11,139 +11,145 @@ from app.experiments.cluster import ClusterLost, ClusterSpec, connect
 from app.experiments.plan import Trial
 from app.experiments.trial import TrialResult
 from app.experiments.versions import versions
-from app.experiments.worker import Done, OtherResults, work
+from app.experiments.worker import Attempt, VersionMismatch, run_batch
 
 if TYPE_CHECKING:
     from distributed import Client, Future
 
 DEATHS = 3
-"""How often a trial may end its worker before it is set aside."""
+"""Number of times that a trial may kill its worker before it is set aside."""
 
 BATCH_S = 0.5
 MAX_BATCH = 64
-_AHEAD = 2
-"""Tasks a worker: while one is computed the next is there already."""
-_LOOK_S = 0.2
-_COUNT_S = 1.0
-_NO_WORKER_S = 60.0
+_TASKS_PER_THREAD = 2
+"""Tasks in flight per worker thread: while one is computed, the next is queued on the worker."""
+_POLL_S = 0.2
+_WORKER_COUNT_S = 1.0
+_WORKER_WAIT_S = 60.0
 
 
 class Outcome(NamedTuple):
-    """What became of a trial."""
+    """A completed trial: its result, or the reason that it was set aside."""
 
     key: str
     result: TrialResult | None
     """None if it was set aside."""
     set_aside: str | None
-    """Why there is no result, in a sentence."""
+    """The reason that there is no result, in a sentence."""
     compute_s: float
-    """How long a worker computed."""
+    """Time that a worker computed."""
 
 
 def run_trials(
-    trials: Iterable[Trial], where: ClusterSpec, go_on: Callable[[], bool] = lambda: True
+    trials: Iterable[Trial], spec: ClusterSpec, may_continue: Callable[[], bool] = lambda: True
 ) -> Generator[Outcome, None, None]:
-    """Run trials, and tell of each as it ends, in whatever order that is.
+    """Run trials and yield each outcome as it completes, in order of completion.
 
-    A trial whose worker died is tried again, alone; one that ended its worker three times, or
-    raised an error, is set aside. Trials that measure time come last, each with nothing beside it.
-    Whoever calls this from a script needs `if __name__ == "__main__":`, since the workers import
-    it.
+    A trial whose worker died is retried alone; one that killed its worker `DEATHS` times, or
+    raised an error, is set aside. Trials that measure time run last, one at a time. A script that
+    calls this needs `if __name__ == "__main__":`, since the worker processes import the script.
 
     Args:
-        trials: what to run; keys are unique.
-        where: on which machines. A cluster of this machine's is started for the first trial.
-        go_on: asked before each task, and five times a second. False ends it, and what is being
-            computed is dropped. It may wait before it answers, which is a pause.
+        trials: the trials, with unique keys.
+        spec: the cluster. A local cluster is started before the first trial.
+        may_continue: called before each task is submitted, and five times a second. Returning
+            False ends the run and cancels the tasks in progress; blocking in it pauses the run.
 
     Raises:
         InvalidInput: if the cluster cannot be used; see `connect`.
-        ClusterLost: if it is gone, or no worker came back to it.
+        ClusterLost: if the scheduler's connection is lost, or no worker comes back in time.
     """
-    waiting = iter(trials)
-    first = next(waiting, None)
-    if first is None or not go_on():
+    remaining = iter(trials)
+    first = next(remaining, None)
+    if first is None or not may_continue():
         return
-    with connect(where) as client:
-        yield from run_on(client, chain([first], waiting), go_on)
+    with connect(spec) as client:
+        yield from run_on(client, chain([first], remaining), may_continue)
 
 
 def run_on(
-    client: "Client", trials: Iterable[Trial], go_on: Callable[[], bool] = lambda: True
+    client: "Client", trials: Iterable[Trial], may_continue: Callable[[], bool] = lambda: True
 ) -> Iterator[Outcome]:
-    """As `run_trials`, on a cluster that is there."""
-    return _Engine(client, go_on).run(trials)
+    """Run trials as `run_trials` does, on a cluster that is already connected."""
+    return _Engine(client, may_continue).run(trials)
 
 
-class _Batches:
-    """How many trials make a task: so many that handing them out costs nothing beside them."""
+class _BatchSizer:
+    """Number of trials per task, adapted so that a task takes about `BATCH_S`.
+
+    With batches of that length the overhead of scheduling a task is negligible. The time per trial
+    is an exponential moving average.
+    """
 
     def __init__(self) -> None:
         self.size = 1
         self._trial_s: float | None = None
 
-    def learn(self, done: Sequence[Done]) -> None:
+    def update(self, done: Sequence[Attempt]) -> None:
         mean_s = sum(one.compute_s for one in done) / len(done)
-        known_s = mean_s if self._trial_s is None else self._trial_s
-        self._trial_s = max(0.7 * known_s + 0.3 * mean_s, 1e-6)
+        previous_s = mean_s if self._trial_s is None else self._trial_s
+        self._trial_s = max(0.7 * previous_s + 0.3 * mean_s, 1e-6)
         self.size = max(1, min(2 * self.size, MAX_BATCH, int(BATCH_S / self._trial_s)))
 
 
 class _Engine:
-    """One run on one cluster."""
+    """State of one `run_on`: the sliding window of tasks in flight, and the trials to retry."""
 
-    def __init__(self, client: "Client", go_on: Callable[[], bool]) -> None:
-        self._client, self._go_on = client, go_on
+    def __init__(self, client: "Client", may_continue: Callable[[], bool]) -> None:
+        self._client, self._may_continue = client, may_continue
         self._expected = versions()
-        self._batches = _Batches()
-        self._in_flight: dict[Future[list[Done]], list[Trial]] = {}
-        self._ended: queue.SimpleQueue[Future[list[Done]]] = queue.SimpleQueue()
+        self._batches = _BatchSizer()
+        self._in_flight: dict[Future[list[Attempt]], list[Trial]] = {}
+        self._ended_tasks: queue.SimpleQueue[Future[list[Attempt]]] = queue.SimpleQueue()
         self._suspects: list[Trial] = []
-        self._threads, self._counted_s = 0, -_COUNT_S
+        self._threads, self._counted_s = 0, -_WORKER_COUNT_S
         self._without_workers_since_s: float | None = None
 
     def run(self, trials: Iterable[Trial]) -> Iterator[Outcome]:
         timed: list[Trial] = []
-        crowd = _without_timed(trials, timed)
+        untimed = _split_timed(trials, timed)
         while True:
-            self._fill(crowd)
+            self._fill_window(untimed)
             if not self._in_flight:
                 break
-            ended = self._next()
+            ended = self._next_ended()
             if ended is None:
                 return
             batch = self._in_flight.pop(ended)
             try:
                 yield from self._outcomes(ended, batch)
-            except _Died:
+            except _WorkerDied:
                 self._suspects += batch
         for trial in self._suspects:
-            yield from self._alone(trial, deaths=1)
+            yield from self._run_alone(trial, deaths=1)
         for trial in timed:
-            yield from self._alone(trial, deaths=0)
+            yield from self._run_alone(trial, deaths=0)
 
-    def _fill(self, crowd: Iterator[Trial]) -> None:
-        """Submit so much that every worker has something to do, and the next thing."""
-        self._count_workers()
-        while len(self._in_flight) < _AHEAD * max(1, self._threads) and self._go_on():
-            batch = list(islice(crowd, self._batches.size))
+    def _fill_window(self, untimed: Iterator[Trial]) -> None:
+        """Submit batches until each worker thread has `_TASKS_PER_THREAD` tasks in flight."""
+        self._check_workers()
+        while (
+            len(self._in_flight) < _TASKS_PER_THREAD * max(1, self._threads)
+            and self._may_continue()
+        ):
+            batch = list(islice(untimed, self._batches.size))
             if not batch:
                 return
             self._submit(batch)
 
-    def _alone(self, trial: Trial, deaths: int) -> Iterator[Outcome]:
-        """Run a trial while nothing else does, so that a death is its own."""
+    def _run_alone(self, trial: Trial, deaths: int) -> Iterator[Outcome]:
+        """Run a trial with nothing else on the cluster, so that a worker's death is due to it."""
         while deaths < DEATHS:
-            if not self._go_on():
+            if not self._may_continue():
                 return
             self._submit([trial])
-            ended = self._next()
+            ended = self._next_ended()
             if ended is None:
                 return
             del self._in_flight[ended]
             try:
                 yield from self._outcomes(ended, [trial])
-            except _Died as died:
+            except _WorkerDied as died:
                 deaths += died.times
             else:
                 return
@@ -153,55 +159,55 @@ class _Engine:
     def _submit(self, batch: list[Trial]) -> None:
         configs = [trial.config for trial in batch]
         key = f"hexapods-{uuid.uuid4().hex}"
-        future = self._client.submit(work, configs, self._expected, key=key)
+        future = self._client.submit(run_batch, configs, self._expected, key=key)
         self._in_flight[future] = batch
-        future.add_done_callback(self._ended.put)
+        future.add_done_callback(self._ended_tasks.put)
 
-    def _next(self) -> "Future[list[Done]] | None":
-        """The next task that ends; None if the run shall."""
-        while self._go_on():
+    def _next_ended(self) -> "Future[list[Attempt]] | None":
+        """Wait for the next task that ends; None if the run shall end."""
+        while self._may_continue():
             try:
-                return self._ended.get(timeout=_LOOK_S)
+                return self._ended_tasks.get(timeout=_POLL_S)
             except queue.Empty:
-                self._count_workers()
+                self._check_workers()
         return None
 
-    def _outcomes(self, ended: "Future[list[Done]]", batch: list[Trial]) -> list[Outcome]:
+    def _outcomes(self, ended: "Future[list[Attempt]]", batch: list[Trial]) -> list[Outcome]:
         from distributed import CancelledError, KilledWorker  # noqa: PLC0415
 
         try:
-            done: list[Done] = ended.result()
+            done: list[Attempt] = ended.result()
         except KilledWorker as error:
-            raise _Died(error.allowed_failures + 1) from error
+            raise _WorkerDied(error.allowed_failures + 1) from error
         except CancelledError as error:
-            raise ClusterLost(_LOST) from error
-        except OtherResults:
+            raise ClusterLost(_CONNECTION_LOST) from error
+        except VersionMismatch:
             raise
         except Exception as error:
-            # What the worker could not even begin, such as an agent that is not there.
+            # The task could not be deserialised, for example an agent's module is missing there.
             reason = f"a worker cannot run it ({type(error).__name__}: {error})"
             return [Outcome(trial.key, None, reason, 0.0) for trial in batch]
-        self._batches.learn(done)
+        self._batches.update(done)
         return [Outcome(trial.key, *one) for trial, one in zip(batch, done, strict=True)]
 
-    def _count_workers(self) -> None:
+    def _check_workers(self) -> None:
         now_s = time.monotonic()
-        if now_s - self._counted_s < _COUNT_S:
+        if now_s - self._counted_s < _WORKER_COUNT_S:
             return
         self._counted_s = now_s
         try:
             self._threads = sum(self._client.nthreads().values())
         except (OSError, TimeoutError) as error:
-            raise ClusterLost(_LOST) from error
+            raise ClusterLost(_CONNECTION_LOST) from error
         if self._threads:
             self._without_workers_since_s = None
         elif self._without_workers_since_s is None:
             self._without_workers_since_s = now_s
-        elif now_s - self._without_workers_since_s > _NO_WORKER_S:
-            raise ClusterLost(f"no worker came back within {_NO_WORKER_S:.0f} s; {_KEPT}")
+        elif now_s - self._without_workers_since_s > _WORKER_WAIT_S:
+            raise ClusterLost(f"no worker came back within {_WORKER_WAIT_S:.0f} s; {_RESULTS_KEPT}")
 
 
-class _Died(Exception):
+class _WorkerDied(Exception):
     """A worker's process ended while it computed a task."""
 
     def __init__(self, times: int) -> None:
@@ -209,12 +215,12 @@ class _Died(Exception):
         self.times = times
 
 
-_KEPT = "what was done is kept"
-_LOST = f"the connection to the cluster's scheduler was lost; {_KEPT}"
+_RESULTS_KEPT = "what was done is kept"
+_CONNECTION_LOST = f"the connection to the cluster's scheduler was lost; {_RESULTS_KEPT}"
 
 
-def _without_timed(trials: Iterable[Trial], timed: list[Trial]) -> Iterator[Trial]:
-    """Those that may run beside others; the rest is put aside in `timed`."""
+def _split_timed(trials: Iterable[Trial], timed: list[Trial]) -> Iterator[Trial]:
+    """Yield the trials that may run concurrently; append the others to `timed`."""
     for trial in trials:
         if trial.config.must_be_alone:
             timed.append(trial)

@@ -1,4 +1,8 @@
-"""A folder with an experiment's results: each trial is kept as it ends, and none is run twice."""
+"""Results folder of an experiment: an append-only log of trials, from which it resumes.
+
+Each result is appended to `trials.jsonl` as its trial ends, so that no trial is run twice. A
+partial last line, left by a killed process, is truncated on opening.
+"""
 
 import errno
 import json
@@ -18,7 +22,7 @@ from app.experiments.versions import difference, versions
 
 FORMAT = 1
 TRIALS = "trials.jsonl"
-"""A head, then a line a trial; only ever added to."""
+"""JSON lines, append-only: a header, then one line per trial."""
 SUMMARY = "summary.json"
 
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
@@ -27,18 +31,18 @@ _CHOOSE = "choose another folder"
 
 
 class NotKept(HexapodError):
-    """A result cannot be written; those before it are kept."""
+    """A result cannot be written; those written before it are kept."""
 
 
 class ResultsFolder:
-    """Results of one experiment. Made by `open_results`.
+    """Results of one experiment in a folder. Use `open_results` to open one.
 
     Attributes:
         path: the folder.
-        results: of all trials that are done, by key.
-        set_aside: why others have none, by key.
-        compute_s: that workers computed, in all.
-        worked_s: from the beginning to the newest result, without the time between sessions.
+        results: results of completed trials, by trial key.
+        set_aside: reasons of the trials that were set aside, by trial key.
+        compute_s: total time that workers computed.
+        worked_s: wall time up to the newest result, without the time between sessions.
     """
 
     def __init__(self, path: Path, file: IO[bytes]) -> None:
@@ -50,7 +54,10 @@ class ResultsFolder:
         self._end = 0
 
     def add(self, outcome: Outcome) -> None:
-        """Keep what became of a trial. A process may be killed then; for power loss count 0.5 s.
+        """Append a trial's outcome to the file.
+
+        Once written it survives the death of this process; a power failure may lose the last
+        0.5 s, the interval of `fsync`.
 
         Raises:
             NotKept: if it cannot be written.
@@ -69,16 +76,16 @@ class ResultsFolder:
         self._take(outcome)
 
     def begin(self, config: ExperimentConfig) -> None:
-        """Read what is there, or write the head of a new file.
+        """Read the existing results, or write the header of a new file.
 
         Raises:
-            InvalidInput: if it has the results of another experiment or version.
-            DamagedFile: if it was not written by `add`.
-            NotKept: if the head cannot be written.
+            InvalidInput: if the file has the results of another experiment or version.
+            DamagedFile: if the file was not written by `add`.
+            NotKept: if the header cannot be written.
         """
         lines = self._file.read().splitlines(keepends=True)
         if lines and not lines[-1].endswith(b"\n"):
-            lines.pop()  # it was being written when its process was killed
+            lines.pop()  # a partial write: the process was killed while appending it
         self._end = sum(map(len, lines))
         self._file.truncate(self._end)
         if not lines:
@@ -90,7 +97,7 @@ class ResultsFolder:
         self._began_s = time.monotonic() - self.worked_s
 
     def sync(self) -> None:
-        """Let all that was added outlast a loss of power."""
+        """Flush the file to disk (`fsync`), so that the results survive a power failure."""
         with suppress(OSError):
             os.fsync(self._file.fileno())
         self._synced_s = time.monotonic()
@@ -100,7 +107,7 @@ class ResultsFolder:
         try:
             self._file.seek(self._end)
             rest = memoryview(data)
-            while rest:  # a disk that is nearly full takes a part
+            while rest:  # a write is partial when the disk is nearly full
                 rest = rest[self._file.write(rest) :]
         except OSError as error:
             with suppress(OSError):
@@ -147,7 +154,7 @@ class ResultsFolder:
         except (HexapodError, KeyError, TypeError, ValueError) as error:
             raise DamagedFile(f"{self.path / TRIALS} has a damaged head ({error})") from error
         here = as_json(config)
-        # Seeds are spawned by number, so that further ones go with those that are there.
+        # Each trial's seed depends on its number only, so that more seeds extend the results.
         names = [name for name in here if name != "seeds" and here[name] != there[name]]
         if names:
             raise InvalidInput(
@@ -157,15 +164,15 @@ class ResultsFolder:
 
     def _read(self, number: int, line: bytes) -> None:
         try:
-            kept = json.loads(line)
-            result = kept["result"]
+            entry = json.loads(line)
+            result = entry["result"]
             outcome = Outcome(
-                str(kept["key"]),
+                str(entry["key"]),
                 None if result is None else TrialResult.from_json(result),
-                kept["set_aside"],
-                float(kept["compute_s"]),
+                entry["set_aside"],
+                float(entry["compute_s"]),
             )
-            self.worked_s = float(kept["worked_s"])
+            self.worked_s = float(entry["worked_s"])
         except (KeyError, TypeError, ValueError) as error:
             raise DamagedFile(
                 f"{self.path / TRIALS} is damaged in line {number}; delete that line, and its "
@@ -176,15 +183,15 @@ class ResultsFolder:
 
 @contextmanager
 def open_results(path: Path, config: ExperimentConfig) -> Iterator[ResultsFolder]:
-    """The results of an experiment in a folder, which is made if it is not there.
+    """Open or create an experiment's results folder, under an exclusive file lock.
 
-    Results of the same experiment with fewer or more seeds belong to it.
+    Existing results of the same experiment with fewer or more seeds are reused.
 
     Raises:
-        InvalidInput: if the folder cannot be used, is used by another process, or has something
-            else in it.
-        DamagedFile: if what is in it cannot be read.
-        NotKept: if nothing can be written.
+        InvalidInput: if the folder cannot be used, is locked by another process, or contains
+            other files or another experiment's results.
+        DamagedFile: if the results file cannot be read.
+        NotKept: if the header of a new file cannot be written.
     """
     with _opened(path) as file:
         try:
@@ -204,11 +211,11 @@ def open_results(path: Path, config: ExperimentConfig) -> Iterator[ResultsFolder
 def _opened(path: Path) -> IO[bytes]:
     try:
         path.mkdir(parents=True, exist_ok=True)
-        known = {entry.name for entry in path.iterdir()}
-        if known and not known & {TRIALS, SUMMARY}:
+        names = {entry.name for entry in path.iterdir()}
+        if names and not names & {TRIALS, SUMMARY}:
             raise InvalidInput(f"{path} is not empty, and has no results in it; {_CHOOSE}")
-        # Unbuffered, so that what failed to be written is not tried again when it is closed.
-        return (path / TRIALS).open("r+b" if TRIALS in known else "x+b", buffering=0)
+        # Unbuffered, so that closing the file does not retry a write that failed.
+        return (path / TRIALS).open("r+b" if TRIALS in names else "x+b", buffering=0)
     except OSError as error:
         raise InvalidInput(
             f"cannot keep results in {path} ({error.strerror}); {_CHOOSE}"
@@ -219,7 +226,7 @@ if sys.platform == "win32":
     import msvcrt
 
     def _lock(file: IO[bytes]) -> None:
-        file.seek(2**40)  # behind all that is read and written
+        file.seek(2**40)  # a mandatory lock on a byte range, so beyond all data
         msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
         file.seek(0)
 

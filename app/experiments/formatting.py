@@ -1,4 +1,4 @@
-"""Numbers and names as the reader of a report meets them."""
+"""Format numbers and names for the report."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -11,11 +11,22 @@ AGENTS: Mapping[str, str] = {
     "greedy": "Greedy",
     "two-step": "Two-step",
 }
-_UNBROKEN = "\u00a0"
-READINGS: Mapping[str, str] = {"measured": "feet read back", "commanded": "commands remembered"}
-"""What an observation is, in words."""
+_NO_BREAK_SPACE = "\u00a0"
+OBSERVATION_LABELS: Mapping[str, str] = {
+    "measured": "feet measured",
+    "commanded": "commands remembered",
+}
+"""Label of each observation."""
 
-RATES: Mapping[str, str] = {
+GAIT_NAMES: Mapping[str, str] = {
+    "left-right-origin": "Left-right, opposite",
+    "left-right-vertical": "Left-right, mirrored",
+    "front-back-origin": "Front-back, opposite",
+    "front-back-vertical": "Front-back, mirrored",
+}
+"""Display name of each gait."""
+
+PARAMETER_FORMATS: Mapping[str, str] = {
     "steps": "{:,}\u00a0steps",
     "alpha": "α\u00a0{:g}",
     "gamma": "γ\u00a0{:g}",
@@ -25,72 +36,79 @@ RATES: Mapping[str, str] = {
     "divisions": "{}\u00a0divisions",
     "grid_side_m": "grid\u00a0{:g}\u00a0m",
 }
-"""What a sweep varies, with its value."""
+"""Format string of each parameter that a sweep varies."""
 
 
 def gait_name(gait: str) -> str:
-    """As the paper writes it; one's own as it is."""
-    return GAITS.get(gait, gait)
+    """Return a gait's display name; a user's own gait keeps its name."""
+    return GAIT_NAMES.get(gait, gait)
+
+
+def gait_name_with_papers(gait: str) -> str:
+    """Return a gait's display name, and the paper's name for it in brackets."""
+    return f"{gait_name(gait)} ({GAITS[gait]})" if gait in GAITS else gait_name(gait)
 
 
 def agent_name(agent: str) -> str:
-    """As on the page; of `my.module:Agent` the class."""
+    """Return an agent's display name; for `my.module:Agent` the name of the class."""
     return AGENTS.get(agent, agent.rpartition(":")[2])
 
 
 def percent(value: float) -> str:
-    """A share: `74 %`, which no line breaks apart."""
-    return f"{100 * value:.0f}{_UNBROKEN}%"
+    """Format a share as `74 %`, with a no-break space."""
+    return f"{100 * value:.0f}{_NO_BREAK_SPACE}%"
 
 
 def metres(value: float) -> str:
-    """A distance to the centimetre; never `-0.00 m`."""
-    return f"{number(value)}{_UNBROKEN}m"
+    """Format a distance to the centimetre, `0.36 m`; never `-0.00 m`."""
+    return f"{number(value)}{_NO_BREAK_SPACE}m"
 
 
 def number(value: float, digits: int = 2) -> str:
-    """Without a unit; never `-0.00`, and with a minus that is one."""
+    """Format a number without a unit; never `-0.00`, with U+2212 as the minus sign."""
     return f"{round(value, digits) + 0.0:.{digits}f}".replace("-", "−")
 
 
 def span(values: Iterable[float]) -> str:
-    """From the smallest to the largest distance: `0.45 m to 0.47 m`, or `0.51 m`."""
+    """Format the range of some distances: `0.45 m to 0.47 m`, or `0.51 m` if they are equal."""
     ordered = sorted(values)
     ends = dict.fromkeys(metres(value) for value in (ordered[0], ordered[-1]))
     return " to ".join(ends)
 
 
-def shares(found: Interval | Mapping[str, Any]) -> str:
-    """A share with its interval: `74 % (72 to 76)`."""
-    value, low, high = _three(found)
+def shares(estimate: Interval | Mapping[str, Any]) -> str:
+    """Format a share with its interval: `74 % (72 to 76)`."""
+    value, low, high = _value_and_limits(estimate)
     if low is None or high is None:
         return percent(value)
     return f"{percent(value)} ({100 * low:.0f} to {100 * high:.0f})"
 
 
-def distance(found: Interval | Mapping[str, Any]) -> str:
-    """A distance with its interval: `0.36 m (0.34 to 0.37)`."""
-    value, low, high = _three(found)
+def distance(estimate: Interval | Mapping[str, Any]) -> str:
+    """Format a distance with its interval: `0.36 m (0.34 to 0.37)`."""
+    value, low, high = _value_and_limits(estimate)
     if low is None or high is None:
         return metres(value)
     return f"{metres(value)} ({number(low)} to {number(high)})"
 
 
 def listed(items: Iterable[str], last: str = "and") -> str:
-    """`a`, `a and b`, `a, b and c`."""
+    """Join items into an enumeration: `a`, `a and b`, `a, b and c`."""
     *head, tail = list(items)
     return f"{', '.join(head)} {last} {tail}" if head else tail
 
 
 def counted(number: int, one: str, many: str | None = None) -> str:
-    """`1 seed`, `30 seeds`."""
+    """Format a count with its noun: `1 seed`, `30 seeds`."""
     return f"{number:,} {one if number == 1 else many or one + 's'}"
 
 
-def _three(found: Interval | Mapping[str, Any]) -> tuple[float, float | None, float | None]:
-    if isinstance(found, Interval):
-        return found
-    value = next(found[name] for name in ("share", "iqm", "iqm_m") if name in found)
-    low = found["low"] if "low" in found else found["low_m"]
-    high = found["high"] if "high" in found else found["high_m"]
+def _value_and_limits(
+    estimate: Interval | Mapping[str, Any],
+) -> tuple[float, float | None, float | None]:
+    if isinstance(estimate, Interval):
+        return estimate
+    value = next(estimate[name] for name in ("share", "iqm", "iqm_m") if name in estimate)
+    low = estimate["low"] if "low" in estimate else estimate["low_m"]
+    high = estimate["high"] if "high" in estimate else estimate["high_m"]
     return value, low, high

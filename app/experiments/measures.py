@@ -1,4 +1,4 @@
-"""What the trials of a setting, or of a few together, measured; in plain types."""
+"""Measures over the seeds of one or more settings, as plain types fit for JSON."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -10,21 +10,26 @@ from app.experiments.statistics import (
     MIN_SEEDS,
     Interval,
     Points,
-    ahead,
-    at_least,
     iqm_interval,
     quantile_of,
+    share_ahead,
+    share_at_least,
 )
 
-WALKS = 0.5
-"""Of greedy's total distance: who covers as much is a walker."""
-REACHES = 0.95
-"""Of greedy's total distance: who covers as much has reached it."""
+WALKER_SHARE = 0.5
+"""Share of greedy's total distance from which a seed counts as a walker."""
+REACHED_SHARE = 0.95
+"""Share of greedy's total distance from which a seed counts as having reached greedy."""
 
 
 @dataclass(frozen=True)
 class Reference:
-    """How far greedy comes in the same place [m]; None where that is not known, or is no walk."""
+    """Greedy's distances under the same conditions [m].
+
+    Attributes:
+        total_m: after its 50 steps; None if there is no result, or greedy hardly moved.
+        finished_m: at time-out, when the first lane has used its 50 steps; None likewise.
+    """
 
     total_m: float | None = None
     finished_m: float | None = None
@@ -32,12 +37,13 @@ class Reference:
 
 @dataclass(frozen=True)
 class Stratum:
-    """The seeds of one setting, those that failed left out.
+    """One stratum of the bootstrap: the seeds of one setting, without failed trials.
 
     Attributes:
-        total_m: over 50 steps; of several blocks after the last.
-        finished_m: when the first agent has taken its 50 steps; empty where nothing was raced.
-        greedy: in the same place.
+        total_m: each seed's distance over 50 steps, after the last block of practice [m].
+        finished_m: each seed's distance at time-out, when the first lane has used its 50 steps
+            [m]; empty if no race was simulated.
+        greedy: the reference distances under the same conditions.
     """
 
     total_m: Points
@@ -45,29 +51,36 @@ class Stratum:
     greedy: Reference
 
 
-def measures(strata: Sequence[Stratum], seed: int) -> dict[str, Any]:
-    """Everything that is measured against greedy, over the seeds of all strata.
+def measure_against_greedy(strata: Sequence[Stratum], seed: int) -> dict[str, Any]:
+    """Compute all measures relative to greedy, pooled over the seeds of all strata.
 
     Args:
-        strata: one setting, or the gaits of one; those without seeds are left out.
-        seed: of the resampling.
+        strata: one setting, or one for each gait; strata without seeds are ignored.
+        seed: seed of the bootstrap's resampling.
+
+    Returns:
+        Interquartile means of the shares of greedy's distance (`relative`, `relative_finished`)
+        and shares of seeds (`walkers`, `beats_greedy`, …); None where nothing can be computed.
     """
     walked = [one for one in strata if one.total_m and one.greedy.total_m is not None]
     raced = [one for one in strata if one.finished_m and one.greedy.finished_m is not None]
     total = [_as_share(one.total_m, one.greedy.total_m) for one in walked]
     finished = [_as_share(one.finished_m, one.greedy.finished_m) for one in raced]
     return {
-        "relative": _relative(total, seed),
-        "relative_finished": _relative(finished, seed),
-        "walkers": _share(total, lambda points: at_least(points, WALKS)),
-        "beats_greedy": _beats(finished),
-        "beats_greedy_total": _beats(total),
-        "reaches_greedy": _share(total, lambda points: at_least(points, REACHES)),
+        "relative": _iqm_interval_of(total, seed),
+        "relative_finished": _iqm_interval_of(finished, seed),
+        "walkers": _share(total, lambda points: share_at_least(points, WALKER_SHARE)),
+        "beats_greedy": _share_ahead_of_greedy(finished),
+        "beats_greedy_total": _share_ahead_of_greedy(total),
+        "reaches_greedy": _share(total, lambda points: share_at_least(points, REACHED_SHARE)),
     }
 
 
-def distances(points: Points, seed: int) -> dict[str, Any] | None:
-    """The seeds' distances and what lies in their middle [m]; None without seeds."""
+def summarise_distances(points: Points, seed: int) -> dict[str, Any] | None:
+    """Return the seeds' distances, their mean, median and interquartile mean [m].
+
+    None without seeds.
+    """
     if not points:
         return None
     middle = iqm_interval((points,), seed)
@@ -84,7 +97,7 @@ def distances(points: Points, seed: int) -> dict[str, Any] | None:
 def compare_with_published(
     cell: Published | None, total_m: Points, finished_m: Points
 ) -> dict[str, Any] | None:
-    """What the paper has, and in which quantile of our seeds it falls."""
+    """Return the paper's values and the quantile of our seeds in which each falls."""
     if cell is None:
         return None
     return {
@@ -95,26 +108,26 @@ def compare_with_published(
     }
 
 
-def curve(
+def learning_curve(
     blocks: Sequence[Points], steps: int, greedy: Reference, seed: int
 ) -> Mapping[str, list[Any]]:
-    """Distance against practice.
+    """Return the learning curve: distance against steps of practice.
 
     Args:
-        blocks: the seeds' distances after each block [m].
-        steps: of a block.
-        greedy: in the same place.
-        seed: of the resampling.
+        blocks: the seeds' distances after each block of practice [m].
+        steps: steps of practice in one block.
+        greedy: reference distances under the same conditions.
+        seed: seed of the bootstrap's resampling.
     """
-    found = [iqm_interval((points,), seed) for points in blocks]
-    limit = None if greedy.total_m is None else WALKS * greedy.total_m
+    intervals = [iqm_interval((points,), seed) for points in blocks]
+    limit = None if greedy.total_m is None else WALKER_SHARE * greedy.total_m
     return {
         "steps": [steps * (1 + number) for number in range(len(blocks))],
-        "iqm_m": [one.value for one in found],
-        "low_m": [one.low for one in found],
-        "high_m": [one.high for one in found],
+        "iqm_m": [one.value for one in intervals],
+        "low_m": [one.low for one in intervals],
+        "high_m": [one.high for one in intervals],
         "mean_m": [fmean(points) for points in blocks],
-        "walkers": [None if limit is None else at_least(p, limit).value for p in blocks],
+        "walkers": [None if limit is None else share_at_least(p, limit).value for p in blocks],
         "points_m": [list(points) for points in blocks],
     }
 
@@ -123,7 +136,7 @@ def _as_share(points: Points, of_m: float | None) -> Points:
     return tuple(point / of_m for point in points) if of_m else ()
 
 
-def _relative(strata: list[Points], seed: int) -> dict[str, Any] | None:
+def _iqm_interval_of(strata: list[Points], seed: int) -> dict[str, Any] | None:
     if not strata:
         return None
     middle = iqm_interval(tuple(strata), seed)
@@ -131,24 +144,30 @@ def _relative(strata: list[Points], seed: int) -> dict[str, Any] | None:
 
 
 def _share(strata: list[Points], count: Callable[[Points], Interval]) -> dict[str, Any] | None:
-    """A share of all seeds; with its interval if each stratum has seeds enough for one."""
+    """Return a share of all seeds, with its interval if each stratum has at least `MIN_SEEDS`."""
     if not strata:
         return None
-    found = count(tuple(point for points in strata for point in points))
+    share = count(tuple(point for points in strata for point in points))
     if min(map(len, strata)) < MIN_SEEDS:
-        found = Interval(found.value)
-    return {"share": found.value, "low": found.low, "high": found.high}
+        share = Interval(share.value)
+    return {"share": share.value, "low": share.low, "high": share.high}
 
 
-def _beats(strata: list[Points]) -> dict[str, Any] | None:
-    """Against greedy, which is 1 in shares of greedy."""
-    shown = _share(strata, lambda points: ahead(points, 1.0))
-    if shown is None:
+def _share_ahead_of_greedy(strata: list[Points]) -> dict[str, Any] | None:
+    """Return the share of seeds ahead of greedy, with its verdict.
+
+    The strata hold shares of greedy's distance, so that greedy itself is 1.
+    """
+    measured = _share(strata, lambda points: share_ahead(points, 1.0))
+    if measured is None:
         return None
-    found = Interval(shown["share"], shown["low"], shown["high"])
-    return {**shown, "verdict": found.against(0.5)}
+    share = Interval(measured["share"], measured["low"], measured["high"])
+    return {**measured, "verdict": share.exceeds(0.5)}
 
 
 def _quantile(value: float | None, points: Points) -> float | None:
-    """With one number, as an agent that looks ahead has, there is no distribution to fall in."""
+    """Return the value's quantile; None for a single point, which is not a distribution.
+
+    Search agents are deterministic and have one point.
+    """
     return None if value is None or len(points) < 2 else quantile_of(value, points)

@@ -1,4 +1,4 @@
-"""A cluster of this machine's own: one worker process a core, on loopback, closed to others."""
+"""A local Dask cluster: one worker process per core, on loopback, with TLS client certificates."""
 
 import logging
 import multiprocessing.resource_tracker
@@ -16,56 +16,58 @@ _logger = logging.getLogger(__name__)
 
 
 def cores() -> int:
-    """How many workers this machine has room for, within the limits of a container."""
-    from dask.system import CPU_COUNT  # noqa: PLC0415 - half a second that others need not
+    """Return the number of usable cores, with a container's CPU limit (cgroup) applied."""
+    from dask.system import CPU_COUNT  # noqa: PLC0415 - importing Dask takes half a second
 
     return int(CPU_COUNT)
 
 
 @contextmanager
 def own_cluster(workers: int) -> "Iterator[Client]":
-    """A client of a cluster on loopback, whose processes end with this one, however it ends.
+    """Start a cluster on loopback and yield a client of it.
+
+    Its processes end with this one, even if this one is killed.
 
     Args:
-        workers: processes, of one thread each.
+        workers: number of worker processes, of one thread each.
     """
     import dask  # noqa: PLC0415
     from distributed import Client, Nanny, SpecCluster  # noqa: PLC0415
     from distributed.security import Security  # noqa: PLC0415
     from distributed.worker_memory import parse_memory_limit  # noqa: PLC0415
 
-    from app.experiments.cluster_nodes import PagelessScheduler, PagelessWorker  # noqa: PLC0415
+    from app.experiments.cluster_nodes import SchedulerWithoutHttp, WorkerWithoutHttp  # noqa: PLC0415
 
     with ExitStack() as stack:
         folder = tempfile.TemporaryDirectory(prefix="hexapods-", ignore_cleanup_errors=True)
         stack.enter_context(folder)
-        settings = {**_OWN_SETTINGS, "temporary-directory": folder.name}
+        settings = {**_DASK_SETTINGS, "temporary-directory": folder.name}
         stack.enter_context(dask.config.set(settings))
         with _sigint_blocked():
-            # Anyone on the machine could otherwise send code to the ports.
+            # Without client certificates any local user could send code to the ports.
             security = Security.temporary()
-            anywhere = {"host": "127.0.0.1", "protocol": "tls://", "security": security}
+            endpoint = {"host": "127.0.0.1", "protocol": "tls://", "security": security}
             worker = {
                 "cls": Nanny,
                 "options": {
-                    **anywhere,
-                    "worker_class": PagelessWorker,
+                    **endpoint,
+                    "worker_class": WorkerWithoutHttp,
                     "nthreads": 1,
                     "memory_limit": parse_memory_limit("auto", 1, workers, logger=_logger),
                     "dashboard": False,
                     "local_directory": folder.name,
-                    # What a trial has there goes with the folder, when its worker is ended in it.
+                    # A killed worker's temporary files are deleted with this folder.
                     "env": {"TMPDIR": folder.name},
                     "silence_logs": logging.CRITICAL,
                 },
             }
             scheduler = {
-                "cls": PagelessScheduler,
+                "cls": SchedulerWithoutHttp,
                 "options": {
-                    **anywhere,
+                    **endpoint,
                     "port": 0,
                     "dashboard": False,
-                    # Each death comes to the engine, which says what follows from it.
+                    # No retries by Dask: the engine handles each worker's death itself.
                     "allowed_failures": 0,
                 },
             }
@@ -78,15 +80,16 @@ def own_cluster(workers: int) -> "Iterator[Client]":
             )
         stack.enter_context(cluster)
         client = stack.enter_context(Client(cluster, set_as_default=False))
-        stack.callback(_drop_work, cluster)
+        stack.callback(_kill_workers, cluster)
         yield client
 
 
-_OWN_SETTINGS = {
+_DASK_SETTINGS = {
     "distributed.scheduler.http.routes": [],
     "distributed.worker.http.routes": [],
     "distributed.worker.profile.enabled": False,
-    # Little is ever kept in memory. A trial that takes all there is ends its worker, no other's.
+    # Results are small, so spilling to disk and pausing are of no use. A trial that exceeds the
+    # memory limit ends only its own worker, by the nanny.
     "distributed.worker.memory.target": False,
     "distributed.worker.memory.spill": False,
     "distributed.worker.memory.pause": False,
@@ -95,15 +98,15 @@ _OWN_SETTINGS = {
 
 @contextmanager
 def _sigint_blocked() -> Iterator[None]:
-    """Ctrl-C reaches every process of a terminal; workers shall leave it to this one.
+    """Block SIGINT while worker processes are started, so that they ignore Ctrl-C.
 
-    Processes inherit what is blocked from the thread that starts them, also those started later
-    in place of dead ones.
+    A terminal sends SIGINT to its whole process group; only this process shall handle it. A child
+    inherits the signal mask of the thread that starts it, and so do workers restarted later.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    # Whoever starts this helper of `multiprocessing` would unblock it again.
+    # Starting the resource tracker unblocks SIGINT, so that it must be running beforehand.
     multiprocessing.resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
@@ -112,14 +115,14 @@ def _sigint_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _drop_work(cluster: "SpecCluster") -> None:
-    """End the workers at once; asked politely, each would finish its trial first."""
+def _kill_workers(cluster: "SpecCluster") -> None:
+    """Kill the workers at once; on a graceful shutdown each would finish its trial first."""
 
-    async def drop() -> None:
+    async def kill_all() -> None:
         for nanny in cluster.workers.values():
-            nanny.close_gracefully()  # so that it starts no other
+            nanny.close_gracefully()  # so that the nanny does not restart the worker
             process = nanny.process and nanny.process.process
             if process is not None and process.is_alive():
                 await process.kill()
 
-    cluster.sync(drop)
+    cluster.sync(kill_all)

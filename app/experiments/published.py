@@ -1,4 +1,4 @@
-"""What the paper printed: its Table 1, one run a number.
+"""The numbers of the paper's Table 1; each is a single run.
 
 The paper gives "units of .5 per square length"; the squares of its floor were 0.5 m, so that the
 numbers are taken as metres.
@@ -11,11 +11,12 @@ DISTANCES = ("finished", "total")
 
 
 class Published(NamedTuple):
-    """One cell pair of the paper's Table 1 [m]."""
+    """The two distances that the paper's Table 1 has for an agent and a gait [m]."""
 
     finished_m: float
+    """The row "Finished": at time-out, when the first lane has used its 50 steps."""
     total_m: float | None
-    """None where the paper says "Unfinished"."""
+    """The row "Total", after the agent's own 50 steps; None where it says "Unfinished"."""
 
 
 COLUMNS: tuple[tuple[str, int, str], ...] = (
@@ -24,7 +25,7 @@ COLUMNS: tuple[tuple[str, int, str], ...] = (
     ("greedy", 0, "Greedy Agent"),
     ("two-step", 0, "Two-Steps Agent"),
 )
-"""Agent, steps of practice, and the paper's words for them."""
+"""Agent, steps of practice, and the paper's column heading."""
 
 GAITS: Mapping[str, str] = {
     "left-right-origin": "LeftRight-Origin",
@@ -32,7 +33,7 @@ GAITS: Mapping[str, str] = {
     "front-back-origin": "FrontBack-Origin",
     "front-back-vertical": "FrontBack-Vertical",
 }
-"""The paper's words for the gaits."""
+"""The paper's names of the gaits."""
 
 TABLE1: Mapping[str, tuple[Published, Published, Published, Published]] = {
     "left-right-origin": (
@@ -60,11 +61,11 @@ TABLE1: Mapping[str, tuple[Published, Published, Published, Published]] = {
         Published(0.05, None),
     ),
 }
-"""By gait, in the order of `COLUMNS`."""
+"""The paper's Table 1 by gait, in the order of `COLUMNS`."""
 
 
 def published(gait: str, agent: str, steps: int) -> Published | None:
-    """What the paper has for a gait and an agent after this practice, if anything."""
+    """Return the paper's distances for a gait, an agent and its steps of practice, or None."""
     row = TABLE1.get(gait)
     for place, (name, practised, _) in enumerate(COLUMNS):
         if row is not None and (name, practised) == (agent, steps):

@@ -1,4 +1,4 @@
-"""The settings of an experiment with the results that there are."""
+"""Group an experiment's trial results by setting, with greedy's results as references."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -9,24 +9,27 @@ from app.experiments.plan import Plan, Setting
 from app.experiments.statistics import Points
 from app.experiments.trial import TrialResult
 
-_LEAST_WALK = 0.5
-"""Of half a grid side: a greedy agent that does not come so far in 50 steps is no yardstick."""
+_MIN_WALK = 0.5
+"""In half grid sides: a greedy agent that covers less in 50 steps is not used as a reference."""
 
 
 class SettingResults(NamedTuple):
-    """A setting and the results that there are, by seed number."""
+    """A setting and its results so far, by seed number."""
 
     setting: Setting
     results: Mapping[int, TrialResult]
 
     @property
-    def good(self) -> list[TrialResult]:
-        """Those that did not fail, by seed number."""
+    def succeeded(self) -> list[TrialResult]:
+        """The results without a failure, ordered by seed number."""
         return [self.results[n] for n in sorted(self.results) if not self.results[n].failure]
 
     @property
-    def place(self) -> tuple[Any, ...]:
-        """Where it is compared with others: (gait, observation, robot, divisions, side)."""
+    def conditions(self) -> tuple[Any, ...]:
+        """The conditions under which agents are compared.
+
+        (gait, observation, robot, divisions, grid side)
+        """
         at = self.setting.training
         return (
             self.setting.gait,
@@ -37,64 +40,71 @@ class SettingResults(NamedTuple):
         )
 
     @property
-    def rates(self) -> tuple[Any, ...]:
-        """All of the practice but agent and place."""
+    def parameters(self) -> tuple[Any, ...]:
+        """The training parameters other than agent and conditions."""
         return (self.setting.trial.blocks, *(getattr(self.setting.training, n) for n in GRID))
 
     @property
     def total_m(self) -> Points:
-        """How far each seed comes, after the last block."""
-        return tuple(one.distances_m[-1] for one in self.good if one.distances_m)
+        """Each seed's distance over 50 steps, after the last block of practice [m]."""
+        return tuple(one.distances_m[-1] for one in self.succeeded if one.distances_m)
 
     @property
     def finished_m(self) -> Points:
-        """Where each seed is when the first agent has taken its 50 steps."""
-        found = (one.finished_distance_m for one in self.good)
-        return tuple(metres for metres in found if metres is not None)
+        """Each seed's distance at time-out, when the first lane has used its 50 steps [m]."""
+        distances = (one.finished_distance_m for one in self.succeeded)
+        return tuple(metres for metres in distances if metres is not None)
 
 
-def sorted_out(plan: Plan, results: Mapping[str, TrialResult]) -> list[SettingResults]:
-    """Every setting of a plan with its results; those of other plans are left out."""
-    found: dict[str, dict[int, TrialResult]] = {setting.key: {} for setting in plan.settings}
+def group_by_setting(plan: Plan, results: Mapping[str, TrialResult]) -> list[SettingResults]:
+    """Return every setting of the plan with its results, in the plan's order.
+
+    Results whose key is not in the plan are ignored.
+
+    Args:
+        plan: the experiment's settings.
+        results: by trial key, `<setting key>#<seed number>`.
+    """
+    by_setting: dict[str, dict[int, TrialResult]] = {setting.key: {} for setting in plan.settings}
     for key, result in results.items():
         setting, _, number = key.rpartition("#")
-        if setting in found and int(number) < plan.config.seeds:
-            found[setting][int(number)] = result
-    return [SettingResults(setting, found[setting.key]) for setting in plan.settings]
+        if setting in by_setting and int(number) < plan.config.seeds:
+            by_setting[setting][int(number)] = result
+    return [SettingResults(setting, by_setting[setting.key]) for setting in plan.settings]
 
 
-def yardsticks_of(seen: Sequence[SettingResults]) -> dict[Any, Reference]:
-    """How far greedy comes, by place."""
+def references_by_conditions(settings: Sequence[SettingResults]) -> dict[Any, Reference]:
+    """Return greedy's distances by `SettingResults.conditions`."""
     return {
-        one.place: _yardstick(one)
-        for one in seen
+        one.conditions: _reference(one)
+        for one in settings
         if one.setting.role == "reference" and one.setting.training.agent == "greedy"
     }
 
 
-def stratum(one: SettingResults, yardsticks: Mapping[Any, Reference]) -> Stratum:
-    """A setting's seeds beside greedy."""
-    return Stratum(one.total_m, one.finished_m, yardsticks.get(one.place, Reference()))
+def stratum(one: SettingResults, references: Mapping[Any, Reference]) -> Stratum:
+    """Return a setting's seeds and its reference as a stratum of the bootstrap."""
+    return Stratum(one.total_m, one.finished_m, references.get(one.conditions, Reference()))
 
 
-def _yardstick(greedy: SettingResults) -> Reference:
-    least_m = _LEAST_WALK * greedy.setting.training.grid_side_m / 2
-    total = next((metres for metres in greedy.total_m if metres > least_m), None)
-    finished = next((metres for metres in greedy.finished_m if metres > least_m), None)
+def _reference(greedy: SettingResults) -> Reference:
+    min_walk_m = _MIN_WALK * greedy.setting.training.grid_side_m / 2
+    total = next((metres for metres in greedy.total_m if metres > min_walk_m), None)
+    finished = next((metres for metres in greedy.finished_m if metres > min_walk_m), None)
     return Reference(total, finished)
 
 
-def named(one: SettingResults) -> dict[str, Any]:
-    """What tells a setting from the others; an agent that looks ahead has no rates."""
+def setting_fields(one: SettingResults) -> dict[str, Any]:
+    """Return the fields that identify a setting; search agents have no training parameters."""
     at = one.setting.training
     practises = one.setting.role == "learner"
-    rates = {name: getattr(at, name) if practises else None for name in GRID}
+    parameters = {name: getattr(at, name) if practises else None for name in GRID}
     return {
         "gait": one.setting.gait,
         "observation": at.observation,
         "robot": one.setting.robot,
         "agent": at.agent,
-        **rates,
+        **parameters,
         "steps": at.steps if practises else 0,
         "blocks": one.setting.trial.blocks,
         "divisions": at.divisions,

@@ -1,4 +1,8 @@
-"""What many seeds say together: middle values with intervals, shares, and probabilities."""
+"""Statistics over many seeds: interquartile means, bootstrap intervals, probability of improvement.
+
+Shares of seeds have Wilson intervals. The method is that of Agarwal et al., "Deep RL at the edge
+of the statistical precipice" (2021).
+"""
 
 from collections.abc import Callable, Sequence
 from functools import lru_cache
@@ -11,35 +15,35 @@ from app.domain.types import FloatArray
 
 Verdict = Literal["yes", "no", "not established"]
 Points = tuple[float, ...]
-"""One number a seed."""
+"""One number per seed."""
 
 CONFIDENCE = 0.95
 RESAMPLES = 2_000
 MIN_SEEDS = 3
-"""With fewer there is no interval, and so nothing is established."""
+"""With fewer seeds there is no interval, so that every verdict is "not established"."""
 MIN_RESAMPLED = 5
-"""With fewer a bootstrap shows a spread, but decides nothing: it is much too narrow."""
-_BATCH_NUMBERS = 4_000_000
-_REMEMBERED = 20_000
+"""With fewer seeds a bootstrap interval is shown, but decides nothing: it is much too narrow."""
+_MAX_BATCH_NUMBERS = 4_000_000
+_CACHE_SIZE = 20_000
 _PERCENT = 100.0
 
 
 class Interval(NamedTuple):
-    """A middle value and its 95 % interval; without limits where there are too few seeds."""
+    """A point estimate and its confidence interval; no limits where there are too few seeds."""
 
     value: float
     low: float | None = None
     high: float | None = None
 
     def __neg__(self) -> "Interval":
-        """Of the negative number: to ask whether something is under a threshold."""
+        """Return the interval of the negated value, to test whether it is below a threshold."""
         low, high = self.low, self.high
         if low is None or high is None:
             return Interval(-self.value)
         return Interval(-self.value, -high, -low)
 
-    def against(self, threshold: float) -> Verdict:
-        """Whether the value is over a threshold, as far as the interval says."""
+    def exceeds(self, threshold: float) -> Verdict:
+        """Whether the value is over a threshold: decided only if the interval excludes it."""
         if self.low is None or self.high is None:
             return "not established"
         if self.low > threshold:
@@ -48,27 +52,32 @@ class Interval(NamedTuple):
 
 
 def iqm(samples: FloatArray, axis: int = -1) -> FloatArray:
-    """The interquartile mean: a quarter is cut off at each end, rounded down.
+    """Return the interquartile mean along an axis.
 
-    Of three numbers or fewer nothing is cut off, so that it is their mean.
+    A quarter of the samples, rounded down, is trimmed at each end; of three samples or fewer none
+    is, so that it is their mean.
+
+    Args:
+        samples: (…, n, …).
+        axis: the axis of the n seeds, which is reduced.
     """
     return np.asarray(stats.trim_mean(samples, 0.25, axis=axis), dtype=np.float64)
 
 
-def iqm_of_all(*samples: FloatArray, axis: int = -1) -> FloatArray:
-    """The interquartile mean over all strata together."""
+def pooled_iqm(*samples: FloatArray, axis: int = -1) -> FloatArray:
+    """Return the interquartile mean over all strata concatenated along the axis."""
     return iqm(np.concatenate(samples, axis=axis), axis)
 
 
-@lru_cache(maxsize=_REMEMBERED)
+@lru_cache(maxsize=_CACHE_SIZE)
 def iqm_interval(strata: tuple[Points, ...], seed: int) -> Interval:
-    """The interquartile mean of all points, resampled within each stratum.
+    """Return the interquartile mean of all points with its stratified bootstrap interval.
 
     Args:
-        strata: for example the seeds of each gait.
-        seed: of the resampling.
+        strata: resampled separately; for example the seeds of each gait.
+        seed: seed of the resampling.
     """
-    return interval(strata, iqm_of_all, seed)
+    return interval(strata, pooled_iqm, seed)
 
 
 def interval(
@@ -77,57 +86,66 @@ def interval(
     seed: int,
     confidence: float = CONFIDENCE,
 ) -> Interval:
-    """A statistic with its stratified bootstrap percentile interval.
+    """Return a statistic with its stratified bootstrap percentile interval.
 
     Args:
-        strata: resampled each on its own.
-        statistic: from one array (…, n) a stratum, and the `axis` of the seeds, to (…).
-        seed: of the resampling.
-        confidence: of the interval.
+        strata: resampled separately.
+        statistic: function of one array (…, n) per stratum and the `axis` of the seeds, to (…).
+        seed: seed of the resampling.
+        confidence: confidence level of the interval.
+
+    Returns:
+        The value without limits if a stratum has fewer than `MIN_SEEDS` points.
     """
     arrays = [np.asarray(points, dtype=np.float64) for points in strata]
     value = float(statistic(*arrays))
     if min(len(points) for points in strata) < MIN_SEEDS:
         return Interval(value)
-    found = stats.bootstrap(
+    confidence_interval = stats.bootstrap(
         arrays,
         statistic,
         n_resamples=RESAMPLES,
-        batch=max(1, _BATCH_NUMBERS // sum(len(points) for points in strata)),
+        batch=max(1, _MAX_BATCH_NUMBERS // sum(len(points) for points in strata)),
         confidence_level=confidence,
         method="percentile",
         vectorized=True,
         rng=np.random.default_rng(seed),
     ).confidence_interval
-    return Interval(value, float(found.low), float(found.high))
+    return Interval(value, float(confidence_interval.low), float(confidence_interval.high))
 
 
 def paired_interval(
     strata: Sequence[FloatArray], statistic: Callable[[FloatArray], FloatArray], seed: int
 ) -> Interval:
-    """The interval of a number that is made of several middles over the same seeds.
+    """Return the bootstrap interval of a function of several interquartile means, paired by seed.
 
     Args:
-        strata: (k, n) each: k numbers for each of n seeds, which are resampled together.
-        statistic: from the k interquartile means over all seeds, (k, …), to (…).
-        seed: of the resampling.
+        strata: (k, n) each: k numbers for each of n seeds; the k numbers of a seed are resampled
+            together.
+        statistic: function of the k interquartile means over all seeds, (k, …), to (…).
+        seed: seed of the resampling.
     """
 
     def of_seeds(*chosen: FloatArray, axis: int = -1) -> FloatArray:
-        taken = [
+        resampled = [
             numbers[:, seeds.astype(np.int64)]
             for numbers, seeds in zip(strata, chosen, strict=True)
         ]
-        return statistic(iqm(np.concatenate(taken, axis=axis), axis))
+        return statistic(iqm(np.concatenate(resampled, axis=axis), axis))
 
     return interval([tuple(map(float, range(one.shape[1]))) for one in strata], of_seeds, seed)
 
 
-@lru_cache(maxsize=_REMEMBERED)
+@lru_cache(maxsize=_CACHE_SIZE)
 def share(hits: int, of: int, ties: int = 0) -> Interval:
-    """A share of seeds with its Wilson interval; a tie counts half.
+    """Return a share of seeds with its Wilson interval; a tie counts half.
 
-    The interval takes ties as misses at its low end and as hits at its high end.
+    Ties count as misses for the lower limit and as hits for the upper limit.
+
+    Args:
+        hits: number of seeds that meet the condition.
+        of: number of seeds.
+        ties: number of seeds exactly at the limit, not included in `hits`.
     """
     value = (hits + ties / 2) / of
     if of < MIN_SEEDS:
@@ -135,8 +153,8 @@ def share(hits: int, of: int, ties: int = 0) -> Interval:
     return Interval(value, _wilson(hits, of).low, _wilson(hits + ties, of).high)
 
 
-def ahead(points: Sequence[float], baseline: float) -> Interval:
-    """How likely a seed comes further than a rival who always comes as far; a tie counts half."""
+def share_ahead(points: Sequence[float], baseline: float) -> Interval:
+    """Return the probability that a seed exceeds a constant baseline; a tie counts half."""
     return share(
         sum(point > baseline for point in points),
         len(points),
@@ -144,46 +162,52 @@ def ahead(points: Sequence[float], baseline: float) -> Interval:
     )
 
 
-def at_least(points: Sequence[float], limit: float) -> Interval:
-    """The share of seeds that come this far."""
+def share_at_least(points: Sequence[float], limit: float) -> Interval:
+    """Return the share of seeds that reach a limit."""
     return share(sum(point >= limit for point in points), len(points))
 
 
-@lru_cache(maxsize=_REMEMBERED)
+@lru_cache(maxsize=_CACHE_SIZE)
 def improvement(
     a: tuple[Points, ...], b: tuple[Points, ...], seed: int, confidence: float = CONFIDENCE
 ) -> Interval:
-    """How likely a seed of `a` comes further than one of `b`: the mean over strata.
+    """Return the probability of improvement of `a` over `b`, averaged over strata.
 
-    As in Agarwal et al., "Deep RL at the edge of the statistical precipice" (2021).
+    The probability that a random seed of `a` exceeds a random seed of `b` (Agarwal et al. 2021).
 
     Args:
-        a: strata of the one.
-        b: the same strata of the other.
-        seed: of the resampling.
-        confidence: of the interval.
+        a: strata of the first agent.
+        b: the same strata of the second agent.
+        seed: seed of the resampling.
+        confidence: confidence level of the interval.
     """
 
     def mean_probability(*samples: FloatArray, axis: int = -1) -> FloatArray:
         pairs = zip(samples[: len(a)], samples[len(a) :], strict=True)
-        found = [_probability(one, other, axis) for one, other in pairs]
-        return np.asarray(np.mean(found, axis=0), dtype=np.float64)
+        probabilities = [_probability(one, other, axis) for one, other in pairs]
+        return np.asarray(np.mean(probabilities, axis=0), dtype=np.float64)
 
     return interval((*a, *b), mean_probability, seed, confidence)
 
 
 def quantile_of(published: float, points: Sequence[float]) -> float:
-    """Which share of the seeds lies under a published value; one that equals it counts half."""
+    """Return the share of seeds below a published value; a seed equal to it counts half."""
     return float(stats.percentileofscore(points, published, kind="mean")) / _PERCENT
 
 
-def decided(found: Interval, threshold: float, fewest: int) -> Verdict:
-    """`Interval.against`, for a bootstrap of which the smallest stratum has so many seeds."""
-    return found.against(threshold) if fewest >= MIN_RESAMPLED else "not established"
+def bootstrap_exceeds(estimate: Interval, threshold: float, fewest: int) -> Verdict:
+    """Return `Interval.exceeds` for a bootstrap interval, if it has enough seeds to decide.
+
+    Args:
+        estimate: the bootstrap interval.
+        threshold: to compare with.
+        fewest: number of seeds in the smallest stratum; below `MIN_RESAMPLED` nothing is decided.
+    """
+    return estimate.exceeds(threshold) if fewest >= MIN_RESAMPLED else "not established"
 
 
 def _probability(a: FloatArray, b: FloatArray, axis: int) -> FloatArray:
-    """P(a > b) + P(a = b)/2 along an axis, from the ranks of both together."""
+    """Return P(a > b) + P(a = b)/2 along an axis, by the Mann-Whitney U statistic."""
     n, m = a.shape[axis], b.shape[axis]
     ranks = stats.rankdata(np.concatenate([a, b], axis=axis), axis=axis)
     over = np.take(ranks, range(n), axis=axis).sum(axis=axis) - n * (n + 1) / 2

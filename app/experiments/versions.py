@@ -1,4 +1,4 @@
-"""What a result depends on beside its config."""
+"""Versions of the software that a trial's result depends on."""
 
 import platform
 from collections.abc import Mapping
@@ -8,7 +8,7 @@ from app import __version__
 
 
 def versions() -> dict[str, str]:
-    """The product, Python, and what it computes with, as they are in this process."""
+    """Return the versions of the product, Python, NumPy and MuJoCo in this process."""
     return {
         "racing-hexapods": __version__,
         "python": platform.python_version(),
@@ -18,16 +18,16 @@ def versions() -> dict[str, str]:
 
 
 def difference(here: Mapping[str, str], there: Mapping[str, str]) -> str | None:
-    """What makes results of two places differ, in words; None where they are the same.
+    """Describe how the versions of two processes differ; None if results are comparable.
 
-    Python's last number counts for nothing.
+    Python's patch version is ignored.
     """
-    names = [name for name in here if _that_counts(here, name) != _that_counts(there, name)]
+    names = [name for name in here if _comparable(here, name) != _comparable(there, name)]
     if not names:
         return None
     return ", ".join(f"{name} {there.get(name, 'none')} instead of {here[name]}" for name in names)
 
 
-def _that_counts(found: Mapping[str, str], name: str) -> str | None:
-    value = found.get(name)
+def _comparable(installed: Mapping[str, str], name: str) -> str | None:
+    value = installed.get(name)
     return value.rpartition(".")[0] if name == "python" and value else value

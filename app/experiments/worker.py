@@ -1,4 +1,4 @@
-"""What a worker of the cluster does."""
+"""The task that runs on a worker of the cluster: a batch of trials."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -9,38 +9,48 @@ from app.experiments.trial import TrialConfig, TrialResult, run_trial
 from app.experiments.versions import difference, versions
 
 
-class OtherResults(HexapodError):
-    """A worker that joined later would compute something else."""
+class VersionMismatch(HexapodError):
+    """A worker that joined later has other versions, and would compute other results."""
 
 
-class Done(NamedTuple):
-    """What a worker answers about a trial: a result, or why there is none."""
+class Attempt(NamedTuple):
+    """One attempt at a trial on a worker: its result, or the reason that there is none.
+
+    Attributes:
+        result: None if the trial raised.
+        reason: the error in a sentence; None if there is a result.
+        compute_s: time that the worker computed.
+    """
 
     result: TrialResult | None
     reason: str | None
     compute_s: float
 
 
-def work(configs: Sequence[TrialConfig], expected: Mapping[str, str]) -> list[Done]:
-    """Run a batch of trials; this is what a worker does.
+def run_batch(configs: Sequence[TrialConfig], expected: Mapping[str, str]) -> list[Attempt]:
+    """Run a batch of trials on a worker, one after the other.
+
+    Args:
+        configs: the trials.
+        expected: versions of the submitting process, as by `versions`.
 
     Raises:
-        OtherResults: if this worker has other versions than were expected.
+        VersionMismatch: if this worker has other versions than were expected.
     """
     differs = difference(expected, versions())
     if differs is not None:
-        raise OtherResults(f"a worker that joined would compute other results: it has {differs}")
+        raise VersionMismatch(f"a worker that joined would compute other results: it has {differs}")
     return [_timed(config) for config in configs]
 
 
-def _timed(config: TrialConfig) -> Done:
+def _timed(config: TrialConfig) -> Attempt:
     began_s = time.perf_counter()
     result, reason = None, None
     try:
         result = run_trial(config)
     except HexapodError as error:
         reason = str(error)
-    # An agent is anyone's code, and may do anything.
+    # User-supplied agents are untrusted code: they may raise anything, and call `sys.exit`.
     except (Exception, SystemExit) as error:
         reason = f"something in it broke ({type(error).__name__}: {error})"
-    return Done(result, reason, time.perf_counter() - began_s)
+    return Attempt(result, reason, time.perf_counter() - began_s)

@@ -1,1 +1,5 @@
-"""The robot as MuJoCo computes it: from a `Robot` to a model, and the simulator on top."""
+"""Physics by MuJoCo.
+
+- `mjcf`: builds a MuJoCo model from a `Robot`.
+- `mujoco_simulator`: the simulator on that model, for single steps and batches.
+"""

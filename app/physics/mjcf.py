@@ -1,4 +1,4 @@
-"""From a `Robot` to a MuJoCo model: a torso with as many copies of one leg as it has mounts."""
+"""Build a MuJoCo model from a `Robot`: a torso with a copy of one leg at each mount."""
 
 from functools import lru_cache
 
@@ -11,20 +11,20 @@ from app.domain.robot import Robot
 
 LINKS = ("coxa", "femur", "tibia")
 VISIBLE_GROUP = 1
-"""The geoms of this group are what a robot looks like."""
+"""The group of the visual geoms."""
 
 
 @lru_cache(maxsize=32)
 def compile_model(robot: Robot) -> mujoco.MjModel:
-    """The robot alone on flat ground, upright over the origin; treat it as read-only.
+    """Compile the model of a robot on flat ground, upright over the origin; cached, read-only.
 
-    Its names explain themselves: body, joint and actuator `leg1_femur`, geom `leg1_foot`.
+    Naming scheme: body, joint and actuator `leg1_femur`, geom `leg1_foot`.
     """
     return robot_spec(robot).compile()
 
 
 def robot_spec(robot: Robot) -> mujoco.MjSpec:
-    """The robot as an editable specification."""
+    """Build the robot as an editable model specification."""
     spec = mujoco.MjSpec.from_file(str(models_dir() / "torso.xml"))
     spec.option.timestep = robot.dt_s
     torso = spec.body("torso")
@@ -55,7 +55,7 @@ def _shape_torso(spec: mujoco.MjSpec, robot: Robot) -> None:
 
 
 def _leg_spec(robot: Robot) -> mujoco.MjSpec:
-    """A leg of this robot's lengths, masses, servos and friction."""
+    """Build a leg with this robot's lengths, masses, servos and friction."""
     spec = mujoco.MjSpec.from_file(str(models_dir() / "leg.xml"))
     ends = {"coxa": "femur", "femur": "tibia", "tibia": "foot"}
     for link in LINKS:
@@ -72,7 +72,7 @@ def _leg_spec(robot: Robot) -> mujoco.MjSpec:
 
 
 def _stretch(body: mujoco.MjsBody, factor: float) -> None:
-    """Move what hangs on a link along it; thickness stays."""
+    """Scale a link's geoms along its x axis; their thickness does not change."""
     for geom in body.geoms:
         geom.pos = geom.pos * [factor, 1, 1]
         if np.isfinite(geom.fromto[0]):

@@ -1,4 +1,4 @@
-"""The MuJoCo simulator: the same step on real physics, one at a time or a whole layer at once."""
+"""The MuJoCo simulator: steps with rigid-body physics, single or in batches."""
 
 import math
 from collections.abc import Sequence
@@ -21,16 +21,17 @@ from app.domain.types import Action, Cells, FloatArray
 from app.physics.mjcf import compile_model
 
 SETTLE_S = 1.0
-"""How long the robot stands before a run, so that its servos carry it and its feet press down."""
+"""Time that the robot stands before a walk, until servo torques and contact forces settle."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MujocoState:
-    """A robot in the middle of nowhere but between two steps.
+    """Simulator state between two steps.
 
     Attributes:
-        row: the full mjSTATE_INTEGRATION vector; anything less diverges when it goes on.
-        feet: where they are if nothing slipped; the next step is planned from there.
+        row: the full mjSTATE_INTEGRATION vector; continuing from a smaller state vector gives
+            other results.
+        feet: foot offsets without slip, from which the next step is planned.
         distance_m: displacement of the torso's centre along the track (world +y).
         steps: taken since rest.
     """
@@ -49,34 +50,39 @@ class MujocoState:
 class MujocoSimulator:
     """Implements `Simulator` on MuJoCo.
 
-    The robot starts over the world's origin, facing world +y. Not to be shared by threads.
+    The robot starts over the world's origin, facing world +y. Not thread-safe.
 
     Args:
         robot, gait, grid: the walking problem.
-        threads: for `expand`; 0 is one for each core. Results do not depend on it.
+        threads: number of threads of `expand`; 0 for one per core. Results do not depend on it.
+
+    Raises:
+        Unreachable: if a cell of the grid is out of a leg's reach.
     """
 
     def __init__(self, robot: Robot, gait: Gait, grid: FootGrid, threads: int = 1) -> None:
         check_reach(robot, gait, grid)
-        _keep_quiet()
+        _silence_mujoco_log()
         self.robot, self.gait, self.grid = robot, gait, grid
         self.model = compile_model(robot)
         self._motion = StepMotion(robot, gait, grid)
         self._substeps = robot.swing_substeps + robot.shift_substeps
-        self._kept = recorded_substeps(robot)
+        self._recorded_substeps = recorded_substeps(robot)
         self._threads = threads
-        self._single = Batch(self.model, 1, 1)
-        self._many = self._single
+        self._step_batch = Batch(self.model, 1, 1)
+        self._expand_batch = self._step_batch
         forward = np.deg2rad(gait.forward_deg)
         self._forward = float(np.cos(forward)), float(np.sin(forward))
-        self._joints = slice(8, 8 + self.model.nu)  # of a row: time, torso's place and attitude
+        self._joints = slice(
+            8, 8 + self.model.nu
+        )  # in a row after time, torso position and rotation
 
     def rest(self) -> MujocoState:
         return self._rest
 
     @cached_property
     def _rest(self) -> MujocoState:
-        """Standing still with every foot at home, settled, over the origin."""
+        """The settled state with every foot at home, over the origin."""
         standing = self._motion.legs.joint_angles(np.zeros((len(self.robot.legs), 3))).ravel()
         half = np.deg2rad(90 - self.gait.forward_deg) / 2
         batch = Batch(self.model, 1, 1)
@@ -88,14 +94,16 @@ class MujocoSimulator:
         self._check(batch, [0.0], [0])
         batch.bind("time")[0] = 0
         qpos[:2] = 0
-        return MujocoState(_frozen(batch.state[0]), self._motion.at_home())
+        return MujocoState(_read_only_copy(batch.state[0]), self._motion.at_home())
 
     def step(self, state: MujocoState, action: Action, record: bool = False) -> Step[MujocoState]:
-        (end,), (reward,), recorded = self._advance(self._single, [state], [action], record)
+        (end,), (reward,), recorded = self._advance(self._step_batch, [state], [action], record)
         motion = None
         if record:
-            kept = recorded["qpos"][0, self._kept].astype(np.float32)
-            motion = Motion(((self._kept + 1) * self.robot.dt_s).astype(np.float32), kept)
+            recorded_qpos = recorded["qpos"][0, self._recorded_substeps].astype(np.float32)
+            motion = Motion(
+                ((self._recorded_substeps + 1) * self.robot.dt_s).astype(np.float32), recorded_qpos
+            )
         return Step(end, reward, motion)
 
     def expand(
@@ -103,13 +111,13 @@ class MujocoSimulator:
     ) -> Expansion[MujocoState]:
         if not states:
             return Expansion([], np.empty(0))
-        if len(states) > self._many.nsim:
-            self._many = Batch(self.model, len(states), self._threads)
-        ends, rewards, _ = self._advance(self._many, states, actions, record=False)
+        if len(states) > self._expand_batch.nsim:
+            self._expand_batch = Batch(self.model, len(states), self._threads)
+        ends, rewards, _ = self._advance(self._expand_batch, states, actions, record=False)
         return Expansion(ends, np.array(rewards))
 
     def commands(self, states: Sequence[MujocoState], actions: Sequence[Action]) -> FloatArray:
-        """What the servos are told over a step from each state, (n, substeps, 3 · legs) [rad]."""
+        """Return the servo targets over a step from each state, (n, substeps, 3 · legs) [rad]."""
         return self._motion.joint_targets(self._plans(states, actions))
 
     def _plans(self, states: Sequence[MujocoState], actions: Sequence[Action]) -> list[StepPlan]:
@@ -122,7 +130,11 @@ class MujocoSimulator:
         actions: Sequence[Action],
         record: bool,
     ) -> tuple[list[MujocoState], list[float], dict[str, FloatArray]]:
-        """Plan and carry out a step from each state: ends, rewards, and `qpos` if recorded."""
+        """Plan and simulate a step from each state; return ends, rewards, and `qpos` if recorded.
+
+        Raises:
+            Diverged: if the physics diverges.
+        """
         plans, count = self._plans(states, actions), len(states)
         for simulation, state in enumerate(states):
             batch.state[simulation] = state.row
@@ -132,7 +144,7 @@ class MujocoSimulator:
             record=("qpos",) if record else (),
             ids=None if count == batch.nsim else np.arange(count),
         )
-        after = _frozen(batch.state[:count])
+        after = _read_only_copy(batch.state[:count])
         ends = [
             MujocoState(row, plan.end, float(row[2]), state.steps + 1)
             for row, plan, state in zip(after, plans, states, strict=True)
@@ -142,9 +154,9 @@ class MujocoSimulator:
         return ends, rewards, recorded
 
     def _reward(self, before: FloatArray, after: FloatArray) -> float:
-        """Displacement along the robot's horizontal forward direction at the start [m].
+        """Return the displacement along the robot's horizontal forward direction at the start [m].
 
-        In plain floats: for the one row of a step that is much quicker than arrays.
+        In plain floats, which are much faster than arrays for a single row.
         """
         from_x, from_y, _, w, x, y, z = before[1:8].tolist()
         to_x, to_y = after[1:3].tolist()
@@ -155,9 +167,9 @@ class MujocoSimulator:
         return float(along / math.sqrt(ahead_x * ahead_x + ahead_y * ahead_y))
 
     def _check(self, batch: Batch, rewards: Sequence[float], steps: Sequence[int]) -> None:
-        """Raise `Diverged` if any simulation met a number that is none.
+        """Raise `Diverged` if any simulation of the batch met a non-finite number.
 
-        MuJoCo only counts a warning then, and resets the robot to where it never was.
+        MuJoCo itself only counts a warning then, and resets the state to the model's default.
         """
         if not np.count_nonzero(batch.warning) and all(map(math.isfinite, rewards)):
             return
@@ -190,25 +202,25 @@ class MujocoSimulator:
     def load(self, arrays: dict[str, FloatArray]) -> MujocoState:
         distance, steps = arrays["travel"].tolist()
         return MujocoState(
-            _frozen(arrays["row"]),
+            _read_only_copy(arrays["row"]),
             Feet.from_array(arrays["feet"]),
             distance,
             int(steps),
         )
 
 
-def _keep_quiet() -> None:
-    """Let MuJoCo write its warnings nowhere: `Diverged` says them.
+def _silence_mujoco_log() -> None:
+    """Disable MuJoCo's own log of warnings, which `Diverged` reports instead.
 
-    By default they go to the console and to MUJOCO_LOG.TXT in whatever folder is the current one.
+    By default they go to the console and to MUJOCO_LOG.TXT in the current working directory.
     """
     log = mujoco.MjLogConfig.get()
     log.logto_file = log.logto_console = False
     log.set()
 
 
-def _frozen(array: FloatArray) -> FloatArray:
-    """A copy that nobody can change."""
+def _read_only_copy(array: FloatArray) -> FloatArray:
+    """Return a read-only copy of an array."""
     copy = array.copy()
     copy.flags.writeable = False
     return copy

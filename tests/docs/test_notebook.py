@@ -42,7 +42,7 @@ def test_both_figures_have_words_for_who_does_not_see_them(outputs: list[Any]) -
     alts = [figure["metadata"]["image/png"]["alt"] for figure in figures]
 
     assert len(alts) == 2
-    assert "FrontBack-Vertical with commands remembered" in alts[0]
+    assert "Front-back, mirrored with commands remembered" in alts[0]
     assert "3 seeds from" in alts[1]
 
 
@@ -55,4 +55,4 @@ def test_its_tables_and_verdicts(outputs: list[Any]) -> None:
     numbers, claims = tables
 
     assert "| front-back-vertical | commanded | 1,000 | 0.275 |" in numbers
-    assert "feet read back: **" in claims
+    assert "feet measured: **" in claims

@@ -1,4 +1,4 @@
-"""The table of gaits in the paper's sense, and what a user may make of it."""
+"""The paper's gaits, and gaits specified by the user."""
 
 import pytest
 from hypothesis import given
@@ -53,7 +53,7 @@ def test_the_four_gaits_of_a_hexapod(
         (10, "front-back-vertical", ((1, 3), (10, 4), (9, 5), (8, 6), (2, 7))),
     ],
 )
-def test_other_numbers_of_legs_pair_up_by_the_same_rule(
+def test_other_numbers_of_legs_are_paired_by_the_same_rule(
     legs: int, name: str, pairs: tuple[Pair, ...]
 ) -> None:
     assert resolve(name, azimuths(legs)).pairs == pairs
@@ -65,7 +65,7 @@ def test_other_numbers_of_legs_pair_up_by_the_same_rule(
     between=st.integers(1, 2),
     symmetry=st.sampled_from(["origin", "vertical"]),
 )
-def test_pairs_are_symmetrical_whichever_way_is_forward(
+def test_pairs_are_symmetric_for_every_forward_direction(
     legs: int, right: int, between: int, symmetry: Symmetry
 ) -> None:
     right = 1 + right % legs
@@ -117,7 +117,7 @@ def test_a_leg_alone_on_the_axis_is_named() -> None:
         resolve("front-back-vertical", [-60, 0, 60, 120])
 
 
-def test_pairs_may_be_given_by_hand() -> None:
+def test_explicit_pairs_are_used() -> None:
     pairs = ((1, 6), (2, 3), (4, 5))
     gait = resolve(GaitSpec(1, 2, pairs=pairs), azimuths(6))
 
@@ -137,21 +137,21 @@ def test_pairs_may_be_given_by_hand() -> None:
         ((), "leave out leg 1"),
     ],
 )
-def test_a_wrong_pairing_says_which_leg(pairs: tuple[Pair, ...], message: str) -> None:
+def test_an_invalid_pairing_names_the_leg(pairs: tuple[Pair, ...], message: str) -> None:
     with pytest.raises(InvalidInput, match=message):
         resolve(GaitSpec(1, 2, pairs=pairs), azimuths(6))
 
 
-def test_a_named_gait_by_its_parts_is_the_named_gait() -> None:
+def test_the_specification_of_a_named_gait_resolves_to_that_gait() -> None:
     for name, spec in NAMED_GAITS.items():
         assert resolve(spec, azimuths(6)) == resolve(name, azimuths(6))
 
 
-def test_a_gait_of_ones_own_says_what_it_is() -> None:
+def test_a_users_gait_is_named_by_its_specification() -> None:
     assert resolve(GaitSpec(6, 1, "origin"), azimuths(6)).name == "right 6, left 1, origin"
 
 
-def test_an_unknown_gait_names_the_known_ones() -> None:
+def test_an_unknown_gait_names_the_valid_ones() -> None:
     with pytest.raises(UnknownName, match=r"unknown gait 'tripod'.*left-right-origin.*back-vertic"):
         resolve("tripod", azimuths(6))
 
@@ -160,12 +160,12 @@ def test_an_unknown_gait_names_the_known_ones() -> None:
     ("right", "left", "message"),
     [(1, 1, "both 1; name two legs"), (0, 2, "no leg 0"), (1, 7, "no leg 7.*1 to 6")],
 )
-def test_right_and_left_are_two_legs_of_the_robot(right: int, left: int, message: str) -> None:
+def test_right_and_left_must_be_two_existing_legs(right: int, left: int, message: str) -> None:
     with pytest.raises(InvalidInput, match=message):
         resolve(GaitSpec(right, left, "origin"), azimuths(6))
 
 
-def test_a_gait_has_a_symmetry_or_pairs() -> None:
+def test_a_specification_has_either_a_symmetry_or_pairs() -> None:
     with pytest.raises(InvalidInput, match=r"either symmetry .* or pairs"):
         GaitSpec(1, 2)
     with pytest.raises(InvalidInput, match=r"either symmetry .* or pairs"):

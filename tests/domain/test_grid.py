@@ -1,4 +1,4 @@
-"""The foot grid: where a foot may go."""
+"""The foot grid: its cells, their order, and the nearest cell to an offset."""
 
 import math
 
@@ -13,12 +13,14 @@ every_division = pytest.mark.parametrize("divisions", range(MIN_DIVISIONS, MAX_D
 
 
 @pytest.mark.parametrize(("divisions", "cells"), [(2, 5), (3, 9), (4, 17)])
-def test_an_even_grid_misses_home_and_gets_it_as_well(divisions: int, cells: int) -> None:
+def test_a_grid_with_even_divisions_has_home_as_an_additional_cell(
+    divisions: int, cells: int
+) -> None:
     assert len(FootGrid(divisions=divisions)) == cells
 
 
 @every_division
-def test_home_comes_first_and_no_cell_comes_twice(divisions: int) -> None:
+def test_home_is_cell_0_and_cells_are_unique(divisions: int) -> None:
     grid = FootGrid(divisions=divisions)
 
     assert grid.places_m[0] == (0.0, 0.0)
@@ -36,7 +38,7 @@ def test_two_divisions_are_home_and_the_corners() -> None:
     assert [grid.name(cell) for cell in range(5)] == names
 
 
-def test_three_divisions_run_row_by_row_from_the_front() -> None:
+def test_cells_are_ordered_row_by_row_from_the_front() -> None:
     grid = FootGrid(side_m=0.04, divisions=3)
 
     assert grid.places_m[1:4] == ((-0.02, 0.02), (0, 0.02), (0.02, 0.02))
@@ -81,8 +83,8 @@ def test_a_tie_goes_to_home_then_to_the_lower_index(x: float, y: float, name: st
 
 
 @given(st.floats(-1e-15, 1e-15), st.floats(-1e-15, 1e-15))
-def test_a_tie_on_paper_is_a_tie_whatever_the_last_bits_say(dx: float, dy: float) -> None:
-    """Re-centring over three pairs leaves thirds, which no float holds."""
+def test_a_tie_up_to_rounding_errors_is_a_tie(dx: float, dy: float) -> None:
+    """Re-centring over three pairs gives multiples of 1/3, which floats cannot represent."""
     grid = FootGrid(side_m=0.04)
 
     assert grid.nearest(0.01 + dx, 0.01 + dy) == 0
@@ -94,7 +96,9 @@ def test_a_tie_on_paper_is_a_tie_whatever_the_last_bits_say(dx: float, dy: float
     x=st.floats(-0.06, 0.06),
     y=st.floats(-0.06, 0.06),
 )
-def test_no_cell_is_nearer_than_the_nearest(divisions: int, x: float, y: float) -> None:
+def test_nearest_returns_the_cell_with_the_least_distance(
+    divisions: int, x: float, y: float
+) -> None:
     grid = FootGrid(divisions=divisions)
     distances = [math.dist((x, y), place) for place in grid.places_m]
 
@@ -108,6 +112,6 @@ def test_divisions_out_of_range_name_the_range(divisions: int) -> None:
 
 
 @pytest.mark.parametrize("side_m", [0, 0.0049, -1, 10.1, 1e308, math.nan, math.inf])
-def test_a_side_out_of_range_names_the_least(side_m: float) -> None:
+def test_a_side_out_of_range_names_the_range(side_m: float) -> None:
     with pytest.raises(InvalidInput, match=r"grid_side_m must be from 0\.005 to 10 m"):
         FootGrid(side_m=side_m)

@@ -1,4 +1,4 @@
-"""What only the kinematic simulator promises: the law itself, exactly."""
+"""The kinematic simulator follows the kinematic law exactly."""
 
 import numpy as np
 import pytest
@@ -27,10 +27,10 @@ def test_the_first_step_to_the_front_earns_a_third_of_h(simulator: KinematicSimu
     assert step.state.distance_m == step.reward_m
 
 
-def test_swapping_sides_at_the_front_earns_half_of_h_for_ever(
+def test_swapping_sides_at_the_front_earns_half_of_h_per_step_indefinitely(
     simulator: KinematicSimulator,
 ) -> None:
-    """Under `commanded`, where a pair may not be sent to its own cell."""
+    """With the observation `commanded`, in which a pair's commanded cell is illegal."""
     state, reward = simulator.rest(), 0.0
     for step in range(60):
         cell = FRONT_LEFT if step % 6 < 3 else FRONT_RIGHT
@@ -60,7 +60,7 @@ def test_the_recorded_body_stays_upright_and_eases_into_the_shift(
     assert height == pytest.approx(0.09 + 0.012)
 
 
-def test_a_robot_that_cannot_reach_is_refused() -> None:
+def test_a_robot_that_cannot_reach_its_grid_is_refused() -> None:
     with pytest.raises(Unreachable, match="leg 1 cannot reach cell"):
         KinematicSimulator(
             Robot(), resolve("left-right-origin", Robot().azimuths_deg), FootGrid(0.3)

@@ -1,4 +1,4 @@
-"""Leg kinematics: from a foot's place to joint angles, and back; and what a leg cannot reach."""
+"""Inverse and forward kinematics of the legs, and the check of reach."""
 
 from typing import Any
 
@@ -21,13 +21,13 @@ def legs_of(made: Robot, gait: str | GaitSpec = "left-right-origin") -> Legs:
 
 
 def offsets(legs: int) -> st.SearchStrategy[FloatArray]:
-    """Places of feet about home that every leg of the default robot reaches, (legs, 3) [m]."""
+    """Foot offsets from home that every leg of the default robot reaches, (legs, 3) [m]."""
     shares = arrays(float, (legs, 3), elements=st.floats(0, 1))
     return shares.map(lambda s: s * (0.08, 0.08, 0.05) - (0.04, 0.04, 0.01))
 
 
 @given(st.sampled_from(sorted(NAMED_GAITS)), offsets(6))
-def test_forward_kinematics_undoes_inverse_kinematics(gait: str, places: FloatArray) -> None:
+def test_forward_kinematics_inverts_inverse_kinematics(gait: str, places: FloatArray) -> None:
     legs = legs_of(Robot(), gait)
     angles = legs.joint_angles(places)
 
@@ -36,14 +36,16 @@ def test_forward_kinematics_undoes_inverse_kinematics(gait: str, places: FloatAr
 
 
 @given(offsets(8))
-def test_and_for_a_robot_of_other_proportions(places: FloatArray) -> None:
+def test_forward_kinematics_inverts_inverse_kinematics_for_other_proportions(
+    places: FloatArray,
+) -> None:
     legs = legs_of(robot({"n_legs": 8, "coxa_m": 0.03, "femur_m": 0.1, "body_height_m": 0.08}))
     angles = legs.joint_angles(places)
 
     assert np.allclose(legs.foot_offsets(angles.ravel().tolist()), places, atol=1e-12)
 
 
-def test_at_home_all_legs_are_bent_the_same_with_the_knee_above() -> None:
+def test_at_home_all_legs_have_equal_angles_with_the_knee_above() -> None:
     angles = legs_of(Robot()).joint_angles(np.zeros((6, 3)))
     coxa, femur, tibia = angles.T
 
@@ -57,7 +59,7 @@ def test_at_home_all_legs_are_bent_the_same_with_the_knee_above() -> None:
 
 
 def test_a_leg_that_points_forward_stretches_to_reach_forward() -> None:
-    """FrontBack: leg 2 points forward, leg 5 backward; neither needs to turn."""
+    """Front-back: leg 2 points forward, leg 5 backward; neither coxa turns."""
     angles = legs_of(Robot(), "front-back-origin").joint_angles(np.tile((0, 0.02, 0), (6, 1)))
     home = legs_of(Robot()).joint_angles(np.zeros((6, 3)))
 
@@ -67,14 +69,14 @@ def test_a_leg_that_points_forward_stretches_to_reach_forward() -> None:
 
 
 def test_a_leg_on_the_left_swings_clockwise_to_reach_forward() -> None:
-    """LeftRight: leg 3 points left, leg 6 right."""
+    """Left-right: leg 3 points left, leg 6 right."""
     angles = legs_of(Robot()).joint_angles(np.tile((0, 0.02, 0), (6, 1)))
 
     assert angles[2, 0] == pytest.approx(-np.arctan2(0.02, 0.15))
     assert angles[5, 0] == pytest.approx(np.arctan2(0.02, 0.15))
 
 
-def test_out_of_reach_is_not_a_number() -> None:
+def test_joint_angles_out_of_reach_are_nan() -> None:
     angles = legs_of(Robot()).joint_angles(np.tile((0, 0.3, 0), (6, 1)))
 
     assert np.isnan(angles).any()
@@ -87,7 +89,7 @@ def test_the_default_grid_is_within_reach_of_four_to_ten_legs(gait: str, legs: i
     resolved = resolve(gait, made.azimuths_deg)
     check_reach(made, resolved, FootGrid())
 
-    # Whatever the body does, no servo is ever asked beyond its limit.
+    # For every possible offset all joint angles stay within their limits.
     places = np.array([(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (0, 1)])
     drift = len(resolved.pairs) - 1
     scaled = places * (0.02, drift * 0.02, made.step_height_m)
@@ -116,14 +118,14 @@ def test_a_grid_that_a_leg_cannot_reach_names_leg_and_cell(
         check_reach(made, resolve("left-right-origin", made.azimuths_deg), FootGrid(side_m=side_m))
 
 
-def test_a_servo_that_would_turn_too_far_is_named() -> None:
+def test_a_joint_beyond_its_limit_is_named() -> None:
     made = robot({"home_radius_m": 0.2, "body_height_m": 0.06})
     with pytest.raises(Unreachable, match="its tibia would turn to -163°, beyond its limit"):
         check_reach(made, resolve("left-right-origin", made.azimuths_deg), FootGrid())
 
 
-def test_a_place_between_two_cells_must_be_within_reach_too() -> None:
-    """On its way from front left to back left a leg that points left passes closest to its hip."""
+def test_positions_between_two_cells_must_be_within_reach_too() -> None:
+    """Between front left and back left the foot of a left leg passes closest to its coxa joint."""
     made = robot({"n_legs": 4, "step_height_m": 0.07})
     with pytest.raises(Unreachable, match="on the way there: its femur would turn to"):
         check_reach(made, resolve("front-back-origin", made.azimuths_deg), FootGrid(side_m=0.08))

@@ -1,4 +1,4 @@
-"""The motion of a step, read back from the servo commands by forward kinematics."""
+"""The motion of a step, reconstructed from the servo commands by forward kinematics."""
 
 import numpy as np
 import pytest
@@ -22,20 +22,20 @@ def motion_of(gait: str, made: Robot | None = None) -> StepMotion:
 
 
 def third_step(motion: StepMotion) -> StepPlan:
-    """Not the first, so that feet stand off their cells: pair 1 from front left to back left."""
+    """Plan a third step, when feet are off their cells: pair 1 from front left to back left."""
     feet = motion.plan(motion.at_home(), Action(1, FRONT_LEFT)).end
     feet = motion.plan(feet, Action(0, FRONT_RIGHT)).end
     return motion.plan(feet, Action(1, BACK_LEFT))
 
 
 def feet_over_time(motion: StepMotion, plan: StepPlan) -> FloatArray:
-    """(substeps, legs, 3) offsets from home in the robot frame [m]."""
+    """Return the foot offsets from home in the robot frame [m], (substeps, legs, 3)."""
     targets = motion.joint_targets([plan])[0]
     return np.array([motion.legs.foot_offsets(row.tolist()) for row in targets])
 
 
 @every_gait
-def test_a_pair_swings_from_where_it_stands_over_the_midpoint_to_its_cell(gait: str) -> None:
+def test_a_pair_swings_from_its_position_over_the_midpoint_to_its_cell(gait: str) -> None:
     motion = motion_of(gait)
     plan = third_step(motion)
     leader, partner = (leg - 1 for leg in resolve(gait, Robot().azimuths_deg).pairs[1])
@@ -55,7 +55,7 @@ def test_a_pair_swings_from_where_it_stands_over_the_midpoint_to_its_cell(gait: 
 
 
 @every_gait
-def test_four_feet_hold_while_two_swing(gait: str) -> None:
+def test_four_feet_stand_still_while_two_swing(gait: str) -> None:
     motion = motion_of(gait)
     pairs = resolve(gait, Robot().azimuths_deg).pairs
     plan = third_step(motion)
@@ -74,19 +74,19 @@ def test_the_shift_centres_the_body_over_six_planted_feet(gait: str) -> None:
     motion = motion_of(gait)
     plan = third_step(motion)
     feet = feet_over_time(motion, plan)
-    shift = feet[SWING - 1 :]  # from touch-down on
+    shift = feet[SWING - 1 :]  # from touch-down
 
     assert len(feet) == SWING + SHIFT
     assert shift[..., 2] == pytest.approx(0, abs=1e-12)
     moved = shift - shift[0]
-    assert moved == pytest.approx(np.repeat(moved[:, :1], 6, axis=1), abs=1e-12)  # as one
+    assert moved == pytest.approx(np.repeat(moved[:, :1], 6, axis=1), abs=1e-12)  # all feet alike
     assert shift[0].mean(axis=0)[:2] == pytest.approx((0, plan.advance_m), abs=1e-12)
     assert shift[-1].mean(axis=0) == pytest.approx((0, 0, 0), abs=1e-12)
     assert moved[-1, 0] == pytest.approx((0, -plan.advance_m, 0), abs=1e-12)
 
 
 @pytest.mark.parametrize("legs", [4, 6, 8, 10])
-def test_a_batch_equals_one_by_one_to_the_last_bit(legs: int) -> None:
+def test_joint_targets_of_a_batch_equal_single_ones_to_the_last_bit(legs: int) -> None:
     motion = motion_of("left-right-vertical", robot({"n_legs": legs}))
     feet = motion.plan(motion.at_home(), Action(1, FRONT_LEFT)).end
     plans = [motion.plan(feet, Action(p, c)) for p in range(legs // 2) for c in range(5)]
@@ -122,10 +122,10 @@ def test_commands_start_and_end_each_phase_at_rest() -> None:
     assert speed[-1] < 0.2 * speed[SWING:].max()
 
 
-def test_ease_runs_from_nothing_to_all() -> None:
+def test_ease_runs_from_0_to_1() -> None:
     assert ease(np.array([0, 0.5, 1])) == pytest.approx([0, 0.5, 1])
 
 
-def test_a_recording_keeps_every_twentieth_of_a_second_and_the_end() -> None:
+def test_recorded_substeps_are_20_ms_apart_and_include_the_last() -> None:
     assert recorded_substeps(Robot()).tolist() == list(range(4, 80, 5))
     assert recorded_substeps(Robot(shift_s=0.128))[-2:].tolist() == [79, 81]

@@ -1,4 +1,4 @@
-"""The two readings of the state, and what is legal in it."""
+"""The two observations of a state, and its legal actions."""
 
 import pytest
 
@@ -20,12 +20,12 @@ def simulator() -> KinematicSimulator:
     )
 
 
-def test_at_rest_both_readings_are_home(simulator: KinematicSimulator) -> None:
+def test_at_rest_both_observations_are_home(simulator: KinematicSimulator) -> None:
     for how in OBSERVATIONS:
         assert observe(simulator, simulator.rest(), how) == (HOME, HOME, HOME)
 
 
-def test_the_readings_part_once_the_body_has_moved(simulator: KinematicSimulator) -> None:
+def test_the_observations_differ_once_the_body_has_moved(simulator: KinematicSimulator) -> None:
     state = simulator.rest()
     for action in ((0, FRONT_LEFT), (1, FRONT_LEFT), (2, BACK_RIGHT), (0, FRONT_RIGHT)):
         state = simulator.step(state, Action(*action)).state
@@ -36,14 +36,14 @@ def test_the_readings_part_once_the_body_has_moved(simulator: KinematicSimulator
         FRONT_LEFT,
         BACK_RIGHT,
     )
-    # Sent to the front, the second pair has since fallen behind.
+    # The second pair was commanded to the front, and has drifted back since.
     assert offsets[1] == pytest.approx((-0.02, 0.02 * 32 / 81))
     assert observe(simulator, state, "measured") == tuple(
         simulator.grid.nearest(x, y) for x, y in offsets
     )
 
 
-def test_a_pair_that_fell_far_enough_behind_reads_as_at_the_back(
+def test_a_pair_that_drifted_far_enough_is_measured_at_the_back(
     simulator: KinematicSimulator,
 ) -> None:
     state = simulator.step(simulator.rest(), Action(2, FRONT_LEFT)).state
@@ -54,7 +54,7 @@ def test_a_pair_that_fell_far_enough_behind_reads_as_at_the_back(
     assert observe(simulator, state, "measured")[2] == BACK_LEFT
 
 
-def test_every_pair_may_go_to_every_cell_but_its_own() -> None:
+def test_every_cell_but_the_observed_one_is_legal_for_each_pair() -> None:
     actions = legal_actions((HOME, FRONT_LEFT, BACK_RIGHT), 5)
 
     assert len(actions) == 12
@@ -62,7 +62,7 @@ def test_every_pair_may_go_to_every_cell_but_its_own() -> None:
     assert not {(0, HOME), (1, FRONT_LEFT), (2, BACK_RIGHT)} & set(actions)
 
 
-def test_an_unknown_reading_names_the_two() -> None:
+def test_an_unknown_observation_names_the_valid_ones() -> None:
     check_observation("measured")
     with pytest.raises(UnknownName, match="observation 'guessed'; choose one of: measured, comma"):
         check_observation("guessed")

@@ -1,4 +1,4 @@
-"""Robots: the default, its presets, and what a user may write."""
+"""Robots: the default, the presets, and validation of user input."""
 
 import math
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ from app.domain.errors import InvalidInput
 from app.domain.robot import PRESETS, LegMount, Robot, as_mapping, ring, robot
 
 
-def test_the_default_robot_is_the_one_that_the_figures_are_for() -> None:
+def test_the_default_robot_has_the_specified_parameters() -> None:
     figures = {
         "torso_radius_m": 0.10,
         "torso_half_height_m": 0.02,
@@ -58,12 +58,12 @@ def test_the_presets_differ_in_servos_and_friction_only() -> None:
     assert all(preset.name == name for name, preset in PRESETS.items())
 
 
-def test_a_robot_by_name() -> None:
+def test_a_preset_is_found_by_name() -> None:
     assert robot("compliant") == PRESETS["compliant"]
     assert robot(PRESETS["slippery"]) is PRESETS["slippery"]
 
 
-def test_a_mapping_says_what_differs_from_a_preset() -> None:
+def test_a_mapping_overrides_fields_of_a_preset() -> None:
     tall = robot({"preset": "compliant", "body_height_m": 0.1, "friction": 1})
 
     assert tall.name == "compliant (modified)"
@@ -71,7 +71,7 @@ def test_a_mapping_says_what_differs_from_a_preset() -> None:
     assert robot({"femur_m": 0.08}) == Robot()
 
 
-def test_legs_as_a_regular_ring() -> None:
+def test_n_legs_gives_a_regular_ring() -> None:
     octopod = robot({"n_legs": 8, "mount_radius_m": 0.12})
 
     assert octopod.legs == ring(8, 0.12)
@@ -79,7 +79,7 @@ def test_legs_as_a_regular_ring() -> None:
     assert robot({"mount_radius_m": 0.12}).legs == ring(6, 0.12)
 
 
-def test_legs_one_by_one() -> None:
+def test_legs_can_be_listed_one_by_one() -> None:
     mounts = [{"azimuth_deg": a, "radius_m": 0.11} for a in (0, 90, 180)] + [{"azimuth_deg": 270}]
 
     assert robot({"legs": mounts}).legs == (
@@ -101,14 +101,14 @@ def test_legs_one_by_one() -> None:
         {"n_legs": 10, "mount_radius_m": 0.13, "tibia_m": 0.15, "dt_s": 0.002},
     ],
 )
-def test_a_robot_is_written_and_read_back_the_same(written: str | Mapping[str, Any]) -> None:
+def test_a_robot_round_trips_through_its_mapping(written: str | Mapping[str, Any]) -> None:
     made = robot(written)
 
     assert robot(as_mapping(made)) == made
     assert as_mapping(robot(as_mapping(made))) == as_mapping(made)
 
 
-def test_a_preset_is_written_as_its_name_alone() -> None:
+def test_a_presets_mapping_is_its_name_alone() -> None:
     assert as_mapping(PRESETS["compliant"]) == {"preset": "compliant"}
     assert as_mapping(robot({"friction": 0.5})) == {"preset": "stiff", "friction": 0.5}
 
@@ -148,7 +148,7 @@ def test_a_preset_is_written_as_its_name_alone() -> None:
         ({"legs": [], "n_legs": 6}, "legs one by one, or n_legs and mount_radius_m"),
     ],
 )
-def test_a_wrong_robot_names_the_field_and_what_is_valid(
+def test_an_invalid_robot_names_the_field_and_the_valid_values(
     written: str | Mapping[str, Any], message: str
 ) -> None:
     with pytest.raises(InvalidInput, match=message):
@@ -156,7 +156,7 @@ def test_a_wrong_robot_names_the_field_and_what_is_valid(
 
 
 @pytest.mark.parametrize("name", [f.name for f in fields(Robot) if f.type in (float, "float")])
-def test_every_quantity_is_positive_and_has_limits(name: str) -> None:
+def test_every_quantity_must_be_positive_and_within_its_range(name: str) -> None:
     for value in (-1, 0, 1e12, math.nan):
         with pytest.raises(InvalidInput, match=f"robot.{name} must be"):
             robot({name: value})
@@ -170,6 +170,6 @@ def test_a_phase_lasts_at_least_two_substeps() -> None:
         Robot(shift_s=0.007)
 
 
-def test_a_ring_is_even() -> None:
+def test_a_ring_has_an_even_number_of_legs() -> None:
     with pytest.raises(InvalidInput, match="even number of legs"):
         ring(5)

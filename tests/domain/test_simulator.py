@@ -1,4 +1,4 @@
-"""What every simulator promises, tried on both."""
+"""Conformance tests of the simulator protocol, on both simulators."""
 
 from collections.abc import Callable
 from typing import Any
@@ -39,7 +39,7 @@ def simulator(build: Build) -> Simulator[Any]:
 
 
 def walk(simulator: Simulator[Any], state: Any, steps: int, seed: int = 0) -> list[Any]:
-    """The states that chance leads through."""
+    """Walk by random legal actions; return the states."""
     rng, states = np.random.default_rng(seed), []
     for _ in range(steps):
         legal = legal_actions(observe(simulator, state, "commanded"), len(simulator.grid))
@@ -49,7 +49,7 @@ def walk(simulator: Simulator[Any], state: Any, steps: int, seed: int = 0) -> li
 
 
 def bits(simulator: Simulator[Any], state: Any) -> dict[str, bytes]:
-    """All that a state is."""
+    """Return the bytes of all arrays of a state."""
     return {name: array.tobytes() for name, array in simulator.dump(state).items()}
 
 
@@ -65,7 +65,7 @@ def test_rest_is_on_the_start_line_with_every_foot_at_home(build: Build) -> None
 
 @pytest.mark.parametrize("gait", NAMED_GAITS)
 def test_the_robot_faces_along_the_track(build: Build, gait: str) -> None:
-    """World +y, whichever of its legs that is."""
+    """The gait's forward direction is world +y."""
     simulator = build(gait)
     pose = simulator.pose(simulator.rest())
     half_yaw = np.arctan2(pose[6], pose[3])
@@ -90,7 +90,7 @@ def test_the_pose_holds_the_joint_angles_of_the_legs_in_order(simulator: Simulat
         assert (forward + as_forward) / 2 == pytest.approx(y, abs=1e-12)
 
 
-def test_a_step_moves_the_pair_that_was_told_to_and_counts(simulator: Simulator[Any]) -> None:
+def test_a_step_moves_the_commanded_pair_and_counts(simulator: Simulator[Any]) -> None:
     state = simulator.step(simulator.rest(), Action(1, 2)).state
     offsets = np.array(simulator.pair_offsets(state))
 
@@ -100,7 +100,7 @@ def test_a_step_moves_the_pair_that_was_told_to_and_counts(simulator: Simulator[
     assert np.allclose(offsets, expected, atol=2e-3)
 
 
-def test_the_reward_is_how_far_the_body_came(simulator: Simulator[Any]) -> None:
+def test_the_reward_is_the_bodys_displacement(simulator: Simulator[Any]) -> None:
     first = simulator.step(simulator.rest(), Action(1, 2))
 
     assert first.reward_m == pytest.approx(first.state.distance_m, abs=1e-5)
@@ -108,7 +108,7 @@ def test_the_reward_is_how_far_the_body_came(simulator: Simulator[Any]) -> None:
     assert simulator.step(simulator.rest(), Action(1, 4)).reward_m < 0
 
 
-def test_the_same_steps_lead_to_the_same_place_to_the_last_bit(build: Build) -> None:
+def test_steps_are_deterministic_to_the_last_bit(build: Build) -> None:
     one, other = build(), build()
     states = walk(one, one.rest(), 12)
 
@@ -117,7 +117,7 @@ def test_the_same_steps_lead_to_the_same_place_to_the_last_bit(build: Build) -> 
 
 
 @pytest.mark.parametrize("divisions", [2, 3])
-def test_expanding_is_stepping_to_the_last_bit(build: Build, divisions: int) -> None:
+def test_expand_equals_step_to_the_last_bit(build: Build, divisions: int) -> None:
     simulator = build("left-right-vertical", divisions=divisions)
     here = [simulator.rest(), *walk(simulator, simulator.rest(), 4)]
     futures = [
@@ -125,7 +125,7 @@ def test_expanding_is_stepping_to_the_last_bit(build: Build, divisions: int) -> 
         for state in here
         for action in legal_actions(state.commanded, len(simulator.grid))
     ]
-    # Of all sizes, growing and shrinking, so that what one call leaves behind would show.
+    # Batches that grow and shrink, to detect state left behind by an earlier call.
     for some in (futures[:7], futures, futures[11:14], futures[-1:]):
         expansion = simulator.expand([s for s, _ in some], [a for _, a in some])
         assert expansion.rewards_m.shape == (len(some),)
@@ -137,14 +137,14 @@ def test_expanding_is_stepping_to_the_last_bit(build: Build, divisions: int) -> 
             assert float(reward) == step.reward_m
 
 
-def test_expanding_nothing_gives_nothing(simulator: Simulator[Any]) -> None:
+def test_expand_of_no_states_is_empty(simulator: Simulator[Any]) -> None:
     expansion = simulator.expand([], [])
 
     assert expansion.states == []
     assert expansion.rewards_m.shape == (0,)
 
 
-def test_a_state_is_a_value_that_nothing_changes(simulator: Simulator[Any]) -> None:
+def test_a_state_is_immutable(simulator: Simulator[Any]) -> None:
     state = walk(simulator, simulator.rest(), 3)[-1]
     before = bits(simulator, state)
 
@@ -166,14 +166,14 @@ def test_a_state_is_a_value_that_nothing_changes(simulator: Simulator[Any]) -> N
         state.feet.forward_m = ()
 
 
-def test_the_arrays_of_a_state_cannot_be_written_to(simulator: Simulator[Any]) -> None:
+def test_the_arrays_of_a_state_are_read_only(simulator: Simulator[Any]) -> None:
     state = walk(simulator, simulator.rest(), 1)[-1]
     arrays = [getattr(state, name) for name in type(state).__slots__]
 
     assert not any(a.flags.writeable for a in arrays if isinstance(a, np.ndarray))
 
 
-def test_a_state_is_dumped_and_loaded_to_the_last_bit_and_goes_on_the_same(build: Build) -> None:
+def test_a_loaded_state_is_identical_and_continues_identically(build: Build) -> None:
     simulator, other = build(), build()
     middle = walk(simulator, simulator.rest(), 6)[-1]
     copy = other.load(simulator.dump(middle))
@@ -191,7 +191,7 @@ def test_a_state_is_dumped_and_loaded_to_the_last_bit_and_goes_on_the_same(build
 @pytest.mark.parametrize(
     ("made", "frames"), [(Robot(), 16), (Robot(shift_s=0.128), 17), (Robot(dt_s=0.002), 16)]
 )
-def test_a_recorded_step_holds_fifty_poses_a_second(build: Build, made: Robot, frames: int) -> None:
+def test_a_recorded_step_has_fifty_poses_per_second(build: Build, made: Robot, frames: int) -> None:
     simulator = build(made=made)
     before = simulator.rest()
     step = simulator.step(before, Action(1, 2), record=True)
@@ -208,13 +208,13 @@ def test_a_recorded_step_holds_fifty_poses_a_second(build: Build, made: Robot, f
     assert np.abs(np.diff(qpos, axis=0)).max() < 0.35  # no jumps
 
 
-def test_recording_changes_nothing(simulator: Simulator[Any]) -> None:
+def test_recording_does_not_change_the_step(simulator: Simulator[Any]) -> None:
     here = walk(simulator, simulator.rest(), 2)[-1]
-    seen, unseen = (simulator.step(here, Action(0, 3), record) for record in (True, False))
+    recorded, unrecorded = (simulator.step(here, Action(0, 3), record) for record in (True, False))
 
-    assert unseen.motion is None
-    assert bits(simulator, seen.state) == bits(simulator, unseen.state)
-    assert seen.reward_m == unseen.reward_m
+    assert unrecorded.motion is None
+    assert bits(simulator, recorded.state) == bits(simulator, unrecorded.state)
+    assert recorded.reward_m == unrecorded.reward_m
 
 
 @pytest.mark.parametrize("legs", [4, 8, 10])

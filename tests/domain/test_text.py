@@ -1,4 +1,4 @@
-"""Names are what they look like."""
+"""Names contain no invisible characters."""
 
 import unicodedata
 
@@ -12,14 +12,14 @@ HIDDEN = [*BIDI, "\u061c", "\u200b", "\u200d", "\u2060", "\ufeff", "\u00ad", "\U
 
 
 @pytest.mark.parametrize("mark", [*HIDDEN, "\x00", "\x1b", "\x7f", "\ud800", "\u3164"])
-def test_what_cannot_be_seen_is_refused_and_named(mark: str) -> None:
+def test_an_invisible_character_is_refused_and_named(mark: str) -> None:
     with pytest.raises(InvalidInput, match=rf"invisible.*U\+{ord(mark):04X}"):
         check_name(f"a{mark}b")
     assert visible(f"a{mark}b") == "a\ufffdb"
 
 
 @pytest.mark.parametrize("name", ["", "Ä ß 蜘蛛 🕷 ❤️ ِعربي עברית", "=1+1", "<b>", "x" * 100])
-def test_all_else_is_a_name(name: str) -> None:
+def test_all_other_characters_are_allowed_in_names(name: str) -> None:
     assert check_name(name) == name
     assert visible(name) == name
     assert all(unicodedata.category(one) != "Cf" for one in name)

@@ -1,4 +1,4 @@
-"""Small experiments on a cluster, and the processes that it is made of."""
+"""Helpers for tests on a cluster: small experiments, and the cluster's processes."""
 
 from collections.abc import Iterable
 
@@ -13,7 +13,7 @@ POISONOUS = "tests.experiments.poison:Poisonous"
 
 
 def small(seeds: int = 20, agent: str = "q-learning", steps: int = 30) -> ExperimentConfig:
-    """A sweep of kinematic trials that take milliseconds."""
+    """Return a sweep of kinematic trials that take milliseconds each."""
     given = {
         "seeds": seeds,
         "simulator": "kinematic",
@@ -29,12 +29,12 @@ def trials_of(config: ExperimentConfig) -> list[Trial]:
 
 
 def one_by_one(trials: Iterable[Trial]) -> dict[str, TrialResult]:
-    """What comes of trials without any cluster."""
+    """Run trials in this process, without a cluster."""
     return {trial.key: run_trial(trial.config) for trial in trials}
 
 
 def results(outcomes: Iterable[Outcome]) -> dict[str, TrialResult]:
-    """What comes of trials, none of which was set aside."""
+    """Collect results by key; check that no trial was set aside and each completed once."""
     found = {}
     for outcome in outcomes:
         assert outcome.result is not None, outcome
@@ -44,7 +44,7 @@ def results(outcomes: Iterable[Outcome]) -> dict[str, TrialResult]:
 
 
 def workers_of(process: psutil.Process) -> list[psutil.Process]:
-    """The workers that a process has started."""
+    """Return the worker processes among a process's descendants."""
     found = []
     for child in process.children(recursive=True):
         try:

@@ -1,4 +1,4 @@
-"""A Dask cluster that is there already: a scheduler and a worker, as people start them."""
+"""An existing Dask cluster for tests: scheduler and workers started by their command lines."""
 
 import json
 import os
@@ -20,7 +20,7 @@ _OPTIONS = {"tls_ca": "--tls-ca-file", "tls_cert": "--tls-cert", "tls_key": "--t
 
 
 class Foreign:
-    """A scheduler and its workers. Made by `scheduler`."""
+    """A scheduler process and its workers. Created by `scheduler`."""
 
     def __init__(self, folder: Path, tls: bool, stack: ExitStack) -> None:
         self._folder, self._stack = folder, stack
@@ -38,16 +38,16 @@ class Foreign:
         self.address: str = json.loads(file.read_text("utf-8"))["address"]
 
     def worker(self, **variables: str) -> subprocess.Popen[bytes]:
-        """Start a worker, with further variables in its environment."""
+        """Start a worker, with additional environment variables."""
         return self._start("worker", self.address, "--nthreads", "1", **variables)
 
     @property
     def where(self) -> ClusterSpec:
-        """To run trials on it, with the certificates that it has."""
+        """The spec to connect to it, with its certificates."""
         return ClusterSpec(scheduler=self.address, **self._files)
 
     def _start(self, what: str, *arguments: str, **variables: str) -> subprocess.Popen[bytes]:
-        # As `dask scheduler` and `dask worker` do.
+        # The modules that `dask scheduler` and `dask worker` run.
         command = [sys.executable, "-m", f"distributed.cli.dask_{what}", *arguments]
         files = [part for name, file in self._files.items() for part in (_OPTIONS[name], file)]
         process = subprocess.Popen(
@@ -63,18 +63,18 @@ class Foreign:
 
 @contextmanager
 def scheduler(folder: Path, tls: bool = False) -> Iterator[Foreign]:
-    """A scheduler on loopback, without workers; all ends with the block.
+    """Start a scheduler on loopback without workers; all processes end with the context.
 
     Args:
-        folder: to work in.
-        tls: whether only who has a certificate may use it.
+        folder: working directory.
+        tls: whether to require client certificates.
     """
     with ExitStack() as stack:
         yield Foreign(folder, tls, stack)
 
 
 def _certificates(folder: Path) -> dict[str, Any]:
-    """PEM files that scheduler, workers and clients may all use, as fields of `ClusterSpec`."""
+    """Write PEM files for scheduler, workers and clients; paths by field of `ClusterSpec`."""
     made = Security.temporary()
     files = {}
     for name, text in (

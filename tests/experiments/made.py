@@ -1,4 +1,4 @@
-"""Experiments with results: real ones of the kinematic simulator, and made-up ones to decide on."""
+"""Experiments with results: simulated by the kinematic simulator, or with made-up distances."""
 
 from collections.abc import Callable
 from functools import cache
@@ -23,23 +23,23 @@ def config(experiment: str, **given: Any) -> ExperimentConfig:
 
 @cache
 def walked(experiment: str, seeds: int, **given: Any) -> tuple[ExperimentConfig, Results]:
-    """An experiment that was really run; the same object each time, so that it is run once."""
+    """Run an experiment; cached, so that it is run once per test session."""
     tried = config(experiment, seeds=seeds, **given)
     return tried, {trial.key: run_trial(trial.config) for trial in Plan(tried).trials()}
 
 
 def around(middle_m: float, spread_m: float = 0.02) -> Callable[[int], float]:
-    """Distances of seeds that lie about a middle, each seed's own."""
+    """Return a function from seed number to a distance that varies about a middle."""
     return lambda number: middle_m + spread_m * float(np.sin(1 + 7 * number))
 
 
 def made_up(
     tried: ExperimentConfig, distance_m: Callable[[Setting], Callable[[int], float]]
 ) -> Results:
-    """Results as if each seed of a setting came as far as is said; greedy comes half a metre.
+    """Make up results in which each seed covers the given distance, and greedy half a metre.
 
-    Greedy is at 0.36 m when one that decides at once has ended; in several blocks a learner
-    covers the same part of its distance in each as it does on the whole.
+    Greedy is at 0.36 m at time-out. With several blocks, a learner's distance after n blocks is
+    1 − 0.5ⁿ of its final one.
     """
     found: Results = {}
     for trial in Plan(tried).trials():
@@ -77,16 +77,16 @@ def made_up(
 def summary_of(
     experiment: str, distance_m: Callable[[Setting], Callable[[int], float]], **given: Any
 ) -> dict[str, Any]:
-    """The summary of a made-up experiment."""
+    """Summarise a made-up experiment."""
     tried = config(experiment, **given)
     return summarise(tried, made_up(tried, distance_m))
 
 
 def setting(summary: dict[str, Any], key: str) -> dict[str, Any]:
-    """One entry of a summary."""
+    """Return a setting's entry of a summary."""
     return next(one for one in summary["settings"] if one["key"] == key)
 
 
 def claim(summary: dict[str, Any], name: str) -> dict[str, Any]:
-    """One claim of a summary."""
+    """Return a claim of a summary."""
     return next(one for one in summary["claims"] if one["id"] == name)

@@ -1,4 +1,4 @@
-"""An agent that is the end of whoever runs it, in the trials that a file names."""
+"""An agent that kills its process or raises, in the trials that a file lists."""
 
 import os
 import signal
@@ -14,12 +14,14 @@ from app.domain.types import Action, Cells
 from tests.own_agents import Restless
 
 FOLDER = "HEXAPODS_TESTS_POISON"
-"""The environment variable that names a folder: in it the file `poisoned`, a seed of a trial and
-what becomes of it a line; and `tried`, to which each try is added."""
+"""Environment variable with the path of a folder.
+
+Its file `poisoned` has a trial's seed and its end per line; to `tried` each attempt is appended.
+"""
 
 
 class Poisonous(Restless):
-    """Goes anywhere; in a poisoned trial it ends its process, or breaks."""
+    """Acts at random; in a poisoned trial it kills its process, exits or raises."""
 
     def __init__(self, rng: np.random.Generator, problem: Problem) -> None:
         super().__init__(rng, problem)
@@ -37,13 +39,13 @@ class Poisonous(Restless):
 
 
 def poison(folder: Path, ends: Iterable[tuple[int, str]]) -> None:
-    """Say which trials are poisoned, by their seeds, and how they end: kill, exit or raise."""
+    """Configure which trials are poisoned, by seed, and how each ends: kill, exit or raise."""
     (folder / "tried").touch()
     (folder / "poisoned").write_text("".join(f"{seed} {end}\n" for seed, end in ends), "utf-8")
 
 
 def tries(folder: Path) -> list[str]:
-    """How the trials ended that were tried so far."""
+    """Return how each attempt at a poisoned trial has ended so far."""
     return [line.split()[1] for line in (folder / "tried").read_text("utf-8").splitlines()]
 
 

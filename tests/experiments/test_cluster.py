@@ -1,4 +1,4 @@
-"""The machines that trials run on: one's own, closed to others, and those of a Dask cluster."""
+"""Connecting to clusters: a local one, closed to other users, and an existing Dask cluster."""
 
 import os
 import signal
@@ -38,13 +38,13 @@ from tests.experiments.foreign import scheduler
         ),
     ],
 )
-def test_machines_that_cannot_be_are_refused(given: dict[str, Any], names: str) -> None:
+def test_an_invalid_cluster_spec_is_refused(given: dict[str, Any], names: str) -> None:
     with pytest.raises(InvalidInput) as refused:
         ClusterSpec(**given)
     assert names in str(refused.value)
 
 
-def test_ones_own_cluster_is_closed_to_others_and_leaves_nothing(
+def test_a_local_cluster_listens_on_loopback_with_tls_and_leaves_no_files_or_processes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
@@ -66,7 +66,7 @@ def test_ones_own_cluster_is_closed_to_others_and_leaves_nothing(
     assert after <= before
 
 
-def test_workers_end_with_whoever_started_them(tmp_path: Path) -> None:
+def test_workers_end_when_the_process_that_started_them_is_killed(tmp_path: Path) -> None:
     script = tmp_path / "endless.py"
     script.write_text(
         "from app.experiments.cluster import ClusterSpec\n"
@@ -94,20 +94,22 @@ def test_workers_end_with_whoever_started_them(tmp_path: Path) -> None:
     assert not left
 
 
-def test_another_cluster_gives_the_same_results_until_it_goes_away(tmp_path: Path) -> None:
+def test_an_existing_cluster_gives_the_same_results_until_its_scheduler_dies(
+    tmp_path: Path,
+) -> None:
     trials = trials_of(small(seeds=20))
     with scheduler(tmp_path, tls=True) as foreign:
         foreign.worker()
         assert results(run_trials(trials, foreign.where)) == one_by_one(trials)
         running = run_trials(trials, foreign.where)
         next(running)
-        assert foreign.process.poll() is None, "it is others' too, and stayed"
+        assert foreign.process.poll() is None, "a shared cluster must not be shut down"
         foreign.process.kill()
         with pytest.raises(ClusterLost, match="what was done is kept"):
             list(running)
 
 
-def test_a_worker_that_would_compute_something_else_is_named(
+def test_a_worker_with_other_versions_is_refused_by_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     other = tmp_path / "other" / "mujoco_core-3.3.7.dist-info"
@@ -124,14 +126,14 @@ def test_a_worker_that_would_compute_something_else_is_named(
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "tcp://127.0.0.1:99999", "tcp://[::1:9"])
-def test_a_scheduler_that_is_not_there_is_refused_by_name(address: str) -> None:
+def test_a_scheduler_that_does_not_answer_is_refused_with_its_address(address: str) -> None:
     with pytest.raises(InvalidInput) as refused:
         list(run_trials(trials_of(small(seeds=1)), ClusterSpec(scheduler=address)))
-    for said in (address, "dask scheduler", "leave --scheduler out"):
-        assert said in str(refused.value)
+    for part in (address, "dask scheduler", "leave --scheduler out"):
+        assert part in str(refused.value)
 
 
-def test_who_listens_but_is_no_scheduler_is_refused_in_time(
+def test_a_server_that_is_not_a_scheduler_is_refused_within_the_timeout(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     assert cluster.ANSWER_S < 10

@@ -1,4 +1,4 @@
-"""What an experiment can be, and what is filled in."""
+"""Validation and defaults of an experiment's config."""
 
 import json
 from typing import Any
@@ -19,7 +19,7 @@ from app.experiments.config import (
 )
 
 
-def test_table_1_is_the_papers_and_both_readings_of_it() -> None:
+def test_table_1_defaults_to_the_papers_gaits_with_both_observations() -> None:
     config = experiment_config("table1", {})
     assert config.seeds == 30
     assert config.gaits == tuple(NAMED_GAITS)
@@ -28,13 +28,13 @@ def test_table_1_is_the_papers_and_both_readings_of_it() -> None:
     assert (config.steps, config.blocks) == ((500, 1000), 1)
 
 
-def test_figure_4_practises_2000_steps_in_blocks() -> None:
+def test_figure_4_practises_2000_steps_in_eight_blocks() -> None:
     config = experiment_config("figure4", {"agents": ("q-learning", "tests.own_agents:Restless")})
     assert (config.steps, config.blocks) == ((250,), 8)
     assert len(config.agents) == 2
 
 
-def test_a_sweep_varies_whatever_it_is_told_to() -> None:
+def test_a_sweep_can_vary_every_grid_parameter() -> None:
     grid: dict[str, Any] = {
         "steps": (100, 200),
         "alpha": (0.1, 0.3),
@@ -71,7 +71,7 @@ _OWN: dict[str, Any] = {
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
 @pytest.mark.parametrize("given", [{}, _OWN], ids=["defaults", "own"])
-def test_json_gives_back_the_same_experiment(experiment: str, given: dict[str, Any]) -> None:
+def test_a_config_round_trips_through_json(experiment: str, given: dict[str, Any]) -> None:
     config = experiment_config(experiment, given)
     assert from_json(json.loads(json.dumps(as_json(config)))) == config
 
@@ -94,12 +94,14 @@ def test_json_gives_back_the_same_experiment(experiment: str, given: dict[str, A
         ("sweep", {"robots": (robot("stiff"), robot("stiff"))}, "robots names something twice"),
     ],
 )
-def test_what_cannot_be_is_one_sentence(experiment: str, given: dict[str, Any], names: str) -> None:
+def test_an_invalid_config_is_refused_in_one_sentence(
+    experiment: str, given: dict[str, Any], names: str
+) -> None:
     with pytest.raises(InvalidInput) as refused:
         experiment_config(experiment, given)
     assert names in str(refused.value)
 
 
-def test_an_unknown_experiment_is_an_unknown_name() -> None:
+def test_an_unknown_experiment_raises_unknown_name() -> None:
     with pytest.raises(UnknownName):
         ExperimentConfig(experiment="table2")  # type: ignore[arg-type]

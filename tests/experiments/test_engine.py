@@ -1,4 +1,4 @@
-"""The engine on real worker processes: the same results however many there are and die."""
+"""The engine on real worker processes: results do not depend on their number or on deaths."""
 
 import time
 from collections.abc import Iterator
@@ -38,43 +38,43 @@ def expected(trials: list[Trial]) -> dict[str, TrialResult]:
 
 @pytest.fixture
 def poisoned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder that says which trials of a poisonous agent end badly."""
+    """The folder that configures which trials of the poisonous agent kill their worker."""
     monkeypatch.setenv(poison.FOLDER, str(tmp_path))
     return tmp_path
 
 
-def test_two_workers_give_the_results_of_none(
+def test_two_workers_give_the_same_results_as_running_in_process(
     trials: list[Trial], expected: dict[str, TrialResult]
 ) -> None:
     assert results(run_trials(trials, TWO)) == expected
     assert not workers_of(psutil.Process())
 
 
-def test_so_does_one_that_is_paused_meanwhile(
+def test_a_pause_does_not_change_the_results(
     trials: list[Trial], expected: dict[str, TrialResult]
 ) -> None:
     pauses = iter([0.0, 0.0, 1.0])
 
-    def go_on() -> bool:
+    def may_continue() -> bool:
         time.sleep(next(pauses, 0.0))
         return True
 
-    assert results(run_trials(trials, ONE, go_on)) == expected
+    assert results(run_trials(trials, ONE, may_continue)) == expected
 
 
 def test_a_worker_killed_midway_changes_no_result(
     trials: list[Trial], expected: dict[str, TrialResult]
 ) -> None:
-    def with_a_murder() -> Iterator[Outcome]:
+    def while_killing_workers() -> Iterator[Outcome]:
         for number, outcome in enumerate(run_trials(trials, TWO)):
             if number in (5, 40):
                 workers_of(psutil.Process())[0].kill()
             yield outcome
 
-    assert results(with_a_murder()) == expected
+    assert results(while_killing_workers()) == expected
 
 
-def test_who_ends_its_worker_three_times_is_set_aside_and_who_breaks_at_once(
+def test_a_trial_is_set_aside_after_three_dead_workers_or_one_exception(
     poisoned: Path,
 ) -> None:
     trials = trials_of(small(seeds=20, agent=POISONOUS))
@@ -96,7 +96,7 @@ def test_who_ends_its_worker_three_times_is_set_aside_and_who_breaks_at_once(
     assert {key: o.result for key, o in outcomes.items() if o.result} == one_by_one(healthy)
 
 
-def test_an_agent_that_workers_cannot_find_is_a_reason() -> None:
+def test_a_trial_whose_agent_cannot_be_imported_on_workers_is_set_aside() -> None:
     trial = trials_of(small(seeds=1))[-1]
     training = replace(trial.config.training, agent="nowhere:Agent")
     lost = trial._replace(config=replace(trial.config, training=training))
@@ -115,21 +115,21 @@ def test_trials_that_measure_time_come_last(trials: list[Trial]) -> None:
     assert keys[-len(timed) :] == timed
 
 
-def test_it_stops_soon_when_it_shall_not_go_on(trials: list[Trial]) -> None:
+def test_it_stops_soon_when_may_continue_returns_false(trials: list[Trial]) -> None:
     slow = trials_of(small(seeds=4, steps=10_000_000))[-4:]
     began_s = time.monotonic()
     asked = iter(range(1_000_000))
     assert list(run_trials(slow, TWO, lambda: next(asked) < 20)) == []
     assert next(asked) > 20
-    assert time.monotonic() - began_s < 60, "a trial takes minutes, and none is waited for"
+    assert time.monotonic() - began_s < 60, "trials in progress take minutes, and must be cancelled"
     assert not workers_of(psutil.Process())
 
 
-def test_nothing_to_do_starts_nothing() -> None:
+def test_without_trials_no_cluster_is_started() -> None:
     assert list(run_trials([], ClusterSpec(scheduler="tcp://127.0.0.1:1"))) == []
 
 
-def test_a_consumer_that_leaves_takes_the_workers_with_it_and_their_files(
+def test_closing_the_generator_ends_the_workers_and_deletes_their_files(
     trials: list[Trial], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))

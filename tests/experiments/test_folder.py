@@ -1,4 +1,4 @@
-"""A folder of results: what is in it is never lost, never run twice, and never mixed up."""
+"""A results folder: no result is lost, run twice or mixed with another experiment's."""
 
 import json
 import resource
@@ -26,7 +26,7 @@ def outcomes() -> list[Outcome]:
 
 @pytest.fixture
 def folder(tmp_path: Path, outcomes: list[Outcome]) -> Path:
-    """One with all results of an experiment in it."""
+    """A folder with all results of an experiment."""
     path = tmp_path / "results"
     with open_results(path, CONFIG) as opened:
         for outcome in outcomes:
@@ -51,7 +51,7 @@ def change_head(path: Path, change: Callable[[dict[str, object]], object]) -> No
 
 @contextmanager
 def no_file_over(size: int) -> Iterator[None]:
-    """As on a full disk: what is there can be read, and nothing added."""
+    """Simulate a full disk by RLIMIT_FSIZE: files can be read, but not grow beyond `size`."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
     try:
@@ -60,7 +60,7 @@ def no_file_over(size: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
-def test_what_was_kept_is_there_again(folder: Path, outcomes: list[Outcome]) -> None:
+def test_results_are_read_back_on_reopening(folder: Path, outcomes: list[Outcome]) -> None:
     with open_results(folder, CONFIG) as opened:
         assert opened.results == {outcome.key: outcome.result for outcome in outcomes}
         assert opened.set_aside == {}
@@ -68,7 +68,7 @@ def test_what_was_kept_is_there_again(folder: Path, outcomes: list[Outcome]) -> 
         assert opened.worked_s > 0
 
 
-def test_a_wall_clock_is_kept_to_the_last_digit(tmp_path: Path) -> None:
+def test_times_of_the_wall_clock_are_stored_exactly(tmp_path: Path) -> None:
     config = experiment_config(
         "table1", {"seeds": 1, "simulator": "kinematic", "gaits": ("front-back-origin",)}
     )
@@ -81,7 +81,7 @@ def test_a_wall_clock_is_kept_to_the_last_digit(tmp_path: Path) -> None:
         assert opened.results[timed.key] == result
 
 
-def test_who_was_set_aside_stays_so_until_there_is_a_result(tmp_path: Path) -> None:
+def test_a_trial_stays_set_aside_until_it_has_a_result(tmp_path: Path) -> None:
     result = TrialResult(distances_m=(0.5,))
     with open_results(tmp_path, CONFIG) as opened:
         opened.add(Outcome("a#0", None, "it broke", 0.1))
@@ -93,7 +93,9 @@ def test_who_was_set_aside_stays_so_until_there_is_a_result(tmp_path: Path) -> N
         assert (opened.results, opened.set_aside) == ({"a#0": result}, {"b#0": "it broke too"})
 
 
-def test_more_seeds_go_with_those_that_are_there(folder: Path, outcomes: list[Outcome]) -> None:
+def test_results_of_fewer_seeds_are_reused_for_more_seeds(
+    folder: Path, outcomes: list[Outcome]
+) -> None:
     more = replace(CONFIG, seeds=5)
     with open_results(folder, more) as opened:
         assert set(opened.results) < {trial.key for trial in trials_of(more)}
@@ -101,9 +103,7 @@ def test_more_seeds_go_with_those_that_are_there(folder: Path, outcomes: list[Ou
 
 
 @pytest.mark.parametrize("cut", [1, 40])
-def test_a_line_that_was_being_written_is_dropped(
-    cut: int, folder: Path, outcomes: list[Outcome]
-) -> None:
+def test_a_partial_last_line_is_dropped(cut: int, folder: Path, outcomes: list[Outcome]) -> None:
     file = folder / TRIALS
     file.write_bytes(file.read_bytes()[:-cut])
     with open_results(folder, CONFIG) as opened:
@@ -113,7 +113,7 @@ def test_a_line_that_was_being_written_is_dropped(
         assert len(opened.results) == len(outcomes)
 
 
-def test_a_head_that_was_being_written_is_written_again(folder: Path) -> None:
+def test_a_partial_header_is_written_again(folder: Path) -> None:
     (folder / TRIALS).write_bytes(b'{"format": 1, "ver')
     with open_results(folder, CONFIG) as opened:
         assert opened.results == {}
@@ -138,7 +138,7 @@ def test_a_damaged_line_is_named(damaged: bytes, folder: Path) -> None:
 
 
 @pytest.mark.parametrize("head", [b"milk\n", b"[]\n", b"{}\n"])
-def test_a_file_of_something_else_is_refused(head: bytes, folder: Path) -> None:
+def test_a_file_in_another_format_is_refused(head: bytes, folder: Path) -> None:
     (folder / TRIALS).write_bytes(head)
     assert "does not begin as results of an experiment do" in refusal(folder)
     assert (folder / TRIALS).read_bytes() == head
@@ -168,19 +168,19 @@ def test_results_of_another_experiment_are_refused(
     assert name in sentence
 
 
-def test_a_folder_with_something_else_in_it_is_left_alone(tmp_path: Path) -> None:
+def test_a_folder_with_other_files_is_refused_and_left_unchanged(tmp_path: Path) -> None:
     (tmp_path / "report.html").write_text("mine")
     assert "is not empty, and has no results in it" in refusal(tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["report.html"]
 
 
-def test_a_folder_that_cannot_be_is_refused(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_created_is_refused(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     assert "cannot keep results in" in refusal(tmp_path / "file")
     assert "cannot keep results in" in refusal(tmp_path / "file" / "results")
 
 
-def test_a_folder_has_one_user_at_a_time(folder: Path) -> None:
+def test_a_folder_is_locked_by_one_process_at_a_time(folder: Path) -> None:
     with open_results(folder, CONFIG):
         assert "another process is adding results" in refusal(folder)
     with open_results(folder, CONFIG):
@@ -202,14 +202,14 @@ def test_a_full_disk_loses_nothing(tmp_path: Path, outcomes: list[Outcome]) -> N
         assert list(opened.results) == [first.key, second.key]
 
 
-def test_a_disk_that_is_full_from_the_start_is_said(tmp_path: Path) -> None:
+def test_a_disk_that_is_full_from_the_start_is_reported(tmp_path: Path) -> None:
     with no_file_over(10):
         assert "the disk is full" in refusal(tmp_path, kind=NotKept)
     with open_results(tmp_path, CONFIG) as opened:
         assert opened.results == {}
 
 
-def test_no_number_is_kept_that_json_has_not(tmp_path: Path) -> None:
+def test_a_number_that_json_cannot_represent_is_not_stored(tmp_path: Path) -> None:
     with open_results(tmp_path, CONFIG) as opened, pytest.raises(ValueError, match="JSON"):
         opened.add(Outcome("a#0", TrialResult(distances_m=(float("nan"),)), None, 0.1))
     with pytest.raises(InvalidInput), open_results(tmp_path, small(steps=7)):

@@ -1,4 +1,4 @@
-"""From an experiment to its trials: all of them, each with a key and a seed of its own."""
+"""The plan of an experiment: all of its trials, each with a unique key and seed."""
 
 from collections import Counter
 from dataclasses import replace
@@ -43,7 +43,7 @@ def test_keys_and_seeds_are_unique(experiment: str) -> None:
     assert len({trial.config.training.seed for trial in trials}) == len(trials)
 
 
-def test_a_key_says_all_that_differs_from_the_paper() -> None:
+def test_a_key_names_everything_that_differs_from_the_paper() -> None:
     keys = [setting.key for setting in plan("table1", seeds=1).settings]
     assert keys[0] == "left-right-origin/measured/stiff/greedy"
     assert "left-right-vertical/commanded/compliant/q-learning/1000" in keys
@@ -53,7 +53,7 @@ def test_a_key_says_all_that_differs_from_the_paper() -> None:
     assert plan("figure4").settings[-1].key.endswith("/q-learning/8x250")
 
 
-def test_further_seeds_leave_those_before_as_they_are() -> None:
+def test_adding_seeds_does_not_change_the_trials_of_earlier_seeds() -> None:
     few, many = (
         {trial.key: trial.config for trial in plan("figure4", seeds=seeds).trials()}
         for seeds in (3, 30)
@@ -61,7 +61,7 @@ def test_further_seeds_leave_those_before_as_they_are() -> None:
     assert few.items() < many.items()
 
 
-def test_seeds_are_spawned_from_the_experiments() -> None:
+def test_trial_seeds_are_spawned_from_the_experiments_seed() -> None:
     child = np.random.SeedSequence(7).spawn(4)[3].spawn(12)[11]
     (spawned,) = child.generate_state(1, np.uint64)
     assert trial_seed(7, 3, 11) == int(spawned) >> 11 < 2**53
@@ -78,7 +78,7 @@ def test_another_seed_gives_other_trials_under_the_same_keys() -> None:
     assert not set(here.values()) & set(there.values())
 
 
-def test_references_come_first_and_what_measures_time_last() -> None:
+def test_references_come_first_and_timed_trials_last() -> None:
     roles = [trial.setting.role for trial in plan("table1", seeds=3).trials()]
     order = ["reference", "learner", "timed"]
     assert roles == sorted(roles, key=order.index)
@@ -86,7 +86,7 @@ def test_references_come_first_and_what_measures_time_last() -> None:
         assert trial.config.must_be_alone == (trial.setting.role == "timed")
 
 
-def test_greedy_is_always_there_to_be_compared_with() -> None:
+def test_greedy_is_always_included_as_a_reference() -> None:
     agents = ("tests.own_agents:Restless", "tests.own_agents:ThreeStep")
     settings = plan("sweep", gaits=("front-back-origin",), agents=agents, alpha=(0.1, 0.3)).settings
     found = [(setting.training.agent, setting.role) for setting in settings]
@@ -98,7 +98,7 @@ def test_greedy_is_always_there_to_be_compared_with() -> None:
     ]
 
 
-def test_two_robots_of_one_preset_are_told_apart() -> None:
+def test_two_robots_of_one_preset_have_different_labels() -> None:
     robots = (robot({"femur_m": 0.09}), robot({"femur_m": 0.085}), robot("slippery"))
     labels = [setting.robot for setting in plan("sweep", seeds=1, robots=robots).settings]
     assert set(labels) == {"stiff (modified) 1", "stiff (modified) 2", "slippery"}

@@ -1,4 +1,4 @@
-"""Middles, intervals, shares and probabilities, against numbers worked out otherwise."""
+"""Interquartile means, intervals, shares and probabilities, against independent computations."""
 
 from itertools import product
 
@@ -9,15 +9,15 @@ from scipy import stats
 from app.domain.types import FloatArray
 from app.experiments.statistics import (
     Interval,
-    ahead,
-    at_least,
-    decided,
+    bootstrap_exceeds,
     improvement,
     iqm,
     iqm_interval,
     paired_interval,
     quantile_of,
     share,
+    share_ahead,
+    share_at_least,
 )
 
 
@@ -25,11 +25,11 @@ def test_the_interquartile_mean_drops_a_quarter_at_each_end() -> None:
     assert iqm(np.array([100.0, 1, 2, 3, 4, 5, 6, -100])) == pytest.approx(3.5)
 
 
-def test_of_three_numbers_it_drops_none() -> None:
+def test_the_interquartile_mean_of_three_numbers_is_their_mean() -> None:
     assert iqm(np.array([0.0, 0.0, 3.0])) == pytest.approx(1)
 
 
-def test_an_interval_holds_the_truth_about_as_often_as_it_says() -> None:
+def test_the_coverage_of_the_bootstrap_interval_is_about_95_percent() -> None:
     rng = np.random.default_rng(1)
     held = 0
     for _ in range(200):
@@ -40,7 +40,7 @@ def test_an_interval_holds_the_truth_about_as_often_as_it_says() -> None:
     assert 0.88 <= held / 200 <= 0.98
 
 
-def test_an_interval_is_the_same_each_time() -> None:
+def test_an_interval_is_deterministic_for_a_seed() -> None:
     points = tuple(np.random.default_rng(2).normal(size=30).tolist())
     first = iqm_interval((points,), 7)
     iqm_interval.cache_clear()
@@ -48,8 +48,8 @@ def test_an_interval_is_the_same_each_time() -> None:
     assert iqm_interval((points,), 8) != first
 
 
-def test_strata_are_resampled_each_on_its_own() -> None:
-    """What lies between two gaits that never vary is no uncertainty."""
+def test_strata_are_resampled_separately() -> None:
+    """A difference between two gaits without variance adds no uncertainty."""
     found = iqm_interval(((0.0,) * 10, (1.0,) * 10), 0)
     assert found == Interval(0.5, 0.5, 0.5)
     mixed = iqm_interval(((0.0,) * 10 + (1.0,) * 10,), 0)
@@ -63,15 +63,15 @@ def test_fewer_than_three_seeds_have_no_interval_and_establish_nothing(
 ) -> None:
     found = iqm_interval((points,), 0)
     assert found == Interval(sum(points) / len(points), None, None)
-    assert found.against(0.0) == "not established"
-    assert ahead(points, 0.0).low is None
+    assert found.exceeds(0.0) == "not established"
+    assert share_ahead(points, 0.0).low is None
 
 
-def test_a_bootstrap_of_a_few_seeds_decides_nothing() -> None:
+def test_a_bootstrap_interval_of_fewer_than_five_seeds_decides_nothing() -> None:
     found = iqm_interval(((0.4, 0.41, 0.42),), 0)
-    assert found.against(0.1) == "yes"
-    assert decided(found, 0.1, fewest=3) == "not established"
-    assert decided(found, 0.1, fewest=5) == "yes"
+    assert found.exceeds(0.1) == "yes"
+    assert bootstrap_exceeds(found, 0.1, fewest=3) == "not established"
+    assert bootstrap_exceeds(found, 0.1, fewest=5) == "yes"
 
 
 def test_shares_have_wilson_intervals() -> None:
@@ -80,15 +80,15 @@ def test_shares_have_wilson_intervals() -> None:
     assert (found.low, found.high) == pytest.approx((0.490, 0.943), abs=0.001)
 
 
-def test_a_tie_counts_half_and_widens_the_interval_both_ways() -> None:
-    found = ahead([1.0, 2.0, 3.0, 4.0], 2.0)
+def test_a_tie_counts_half_and_widens_the_interval_on_both_sides() -> None:
+    found = share_ahead([1.0, 2.0, 3.0, 4.0], 2.0)
     assert found.value == 0.625
     assert found.low == pytest.approx(share(2, 4).low)
     assert found.high == pytest.approx(share(3, 4).high)
 
 
-def test_who_comes_exactly_as_far_has_come_as_far() -> None:
-    assert at_least([0.25, 0.5, 0.1, 0.3], 0.25).value == 0.75
+def test_a_seed_exactly_at_the_limit_reaches_it() -> None:
+    assert share_at_least([0.25, 0.5, 0.1, 0.3], 0.25).value == 0.75
 
 
 @pytest.mark.parametrize(
@@ -101,10 +101,10 @@ def test_who_comes_exactly_as_far_has_come_as_far() -> None:
     ],
 )
 def test_a_verdict_follows_from_the_interval(found: Interval, verdict: str) -> None:
-    assert found.against(0.5) == verdict
+    assert found.exceeds(0.5) == verdict
 
 
-def test_a_negative_number_has_its_interval_the_other_way_round() -> None:
+def test_negating_an_interval_swaps_its_limits() -> None:
     assert -Interval(0.3, 0.2, 0.6) == Interval(-0.3, -0.6, -0.2)
 
 
@@ -126,8 +126,8 @@ def test_the_probability_of_improvement_is_averaged_over_strata() -> None:
     assert improvement((high, high), (low, low), 0) == Interval(1, 1, 1)
 
 
-def test_seeds_that_move_together_are_resampled_together() -> None:
-    """Each seed gains the same, so that the gain is sure although the seeds are far apart."""
+def test_paired_numbers_of_a_seed_are_resampled_together() -> None:
+    """Each seed gains the same, so the gain's interval has no width although the seeds vary."""
     start = np.linspace(0, 1, 20)
     both = np.stack([start, start + 0.01])
 

@@ -1,4 +1,4 @@
-"""The summary: right in its numbers, whole in its shape, at every stage of an experiment."""
+"""The summary has correct numbers, and the same shape at every stage of an experiment."""
 
 import json
 from dataclasses import replace
@@ -35,7 +35,7 @@ def test_the_kinematic_table_agrees_with_the_specification() -> None:
     assert summary["trials"]["done"] == summary["trials"]["total"]
 
 
-def test_figure4_is_a_curve_over_its_blocks() -> None:
+def test_figure4_has_learning_curves_over_its_blocks() -> None:
     tried, results = walked("figure4", 5, gaits=(LRO,))
     summary = summarise(tried, results)
     curve = summary["curves"][0]
@@ -51,7 +51,7 @@ def test_figure4_is_a_curve_over_its_blocks() -> None:
     assert found["beats_greedy"] is None
 
 
-def test_the_middle_and_every_seed_are_there() -> None:
+def test_a_setting_has_its_averages_and_the_distances_of_all_seeds() -> None:
     tried = config("table1", seeds=8, gaits=(LRO,))
     results = made_up(tried, lambda _: lambda number: 0.1 * number)
     found = setting(summarise(tried, results), Q500)
@@ -61,11 +61,11 @@ def test_the_middle_and_every_seed_are_there() -> None:
     assert found["relative"]["iqm"] == pytest.approx(0.7)
     assert found["walkers"]["share"] == 5 / 8  # from 0.3 m; greedy has 0.5 m
     assert found["reaches_greedy"]["share"] == 3 / 8  # from 0.475 m
-    assert found["beats_greedy"]["share"] == 4 / 8  # before greedy's 0.36 m at the finish
+    assert found["beats_greedy"]["share"] == 4 / 8  # before greedy's 0.36 m at time-out
     assert found["beats_greedy"]["verdict"] == "not established"
 
 
-def test_a_published_value_falls_into_a_quantile_of_our_seeds() -> None:
+def test_a_published_value_has_its_quantile_among_our_seeds() -> None:
     tried = config("table1", seeds=8, gaits=(LRO,))
     results = made_up(tried, lambda _: lambda number: 0.1 * number)
     found = setting(summarise(tried, results), Q500)["published"]
@@ -73,10 +73,10 @@ def test_a_published_value_falls_into_a_quantile_of_our_seeds() -> None:
     assert found["total_quantile"] == 3 / 8
     two_step = setting(summarise(tried, results), f"{LRO}/measured/stiff/two-step")["published"]
     assert (two_step["total_m"], two_step["finished_m"]) == (None, 0.04)
-    assert two_step["finished_quantile"] is None  # one walk is no distribution
+    assert two_step["finished_quantile"] is None  # a single walk is not a distribution
 
 
-def test_the_published_table_is_the_papers() -> None:
+def test_published_values_are_those_of_the_papers_table() -> None:
     both = [published("front-back-origin", "q-learning", steps) for steps in (500, 1000)]
     assert [one.total_m for one in both if one] == [0.075, 0.375]
     greedy = published("left-right-vertical", "greedy", 0)
@@ -86,7 +86,7 @@ def test_the_published_table_is_the_papers() -> None:
     assert published("my gait", "greedy", 0) is None
 
 
-def test_gaits_are_the_strata_of_what_is_pooled() -> None:
+def test_gaits_are_the_strata_of_pooled_measures() -> None:
     far = {"left-right-vertical": 0.1}
     summary = summary_of(
         "table1", lambda one: around(far.get(one.gait, 0.4), 0.001), seeds=6, robots=None
@@ -95,12 +95,12 @@ def test_gaits_are_the_strata_of_what_is_pooled() -> None:
     assert pool["n"] == 24
     assert pool["gaits"][1] == "left-right-vertical"
     assert pool["walkers"]["share"] == 0.75
-    # The gaits differ much, but seeds hardly: that is no uncertainty.
+    # Variance between gaits does not widen the interval; the seeds within a gait hardly vary.
     assert pool["relative"]["high"] - pool["relative"]["low"] < 0.01
 
 
 @pytest.mark.parametrize(("seeds", "known"), [(2, False), (3, True)])
-def test_several_gaits_do_not_make_up_for_too_few_seeds(seeds: int, known: bool) -> None:
+def test_pooled_intervals_need_enough_seeds_in_each_gait(seeds: int, known: bool) -> None:
     pool = summary_of("table1", lambda _: around(0.3), seeds=seeds)["pooled"][0]
     assert pool["n"] == 4 * seeds
     for measure in ("relative", "walkers", "beats_greedy", "reaches_greedy"):
@@ -125,14 +125,14 @@ def test_a_partly_filled_experiment_has_the_same_shape(experiment: str, done: in
     json.dumps(summary, allow_nan=False)
 
 
-def test_the_order_in_which_results_came_does_not_matter() -> None:
+def test_the_summary_does_not_depend_on_the_order_of_results() -> None:
     tried = config("table1", seeds=4, gaits=(LRO,))
     results = made_up(tried, lambda _: around(0.3))
     backwards = dict(reversed(results.items()))
     assert json.dumps(summarise(tried, results)) == json.dumps(summarise(tried, backwards))
 
 
-def test_a_failed_trial_is_in_no_number_and_is_named() -> None:
+def test_a_failed_trial_is_excluded_from_all_measures_and_listed() -> None:
     tried = config("table1", seeds=4, gaits=(LRO,))
     results = made_up(tried, lambda _: around(0.3))
     results[f"{Q500}#2"] = TrialResult(failure="the physics diverged")
@@ -144,7 +144,7 @@ def test_a_failed_trial_is_in_no_number_and_is_named() -> None:
     assert summary["trials"]["set_aside"][0]["key"] == f"{Q500}#3"
 
 
-def test_without_greedy_nothing_is_compared_with_it() -> None:
+def test_without_greedys_result_relative_measures_are_none() -> None:
     tried = config("table1", seeds=4, gaits=(LRO,))
     results = made_up(tried, lambda _: around(0.3))
     del results[f"{LRO}/measured/stiff/greedy#0"]
@@ -154,7 +154,7 @@ def test_without_greedy_nothing_is_compared_with_it() -> None:
         assert found[measure] is None
 
 
-def test_a_greedy_agent_that_stays_where_it_is_is_no_yardstick() -> None:
+def test_a_greedy_agent_that_hardly_moves_is_not_used_as_a_reference() -> None:
     tried = config("table1", seeds=4, gaits=(LRO,))
     results = made_up(tried, lambda _: around(0.3))
     key = f"{LRO}/measured/stiff/greedy#0"
@@ -162,7 +162,7 @@ def test_a_greedy_agent_that_stays_where_it_is_is_no_yardstick() -> None:
     assert setting(summarise(tried, results), Q500)["relative"] is None
 
 
-def test_agents_that_learn_are_set_against_each_other() -> None:
+def test_learning_agents_are_compared_in_pairs() -> None:
     restless = "tests.own_agents:Restless"
     far = {"q-learning": 0.4, restless: 0.1}
     summary = summary_of(
@@ -174,7 +174,7 @@ def test_agents_that_learn_are_set_against_each_other() -> None:
     assert (found["probability"], found["verdict"]) == (1, "yes")
 
 
-def test_an_agent_that_looks_ahead_is_pooled_without_an_interval() -> None:
+def test_a_search_agent_is_pooled_without_an_interval() -> None:
     three = "tests.own_agents:ThreeStep"
     summary = summary_of("sweep", lambda _: around(0.3), seeds=4, agents=("q-learning", three))
     found = next(one for one in summary["pooled"] if one["agent"] == three)
@@ -182,14 +182,14 @@ def test_an_agent_that_looks_ahead_is_pooled_without_an_interval() -> None:
     assert found["walkers"] is None
 
 
-def test_the_wall_clock_stands_beside() -> None:
+def test_timed_races_are_listed_with_their_lanes() -> None:
     summary = summary_of("table1", lambda _: around(0.3), seeds=1, gaits=(LRO,))
     assert [one["gait"] for one in summary["timed"]] == [LRO] * 4
     lanes = summary["timed"][0]["lanes"]
     assert [lane["agent"] for lane in lanes] == ["q-learning", "greedy", "two-step"]
 
 
-def test_what_was_run_and_with_what_is_told() -> None:
+def test_the_summary_has_config_cost_versions_and_machine() -> None:
     cost = {"wall_s": 60.0, "compute_s": 100.0, "trials_per_s": 1.5, "workers": 2}
     tried = config("figure4", seeds=2, seed=9)
     summary = summarise(tried, {}, cost=cost)
@@ -199,7 +199,7 @@ def test_what_was_run_and_with_what_is_told() -> None:
     assert summary["machine"].keys() == {"platform", "cores"}
 
 
-def test_seeds_of_another_plan_are_left_out() -> None:
+def test_results_outside_the_plan_are_ignored() -> None:
     tried = config("table1", seeds=4, gaits=(LRO,))
     results = made_up(tried, lambda _: around(0.3))
     fewer = summarise(replace(tried, seeds=3), results)

@@ -1,4 +1,4 @@
-"""One trial: pure, small enough to send, and what the specification's figures say."""
+"""A trial is deterministic, can be pickled, and agrees with the specification's figures."""
 
 import json
 import pickle
@@ -28,13 +28,13 @@ def trials(experiment: str, **given: Any) -> list[Trial]:
 
 
 def distances_h(found: list[Trial]) -> Any:
-    """(seeds, blocks) in half grid sides, of the learners among some trials."""
+    """Run the learners among some trials; distances in half grid sides, (seeds, blocks)."""
     learners = [one.config for one in found if one.setting.role == "learner"]
     return np.array([run_trial(config).distances_m for config in learners]) / H_M
 
 
 @pytest.mark.parametrize("simulator", ["kinematic", "mujoco"])
-def test_a_trial_gives_the_same_whenever_it_is_run(simulator: str) -> None:
+def test_a_trial_gives_the_same_result_each_time(simulator: str) -> None:
     config = TrialConfig(training=practice(simulator=simulator, steps=40, seed=5), blocks=2)
     result = run_trial(config)
     assert result.failure is None
@@ -42,7 +42,7 @@ def test_a_trial_gives_the_same_whenever_it_is_run(simulator: str) -> None:
     assert run_trial(pickle.loads(pickle.dumps(config))) == result
 
 
-def test_a_trial_gives_the_same_in_another_process() -> None:
+def test_a_trial_gives_the_same_result_in_another_process() -> None:
     config = TrialConfig(training=practice(steps=100, seed=5))
     script = (
         "import pickle, sys; from app.experiments.trial import run_trial; "
@@ -73,13 +73,15 @@ def test_a_result_is_the_same_after_json() -> None:
 
 @pytest.mark.parametrize(("agent", "transitions"), [("greedy", 600), ("two-step", 7800)])
 @pytest.mark.parametrize("gait", ["left-right-origin", "front-back-vertical"])
-def test_look_ahead_walks_as_far_as_can_be(agent: str, transitions: int, gait: str) -> None:
+def test_search_agents_walk_the_greatest_possible_distance(
+    agent: str, transitions: int, gait: str
+) -> None:
     result = run_trial(TrialConfig(training=practice(agent=agent, gait=gait), blocks=0))
     assert result.distances_m[0] / H_M == pytest.approx(GREEDY_H, abs=0.001)
     assert result.transitions == transitions
 
 
-def test_the_paper_clock_charges_for_what_was_simulated() -> None:
+def test_the_paper_clock_charges_for_simulated_transitions() -> None:
     learner = run_trial(TrialConfig(training=practice(steps=30)))
     greedy = run_trial(TrialConfig(training=practice(agent="greedy"), blocks=0))
     # 50 motions of 0.32 s, and 0.03 motions for each of 12 transitions a step
@@ -105,7 +107,7 @@ def test_blocks_are_those_whose_figures_are_checked_over_a_thousand_seeds(seed: 
     assert np.array(run_trial(config).distances_m) / H_M == pytest.approx(expected, abs=1e-12)
 
 
-def test_rivals_are_timed_by_the_wall() -> None:
+def test_rivals_are_timed_by_the_wall_clock() -> None:
     config = TrialConfig(training=practice(steps=60), rivals=("greedy", "two-step"))
     ticks = iter(range(10_000))
     result = run_trial(config, timer=lambda: float(next(ticks)))
@@ -114,7 +116,7 @@ def test_rivals_are_timed_by_the_wall() -> None:
     assert [lane["agent"] for lane in result.wall] == ["q-learning", "greedy", "two-step"]
     assert [lane["decision_s"] for lane in result.wall] == [50.0, 50.0, 50.0]
     alone = run_trial(TrialConfig(training=practice(steps=60)))
-    assert result.distances_m == alone.distances_m, "who else races changes nothing"
+    assert result.distances_m == alone.distances_m, "the other lanes do not affect a walk"
 
 
 def test_an_agent_that_fails_on_its_walk_is_a_result() -> None:
@@ -125,6 +127,6 @@ def test_an_agent_that_fails_on_its_walk_is_a_result() -> None:
     assert "I tripped" in result.failure
 
 
-def test_an_agent_that_there_is_not_is_refused() -> None:
+def test_an_unknown_agent_is_refused() -> None:
     with pytest.raises(UnknownName, match="q-learning, greedy, two-step"):
         run_trial(TrialConfig(training=practice(agent="skynet")))

@@ -61,7 +61,7 @@ def test_the_default_robot_covers_half_a_metre_in_every_gait(
 def test_compliant_servos_let_the_body_pitch_in_left_right_vertical(
     greedy_m: dict[tuple[str, str], float],
 ) -> None:
-    """The paper's odd one out lifts both front legs at once."""
+    """The paper's exceptional gait lifts both front legs at once."""
     others = [greedy_m["compliant", gait] for gait in NAMED_GAITS if gait != "left-right-vertical"]
 
     assert greedy_m["compliant", "left-right-vertical"] < 0.8 * min(others)
@@ -97,9 +97,10 @@ def learned_m() -> dict[str, FloatArray]:
 def test_measured_q_learning_after_500_steps(
     learned_m: dict[str, FloatArray], name: str, span_m: tuple[float, float]
 ) -> None:
-    """The specification has the span of eight seeds, but a learner's distance has long tails.
+    """Compare the middle half of our seeds with the specification's range of eight seeds.
 
-    Ours are other seeds: their middle half lies within it, to its rounding of a centimetre.
+    Only the middle half, since these are other seeds and the distribution has long tails; to the
+    specification's rounding of a centimetre.
     """
     middle = np.sort(learned_m[name])[2:6]
 
@@ -107,7 +108,9 @@ def test_measured_q_learning_after_500_steps(
     assert middle.max() < span_m[1] + 0.01
 
 
-def test_on_compliant_servos_learning_is_a_gamble(learned_m: dict[str, FloatArray]) -> None:
+def test_on_compliant_servos_learned_distances_vary_widely(
+    learned_m: dict[str, FloatArray],
+) -> None:
     origin, vertical = (learned_m[f"left-right-{s} compliant"] for s in ("origin", "vertical"))
 
     assert np.median(origin) == pytest.approx(0.30, abs=0.05)

@@ -1,4 +1,4 @@
-"""The model of the robot: what it weighs, what holds it back, what it is called."""
+"""The MuJoCo model of a robot: masses, servos, joint limits, contacts and names."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ def model() -> Any:
     return compile_model(Robot())
 
 
-def test_names_explain_themselves(model: Any) -> None:
+def test_elements_are_named_by_leg_and_link(model: Any) -> None:
     joints = [f"leg{leg}_{link}" for leg in range(1, 7) for link in LINKS]
 
     assert [model.joint(i).name for i in range(model.njnt)] == ["torso", *joints]
@@ -34,7 +34,7 @@ def test_it_has_a_free_torso_and_eighteen_servos(model: Any) -> None:
         assert model.joint(model.actuator(servo).trnid[0]).name == model.actuator(servo).name
 
 
-def test_masses_add_up(model: Any) -> None:
+def test_masses_are_those_of_the_robot(model: Any) -> None:
     parts = {"torso": 1.2, "coxa": 0.06, "femur": 0.06, "tibia": 0.03, "foot": 0.01}
 
     assert model.body_mass.sum() == pytest.approx(2.16)
@@ -44,19 +44,19 @@ def test_masses_add_up(model: Any) -> None:
             assert model.body(f"leg{leg}_{part}").mass == pytest.approx(parts[part])
 
 
-def test_inertias_are_those_of_the_shapes_that_weigh(model: Any) -> None:
+def test_inertias_are_those_of_the_collision_shapes(model: Any) -> None:
     cylinder = 1.2 * np.array(
         [(3 * 0.1**2 + 0.04**2) / 12, (3 * 0.1**2 + 0.04**2) / 12, 0.1**2 / 2]
     )
     assert np.sort(model.body("torso").inertia) == pytest.approx(np.sort(cylinder))
     sphere = 0.4 * 0.01 * 0.012**2
     assert model.body("leg1_foot").inertia == pytest.approx(sphere)
-    rod = 0.03 * 0.13**2 / 12  # thin, so nearly
+    rod = 0.03 * 0.13**2 / 12  # of a thin rod, an approximation
     assert model.body("leg1_tibia").inertia.max() == pytest.approx(rod, rel=0.2)
 
 
-def test_what_is_only_seen_weighs_nothing_and_touches_nothing(model: Any) -> None:
-    seen = model.geom_group == VISIBLE_GROUP
+def test_visual_geoms_have_no_mass_and_no_contacts(model: Any) -> None:
+    visual = model.geom_group == VISIBLE_GROUP
     feet = np.array([model.geom(i).name.endswith("_foot") for i in range(model.ngeom)])
     ground = np.array([model.geom(i).name == "ground" for i in range(model.ngeom)])
 
@@ -64,8 +64,8 @@ def test_what_is_only_seen_weighs_nothing_and_touches_nothing(model: Any) -> Non
     assert (model.geom_contype[feet] == 1).all()
     assert (model.geom_contype[~feet] == 0).all()
     assert (model.geom_conaffinity[~ground] == 0).all()
-    assert seen.sum() > 6 * 8
-    assert model.body_mass.sum() == pytest.approx(2.16)  # with all that is drawn
+    assert visual.sum() > 6 * 8
+    assert model.body_mass.sum() == pytest.approx(2.16)  # including the visual geoms
 
 
 @pytest.mark.parametrize("name", ["stiff", "compliant", "slippery"])
@@ -86,7 +86,7 @@ def test_servos_friction_and_time_are_the_robots(name: str) -> None:
     assert model.geom("leg4_foot").priority > model.geom("ground").priority
 
 
-def test_joints_stop_where_inverse_kinematics_says(model: Any) -> None:
+def test_joint_ranges_are_the_limits_of_the_kinematics(model: Any) -> None:
     for leg in range(1, 7):
         for link, limits in JOINT_LIMITS_RAD.items():
             joint = model.joint(f"leg{leg}_{link}")
@@ -94,8 +94,8 @@ def test_joints_stop_where_inverse_kinematics_says(model: Any) -> None:
             assert joint.limited
 
 
-def test_the_files_alone_hold_the_default_robot() -> None:
-    """What mjcf.py writes over them changes nothing for the default robot."""
+def test_the_xml_files_describe_the_default_robot() -> None:
+    """The parameters that `mjcf` sets equal those of the files for the default robot."""
     spec = mujoco.MjSpec.from_file(str(models_dir() / "torso.xml"))
     for number, mount in enumerate(ring(6), start=1):
         turn = np.deg2rad(mount.azimuth_deg)
@@ -135,7 +135,7 @@ def test_the_number_of_legs_is_a_parameter(legs: int) -> None:
     assert model.body_mass.sum() == pytest.approx(1.2 + 0.16 * legs)
 
 
-def test_links_masses_and_torso_stretch_with_the_robot() -> None:
+def test_links_masses_and_torso_scale_with_the_robot() -> None:
     made = robot(
         {
             "coxa_m": 0.04,
@@ -162,7 +162,7 @@ def test_links_masses_and_torso_stretch_with_the_robot() -> None:
 
 
 @pytest.mark.parametrize("gait", NAMED_GAITS)
-def test_inverse_kinematics_and_the_model_agree_where_the_feet_are(gait: str) -> None:
+def test_inverse_kinematics_and_the_model_agree_on_the_feet(gait: str) -> None:
     model, resolved = compile_model(Robot()), resolve(gait, Robot().azimuths_deg)
     offsets = np.random.default_rng(0).uniform(-0.03, 0.03, (6, 3))
     data = mujoco.MjData(model)

@@ -1,4 +1,4 @@
-"""What only physics promises: standing, threads, and an error where it breaks."""
+"""The MuJoCo simulator: standing, slipping, threads, and the error on divergence."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -26,14 +26,14 @@ def build(
 
 
 def layer(simulator: MujocoSimulator) -> tuple[list[MujocoState], list[Action]]:
-    """All that a two-step look-ahead simulates second: 144 transitions."""
+    """Return states and actions of the second layer of a two-step look-ahead: 144 transitions."""
     first = legal_actions((0, 0, 0), 5)
     states = simulator.expand([simulator.rest()] * 12, first).states
     pairs = [(s, a) for s in states for a in legal_actions(s.commanded, 5)]
     return [s for s, _ in pairs], [a for _, a in pairs]
 
 
-def test_any_number_of_threads_gives_the_same_bits() -> None:
+def test_results_do_not_depend_on_the_number_of_threads() -> None:
     def rows(threads: int) -> tuple[bytes, bytes]:
         simulator = build(threads=threads)
         expansion = simulator.expand(*layer(simulator))
@@ -92,7 +92,7 @@ def _force(simulator: MujocoSimulator, data: Any, contact: int) -> FloatArray:
     return force
 
 
-def test_feet_do_not_sink_after_walking_either() -> None:
+def test_feet_do_not_sink_after_walking() -> None:
     simulator = build("front-back-vertical")
     state = simulator.rest()
     for step in range(24):
@@ -116,7 +116,7 @@ def test_the_torso_stays_level_and_on_course_with_stiff_servos() -> None:
 
 
 def test_reward_is_measured_not_commanded() -> None:
-    """On ice the feet slip, so that the body lags behind the plan."""
+    """With low friction the feet slip, so that the body moves less than planned."""
     gripping, slipping = build(), build(made=Robot(friction=0.02))
     firm, loose = (s.step(s.rest(), Action(0, 1)).reward_m for s in (gripping, slipping))
 
@@ -124,35 +124,35 @@ def test_reward_is_measured_not_commanded() -> None:
     assert abs(loose - firm) > 2e-4
 
 
-def spoilt(state: MujocoState, value: float) -> MujocoState:
+def corrupted(state: MujocoState, value: float) -> MujocoState:
     row = state.row.copy()
     row[9] = value  # a joint angle
     return replace(state, row=row, steps=41)
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, 1e20])
-def test_physics_that_breaks_names_the_step(value: float) -> None:
+def test_diverged_physics_names_the_step(value: float) -> None:
     simulator = build()
-    broken = spoilt(simulator.rest(), value)
+    broken = corrupted(simulator.rest(), value)
     with pytest.raises(
         Diverged, match=r"the physics diverged at step 42; try a smaller robot.dt_s"
     ):
         simulator.step(broken, Action(0, 1))
 
 
-def test_one_broken_future_among_many_is_found() -> None:
+def test_a_single_diverged_simulation_of_a_batch_is_detected() -> None:
     simulator = build(threads=2)
     rest = simulator.rest()
-    states = [rest] * 5 + [spoilt(rest, np.nan)] + [rest] * 6
+    states = [rest] * 5 + [corrupted(rest, np.nan)] + [rest] * 6
     with pytest.raises(Diverged, match="at step 42"):
         simulator.expand(states, legal_actions((0, 0, 0), 5))
 
 
-def test_after_an_error_the_simulator_is_as_good_as_new() -> None:
+def test_the_simulator_gives_the_same_results_after_an_error() -> None:
     simulator = build()
     expected = simulator.step(simulator.rest(), Action(2, 2))
     with pytest.raises(Diverged):
-        simulator.step(spoilt(simulator.rest(), np.nan), Action(0, 1))
+        simulator.step(corrupted(simulator.rest(), np.nan), Action(0, 1))
     again = simulator.step(simulator.rest(), Action(2, 2))
 
     assert again.state.row.tobytes() == expected.state.row.tobytes()
@@ -165,16 +165,16 @@ def test_mujoco_leaves_no_log_in_the_working_folder(
     simulator = build(threads=2)
     rest = simulator.rest()
     with pytest.raises(Diverged):
-        simulator.step(spoilt(rest, np.nan), Action(0, 1))
+        simulator.step(corrupted(rest, np.nan), Action(0, 1))
     with pytest.raises(Diverged):
-        simulator.expand([spoilt(rest, np.nan)] * 12, legal_actions((0, 0, 0), 5))
+        simulator.expand([corrupted(rest, np.nan)] * 12, legal_actions((0, 0, 0), 5))
 
     assert list(tmp_path.iterdir()) == []
     assert capfd.readouterr() == ("", "")
 
 
-def test_the_state_vector_is_the_whole_of_it() -> None:
-    """Anything less than mjSTATE_INTEGRATION diverges when a run goes on."""
+def test_the_state_is_the_full_integration_state() -> None:
+    """Continuing from less than mjSTATE_INTEGRATION would give other results."""
     simulator = build()
     whole = mujoco.mj_stateSize(simulator.model, mujoco.mjtState.mjSTATE_INTEGRATION.value)
 
@@ -182,5 +182,5 @@ def test_the_state_vector_is_the_whole_of_it() -> None:
     assert simulator.rest().row[0] == 0  # time starts with the run
 
 
-def test_models_are_compiled_once() -> None:
+def test_models_are_cached() -> None:
     assert build().model is build("front-back-origin").model is compile_model(Robot())

@@ -1,9 +1,9 @@
-"""Breaks off each write of an operation in turn, and says as JSON what was left of it.
+"""Fault injection: interrupt an operation at each of its writes, and report the remains as JSON.
 
-For each way (`kill`: SIGKILL of the process; `full`: a full disk) and each operation, the data
-folder is copied, a process of its own opens it and does the operation, and at one of its writes it
-is killed, or no further write has room. Then the folder is opened as by the next server, and looked
-at.
+For each kind of fault (`kill`: SIGKILL of the process; `full`: a full disk) and each operation, the
+data folder is copied and a child process executes the operation; at one of its writes the process
+is killed, or every further write fails. Then the folder is opened as by the next server, and
+inspected.
 """
 
 import errno
@@ -44,14 +44,19 @@ from app.storage.store import TABLE, IdempotencyKey, Run
 from tests.storage.ended import GAIT, ended_experiment, ended_training
 from tests.storage.stores import opened, training
 
-KEPT, MOVED, TRIED, LEARNING = "00000000000k1", "00000000000m1", "00000000000e1", "00000000000g1"
+KEPT_ID, MOVED_ID, EXPERIMENT_ID, LEARNING_ID = (
+    "00000000000k1",
+    "00000000000m1",
+    "00000000000e1",
+    "00000000000g1",
+)
 KEY = IdempotencyKey("key", "0" * 64)
 CONFIG = TrainingConfig(gait=GAIT, simulator="kinematic", steps=60, evaluate_every=2)
 TEMPLATE, FOLDER = "template", "tried"
 
 
 class Breaker:
-    """Counts the writes of this process, and breaks off at one of them."""
+    """Counts the writes of this process, and injects the fault at one of them."""
 
     def __init__(self, artifacts: Path, how: str, at: int) -> None:
         self._artifacts, self._how, self._at = str(artifacts), how, at
@@ -92,7 +97,7 @@ class Breaker:
         if statement.startswith(("INSERT", "UPDATE", "DELETE")):
             self._count()
             if self.is_full:
-                # No page more than there is, as on a disk that is full.
+                # Simulates a full disk: the database may not grow by a page.
                 pages = cursor.connection.execute("PRAGMA page_count").fetchone()[0]
                 cursor.connection.execute(f"PRAGMA max_page_count = {pages}")
 
@@ -100,7 +105,7 @@ class Breaker:
         self._count()
 
 
-# ---- operations: each returns what is to be compared if it came to its end
+# ---- operations
 
 
 def import_archive(store: SqlStore, folder: Path) -> None:
@@ -127,8 +132,8 @@ def start(store: SqlStore, folder: Path) -> None:
 
 
 def finish(store: SqlStore, folder: Path) -> None:
-    """What a job's process says, taken in by its job: the last checkpoint, the table, the end."""
-    run = store.get(LEARNING)
+    """Feed a job the messages of its process: the last checkpoint, the table, the end."""
+    run = store.get(LEARNING_ID)
     recordings = Recordings(store)
     order, shutdown = TrainingTask(CONFIG, None), threading.Event()
     job = Job(run, order, store, recordings, EventBus(), shutdown=shutdown, niceness=0)
@@ -145,7 +150,7 @@ def finish(store: SqlStore, folder: Path) -> None:
 
 
 def delete(store: SqlStore, folder: Path) -> None:
-    store.delete(KEPT)
+    store.delete(KEPT_ID)
 
 
 OPERATIONS: dict[str, Callable[[SqlStore, Path], None]] = {
@@ -158,52 +163,52 @@ def _jobs(store: SqlStore) -> Jobs:
     return Jobs(store, Recordings(store), EventBus(), cores=1)
 
 
-# ---- one try
+# ---- one attempt
 
 
 def prepare(folder: Path) -> None:
-    """A data folder to try on, and files to import."""
+    """Create the template data folder, and files to import."""
     with opened(folder / "source", None) as store:
-        ended_training(store, MOVED, "Moved", steps=120)
-        ended_experiment(store, TRIED)
-        (folder / "run.zip").write_bytes(export_run(store, MOVED))
-        (folder / "experiment.zip").write_bytes(export_run(store, TRIED))
-        (folder / "table.npz").write_bytes(store.artifact(MOVED, TABLE) or b"")
+        ended_training(store, MOVED_ID, "Moved", steps=120)
+        ended_experiment(store, EXPERIMENT_ID)
+        (folder / "run.zip").write_bytes(export_run(store, MOVED_ID))
+        (folder / "experiment.zip").write_bytes(export_run(store, EXPERIMENT_ID))
+        (folder / "table.npz").write_bytes(store.artifact(MOVED_ID, TABLE) or b"")
     with opened(folder / TEMPLATE, None) as store:
-        ended_training(store, KEPT, "Kept", steps=120)
+        ended_training(store, KEPT_ID, "Kept", steps=120)
 
 
 def attempt(folder: Path, operation: str, how: str, at: int) -> dict[str, Any]:
-    """Do an operation that breaks off at one of its writes, in a process of its own."""
-    tried = folder / FOLDER
-    shutil.rmtree(tried, ignore_errors=True)
-    shutil.copytree(folder / TEMPLATE, tried)
+    """Execute an operation in a child process, interrupted at one of its writes."""
+    attempt_folder = folder / FOLDER
+    shutil.rmtree(attempt_folder, ignore_errors=True)
+    shutil.copytree(folder / TEMPLATE, attempt_folder)
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
         try:
-            os.write(writing, json.dumps(_do(tried, operation, how, at)).encode())
+            os.write(writing, json.dumps(_do(attempt_folder, operation, how, at)).encode())
         except BaseException:
             os.write(writing, json.dumps({"broke": traceback.format_exc()}).encode())
         finally:
             os._exit(0)
     os.close(writing)
     with os.fdopen(reading, "rb") as pipe:
-        said = pipe.read()
+        output = pipe.read()
     _, status = os.waitpid(child, 0)
     report: dict[str, Any] = {"operation": operation, "how": how, "at": at}
-    report |= {"killed": os.WIFSIGNALED(status), **(json.loads(said) if said else {})}
-    with opened(tried, None) as store:
-        report |= {"after": looked_at(store, tried)}
+    report |= {"killed": os.WIFSIGNALED(status), **(json.loads(output) if output else {})}
+    with opened(attempt_folder, None) as store:
+        report |= {"after": inspect_store(store, attempt_folder)}
     return report
 
 
 def _do(folder: Path, operation: str, how: str, at: int) -> dict[str, Any]:
     with opened(folder, None) as store:
         if operation == "finish":
-            run = training(LEARNING, name="Learned", config=CONFIG, total=CONFIG.steps)
+            run = training(LEARNING_ID, name="Learned", config=CONFIG, total=CONFIG.steps)
             store.create(run)
-            store.change(LEARNING, {"queued"}, "running")
+            store.change(LEARNING_ID, {"queued"}, "running")
         breaker = Breaker(folder / "artifacts", how, at)
         breaker.install(store._database.engine)
         refused = None
@@ -215,20 +220,20 @@ def _do(folder: Path, operation: str, how: str, at: int) -> dict[str, Any]:
         if how == "kill" and count < at:
             os.kill(os.getpid(), signal.SIGKILL)
         breaker._at = 0
-        return {"writes": count, "refused": refused, "at_once": looked_at(store, folder)}
+        return {"writes": count, "refused": refused, "at_once": inspect_store(store, folder)}
 
 
-def looked_at(store: SqlStore, folder: Path) -> dict[str, Any]:
-    """All that is in a store: its runs with what they have, and its files."""
+def inspect_store(store: SqlStore, folder: Path) -> dict[str, Any]:
+    """Return the contents of a store: its runs with their data, and inconsistencies of files."""
     runs = [_whole(store, run) for run in store.list().runs]
-    known = store._database.read(lambda c: c.execute(select(ARTIFACTS.c.file)).scalars().all())
+    referenced = store._database.read(lambda c: c.execute(select(ARTIFACTS.c.file)).scalars().all())
     on_disk = [path.name for path in folder.glob("artifacts/*/*") if path.is_file()]
     key = store.find_key(KEY.key)
     return {
         "runs": sorted(runs, key=lambda run: str(run["name"])),
         "key_is_of": None if key is None else store.get(key.run_id).name,
-        "missing_files": len(set(known) - set(on_disk)),
-        "files_of_nobody": len(set(on_disk) - set(known)),
+        "missing_files": len(set(referenced) - set(on_disk)),
+        "files_of_nobody": len(set(on_disk) - set(referenced)),
     }
 
 
@@ -250,19 +255,19 @@ def _whole(store: SqlStore, run: Run) -> dict[str, Any]:
 
 
 def main(folder: Path, share: float) -> None:
-    """Try a share of all writes; the first line is what each operation leaves if nothing breaks."""
+    """Test a share of all writes; each operation's first line is its report without a fault."""
     prepare(folder)
     chance = random.Random(32)
     for operation in OPERATIONS:
         whole = attempt(folder, operation, "none", 0)
-        say(whole)
+        emit(whole)
         for how in ("kill", "full"):
             for at in range(1, whole["writes"] + 2):
                 if chance.random() < share:
-                    say(attempt(folder, operation, how, at))
+                    emit(attempt(folder, operation, how, at))
 
 
-def say(report: dict[str, Any]) -> None:
+def emit(report: dict[str, Any]) -> None:
     sys.stdout.write(json.dumps(report) + "\n")
     sys.stdout.flush()
 

@@ -1,4 +1,4 @@
-"""The promises are held against the same servers and pages as everything else."""
+"""Fixtures: servers and pages, shared with the API's and the browser's tests."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,13 +15,13 @@ __all__ = ["api", "dashboard", "data", "serve", "server", "trained"]
 
 @pytest.fixture
 def launch(tmp_path: Path) -> Iterator[Callable[..., Served]]:
-    """Starts `hexapods serve` on this test's data folder, again and again if need be."""
+    """A function that starts `hexapods serve` on this test's data folder; may be called again."""
     with serving_from(tmp_path) as make:
         yield make
 
 
 @pytest.fixture(scope="session")
 def quiet_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serving]:
-    """For the tests that start nothing on it."""
+    """A shared server, for tests that start no runs on it."""
     with serving(tmp_path_factory.mktemp("data")) as shared:
         yield shared

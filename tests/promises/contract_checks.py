@@ -1,4 +1,4 @@
-"""A check of schemathesis's that is our own; `SCHEMATHESIS_HOOKS` names this module."""
+"""A custom check for schemathesis, which loads this module by `SCHEMATHESIS_HOOKS`."""
 
 from typing import Any
 
@@ -9,10 +9,10 @@ CHECK = "refused_for_its_meaning_only"
 
 @schemathesis.check
 def refused_for_its_meaning_only(context: Any, response: Any, case: Any) -> None:
-    """What the schema allows may be refused for what it means, never for a single field's shape.
+    """Check that valid data is refused only for its meaning, never for a single field's value.
 
-    No schema can say whether a leg reaches its cells, or which runs there are. The server names
-    fields in `errors` where a value by itself is wrong, and then the schema must say so as well.
+    No schema can express whether a leg reaches its cells, or which runs exist. The server lists
+    fields in `errors` where a value by itself is invalid, and then the schema must exclude it too.
     """
     del context
     is_valid = case.meta is not None and case.meta.generation.mode.is_positive

@@ -1,9 +1,10 @@
-"""A crowd of strangers: `python -m tests.promises.crowd PORT COUNT ADDRESSES PATH…`.
+"""Load generator of idle and slow connections.
 
-Opens connections and keeps them open, each of one of these kinds in turn: one that says nothing,
-one that sends a byte of a head now and then, one that does so with a body, and one that asks for
-something and does not read it. Whatever the server closes comes back, so many a second. Says a
-line once all were tried, another when standard input ends, and ends then.
+Usage: `python -m tests.promises.crowd PORT COUNT ADDRESSES PATH…`. Opens connections and keeps them
+open, each of one of these kinds in turn: one that sends nothing, one that sends a header byte by
+byte (slowloris), one that does so with a body, and one that sends a request and does not read the
+answer. Connections that the server closes are opened again at a limited rate. Prints a line of JSON
+once all were tried, and another when standard input ends, and exits.
 """
 
 import json
@@ -15,14 +16,14 @@ import sys
 import time
 from collections.abc import Sequence
 
-COMES_BACK_PER_S = 50
+REOPENED_PER_S = 50
 TRICKLE_S = 2.0
 _RECEIVE_BYTES = 2048
 _KINDS = 4
 
 
 class Stranger:
-    """One connection, which is opened again when it was closed."""
+    """One anonymous connection, which can be reopened."""
 
     def __init__(self, number: int, port: int, address: str, paths: Sequence[str]) -> None:
         self.kind = number % _KINDS
@@ -31,20 +32,20 @@ class Stranger:
         self.sock: socket.socket | None = None
 
     def open(self) -> None:
-        """Connect, and say what this kind says at first."""
+        """Connect, and send the first bytes of this kind."""
         self.sock = sock = socket.socket()
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BYTES)
         sock.settimeout(5)
         try:
             sock.bind((self._address, 0))
             sock.connect(("127.0.0.1", self._port))
-            sock.send(self._first_words())
+            sock.send(self._initial_bytes())
             sock.setblocking(False)
         except OSError:
             self.close()
 
     def trickle(self) -> None:
-        """Say one byte more, if this kind does."""
+        """Send one more byte, if this kind does."""
         if self.sock is None or self.kind not in (1, 2):
             return
         try:
@@ -55,12 +56,12 @@ class Stranger:
             self.close()
 
     def close(self) -> None:
-        """Close it, to be opened again."""
+        """Close the connection; it can be reopened."""
         sock, self.sock = self.sock, None
         if sock is not None:
             sock.close()
 
-    def _first_words(self) -> bytes:
+    def _initial_bytes(self) -> bytes:
         host = f"Host: 127.0.0.1:{self._port}\r\n"
         return (
             b"",
@@ -71,7 +72,7 @@ class Stranger:
 
 
 def main(port: int, count: int, addresses: int, paths: Sequence[str]) -> None:
-    """Be a crowd from 127.0.0.1 on until standard input ends."""
+    """Keep connections open from 127.0.0.1, 127.0.0.2 … until standard input ends."""
     _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
     crowd = [
@@ -80,27 +81,27 @@ def main(port: int, count: int, addresses: int, paths: Sequence[str]) -> None:
     ]
     for one in crowd:
         one.open()
-    _say(open=sum(one.sock is not None for one in crowd))
+    _emit(open=sum(one.sock is not None for one in crowd))
     came_back = 0
     while not select.select([sys.stdin], [], [], 1.0)[0]:
         _close_lost(crowd)
         away = [one for one in crowd if one.sock is None]
-        for one in away[:COMES_BACK_PER_S]:
+        for one in away[:REOPENED_PER_S]:
             one.open()
             came_back += one.sock is not None
         if int(time.monotonic()) % int(TRICKLE_S) == 0:
             for one in crowd:
                 one.trickle()
-    _say(open=sum(one.sock is not None for one in crowd), came_back=came_back)
+    _emit(open=sum(one.sock is not None for one in crowd), came_back=came_back)
 
 
-def _say(**figures: int) -> None:
+def _emit(**figures: int) -> None:
     sys.stdout.write(json.dumps(figures) + "\n")
     sys.stdout.flush()
 
 
 def _close_lost(crowd: Sequence[Stranger]) -> None:
-    """Find the connections that the server has closed, without reading what it says on others."""
+    """Close the connections that the server has closed, detected without reading (MSG_PEEK)."""
     with selectors.DefaultSelector() as selector:
         for one in crowd:
             if one.sock is not None:

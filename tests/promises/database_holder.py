@@ -1,4 +1,4 @@
-"""Holds a database against all other writers, for so long after a line on standard input."""
+"""Lock a database exclusively, for some seconds after a line on standard input."""
 
 import sqlite3
 import sys

@@ -1,4 +1,4 @@
-"""The open files of a process, as Linux counts them."""
+"""The open files of a process, from Linux's `/proc`."""
 
 from pathlib import Path
 
@@ -6,16 +6,16 @@ from app.storage.database.opening import DATABASE_FILE
 
 
 def open_files(pid: int) -> list[str]:
-    """What each open file descriptor of a process leads to."""
+    """Return the target of each open file descriptor of a process."""
     found = []
     for link in Path(f"/proc/{pid}/fd").iterdir():
         try:
             found.append(str(link.readlink()))
         except FileNotFoundError:
-            continue  # it was closed meanwhile
+            continue  # closed in the meantime
     return found
 
 
 def database_files(pid: int, data: Path) -> list[str]:
-    """Those of the SQLite database in a data folder: itself, its log, and the log's index."""
+    """Return the open files of a data folder's SQLite database: file, WAL and shared memory."""
     return [name for name in open_files(pid) if name.startswith(str(data / DATABASE_FILE))]

@@ -1,4 +1,4 @@
-"""Lives through a full disk, and says as JSON what was still possible."""
+"""Use a store on a full disk, and report as JSON which operations succeed."""
 
 import contextlib
 import json
@@ -19,7 +19,7 @@ LIMIT_BYTES = 1 * MB
 
 
 def main(folder: Path, how: str) -> None:
-    fill = full_of_others_files if how == "mount" else with_a_limit
+    fill = filled_disk if how == "mount" else file_size_limit
     with opened(folder, None) as store:
         store.create(training("a", state="running"), training("b", state="running"))
         store.put_artifact("a", TABLE, b"old" * 1000)
@@ -52,7 +52,7 @@ def while_full(store: SqlStore) -> dict[str, object]:
 
 
 def refused(write: Callable[[], None]) -> str | None:
-    """What a write is refused with; None if it is not."""
+    """Return the message with which a write is refused; None if it succeeds."""
     try:
         write()
     except StorageFull as error:
@@ -61,8 +61,8 @@ def refused(write: Callable[[], None]) -> str | None:
 
 
 @contextmanager
-def full_of_others_files(folder: Path) -> Iterator[None]:
-    """To the last byte."""
+def filled_disk(folder: Path) -> Iterator[None]:
+    """Fill the file system to the last byte by another file."""
     filler = folder / "filler"
     for size in (MB, 4096, 1):
         with contextlib.suppress(OSError), filler.open("ab", buffering=0) as file:
@@ -73,8 +73,8 @@ def full_of_others_files(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def with_a_limit(folder: Path) -> Iterator[None]:
-    """No file may grow over a limit."""
+def file_size_limit(folder: Path) -> Iterator[None]:
+    """Simulate a full disk by RLIMIT_FSIZE: no file may grow beyond `LIMIT_BYTES`."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (LIMIT_BYTES, hard))
     yield

@@ -1,4 +1,4 @@
-"""How long a test may take: `make soak` sets HEXAPODS_SOAK, and then the promised figures count."""
+"""Length of a test: the gate's short form, or the promised figures if HEXAPODS_SOAK is set."""
 
 import os
 from typing import TypeVar
@@ -7,5 +7,5 @@ T = TypeVar("T")
 
 
 def at_length(short: T, whole: T) -> T:
-    """A figure of the gate's shorter form, or the promised one under `make soak`."""
+    """Return the gate's short figure, or the promised one under `make soak`."""
     return whole if os.environ.get("HEXAPODS_SOAK") else short

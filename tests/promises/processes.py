@@ -1,4 +1,4 @@
-"""Runs a function of the tests in a process of its own, which may be killed."""
+"""Run a module of the tests in a process of its own, which may be killed."""
 
 import subprocess
 import sys
@@ -10,12 +10,12 @@ ROOT = Path(__file__).parents[2]
 def start_script(
     module: str, *arguments: str, before: tuple[str, ...] = ()
 ) -> "subprocess.Popen[str]":
-    """Start `python -m module`; it says what it does line by line.
+    """Start `python -m module` with pipes for standard input and output.
 
     Args:
-        module: of the tests.
-        arguments: of its command line.
-        before: what to put before the command.
+        module: name of the module.
+        arguments: its command-line arguments.
+        before: command prefix, such as `nice`.
     """
     return subprocess.Popen(
         [*before, sys.executable, "-m", module, *arguments],

@@ -1,4 +1,4 @@
-"""Requests as no well-behaved client sends them, and what they cost the server."""
+"""Raw HTTP requests that clients would not send, and a monitor of the server's memory."""
 
 import socket
 import threading
@@ -14,32 +14,32 @@ _PATIENCE_S = 60.0
 
 
 class Route(NamedTuple):
-    """One thing that the server answers to; `WS` is the method of websockets."""
+    """A method and path of the server; `WS` is the method of websockets."""
 
     method: str
     path: str
 
 
 def every_route(app: FastAPI) -> list[Route]:
-    """All that the app has, as it knows them itself; folders as the path of one file in them."""
-    found: list[Route] = []
+    """Return all routes of the app; a folder of static files as the path of one file in it."""
+    routes: list[Route] = []
     for context in iter_route_contexts(app.routes):
         path = context.path or "/"
         if path == "/static":
-            found += [Route(method, "/static/favicon.svg") for method in ("GET", "HEAD")]
+            routes += [Route(method, "/static/favicon.svg") for method in ("GET", "HEAD")]
         else:
-            found += [Route(method, path) for method in sorted(context.methods or {"WS"})]
-    assert len(found) > 30
-    return found
+            routes += [Route(method, path) for method in sorted(context.methods or {"WS"})]
+    assert len(routes) > 30
+    return routes
 
 
 def send(port: int, *lines: str, body: bytes = b"") -> bytes:
-    """Send a request word by word, and return what begins the answer.
+    """Send a request over a raw socket, and return the first 64 KiB of the answer.
 
     Args:
-        port: of the server.
-        lines: the request's line and its headers, in any bytes of Latin-1.
-        body: after them.
+        port: the server's port.
+        lines: the request line and the headers, in any bytes of Latin-1.
+        body: the request's body.
     """
     with socket.create_connection(("127.0.0.1", port), timeout=_PATIENCE_S) as sock:
         end = [] if "Upgrade: websocket" in lines else ["Connection: close"]
@@ -49,17 +49,17 @@ def send(port: int, *lines: str, body: bytes = b"") -> bytes:
         while len(answer) < 1 << 16 and (part := sock.recv(1 << 16)):
             answer += part
             if answer.startswith(b"HTTP/1.1 101") or b"text/event-stream" in answer:
-                break  # there is no end to wait for
+                break  # an endless stream
         return answer
 
 
 def status_of(answer: bytes) -> int:
-    """The status of an answer; 0 if the server just hung up."""
+    """Return the status code of an answer; 0 if the server closed the connection without one."""
     return int(answer.split()[1]) if answer else 0
 
 
 def request_lines(route: Route, host: str, **headers: str) -> list[str]:
-    """The lines of a request, for a websocket those of a handshake."""
+    """Return the request line and headers for a route; for a websocket those of the handshake."""
     lines = [f"{'GET' if route.method == 'WS' else route.method} {route.path} HTTP/1.1"]
     if "Host" not in headers:
         lines.append(f"Host: {host}")
@@ -77,10 +77,10 @@ def request_lines(route: Route, host: str, **headers: str) -> list[str]:
 
 
 class Memory:
-    """A process's memory while it is watched.
+    """Memory of a monitored process.
 
     Attributes:
-        grown_bytes: the most that it had over what it had at first.
+        grown_bytes: peak resident memory above that at the start.
     """
 
     grown_bytes = 0
@@ -88,12 +88,12 @@ class Memory:
 
 @contextmanager
 def watched_memory(pid: int) -> Iterator[Memory]:
-    """Look at a process's resident memory every few milliseconds."""
-    process, memory, over = psutil.Process(pid), Memory(), threading.Event()
+    """Sample a process's resident memory every 5 ms."""
+    process, memory, finished = psutil.Process(pid), Memory(), threading.Event()
     before = process.memory_info().rss
 
     def look() -> None:
-        while not over.wait(0.005):
+        while not finished.wait(0.005):
             memory.grown_bytes = max(memory.grown_bytes, process.memory_info().rss - before)
 
     watcher = threading.Thread(target=look, daemon=True)
@@ -101,6 +101,6 @@ def watched_memory(pid: int) -> Iterator[Memory]:
     try:
         yield memory
     finally:
-        over.set()
+        finished.set()
         watcher.join()
         memory.grown_bytes = max(memory.grown_bytes, process.memory_info().rss - before)

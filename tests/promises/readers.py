@@ -1,8 +1,8 @@
-"""Strangers who read: `python -m tests.promises.readers PORT COUNT PATH…`.
+"""Load generator of readers: `python -m tests.promises.readers PORT COUNT PATH…`.
 
-So many at once ask for the paths in turn, and read all of each answer; each address has one of
-them. Says how many answers were whole once standard input ends. In a process of its own, so that
-it is the server and not the test that is kept busy.
+COUNT threads request the paths and read each answer completely, each from an address of its own.
+When standard input ends, it prints the answers by status as JSON. A process of its own, so that
+the load does not slow down the test itself.
 """
 
 import http.client
@@ -14,18 +14,18 @@ from collections.abc import Sequence
 
 
 def main(port: int, count: int, paths: Sequence[str]) -> None:
-    """Read until standard input ends."""
+    """Read answers until standard input ends."""
     statuses: Counter[str] = Counter()
-    over = threading.Event()
+    finished = threading.Event()
 
     def read(number: int) -> None:
         source = (f"127.0.0.{2 + number}", 0)
-        while not over.wait(0.02):
+        while not finished.wait(0.02):
             connection = http.client.HTTPConnection("127.0.0.1", port, 10, source)
             try:
                 connection.request("GET", paths[number % len(paths)])
                 answer = connection.getresponse()
-                while answer.read(1 << 16) and not over.is_set():
+                while answer.read(1 << 16) and not finished.is_set():
                     pass
                 statuses[str(answer.status)] += 1
             except (OSError, http.client.HTTPException) as error:
@@ -37,7 +37,7 @@ def main(port: int, count: int, paths: Sequence[str]) -> None:
     for thread in threads:
         thread.start()
     sys.stdin.read()
-    over.set()
+    finished.set()
     for thread in threads:
         thread.join()
     sys.stdout.write(json.dumps(statuses) + "\n")

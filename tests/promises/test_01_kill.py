@@ -1,4 +1,4 @@
-"""Promise 1, where it is the store's: kill -9 corrupts no file and loses no acknowledged row.
+"""Promise 1, for the store: kill -9 corrupts no file and loses no acknowledged row.
 
 Promised: 50 kills at random times. Here 6 on SQLite and 3 on PostgreSQL; 50 each by `make soak`.
 Each kill hits a process that writes as fast as it can; the store is opened again after each.
@@ -34,7 +34,7 @@ def test_a_killed_server_loses_nothing_that_it_acknowledged(
     with database_url(backend, postgresql) as url:
         for _ in range(KILLS[backend]):
             first = 1 + max((int(run_id) for run_id in acknowledged), default=0)
-            # The last run may have been made without a word of it.
+            # The last run may have been created without its acknowledgement.
             write_until_killed(tmp_path, url, first + 1, chance.uniform(0, 0.5), acknowledged)
             with opened(tmp_path, url) as store:
                 check(store, acknowledged)
@@ -54,12 +54,12 @@ def write_until_killed(
 ) -> None:
     process = start_script("tests.promises.writer", str(folder), url or "", str(first))
     assert process.stdout is not None
-    said = [process.stdout.readline()]
+    lines = [process.stdout.readline()]
     time.sleep(after_s)
     process.kill()
-    said += process.stdout.readlines()
+    lines += process.stdout.readlines()
     assert process.wait() == -9
-    for line in said:
+    for line in lines:
         what, run_id, *step = line.split()
         acknowledged[run_id][what] = int(step[0]) if step else 1
     process.stdout.close()
@@ -68,20 +68,20 @@ def write_until_killed(
 
 
 def check(store: SqlStore, acknowledged: dict[str, dict[str, int]]) -> None:
-    for run_id, said in acknowledged.items():
+    for run_id, lines in acknowledged.items():
         run = store.get(run_id)
-        # What was under way when the server died may have been done, without a word of it.
-        assert run.state in (["finished"] if "finished" in said else ["interrupted", "finished"])
+        # A write in progress at the kill may have been committed without its acknowledgement.
+        assert run.state in (["finished"] if "finished" in lines else ["interrupted", "finished"])
         steps = [row["step"] for row in store.evaluations(run_id)]
         assert steps == list(range(1, len(steps) + 1))
-        assert len(steps) >= said.get("evaluated", 0)
+        assert len(steps) >= lines.get("evaluated", 0)
         data = store.artifact(run_id, CHECKPOINT)
-        saved = said.get("saved", 0)
+        saved = lines.get("saved", 0)
         assert data in ([None] if saved == 0 else []) + [checkpoint(saved), checkpoint(saved + 1)]
 
 
 def check_files(store: SqlStore, folder: Path) -> None:
-    """Every run has its one file, and there are no others."""
+    """Check that every run has its one file, and that there are no orphaned files."""
     runs = store.list(limit=1_000_000).items
     kept = sum(store.artifact(run.id, CHECKPOINT) is not None for run in runs)
     assert len([path for path in folder.glob("artifacts/*/*") if path.is_file()]) == kept

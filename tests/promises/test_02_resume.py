@@ -1,8 +1,8 @@
 """Promise 2: resume is bit-exact.
 
-A training is killed with its server and later sent home by SIGTERM, its rates are changed in
-between, and yet its table, generator and robot are those of one that nothing ever stopped: byte by
-byte the same file. Promised for a run; here for one on each simulator, by `make soak` for four.
+A training is killed with its server and later interrupted by SIGTERM, its rates are changed in
+between, and yet its table, random generator and robot are those of an uninterrupted run: the file
+is the same byte by byte. Promised for a run; here for one on each simulator, by `make soak` four.
 """
 
 import signal
@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.promises.length import at_length
-from tests.promises.trainings import checkpoint_step, unbroken
+from tests.promises.trainings import checkpoint_step, uninterrupted
 from tests.served import Served
 
 SEEDS = at_length([3], [3, 4, 5, 6])
@@ -20,7 +20,7 @@ SEEDS = at_length([3], [3, 4, 5, 6])
 
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("simulator", ["kinematic", "mujoco"])
-def test_an_interrupted_training_ends_as_one_that_never_was(
+def test_an_interrupted_training_ends_like_an_uninterrupted_one(
     simulator: str, seed: int, launch: Callable[..., Served], tmp_path: Path
 ) -> None:
     body = {"gait": "left-right-origin", "simulator": simulator, "seed": seed, "pace": 30}
@@ -59,7 +59,7 @@ def test_an_interrupted_training_ends_as_one_that_never_was(
         ["gamma"],
         ["pace"],
     ]
-    table, curve = unbroken(ended["config"], ended["changes"])
+    table, curve = uninterrupted(ended["config"], ended["changes"])
     assert server.client.get(f"{path}/q-table?format=npz").content == table
     assert server.client.get(f"{path}/curve").json()["evaluations"] == curve
     assert [row["step"] for row in curve] == list(range(20, 181, 20))

@@ -1,8 +1,8 @@
-"""Promise 3, where it is the store's: a full disk fails the run, and nothing else.
+"""Promise 3, for the store: a full disk fails the run, and nothing else.
 
 Promised: on a file system of 16 MB the run is `failed` in at most 5 s with a clear error, reads
-are still served, and all works again once there is room. The file system is mounted where that
-is allowed; a limit on the size of files, which works everywhere, stands in for it besides.
+are still served, and all works again once there is room. The file system is a tmpfs, mounted in a
+mount namespace where that is allowed; RLIMIT_FSIZE, which works everywhere, is tested as well.
 """
 
 import json
@@ -14,8 +14,8 @@ import pytest
 from tests.promises.processes import start_script
 
 
-def own_mounts() -> tuple[str, ...] | None:
-    """What to put before a command that may mount, and whose mounts go with it."""
+def mount_namespace() -> tuple[str, ...] | None:
+    """Return the `unshare` command that gives a process its own mounts; None if not permitted."""
     for unshare in (("unshare", "--mount"), ("unshare", "--map-root-user", "--mount")):
         mount = [*unshare, "mount", "-t", "tmpfs", "tmpfs", "/mnt"]
         try:
@@ -26,7 +26,7 @@ def own_mounts() -> tuple[str, ...] | None:
     return None
 
 
-UNSHARE = own_mounts()
+UNSHARE = mount_namespace()
 WAYS = ["limit"] if UNSHARE is None else ["limit", "mount"]
 _MOUNT = 'mount -t tmpfs -o size=16m tmpfs "$0" && exec "$@"'
 

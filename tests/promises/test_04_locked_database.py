@@ -1,7 +1,7 @@
 """Promise 4: a locked database loses nothing.
 
-Promised: another process holds it for 5 s, 0 writes lost. Here 2 s; 5 s by `make soak`.
-Eight threads write meanwhile, each its own curve, and all of them race for the same runs.
+Promised: another process holds an exclusive lock for 5 s, 0 writes lost. Here 2 s; 5 s by
+`make soak`. Eight threads write meanwhile, each its own curve, and all compete for the same runs.
 """
 
 import threading
@@ -64,8 +64,8 @@ def test_a_locked_database_loses_nothing(
 
         assert holder.returncode == 0
         assert failed == []
-        assert took_s > HELD_S, "nobody had to wait"
-        assert sorted(won) == contested, "each has one winner"
+        assert took_s > HELD_S, "the lock must have delayed the writes"
+        assert sorted(won) == contested, "each run has exactly one winner"
         for number in range(THREADS):
             assert [row["step"] for row in store.evaluations(f"t{number}")] == list(range(WRITES))
             assert store.artifact(f"t{number}", "q-table.npz") == bytes([WRITES - 1]) * 1000

@@ -1,7 +1,7 @@
 """Promise 5: a damaged Q-table is refused, in full: 1,000 bit flips and truncations.
 
-A stored table is checked against the SHA-256 that the database has of it, so that nothing
-depends on which of its bytes are hit.
+A stored table is verified against its SHA-256 in the database, so that damage to any byte is
+detected.
 """
 
 import random
@@ -21,7 +21,7 @@ from tests.storage.stores import opened, training
 DAMAGES = 1000
 
 
-def a_table() -> bytes:
+def make_table() -> bytes:
     config = TrainingConfig(gait="left-right-origin", simulator="kinematic", steps=50)
     learner = build_learner(config)
     for _ in train(learner, config):
@@ -29,8 +29,8 @@ def a_table() -> bytes:
     return to_bytes(snapshot(learner, config))
 
 
-def damaged(data: bytes, chance: random.Random) -> bytes:
-    """The data with one bit flipped, or with its end missing."""
+def damage(data: bytes, chance: random.Random) -> bytes:
+    """Return the data with one bit flipped, or truncated."""
     if chance.random() < 0.5:
         return data[: chance.randrange(len(data))]
     flipped = bytearray(data)
@@ -38,14 +38,14 @@ def damaged(data: bytes, chance: random.Random) -> bytes:
     return bytes(flipped)
 
 
-def test_a_damaged_table_is_always_refused_by_name(tmp_path: Path) -> None:
-    chance, table = random.Random(5), a_table()
+def test_a_damaged_stored_table_is_always_refused_by_name(tmp_path: Path) -> None:
+    chance, table = random.Random(5), make_table()
     with opened(tmp_path, None) as store:
         store.create(training("a", state="finished"))
         store.put_artifact("a", TABLE, table)
         (file,) = (path for path in tmp_path.glob("artifacts/*/*") if path.is_file())
         for _ in range(DAMAGES):
-            file.write_bytes(damaged(table, chance))
+            file.write_bytes(damage(table, chance))
             with pytest.raises(DamagedFile) as error:
                 load_table(store, "a")
             assert TABLE in str(error.value)
@@ -54,14 +54,14 @@ def test_a_damaged_table_is_always_refused_by_name(tmp_path: Path) -> None:
         assert load_table(store, "a").meta["step"] == 50
 
 
-def test_a_table_from_elsewhere_never_gives_other_values_than_were_written() -> None:
-    """No database knows its hash; what its own checksum does not cover, changes nothing in it."""
-    chance, table = random.Random(6), a_table()
+def test_a_damaged_imported_table_is_refused_or_reads_the_written_values() -> None:
+    """Without a stored hash, damage that the file's own checksums miss must not change a value."""
+    chance, table = random.Random(6), make_table()
     whole = from_bytes(table, "it")
     refused = 0
     for _ in range(DAMAGES):
         try:
-            read = from_bytes(damaged(table, chance), "q.npz")
+            read = from_bytes(damage(table, chance), "q.npz")
         except DamagedFile:
             refused += 1
         else:

@@ -1,7 +1,7 @@
-"""Promise 9: of two operators who do the same at once, one wins and the other gets 409.
+"""Promise 9: of two identical concurrent commands, one succeeds and the other gets 409.
 
 Promised: 1,000 pairs. Here 60, of pause, resume and stop, and of resuming an interrupted run; by
-`make soak` 1,000. No process is left that nobody answers for.
+`make soak` 1,000. No orphaned process is left.
 """
 
 import signal
@@ -24,11 +24,11 @@ PAIRS_A_RUN = at_length(20, 100)
 def test_one_of_two_operators_wins(launch: Callable[..., Served]) -> None:
     server = launch()
     with ThreadPoolExecutor(2) as operators:
-        meet = Barrier(2)
+        barrier = Barrier(2)
 
         def at_once(path: str) -> list[int]:
             def act(client: httpx2.Client) -> int:
-                meet.wait(LONG_S)
+                barrier.wait(LONG_S)
                 return client.post(path).status_code
 
             return sorted(operators.map(act, clients))
@@ -60,7 +60,7 @@ def test_one_of_two_operators_wins(launch: Callable[..., Served]) -> None:
 
 
 def make_clients(server: Served) -> list[httpx2.Client]:
-    """One for each operator."""
+    """Return two HTTP clients, one for each operator."""
     return [
         httpx2.Client(base_url=server.address, timeout=LONG_S, trust_env=False) for _ in range(2)
     ]

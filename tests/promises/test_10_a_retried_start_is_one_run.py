@@ -1,6 +1,6 @@
 """Promise 10: a retried start is one run: the same `Idempotency-Key` 100 times.
 
-Also across restarts, and `kill -9` at random moments of the start: here 3 kills, 50 by `make soak`.
+Also across restarts and `kill -9` at random moments of the start: here 3 kills, 50 by `make soak`.
 """
 
 import random
@@ -55,7 +55,7 @@ def test_a_hundred_times_the_same_key_is_one_run(
     assert answers[0][1].endswith(run_id)
 
 
-def test_an_import_too(api: Api, trained: dict[str, Any]) -> None:
+def test_a_retried_import_is_one_run(api: Api, trained: dict[str, Any]) -> None:
     table = api.call("GET", f"/trainings/{trained['id']}/q-table?format=npz").content
     assert tables.from_bytes(table, "the table").meta["step"] == trained["progress"]["done"]
     path = "/trainings/import?name=imported-once"
@@ -65,7 +65,7 @@ def test_an_import_too(api: Api, trained: dict[str, Any]) -> None:
     assert len(runs(api, "training", "imported-once")) == 1
 
 
-def test_another_request_with_the_key_is_refused_and_starts_nothing(api: Api) -> None:
+def test_another_request_with_the_same_key_is_refused(api: Api) -> None:
     body = {**WALK, "steps": 20, "name": "first with the key"}
     start(api, "/trainings", "key", json=body)
     headers = {"Idempotency-Key": "key"}
@@ -76,14 +76,14 @@ def test_another_request_with_the_key_is_refused_and_starts_nothing(api: Api) ->
     assert not runs(api, "training", "other")
 
 
-def test_what_was_refused_for_now_can_be_tried_again(api: Api) -> None:
+def test_a_refused_request_can_be_retried_with_its_key(api: Api) -> None:
     headers = {"Idempotency-Key": "again"}
     body = {**WALK, "continue_from": "nobody"}
     for _ in range(2):
         refused(api.call("POST", "/trainings", json=body, headers=headers), 422, "nobody")
 
 
-def test_a_key_whose_run_was_deleted_says_so(api: Api) -> None:
+def test_a_key_whose_run_was_deleted_is_gone(api: Api) -> None:
     body = {**WALK, "steps": 5, "name": "deleted"}
     headers = {"Idempotency-Key": "of one that is gone"[:19].replace(" ", "-")}
     run = api.call("POST", "/trainings", json=body, headers=headers).json()
@@ -98,7 +98,7 @@ KILLS = at_length(3, 50)
 
 
 @pytest.mark.timeout(60 + 30 * KILLS)
-def test_a_key_outlives_its_server(launch: Callable[..., Served]) -> None:
+def test_a_key_survives_the_death_of_the_server(launch: Callable[..., Served]) -> None:
     chance = random.Random(10)
     server = launch()
     for number in range(KILLS):
@@ -106,8 +106,8 @@ def test_a_key_outlives_its_server(launch: Callable[..., Served]) -> None:
             "/trainings": {**BODY, "steps": 5, "name": f"training {number}"},
             "/races": {**BODY, "steps": 5, "name": f"race {number}"},
         }
-        told: list[str] = []
-        starter = threading.Thread(target=start_all, args=(server, number, bodies, told))
+        acknowledged: list[str] = []
+        starter = threading.Thread(target=start_all, args=(server, number, bodies, acknowledged))
         starter.start()
         time.sleep(chance.uniform(0, 0.3))
         server.process.send_signal(signal.SIGKILL)
@@ -116,20 +116,22 @@ def test_a_key_outlives_its_server(launch: Callable[..., Served]) -> None:
         server = launch()
         again: list[str] = []
         start_all(server, number, bodies, again)
-        assert again[: len(told)] == told, "what was acknowledged is there"
+        assert again[: len(acknowledged)] == acknowledged, (
+            "an acknowledged start must be returned again"
+        )
         for path, body in bodies.items():
             shown = server.client.get(f"/api/v1{path}").json()["items"]
             names = [run["name"] for run in shown if "damaged" not in run]
             assert names.count(body["name"]) == 1
         trainings = server.client.get("/api/v1/trainings").json()["items"]
-        assert len(trainings) == 2 * (number + 1), "a race brings its one training along"
-    assert len({*again, *told}) >= 2
+        assert len(trainings) == 2 * (number + 1), "a race starts its one training"
+    assert len({*again, *acknowledged}) >= 2
 
 
 def start_all(
-    server: Served, number: int, bodies: dict[str, dict[str, Any]], told: list[str]
+    server: Served, number: int, bodies: dict[str, dict[str, Any]], acknowledged: list[str]
 ) -> None:
-    """Ask for each with a key of its own; by `told` what was answered before the server died."""
+    """Start each run with its own key; append the ids that the server acknowledged."""
     for path, body in bodies.items():
         headers = {"Idempotency-Key": f"{number}{path}"}
         try:
@@ -138,4 +140,4 @@ def start_all(
         except httpx2.TransportError:
             return
         assert answer.status_code == 202, answer.text
-        told.append(answer.json()["id"])
+        acknowledged.append(answer.json()["id"])

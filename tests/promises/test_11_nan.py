@@ -1,7 +1,7 @@
-"""Promise 11: broken physics is seen: an injected NaN fails the run within one step.
+"""Promise 11: diverged physics is detected: an injected NaN fails the run within one step.
 
-The NaN comes in by the one way that leads from outside to a robot's state: a stored checkpoint. In
-full: one step after it the run is `failed`, says that the physics diverged, and has no evaluation.
+The NaN is injected by a stored checkpoint, the only external input to a robot's state. In full:
+one step after it the run is `failed`, reports that the physics diverged, and has no evaluation.
 """
 
 from collections.abc import Callable
@@ -25,7 +25,7 @@ STEP = 3
 
 
 @pytest.mark.parametrize("place", at_length([2, -1], range(-60, 60, 7)))
-def test_a_run_with_a_nan_in_it_fails_within_a_step(
+def test_a_run_with_a_nan_in_its_state_fails_within_a_step(
     place: int, launch: Callable[..., Served], tmp_path: Path
 ) -> None:
     learner = build_learner(CONFIG)

@@ -1,6 +1,6 @@
 """Promise 13: SIGTERM drains: a checkpoint is written, exit 0 within 10 s, no child left.
 
-So does SIGINT. In full: the promise has no numbers of its own to shorten.
+SIGINT does the same. In full, since there is nothing to shorten.
 """
 
 import signal
@@ -26,7 +26,7 @@ def test_a_signal_drains_the_server(by: int, launch: Callable[..., Served], tmp_
     for run in runs[1:-1]:
         server.moving(run)
     assert server.look(runs[-1])["state"] == "queued"
-    seen = {run["id"]: server.look(run)["progress"]["done"] for run in runs}
+    done_before = {run["id"]: server.look(run)["progress"]["done"] for run in runs}
     children = psutil.Process(server.process.pid).children(recursive=True)
     began = time.monotonic()
     assert server.end(by) == 0
@@ -39,7 +39,7 @@ def test_a_signal_drains_the_server(by: int, launch: Callable[..., Served], tmp_
         now = server.look(run)
         assert now["state"] == "interrupted"
         done = now["progress"]["done"]
-        assert done >= seen[run["id"]]
+        assert done >= done_before[run["id"]]
         assert checkpoint_step(tmp_path, run["id"]) == (done or None), (
             "progress and checkpoint agree"
         )
@@ -47,8 +47,8 @@ def test_a_signal_drains_the_server(by: int, launch: Callable[..., Served], tmp_
         server.tell(run, "stop")
 
 
-def test_an_experiment_and_its_cluster_end_as_well(launch: Callable[..., Served]) -> None:
-    """And the processes behind a what-if."""
+def test_sigterm_ends_an_experiment_and_its_cluster(launch: Callable[..., Served]) -> None:
+    """The processes of a what-if end as well."""
     server = launch()
     body = {"experiment": "sweep", "simulator": "kinematic", "steps": 1000, "workers": 1}
     run = server.start(body, "/experiments")

@@ -1,8 +1,8 @@
 """Promise 14: a dead worker is noticed, and a dead server's runs can be resumed.
 
 kill -9 of a job's process: `failed` with the signal named within 5 s. kill -9 of the server: its
-runs are `interrupted` at the next start, whatever they were at. An experiment repeats nothing that
-was kept, and neither death leaves a process of its cluster. In full, once each.
+runs are `interrupted` at the next start, in whatever state they were. An experiment repeats no
+stored trial, and neither death leaves a process of its cluster. In full, once each.
 """
 
 import json
@@ -32,9 +32,11 @@ def test_a_killed_job_is_failed_within_five_seconds(launch: Callable[..., Served
     assert server.in_state(other, "finished", "failed")["state"] == "finished"
 
 
-def test_a_dead_servers_runs_are_interrupted_and_go_on(launch: Callable[..., Served]) -> None:
+def test_a_dead_servers_runs_are_interrupted_and_can_be_resumed(
+    launch: Callable[..., Served],
+) -> None:
     server = launch()
-    # Half a minute, which is more than it takes to kill the server even on a busy machine.
+    # Takes longer than killing the server even on a busy machine.
     short = {**BODY, "steps": 1000, "pace": 12, "evaluate_every": 0}
     practice_body = {"steps": 1000, "pace": 12, "evaluate_every": 0}
     lanes = [{"agent": "q-learning", "training": practice_body}, {"agent": "greedy"}]
@@ -54,7 +56,7 @@ def test_a_dead_servers_runs_are_interrupted_and_go_on(launch: Callable[..., Ser
         assert server.look(run)["state"] == "interrupted"
     for run in (race, running):
         assert server.tell(run, "resume").status_code == 202
-        assert server.tell(run, "resume").status_code == 409, "it goes on already"
+        assert server.tell(run, "resume").status_code == 409, "it is resumed already"
     for training in (running["id"], practice):
         server.hurry(training)
     assert server.in_state(running, "finished", "failed")["state"] == "finished"
@@ -66,7 +68,7 @@ def test_a_dead_servers_runs_are_interrupted_and_go_on(launch: Callable[..., Ser
 
 
 @pytest.mark.timeout(300)
-def test_a_dead_servers_experiment_goes_on_and_leaves_no_process(
+def test_a_dead_servers_experiment_can_be_resumed_and_leaves_no_process(
     launch: Callable[..., Served],
 ) -> None:
     server = launch()
@@ -74,7 +76,7 @@ def test_a_dead_servers_experiment_goes_on_and_leaves_no_process(
     run = server.start({**body, "seeds": 40, "steps": 1000, "workers": 1}, "/experiments")
     server.after_step(run, 1)
     below = psutil.Process(server.process.pid).children(recursive=True)
-    assert len(below) > 2, "its job, and a cluster below that"
+    assert len(below) > 2, "the job's process, and its cluster's"
     server.end(signal.SIGKILL)
     _, left = psutil.wait_procs(below, timeout=10)
     assert not left

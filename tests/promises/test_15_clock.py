@@ -1,6 +1,6 @@
 """Promise 15: clock jumps of a day are harmless: no false failures, durations monotonic.
 
-The wall clock is moved for all of the server's own code; the jobs' processes keep the real one.
+The wall clock is patched for all code of the server's process; jobs' processes keep the real one.
 """
 
 import sys
@@ -26,7 +26,7 @@ both_ways = pytest.mark.parametrize("jump", [DAY, -DAY], ids=["forward", "back"]
 
 
 class Clock:
-    """The wall clock, which a test may put forward or back."""
+    """Patched wall clock that a test can set forward or back."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.ahead = timedelta()
@@ -77,7 +77,7 @@ def until(is_so: Callable[[], bool]) -> None:
 
 
 @both_ways
-def test_a_run_over_which_the_clock_jumps(jump: timedelta, clock: Clock, tmp_path: Path) -> None:
+def test_a_clock_jump_during_a_run(jump: timedelta, clock: Clock, tmp_path: Path) -> None:
     with server(tmp_path) as (store, jobs):
         began_s = time.monotonic()
         first, second = practice(jobs), practice(jobs)
@@ -97,9 +97,7 @@ def test_a_run_over_which_the_clock_jumps(jump: timedelta, clock: Clock, tmp_pat
 
 
 @both_ways
-def test_a_restart_over_which_the_clock_jumps(
-    jump: timedelta, clock: Clock, tmp_path: Path
-) -> None:
+def test_a_clock_jump_across_a_restart(jump: timedelta, clock: Clock, tmp_path: Path) -> None:
     with server(tmp_path) as (store, jobs):
         before = practice(jobs, steps=1)
         until(lambda: store.get(before.id).state == "finished")

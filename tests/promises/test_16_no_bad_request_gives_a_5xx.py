@@ -1,7 +1,7 @@
 """Promise 16: no bad request gives a 5xx: 10,000 cases, with NaN, Infinity and deep JSON.
 
-In full by `make soak`; the gate's shorter form has more than 200 cases that schemathesis makes out
-of the API's own description, and all of those that no description leads to.
+In full by `make soak`; the gate's shorter form has more than 200 cases that schemathesis generates
+from the API's OpenAPI schema, and all of the hand-written malformed ones.
 """
 
 import json
@@ -62,21 +62,21 @@ ODD_HEADERS = [
 
 
 @pytest.fixture
-def calm(serve: Serve) -> Api:
-    """A server whose jobs never start, and that is never too much."""
+def unlimited_api(serve: Serve) -> Api:
+    """The API of a server whose jobs never start, without a rate limit."""
     return serve(starts_per_minute=10**9)
 
 
 def operations(api: Api) -> list[Any]:
-    """All that the description has, but for the stream without an end."""
+    """Return all operations of the OpenAPI schema but the endless event stream."""
     schema: Any = schemathesis.openapi.from_dict(api.client.get("/openapi.json").json())
     found = [result.ok() for result in schema.get_all_operations()]
     return [operation for operation in found if operation.path != ENDLESS]
 
 
 @pytest.mark.timeout(3600)
-def test_of_what_the_description_leads_to(calm: Api) -> None:
-    found = operations(calm)
+def test_generated_requests_give_no_5xx(unlimited_api: Api) -> None:
+    found = operations(unlimited_api)
     assert len(found) > 25
     failed: list[tuple[int, str]] = []
     count = 0
@@ -84,7 +84,7 @@ def test_of_what_the_description_leads_to(calm: Api) -> None:
     def try_one(case: Any) -> None:
         nonlocal count
         count += 1
-        answer = calm.client.request(**sendable(case))
+        answer = unlimited_api.client.request(**sendable(case))
         if answer.status_code >= 500 and case.path != "/readyz":
             failed.append((answer.status_code, case.as_curl_command()))
 
@@ -96,7 +96,7 @@ def test_of_what_the_description_leads_to(calm: Api) -> None:
 
 
 def run_cases(strategy: Any, act: Callable[[Any], None], operations: int) -> None:
-    # More than are wanted of each, since some operations have but a few that differ.
+    # More than needed of each, since some operations have only a few distinct cases.
     most = max(2, at_length(1, 2) * CASES // operations)
     settings: Any = hypothesis.settings(
         max_examples=most,
@@ -111,12 +111,12 @@ def run_cases(strategy: Any, act: Callable[[Any], None], operations: int) -> Non
     try:
         test()
     except hypothesis.errors.Unsatisfiable:
-        # Some operations take nothing that could be wrong.
+        # Operations without parameters have no negative cases.
         return
 
 
 def sendable(case: Any) -> dict[str, Any]:
-    """The case as the test's client sends it."""
+    """Return a case as arguments of the test client's `request`."""
     request = case.as_transport_kwargs(base_url=ADDRESS)
     data = request.pop("data", None)
     if data is not None:
@@ -133,7 +133,7 @@ def sendable(case: Any) -> dict[str, Any]:
 
 
 def odd_requests(api: Api) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Bodies, numbers, queries and headers for every operation."""
+    """Yield malformed requests for every operation: method, path and arguments."""
     as_json = {"Content-Type": "application/json"}
     for operation in operations(api):
         method, path = operation.method.upper(), operation.path.replace("{run_id}", "none")
@@ -144,13 +144,13 @@ def odd_requests(api: Api) -> Iterator[tuple[str, str, dict[str, Any]]]:
         if method in ("POST", "PUT", "PATCH"):
             for body in ODD_BODIES:
                 yield method, path, {"content": body, "headers": as_json}
-    for path, said in odd_values():
+    for path, content in odd_values():
         method = "PUT" if path.endswith("stage") else "POST"
-        yield method, path, {"content": said, "headers": as_json}
+        yield method, path, {"content": content, "headers": as_json}
 
 
 def odd_values() -> Iterator[tuple[str, str]]:
-    """Every odd number in the fields that take one."""
+    """Yield path and body with every odd number in each numeric field."""
     for field in ("steps", "seed", "alpha", "grid_side_m", "pace", "divisions", "name", "robot"):
         for number in NUMBERS:
             yield "/api/v1/trainings", json.dumps(WALK)[:-1] + f', "{field}": {number}}}'
@@ -178,10 +178,15 @@ def odd_values() -> Iterator[tuple[str, str]]:
             yield "/api/v1/stage", f'{{"{field}": {number}}}'
 
 
-def test_of_what_nobody_would_describe(calm: Api) -> None:
+def test_malformed_requests_give_no_5xx(unlimited_api: Api) -> None:
     answers = [
-        (calm.client.request(method, path, **more).status_code, method, path, str(more)[:200])
-        for method, path, more in odd_requests(calm)
+        (
+            unlimited_api.client.request(method, path, **more).status_code,
+            method,
+            path,
+            str(more)[:200],
+        )
+        for method, path, more in odd_requests(unlimited_api)
     ]
     assert len(answers) > 500
     assert [

@@ -1,7 +1,7 @@
 """Promise 17: bodies are capped: 1 MiB of JSON, chunked too: 413, memory flat.
 
-In full, for every route that changes something: 256 MiB are announced, or one chunk more than
-allowed is sent without an end.
+In full, for every writing route: 256 MiB are announced by Content-Length, or one chunk more than
+allowed is sent of an unfinished chunked body.
 """
 
 import http.client
@@ -21,7 +21,7 @@ WRITING = ("POST", "PUT", "PATCH", "DELETE")
 
 
 def answer(server: Serving, method: str, path: str, *, chunked: bool) -> int:
-    """Offer more than is allowed, and stop when the server says so or hangs up."""
+    """Send a too large body until the server answers or closes; return the status."""
     connection = http.client.HTTPConnection(urlsplit(server.address).netloc, timeout=60)
     connection.putrequest(method, path)
     connection.putheader("Content-Type", "application/json")
@@ -42,7 +42,7 @@ def answer(server: Serving, method: str, path: str, *, chunked: bool) -> int:
 
 
 def chunks() -> Iterator[bytes]:
-    """Just over the limit, and not the end of it."""
+    """Yield chunks just beyond the limit, without the last chunk."""
     for _ in range(MAX_BODY_BYTES // len(CHUNK) + 1):
         yield f"{len(CHUNK):x}\r\n".encode() + CHUNK + b"\r\n"
 

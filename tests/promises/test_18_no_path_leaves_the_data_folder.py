@@ -1,7 +1,7 @@
 """Promise 18: no path leaves the data folder: `..`, `%2e`, `%2f`, `\\`, raw paths: 0 escapes.
 
-Every way of writing "up" is tried in every route that takes a path or has a folder, over a raw
-socket, since clients tidy paths up before they send them: each third such path in the gate, all of
+Path traversal is tried with every encoding of "..", in every route that takes a path or serves a
+folder, over a raw socket, since clients normalise paths: each third such path in the gate, all of
 them by `make soak`.
 """
 
@@ -36,7 +36,7 @@ OTHERS = [
     "*",
     "../../etc/passwd",
 ]
-GIVEN_AWAY = (SECRET.encode(), b"root:x:0:0", b"SQLite format 3", b"[build-system]", b'"""Settings')
+LEAKS = (SECRET.encode(), b"root:x:0:0", b"SQLite format 3", b"[build-system]", b'"""Settings')
 
 
 def paths(templates: list[str]) -> list[str]:
@@ -51,25 +51,25 @@ def paths(templates: list[str]) -> list[str]:
 
 
 @pytest.mark.timeout(300)
-def test_nothing_is_given_away_or_left_behind(tmp_path: Path) -> None:
+def test_no_path_reads_or_writes_outside_the_data_folder(tmp_path: Path) -> None:
     (tmp_path / "secret.txt").write_text(SECRET)
     data = tmp_path / "data"
     app = create_app(Settings(data=data))
     templates = sorted({route.path for route in every_route(app) if "{" in route.path})
-    tried = paths(templates)[:: at_length(3, 1)]
-    assert len(tried) > at_length(1_500, 4_500)
+    attempts = paths(templates)[:: at_length(3, 1)]
+    assert len(attempts) > at_length(1_500, 4_500)
     with serving(data) as server:
-        for number, path in enumerate(tried):
-            # In turns: each tenth also tries to change something there.
+        for number, path in enumerate(attempts):
+            # Every tenth request uses a writing method.
             method = ("DELETE", "PUT", "POST", "PATCH")[number % 4] if number % 10 == 0 else "GET"
             lines = [f"{method} {path} HTTP/1.1", "Host: 127.0.0.1", "Content-Length: 0"]
             answer = send(server.port, *lines)
-            assert not any(word in answer for word in GIVEN_AWAY), path
+            assert not any(word in answer for word in LEAKS), path
             assert status_of(answer) < 500, (path, answer)
-        assert _is_alive(server)
+        assert _is_healthy(server)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["data", "secret.txt"]
     assert (tmp_path / "secret.txt").read_text() == SECRET
 
 
-def _is_alive(server: Serving) -> bool:
+def _is_healthy(server: Serving) -> bool:
     return status_of(send(server.port, "GET /healthz HTTP/1.1", "Host: 127.0.0.1")) == 200

@@ -32,7 +32,7 @@ FOREIGN_ORIGINS = [
     "null",
     "",
     "http://127.0.0.1:{port}, http://evil.example",
-    # The same machine: on another port, by the standard one, and by another of its names.
+    # The same machine on another port, on the standard port, and by another of its names.
     "http://127.0.0.1:8399",
     "http://127.0.0.1",
     "https://127.0.0.1",
@@ -49,7 +49,7 @@ FOREIGN_FETCHES = [
 ]
 
 
-def test_all_are_refused_everywhere(quiet_server: Serving) -> None:
+def test_foreign_headers_are_refused_on_every_route(quiet_server: Serving) -> None:
     port = quiet_server.port
     own = f"127.0.0.1:{port}"
     headers = [{"Host": host.format(port=port)} for host in FOREIGN_HOSTS]
@@ -57,17 +57,17 @@ def test_all_are_refused_everywhere(quiet_server: Serving) -> None:
     headers += FOREIGN_FETCHES
     routes = every_route(create_app(Settings(data=quiet_server.data)))
     assert {"WS"} < {route.method for route in routes}
-    let_in = []
+    accepted = []
     for route in routes:
         for foreign in headers:
             answer = send(port, *request_lines(route, own, **foreign))
-            # uvicorn itself refuses a Host that is none.
+            # uvicorn itself refuses a malformed Host.
             if status_of(answer) not in (403, 400):
-                let_in.append((route, foreign, answer[:100]))
-    assert let_in == []
+                accepted.append((route, foreign, answer[:100]))
+    assert accepted == []
 
 
-def test_two_hosts_or_origins_are_none(quiet_server: Serving) -> None:
+def test_duplicate_hosts_or_origins_are_refused(quiet_server: Serving) -> None:
     port = quiet_server.port
     for more in (
         [f"Host: 127.0.0.1:{port}", "Host: evil.example"],
@@ -83,7 +83,7 @@ def test_two_hosts_or_origins_are_none(quiet_server: Serving) -> None:
         assert status_of(answer) in (400, 403), more
 
 
-def test_ones_own_page_gets_everywhere(quiet_server: Serving) -> None:
+def test_the_apps_own_page_is_accepted_on_every_route(quiet_server: Serving) -> None:
     port = quiet_server.port
     own = f"127.0.0.1:{port}"
     for route in every_route(create_app(Settings(data=quiet_server.data))):

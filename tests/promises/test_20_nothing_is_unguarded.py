@@ -1,7 +1,7 @@
 """Promise 20: nothing is unguarded: each route and websocket has its role.
 
-In full: they are enumerated from the app, so that one that is new is in here as well; spectators
-change nothing by any of them, and their page offers nothing that would fail.
+In full: routes are enumerated from the app, so that new ones are covered; spectators can change
+nothing by any of them, and their page offers no control that would be refused.
 """
 
 import json
@@ -24,7 +24,7 @@ TOKEN = "a-token-for-tests"
 Serve = Callable[..., Api]
 READS = {"GET", "HEAD", "WS"}
 FOR_ANYONE = {"/", "/healthz", "/readyz", "/static/favicon.svg"}
-"""Even where spectators need the token: the page says so, and who watches over it can see it."""
+"""Accessible without the token: the page, which asks for it, and the health checks."""
 OPERATOR = f"Authorization: Bearer {TOKEN}"
 VALID_BODIES: dict[str, Any] = {
     "/api/v1/trainings": {"gait": "left-right-origin", "simulator": "kinematic", "steps": 5},
@@ -37,14 +37,14 @@ VALID_BODIES: dict[str, Any] = {
 
 
 def role_of(route: Route) -> str:
-    """What is promised of it."""
+    """Return the role that a route must require."""
     if route.method not in READS:
         return "operator"
     return "anyone" if route.path in FOR_ANYONE else "spectator"
 
 
-def ask(server: Serving, route: Route, run_id: str, *headers: str) -> int:
-    """What a request that would work gets."""
+def status_for(server: Serving, route: Route, run_id: str, *headers: str) -> int:
+    """Return the status of an otherwise valid request."""
     lines = request_lines(
         Route(route.method, route.path.replace("{run_id}", run_id)), f"127.0.0.1:{server.port}"
     )
@@ -59,12 +59,12 @@ def ask(server: Serving, route: Route, run_id: str, *headers: str) -> int:
 
 
 def state_of(server: Serving) -> Any:
-    """All that someone could have changed."""
+    """Return all state that a request could change."""
     paths = ("/api/v1/trainings", "/api/v1/races", "/api/v1/experiments", "/api/v1/stage")
     lines = [f"Host: 127.0.0.1:{server.port}", OPERATOR]
     answers = [send(server.port, f"GET {path} HTTP/1.1", *lines) for path in paths]
     state = [json.loads(answer.partition(b"\r\n\r\n")[2]) for answer in answers]
-    # It goes by itself.
+    # These change by themselves.
     for name in ("time_s", "ended", "live"):
         state[-1].pop(name)
     return state
@@ -87,8 +87,8 @@ def public(tmp_path: Path) -> Any:
         yield server
 
 
-def a_run(server: Serving) -> str:
-    """One that a request could change, or delete."""
+def finished_run(server: Serving) -> str:
+    """Start a training, wait for its end, and return its id."""
     body = json.dumps(VALID_BODIES["/api/v1/trainings"])
     lines = ["Content-Type: application/json", f"Content-Length: {len(body)}", OPERATOR]
     host = f"Host: 127.0.0.1:{server.port}"
@@ -100,42 +100,42 @@ def a_run(server: Serving) -> str:
     return run_id
 
 
-def test_each_has_its_role_and_spectators_change_nothing(public: Serving) -> None:
-    run_id = a_run(public)
+def test_each_route_has_its_role_and_spectators_change_nothing(public: Serving) -> None:
+    run_id = finished_run(public)
     before = state_of(public)
     for route in routes(public.data):
-        status = ask(public, route, run_id)
+        status = status_for(public, route, run_id)
         if role_of(route) == "operator":
             assert status == 401, route
         else:
             assert status not in (401, 403), route
     for method in ("POST", "PUT", "PATCH", "DELETE", "TRACE", "CONNECT", "MKCOL", "get"):
         for path in ("/nothing", "/metrics", "/viewer/", "/static/favicon.svg", "/docs"):
-            assert ask(public, Route(method, path), run_id) >= 400, (method, path)
+            assert status_for(public, Route(method, path), run_id) >= 400, (method, path)
     assert state_of(public) == before
 
 
-def test_where_spectators_need_the_token_nothing_is_seen_without(guarded: Serving) -> None:
+def test_without_the_token_a_guarded_server_refuses_reads(guarded: Serving) -> None:
     for route in routes(guarded.data):
-        status = ask(guarded, route, "none")
+        status = status_for(guarded, route, "none")
         if role_of(route) == "anyone":
             assert status in (200, 503), route
         else:
             assert status == (403 if route.method == "WS" else 401), route
 
 
-def test_operators_are_let_in_everywhere(guarded: Serving) -> None:
+def test_operators_are_accepted_on_every_route(guarded: Serving) -> None:
     for route in routes(guarded.data):
-        assert ask(guarded, route, "none", OPERATOR) not in (401, 403), route
+        assert status_for(guarded, route, "none", OPERATOR) not in (401, 403), route
 
 
 def test_a_spectators_page_offers_nothing_that_would_fail(
     page: Page, public: Serving, dashboard: Dashboard
 ) -> None:
-    a_run(public)
-    asked: list[Request] = []
-    # A builtin is nothing that Playwright can take.
-    page.on("request", lambda request: asked.append(request))  # noqa: PLW0108
+    finished_run(public)
+    requests: list[Request] = []
+    # Playwright cannot inspect the signature of a builtin method.
+    page.on("request", lambda request: requests.append(request))  # noqa: PLW0108
     dashboard.open(public.address)
     expect(page.locator(".live")).to_contain_text("live")
     pressed = press_everything(page)
@@ -146,14 +146,14 @@ def test_a_spectators_page_offers_nothing_that_would_fail(
         page.keyboard.press(key)
 
     assert len(pressed) > 3
-    changing = [f"{one.method} {one.url}" for one in asked if one.method not in ("GET", "HEAD")]
+    changing = [f"{one.method} {one.url}" for one in requests if one.method not in ("GET", "HEAD")]
     assert changing == []
     verbs = ("Train ", "Race", "Stop", "Pause", "Resume", "Delete", "Show on", "Start", "Go on")
     assert not [words for words in pressed if words != "Races" and words.startswith(verbs)]
 
 
 def press_everything(page: Page) -> list[str]:
-    """Press all buttons that can be pressed, and say what they were."""
+    """Press all enabled buttons, and return their labels."""
     page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
     pressed = []
     for button in page.locator("button, [role=button], summary").all():

@@ -17,7 +17,7 @@ from tests.promises.length import at_length
 
 PAYLOADS = 200
 ON_STAGE = at_length(3, PAYLOADS)
-"""How many of them are put on stage, where the name is drawn in 3D and stands over the picture."""
+"""Number of payloads shown on stage, as 3D label and as caption."""
 
 RUNS = "window.xss=1"
 TAGS = [
@@ -51,7 +51,7 @@ PREFIXES = ["", '"', "'", "'>", '">', "</title>", "</script>", "\u0301\ufe0f\u03
 
 
 def payloads() -> list[str]:
-    """All different, and as long as a name may be."""
+    """Return distinct payloads, each at most as long as a name may be."""
     found = [prefix + tag.replace("{}", RUNS) for prefix, tag in product(PREFIXES, TAGS)]
     return list(dict.fromkeys(name[:100] for name in found))[:PAYLOADS]
 
@@ -64,43 +64,43 @@ addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) 
 
 
 class Watched:
-    """A page on which nothing may run that is not its own."""
+    """A page monitored for executed payloads, policy violations and foreign requests."""
 
     def __init__(self, page: Page) -> None:
         self.page = page
-        self.wrong: list[str] = []
+        self.violations: list[str] = []
         page.set_default_timeout(PATIENCE_MS)
         page.add_init_script(WATCH)
-        page.on("dialog", self._opened)
-        page.on("pageerror", lambda error: self.wrong.append(str(error)))
-        page.on("console", self._heard)
-        page.on("request", lambda request: self._asked(request.url))
+        page.on("dialog", self._on_dialog)
+        page.on("pageerror", lambda error: self.violations.append(str(error)))
+        page.on("console", self._on_console)
+        page.on("request", lambda request: self._on_request(request.url))
 
     def check(self) -> None:
         for frame in self.page.frames:
-            self.wrong += self._of(frame)
-        assert self.wrong == []
+            self.violations += self._violations_in(frame)
+        assert self.violations == []
 
-    def _of(self, frame: Frame) -> list[str]:
+    def _violations_in(self, frame: Frame) -> list[str]:
         found: list[str] = frame.evaluate("[...(window.violations ?? ['not watched'])]")
         return found + (["a script ran"] if frame.evaluate("'xss' in window") else [])
 
-    def _opened(self, dialog: Dialog) -> None:
-        self.wrong.append(dialog.message)
+    def _on_dialog(self, dialog: Dialog) -> None:
+        self.violations.append(dialog.message)
         dialog.dismiss()
 
-    def _heard(self, message: ConsoleMessage) -> None:
+    def _on_console(self, message: ConsoleMessage) -> None:
         if "Content Security Policy" in message.text:
-            self.wrong.append(message.text)
+            self.violations.append(message.text)
 
-    def _asked(self, url: str) -> None:
+    def _on_request(self, url: str) -> None:
         if "evil.example" in url:
-            self.wrong.append(url)
+            self.violations.append(url)
 
 
 @pytest.fixture
-def named(server: Serving) -> list[dict[str, Any]]:
-    """A run for each payload: imported, since that needs no process."""
+def payload_runs(server: Serving) -> list[dict[str, Any]]:
+    """A run for each payload; imported, since that needs no job process."""
     names = payloads()
     assert len(names) == PAYLOADS
     with httpx2.Client(base_url=f"{server.address}api/v1", timeout=60) as client:
@@ -123,33 +123,35 @@ def named(server: Serving) -> list[dict[str, Any]]:
 
 
 @pytest.mark.timeout(900)
-def test_none_of_them_runs(page: Page, server: Serving, named: list[dict[str, Any]]) -> None:
+def test_no_payload_in_a_run_name_is_executed(
+    page: Page, server: Serving, payload_runs: list[dict[str, Any]]
+) -> None:
     watched = Watched(page)
     page.goto(f"{server.address}#runs")
     rows = page.locator("li.run")
-    while (shown := rows.count()) < len(named):
+    while (shown := rows.count()) < len(payload_runs):
         page.get_by_role("button", name="Show older runs").click()
         expect(rows).not_to_have_count(shown)
     text = page.locator("li.run .what b").all_text_contents()
-    assert {run["name"] for run in named} <= set(text)
+    assert {run["name"] for run in payload_runs} <= set(text)
     watched.check()
 
     page.goto(server.address)
-    for run in [named[-1], *named[:: len(named) // ON_STAGE]][: ON_STAGE + 1]:
+    for run in [payload_runs[-1], *payload_runs[:: len(payload_runs) // ON_STAGE]][: ON_STAGE + 1]:
         put = {"run_id": run["id"]}
         assert httpx2.put(f"{server.address}api/v1/stage", json=put).status_code == 200
         expect(page.locator("body")).to_contain_text(run["name"].strip()[:20])
         expect(page.locator(".stage")).to_have_attribute("data-status", "connected")
         watched.check()
 
-    film = f"/api/v1/races/{named[-1]['id']}/recording%3Fformat%3Dviser"
-    page.goto(f"{server.address}viewer/?playbackPath={film}")
+    recording = f"/api/v1/races/{payload_runs[-1]['id']}/recording%3Fformat%3Dviser"
+    page.goto(f"{server.address}viewer/?playbackPath={recording}")
     page.wait_for_selector(".mantine-Slider-root", state="visible")
     watched.check()
 
 
 @pytest.mark.parametrize("path", ["docs", "nothing/", "viewer/", "api/v1/trainings/", "?x="])
-def test_what_an_address_says_is_text_too(page: Page, quiet_server: Serving, path: str) -> None:
+def test_no_payload_in_a_url_is_executed(page: Page, quiet_server: Serving, path: str) -> None:
     watched = Watched(page)
     for payload in payloads()[:: at_length(100, 1)]:
         page.goto(quiet_server.address + path + html.escape(payload).replace("#", "%23"))

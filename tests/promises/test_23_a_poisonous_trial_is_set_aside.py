@@ -1,8 +1,8 @@
 """Promise 23: a poisonous trial is set aside.
 
-A trial that ends its worker's process with SIGKILL, each time, is tried three times and then set
-aside: it is named in the summary and in the report, and all others complete, with the results that
-they have without it. In full: on MuJoCo, with five poisonous trials among a hundred.
+A trial that kills its worker's process with SIGKILL at each attempt is tried three times and then
+set aside: it is named in the summary and in the report, and all others complete with the results
+that they have without it. In full: on MuJoCo, with five poisonous trials among a hundred.
 """
 
 from pathlib import Path
@@ -32,16 +32,16 @@ CONFIG: ExperimentConfig = experiment_config(
 )
 
 
-def completed(folder: ResultsFolder) -> None:
-    """Run what is not done, as the command does."""
-    known = {**folder.results, **folder.set_aside}
-    undone = [trial for trial in Plan(CONFIG).trials() if trial.key not in known]
+def run_undone(folder: ResultsFolder) -> None:
+    """Run the trials without a result, as the command does."""
+    recorded = {**folder.results, **folder.set_aside}
+    undone = [trial for trial in Plan(CONFIG).trials() if trial.key not in recorded]
     for outcome in run_trials(undone, ClusterSpec(workers=2)):
         folder.add(outcome)
 
 
 @pytest.mark.timeout(at_length(120, 1200))
-def test_who_kills_its_worker_three_times_is_set_aside_and_the_rest_completes(
+def test_a_trial_that_kills_its_worker_three_times_is_set_aside_and_the_rest_completes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(FOLDER, str(tmp_path))
@@ -51,16 +51,18 @@ def test_who_kills_its_worker_three_times_is_set_aside_and_the_rest_completes(
     poison(tmp_path, [(trial.config.training.seed, "kill") for trial in poisonous])
 
     with open_results(tmp_path / "results", CONFIG) as folder:
-        completed(folder)
+        run_undone(folder)
         assert tries(tmp_path) == ["kill"] * 3 * len(poisonous)
-        completed(folder)
-        assert len(tries(tmp_path)) == 3 * len(poisonous), "who was set aside is left in peace"
+        run_undone(folder)
+        assert len(tries(tmp_path)) == 3 * len(poisonous), (
+            "a trial set aside must not be tried again"
+        )
         summary = summarise(CONFIG, folder.results, folder.set_aside)
         results = dict(folder.results)
 
     keys = {trial.key for trial in poisonous}
-    named = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
-    assert named == dict.fromkeys(keys, "it ended its worker's process 3 times")
+    reasons = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
+    assert reasons == dict.fromkeys(keys, "it ended its worker's process 3 times")
     assert summary["trials"]["done"] == len(trials) - len(poisonous)
     report = page(summary)
     for key in keys:

@@ -1,10 +1,10 @@
 """Promise 24: it runs for days: 24 h of simulated use: memory grows under 5 %, open files stay.
 
-The database has at most `SQLITE_FILES` open files, and of all others there are as many as before.
+The database has at most `SQLITE_FILES` open files, and the number of all others does not grow.
 
-In full by `make soak`: what a class does in a day, one after another: 1,000 rounds of starting,
-watching, dropping, asking and deleting. The gate's shorter form has 6 rounds after 4 that warm the
-server up, and allows for 10 MB: so few cannot tell a leak from an allocator.
+In full by `make soak`: the use by a class in a day: 1,000 rounds of starting, watching,
+disconnecting, reading and deleting. The gate's shorter form has 6 rounds after 4 warm-up rounds,
+and allows 10 MB: so few cannot distinguish a leak from the allocator's behaviour.
 """
 
 import time
@@ -28,8 +28,8 @@ NOTICED_S = 2.0
 BODY = {"gait": "left-right-origin", "simulator": "kinematic", "steps": 20, "evaluate_every": 10}
 
 
-def one_round(server: Serving, api: httpx2.Client) -> None:
-    """One training and what belongs to it, and nothing of it left."""
+def use_once(server: Serving, api: httpx2.Client) -> None:
+    """Start, watch, read and delete one training, so that nothing of it is left."""
     viewers = [Viewer(f"ws://127.0.0.1:{server.port}/viewer/?view={view}") for view in ("1", "2")]
     events = Events(server.port, None)
     events.next()
@@ -39,8 +39,8 @@ def one_round(server: Serving, api: httpx2.Client) -> None:
         time.sleep(0.02)
     for viewer in viewers:
         viewer.frame()
-    for asked in ("/curve", "/q-table", "/q-table?format=npz", "/nothing"):
-        api.get(path + asked)
+    for path_below in ("/curve", "/q-table", "/q-table?format=npz", "/nothing"):
+        api.get(path + path_below)
     api.put("/stage", json={"run_id": run["id"]})
     api.post("/trainings", json={"gait": "none"})
     events.drop()
@@ -49,18 +49,21 @@ def one_round(server: Serving, api: httpx2.Client) -> None:
     assert api.delete(path).status_code == 204
 
 
-def settled(server: Serving) -> tuple[int, int]:
-    """Its memory, and its open files beside those of the database, once what was closed is gone."""
+def memory_and_files(server: Serving) -> tuple[int, int]:
+    """Return resident memory and the number of open files other than the database's.
+
+    Waits until closed connections are cleaned up.
+    """
     deadline = time.monotonic() + PATIENCE_S
     while "hexapods_viewers 0.0" not in httpx2.get(f"{server.address}metrics").text:
         assert time.monotonic() < deadline
         time.sleep(0.05)
     assert len(database_files(server.pid, server.data)) <= SQLITE_FILES
-    return psutil.Process(server.pid).memory_info().rss, fewest_files(server)
+    return psutil.Process(server.pid).memory_info().rss, lowest_file_count(server)
 
 
-def fewest_files(server: Serving) -> int:
-    """A connection that was just closed counts until the server has noticed it."""
+def lowest_file_count(server: Serving) -> int:
+    """Return the least number of open files over 2 s, since closed connections linger."""
     end = time.monotonic() + NOTICED_S
     counts = []
     while time.monotonic() < end:
@@ -71,14 +74,14 @@ def fewest_files(server: Serving) -> int:
 
 
 @pytest.mark.timeout(6 * 3600)
-def test_nothing_grows(server: Serving) -> None:
+def test_memory_and_open_files_do_not_grow(server: Serving) -> None:
     with httpx2.Client(base_url=f"{server.address}api/v1", timeout=PATIENCE_S) as api:
         for _ in range(WARM_UP):
-            one_round(server, api)
-        memory_before, files_before = settled(server)
+            use_once(server, api)
+        memory_before, files_before = memory_and_files(server)
         for _ in range(ROUNDS):
-            one_round(server, api)
-        memory, files = settled(server)
+            use_once(server, api)
+        memory, files = memory_and_files(server)
 
     assert memory <= memory_before * 1.05 + SOME_BYTES
     assert files <= files_before

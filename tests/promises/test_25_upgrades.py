@@ -31,7 +31,7 @@ on_both = pytest.mark.parametrize("backend", BACKENDS)
 
 
 def load(dump: Path, folder: Path, url: str | None) -> None:
-    """Make a data folder and a database as they were when the dump was taken."""
+    """Restore data folder and database from a dump."""
     if url is None:
         with closing(sqlite3.connect(folder / DATABASE_FILE)) as file:
             file.executescript(dump.read_text())
@@ -60,7 +60,7 @@ def check(store: SqlStore, revision: str) -> None:
     runs = [*sample.RUNS, *([sample.EXPERIMENT] if revision >= "0002" else [])]
     assert [run.id for run in store.list().items] == [run.id for run in reversed(runs)]
     for run in runs:
-        # NaN is not itself; as text it is.
+        # NaN is not equal to itself; its repr is.
         assert repr(store.get(run.id)) == repr(run)
     if revision >= "0002":
         assert store.trials(sample.EXPERIMENT.id) == TRIALS
@@ -91,7 +91,7 @@ def test_every_released_schema_migrates(
 
 
 @on_both
-def test_the_migrations_lead_to_the_schema_that_is_used(
+def test_the_migrations_result_in_the_current_schema(
     backend: str, postgresql: PostgresServer, tmp_path: Path
 ) -> None:
     with database_url(backend, postgresql) as url:
@@ -106,10 +106,10 @@ def test_the_migrations_lead_to_the_schema_that_is_used(
 
 
 @on_both
-def test_a_migration_that_fails_changes_nothing(
+def test_a_failed_migration_is_rolled_back(
     backend: str, postgresql: PostgresServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A further schema, made up here, that gives up halfway."""
+    """A made-up further migration raises halfway."""
     broken = tmp_path / "migrations"
     shutil.copytree(Path(migration.__file__).with_name("migrations"), broken)
     (broken / "versions" / "schema_9999.py").write_text(
@@ -120,13 +120,13 @@ def test_a_migration_that_fails_changes_nothing(
         "    op.execute('UPDATE runs SET half = 1')\n"
         "    raise RuntimeError('halfway')\n"
     )
-    made = migration._config()
-    made.set_main_option("script_location", str(broken))
+    config = migration._config()
+    config.set_main_option("script_location", str(broken))
     with database_url(backend, postgresql) as url:
         with opened(tmp_path, url) as store:
             sample.put(store)
         with monkeypatch.context() as patch:
-            patch.setattr(migration, "_config", lambda: made)
+            patch.setattr(migration, "_config", lambda: config)
             with pytest.raises(RuntimeError, match="halfway"), opened(tmp_path, url):
                 pass
         with opened(tmp_path, url) as store:

@@ -1,8 +1,8 @@
-"""Promise 26: the queue never stops, whatever is asked in whatever order.
+"""Promise 26: the queue never stops, whatever commands arrive in whatever order.
 
-Random verbs (start, pause, resume, stop, delete, PATCH, and kill -9 of a job's process) against a
-model of the states, while another client deletes further runs at every moment of their lives. Each
-answer must be one that the model allows; in the end nothing is left over, and the queue moves.
+Model-based test: random verbs (start, pause, resume, stop, delete, PATCH, and kill -9 of a job's
+process) against a state machine, while another client deletes further runs in every state. Each
+answer must be allowed by the model; at the end no rows or files are left, and the queue moves.
 
 Promised: 100,000 verbs. Here 2,000; in full by `make soak`. `/readyz` answers 503 while a queued
 run waits beside a free core for 5 s, which is shown below by a supervisor that cannot start it.
@@ -32,10 +32,10 @@ RUNS = 10
 SHORT = {**BODY, "steps": 30, "evaluate_every": 10}
 LIVE = {"running", "paused"}
 ENDED = {"finished", "stopped", "failed", "interrupted"}
-BY_ITSELF = {"queued": {"running"}, "running": {"finished"}, "paused": {"finished"}}
-"""State → where a run may have gone since without being told.
+SPONTANEOUS = {"queued": {"running"}, "running": {"finished"}, "paused": {"finished"}}
+"""State → the states that a run may have reached by itself.
 
-Its last step may be done when it is paused, and the word of its end on the way.
+A paused run may finish: its last step may be done, and the message of its end in transit.
 """
 
 
@@ -43,28 +43,30 @@ WEIGHTS = {"look": 4, "pause": 4, "resume": 4, "change": 4, "stop": 1, "delete":
 
 
 class Model:
-    """What may be true of one run: the states that it can be in."""
+    """State-machine model of one run: the set of states that it may be in."""
 
     def __init__(self, shown: dict[str, Any]) -> None:
         self.path = f"/api/v1/trainings/{shown['id']}"
         self.is_short = shown["config"]["steps"] == SHORT["steps"]
         self.states = {"queued"}
         self.is_killed = False
-        """Whether its process was killed, perhaps, and it may fail as soon as that is noticed."""
+        """Whether its process may have been killed, so that it may become `failed`."""
 
     def possible(self) -> set[str]:
         found, left = set(), set(self.states)
         while left:
             state = left.pop()
             found.add(state)
-            further = BY_ITSELF.get(state, set()) - found
+            further = SPONTANEOUS.get(state, set()) - found
             left |= further if self.is_short else further - {"finished"}
         if self.is_killed and found & LIVE:
             found.add("failed")
         return found
 
-    def expect(self, response: httpx2.Response, goes: dict[str, str], fits: set[str]) -> None:
-        """Hold an answer against the model.
+    def expect(
+        self, response: httpx2.Response, transitions: dict[str, str], refusing_states: set[str]
+    ) -> None:
+        """Check an answer against the model, and update the model.
 
         Args:
             response: to a verb.
@@ -73,16 +75,16 @@ class Model:
         """
         before = self.possible()
         if response.status_code < 300:
-            after = {goes[state] for state in before & goes.keys()}
+            after = {transitions[state] for state in before & transitions.keys()}
             shown = response.json()["state"] if response.content else "deleted"
-            # Meanwhile it may have gone on by itself, even to its end.
+            # Meanwhile it may have changed its state by itself, even to its end.
             self.states = after
             ended = {"finished", "failed"} & before
             assert shown in self.possible() | after | ended, (before, response.text)
             self.states = {shown}
             self.is_killed &= shown in LIVE
         elif response.status_code == 409:
-            self.states = before & fits
+            self.states = before & refusing_states
             assert self.states, (before, response.text)
         else:
             assert response.status_code in (429, 503), response.text
@@ -95,9 +97,9 @@ def start(client: httpx2.Client, chance: random.Random) -> Model | None:
     return Model(response.json()) if response.status_code == 202 else None
 
 
-def verb(client: httpx2.Client, run: Model, chance: random.Random) -> bool:
-    """Ask one thing of a run; False if it is gone."""
-    # A start takes a second of a core, so that there are fewer of those than of the others.
+def apply_verb(client: httpx2.Client, run: Model, chance: random.Random) -> bool:
+    """Send a random verb to a run; return False if it was deleted."""
+    # Verbs that need a new process, which takes a second of a core, are rarer.
     (name,) = chance.choices(list(WEIGHTS), list(WEIGHTS.values()))
     if name == "look":
         shown = client.get(run.path).json()["state"]
@@ -108,23 +110,23 @@ def verb(client: httpx2.Client, run: Model, chance: random.Random) -> bool:
             client.post(f"{run.path}/pause"), {"running": "paused"}, ENDED | LIVE | {"queued"}
         )
     elif name == "resume":
-        goes = {"paused": "running", "failed": "queued", "interrupted": "queued"}
-        fits = {"queued", "running", "finished", "stopped"}
-        run.expect(client.post(f"{run.path}/resume"), goes, fits)
+        transitions = {"paused": "running", "failed": "queued", "interrupted": "queued"}
+        refusing_states = {"queued", "running", "finished", "stopped"}
+        run.expect(client.post(f"{run.path}/resume"), transitions, refusing_states)
     elif name == "stop":
-        goes = {"queued": "stopped", "running": "stopped", "paused": "stopped"}
-        run.expect(client.post(f"{run.path}/stop"), goes, ENDED)
+        transitions = {"queued": "stopped", "running": "stopped", "paused": "stopped"}
+        run.expect(client.post(f"{run.path}/stop"), transitions, ENDED)
     elif name == "change":
-        goes = {state: state for state in LIVE}
-        run.expect(client.patch(run.path, json={"alpha": 0.5}), goes, ENDED | {"queued"})
+        transitions = {state: state for state in LIVE}
+        run.expect(client.patch(run.path, json={"alpha": 0.5}), transitions, ENDED | {"queued"})
     else:
-        goes = dict.fromkeys(ENDED, "deleted")
-        run.expect(client.delete(run.path), goes, LIVE | {"queued"})
+        transitions = dict.fromkeys(ENDED, "deleted")
+        run.expect(client.delete(run.path), transitions, LIVE | {"queued"})
     return run.states != {"deleted"}
 
 
 def kill_one(server: Served, runs: list[Model], chance: random.Random) -> None:
-    """End the process of some run, whichever that is: one of those that live may fail."""
+    """Kill a random job's process; every live run may be the one that fails."""
     jobs = server.jobs()
     if not jobs:
         return
@@ -137,8 +139,8 @@ def kill_one(server: Served, runs: list[Model], chance: random.Random) -> None:
         run.is_killed = True
 
 
-def delete_at_every_moment(address: str, done: threading.Event) -> int:
-    """Start runs and ask for their deletion all their life long; how many there were."""
+def delete_continually(address: str, done: threading.Event) -> int:
+    """Start runs and request their deletion until it succeeds; return their number."""
     count, chance = 0, random.Random(27)
     with httpx2.Client(base_url=address, timeout=LONG_S, trust_env=False) as client:
         while not done.is_set():
@@ -160,7 +162,7 @@ def delete_at_every_moment(address: str, done: threading.Event) -> int:
 
 
 def rows_and_files(data: Path) -> tuple[int, int]:
-    """What is left in the data folder."""
+    """Count the rows and artifact files in a data folder."""
     with closing(sqlite3.connect(data / DATABASE_FILE)) as database:
         tables = ("runs", "artifacts", "evaluations", "trials")
         rows = sum(database.execute(f"SELECT count(*) FROM {t}").fetchone()[0] for t in tables)
@@ -168,13 +170,13 @@ def rows_and_files(data: Path) -> tuple[int, int]:
 
 
 @pytest.mark.timeout(at_length(300, 5 * 3600))
-def test_random_verbs_never_wedge_the_queue(launch: Callable[..., Served], tmp_path: Path) -> None:
+def test_random_verbs_never_block_the_queue(launch: Callable[..., Served], tmp_path: Path) -> None:
     chance = random.Random(26)
     server = launch(HEXAPODS_STARTS_PER_MINUTE="1000000")
     runs: list[Model] = []
     done = threading.Event()
     with ThreadPoolExecutor(1) as pool:
-        deleter = pool.submit(delete_at_every_moment, server.address, done)
+        deleter = pool.submit(delete_continually, server.address, done)
         try:
             for number in range(VERBS):
                 if len(runs) < RUNS and chance.random() < 0.2:
@@ -184,7 +186,7 @@ def test_random_verbs_never_wedge_the_queue(launch: Callable[..., Served], tmp_p
                     kill_one(server, runs, chance)
                 elif runs:
                     run = chance.choice(runs)
-                    if not verb(server.client, run, chance):
+                    if not apply_verb(server.client, run, chance):
                         runs.remove(run)
                 assert not deleter.done(), deleter.result()
         finally:
@@ -205,8 +207,8 @@ def test_random_verbs_never_wedge_the_queue(launch: Callable[..., Served], tmp_p
     assert time.monotonic() - began < 10
 
 
-def test_delete_at_the_moment_of_the_end_wedges_nothing(launch: Callable[..., Served]) -> None:
-    """Stop it, and ask for its deletion until it is given; each round must give its core back."""
+def test_deleting_a_run_as_it_stops_does_not_block_the_queue(launch: Callable[..., Served]) -> None:
+    """Each round stops a run, requests its deletion until it succeeds, and must free its core."""
     server = launch()
     for _ in range(at_length(20, 200)):
         run = server.start(ENDLESS)
@@ -216,7 +218,7 @@ def test_delete_at_the_moment_of_the_end_wedges_nothing(launch: Callable[..., Se
             stopping = pool.submit(httpx2.post, f"{server.address}{path}/stop", timeout=LONG_S)
             while (answer := server.client.delete(path)).status_code != 204:
                 assert answer.status_code == 409, answer.text
-            # Its answer is the stopped run, or that there is none any more.
+            # The stop is answered with the stopped run, or with 404 once it is deleted.
             assert stopping.result(LONG_S).status_code in (202, 404)
     last = server.start(SHORT)
     assert server.in_state(last, *ENDED)["state"] == "finished"

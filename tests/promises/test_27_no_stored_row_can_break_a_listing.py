@@ -38,34 +38,39 @@ from tests.browser.serving import serving
 from tests.cli.running import hexapods, output
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
-from tests.promises.worst_values import BROKEN_TEXT, IMPORTED, STORED, places, put
+from tests.promises.worst_values import BROKEN_TEXT, IMPORTED, STORED, paths_to_values, put_value
 from tests.served import Served
 from tests.storage.ended import ended_experiment, ended_race, ended_training
 from tests.storage.stores import opened, training
 
-SOUND, TRAINING, RACED, TRIED = "00000000000s1", "00000000000t1", "00000000000r1", "00000000000e1"
-KINDS = {TRAINING: "trainings", RACED: "races", TRIED: "experiments"}
+SOUND, TRAINING, RACE, EXPERIMENT = (
+    "00000000000s1",
+    "00000000000t1",
+    "00000000000r1",
+    "00000000000e1",
+)
+KINDS = {TRAINING: "trainings", RACE: "races", EXPERIMENT: "experiments"}
 BELOW = {
     "trainings": ["", "/curve", "/curve?format=csv", "/q-table", "/q-table?format=npz", "/export"],
     "races": ["", "/recording", "/recording?format=npz", "/timeline", "/export"],
     "experiments": ["", "/summary", "/report", "/trials", "/trials?format=csv", "/export"],
 }
 FIELDS_A_FILE, COLUMNS = at_length(12, None), at_length(40, None)
-"""How many worst values are tried of each file, and of all columns; None is all."""
+"""Number of adverse values tried per file, and of all columns; None for all."""
 
 
 @pytest.fixture
-def kept(tmp_path: Path) -> Path:
-    """A data folder with a run of each kind, and a sound one beside them."""
+def data_folder(tmp_path: Path) -> Path:
+    """A data folder with a run of each kind to corrupt, and an undamaged one."""
     with opened(tmp_path, None) as store:
         ended_training(store, SOUND, "sound", steps=20)
         ended_training(store, TRAINING, steps=20)
-        ended_race(store, RACED, TRAINING)
-        ended_experiment(store, TRIED)
+        ended_race(store, RACE, TRAINING)
+        ended_experiment(store, EXPERIMENT)
     return tmp_path
 
 
-def some(cases: list[Any], count: int | None) -> list[Any]:
+def sample(cases: list[Any], count: int | None) -> list[Any]:
     return cases if count is None else random.Random(27).sample(cases, min(count, len(cases)))
 
 
@@ -82,8 +87,8 @@ def listed(server: Served, kind: str) -> dict[str, dict[str, Any]]:
     return {run["id"]: run for run in answer.json()["items"]}
 
 
-def everything_answers(server: Served, ids: dict[str, str]) -> dict[str, str]:
-    """All that can be looked at, of all runs; by id what is said to be damaged."""
+def check_all_reads(server: Served, ids: dict[str, str]) -> dict[str, str]:
+    """Check that every read of every run is answered; return the damaged runs' messages by id."""
     damaged: dict[str, str] = {}
     for kind in ("trainings", "races", "experiments"):
         runs = listed(server, kind)
@@ -107,48 +112,48 @@ def everything_answers(server: Served, ids: dict[str, str]) -> dict[str, str]:
 
 
 def files_of(folder: Path) -> Iterator[tuple[str, bytes]]:
-    """What can be imported: by the address that takes it, the file."""
+    """Yield the path of each import and a file for it."""
     with opened(folder, None) as store:
         yield "/trainings/import", store.artifact(TRAINING, TABLE) or b""
-        for run_id in (TRAINING, RACED, TRIED):
+        for run_id in (TRAINING, RACE, EXPERIMENT):
             yield "/import", export_run(store, run_id)
 
 
 def mutations(path: str, data: bytes) -> Iterator[Callable[[], bytes]]:
-    """The same file with each of its fields as bad as can be, and with digests that are right."""
+    """Yield functions that build the file with one adverse field and correct digests."""
     if path == "/trainings/import":
         checkpoint = from_bytes(data, "the table")
-        for place in places(dict(checkpoint.meta)):
+        for place in paths_to_values(dict(checkpoint.meta)):
             for value in IMPORTED:
                 yield partial(_table, checkpoint, place, value)
         return
     members = archive.unpack(data, "run.zip", lambda name: True)
     for name in {RUN, TRIALS} & set(members):
         shown = json.loads(members[name])
-        for place in places(shown):
+        for place in paths_to_values(shown):
             for value in IMPORTED:
                 yield partial(_archive, members, name, place, value)
 
 
 def _table(checkpoint: tables.Checkpoint, place: tuple[Any, ...], value: Any) -> bytes:
     meta = json.loads(json.dumps(dict(checkpoint.meta)))
-    put(meta, place, value)
+    put_value(meta, place, value)
     return tables.to_bytes(tables.Checkpoint(meta, checkpoint.arrays))
 
 
 def _archive(members: dict[str, bytes], name: str, place: tuple[Any, ...], value: Any) -> bytes:
     shown = json.loads(members[name])
-    put(shown, place, value)
+    put_value(shown, place, value)
     return archive.pack({**members, name: json.dumps(shown).encode()})
 
 
 @pytest.mark.timeout(at_length(300, 7200))
-def test_no_import_can(kept: Path, launch: Callable[..., Served]) -> None:
-    files = list(files_of(kept))
+def test_no_import_can_break_a_listing(data_folder: Path, launch: Callable[..., Served]) -> None:
+    files = list(files_of(data_folder))
     server = launch(HEXAPODS_STARTS_PER_MINUTE="1000000")
     refused = 0
     for path, data in files:
-        for make in some(list(mutations(path, data)), FIELDS_A_FILE):
+        for make in sample(list(mutations(path, data)), FIELDS_A_FILE):
             answer = server.client.post(f"/api/v1{path}", content=make())
             assert answer.status_code in (201, 422), answer.text
             if answer.status_code == 422:
@@ -163,7 +168,7 @@ def test_no_import_can(kept: Path, launch: Callable[..., Served]) -> None:
                 assert look.status_code < 500, (below, look.text)
             assert server.client.delete(f"/api/v1/{kind}/{run['id']}").status_code == 204
     assert refused > 10
-    assert everything_answers(server, KINDS) == {}
+    assert check_all_reads(server, KINDS) == {}
 
 
 @pytest.mark.parametrize(
@@ -181,10 +186,10 @@ def test_no_import_can(kept: Path, launch: Callable[..., Served]) -> None:
         ("changes", [{"step": 3, "pace": float("inf")}]),
     ],
 )
-def test_a_table_with_a_number_that_is_none_is_refused(
-    name: str, value: Any, kept: Path, quiet_import: Callable[[bytes], Any]
+def test_a_table_with_an_invalid_field_is_refused(
+    name: str, value: Any, data_folder: Path, quiet_import: Callable[[bytes], Any]
 ) -> None:
-    [(_, data), *_] = files_of(kept)
+    [(_, data), *_] = files_of(data_folder)
     answer = quiet_import(_table(from_bytes(data, "the table"), (name,), value))
     assert answer.status_code == 422
     assert any(word in answer.json()["detail"] for word in (name, "The file", "Pace"))
@@ -198,8 +203,10 @@ def quiet_import(quiet_server: Any) -> Iterator[Callable[[bytes], Any]]:
         assert client.get("api/v1/trainings").json()["items"] == before
 
 
-def test_values_that_are_none_are_refused(kept: Path, quiet_import: Callable[[bytes], Any]) -> None:
-    [(_, data), *_] = files_of(kept)
+def test_a_table_with_invalid_values_is_refused(
+    data_folder: Path, quiet_import: Callable[[bytes], Any]
+) -> None:
+    [(_, data), *_] = files_of(data_folder)
     checkpoint = from_bytes(data, "the table")
     changes: dict[str, Any] = {
         "agent.q": np.nan,
@@ -220,8 +227,10 @@ def test_values_that_are_none_are_refused(kept: Path, quiet_import: Callable[[by
 
 
 @contextmanager
-def worsened(folder: Path, table: str, column: str, value: Any, run_id: str) -> Iterator[None]:
-    """A column of a run's rows with this value, until the context ends."""
+def corrupted_column(
+    folder: Path, table: str, column: str, value: Any, run_id: str
+) -> Iterator[None]:
+    """Set a column of a run's row to an adverse value, until the context ends."""
     key = "id" if table == "runs" else "run_id"
     with closing(sqlite3.connect(folder / DATABASE_FILE, isolation_level=None)) as file:
         where = f"{table} WHERE {key} = ?"
@@ -249,16 +258,16 @@ def columns() -> list[tuple[str, str, Any, str]]:
 
 
 @pytest.mark.timeout(at_length(300, 14_400))
-def test_no_row_can(kept: Path, launch: Callable[..., Served]) -> None:
+def test_no_row_can_break_a_listing(data_folder: Path, launch: Callable[..., Served]) -> None:
     server = launch()
-    seen = set()
-    for table, column, value, run_id in some(columns(), COLUMNS):
-        with worsened(kept, table, column, value, run_id):
-            damaged = everything_answers(server, KINDS)
+    damaged_ids = set()
+    for table, column, value, run_id in sample(columns(), COLUMNS):
+        with corrupted_column(data_folder, table, column, value, run_id):
+            damaged = check_all_reads(server, KINDS)
         assert len(damaged) <= 1, (table, column, value, damaged)
-        seen |= set(damaged)
-    assert seen, "some of these values are damage"
-    assert everything_answers(server, KINDS) == {}
+        damaged_ids |= set(damaged)
+    assert damaged_ids, "some of these values are damage"
+    assert check_all_reads(server, KINDS) == {}
 
 
 DAMAGE: list[tuple[str, Any]] = [
@@ -281,33 +290,33 @@ DAMAGE: list[tuple[str, Any]] = [
 
 @pytest.mark.parametrize(("column", "value"), DAMAGE[: at_length(3, None)])
 def test_a_damaged_run_is_named_everywhere_and_can_be_deleted(
-    column: str, value: Any, kept: Path, launch: Callable[..., Served]
+    column: str, value: Any, data_folder: Path, launch: Callable[..., Served]
 ) -> None:
-    with worsened(kept, "runs", column, value, TRAINING):
+    with corrupted_column(data_folder, "runs", column, value, TRAINING):
         server = launch()
-        [(run_id, said)] = everything_answers(server, KINDS).items()
+        [(run_id, message)] = check_all_reads(server, KINDS).items()
         assert run_id == TRAINING or column == "id"
-        assert len(said) > 10
+        assert len(message) > 10
         look = server.client.get(f"/api/v1/trainings/{run_id}").json()
-        assert look["damaged"] == said
+        assert look["damaged"] == message
         assert look["id"] == run_id
         assert ("hexapods_runs_damaged 1.0" in server.client.get("/metrics").text) is True
         snapshot = first_event(server, f"?run_id={run_id}")
-        assert [run["damaged"] for run in snapshot["runs"]] == [said]
-        data = ("--data", str(kept))
-        rows = output("runs", "list", *data, folder=kept)["items"]
-        assert {run["id"]: run.get("damaged") for run in rows}[run_id] == said
-        assert output("runs", "show", run_id, *data, folder=kept)["damaged"] == said
-        doctor = hexapods("doctor", *data, "--json", folder=kept, HEXAPODS_PORT="0")
+        assert [run["damaged"] for run in snapshot["runs"]] == [message]
+        data = ("--data", str(data_folder))
+        rows = output("runs", "list", *data, folder=data_folder)["items"]
+        assert {run["id"]: run.get("damaged") for run in rows}[run_id] == message
+        assert output("runs", "show", run_id, *data, folder=data_folder)["damaged"] == message
+        doctor = hexapods("doctor", *data, "--json", folder=data_folder, HEXAPODS_PORT="0")
         found = {check["name"]: check for check in json.loads(doctor.stdout)["checks"]}
         assert not found["database"]["ok"]
         assert run_id in found["database"]["said"]
         assert server.client.post(f"/api/v1/trainings/{run_id}/resume").status_code in (404, 409)
         deleted = server.client.delete(f"/api/v1/trainings/{run_id}")
         assert deleted.status_code == 204, deleted.text
-        assert everything_answers(server, {RACED: "races"}) == {}
-        left = {run["id"] for run in output("runs", "list", *data, folder=kept)["items"]}
-        assert left == {SOUND, RACED, TRIED}
+        assert check_all_reads(server, {RACE: "races"}) == {}
+        left = {run["id"] for run in output("runs", "list", *data, folder=data_folder)["items"]}
+        assert left == {SOUND, RACE, EXPERIMENT}
 
 
 @pytest.mark.parametrize(
@@ -328,7 +337,7 @@ def test_a_damaged_run_is_named_everywhere_and_can_be_deleted(
         ("id", "''"),
     ],
 )
-def test_nor_in_postgresql(
+def test_no_row_can_break_a_listing_in_postgresql(
     column: str, value: str, postgresql: PostgresServer, tmp_path: Path
 ) -> None:
     with postgresql.database() as url, opened(tmp_path, url) as store:
@@ -355,13 +364,16 @@ def check_refusal(store: SqlStore, run_id: str) -> None:
 
 
 def test_the_page_shows_the_others_and_deletes_the_damaged_one(
-    kept: Path, page: Page, dashboard: Dashboard
+    data_folder: Path, page: Page, dashboard: Dashboard
 ) -> None:
-    with worsened(kept, "runs", "config", "milk", RACED), serving(kept) as server:
+    with (
+        corrupted_column(data_folder, "runs", "config", "milk", RACE),
+        serving(data_folder) as server,
+    ):
         dashboard.open(server.address)
         page.goto(f"{server.address}#runs")
         expect(page.locator("li.run")).to_have_count(4)
-        row = page.locator("li.run", has_text=RACED)
+        row = page.locator("li.run", has_text=RACE)
         expect(row).to_contain_text("damaged")
         expect(row).to_contain_text("cannot read")
         row.get_by_role("button", name="Delete").click()

@@ -1,7 +1,7 @@
-"""Part of promise 28: one address cannot take all places, and an operator always gets one.
+"""Part of promise 28: one address cannot take all connections, and an operator always gets one.
 
-Of the places before the stage, and of those for streams of events, one address gets four fifths;
-who comes from another gets in even when all are taken, and so does an operator from the same.
+Of the viewer connections, and of the event streams, one address gets at most four fifths; a client
+from another address is admitted even when all are taken, and so is an operator from the same.
 """
 
 import json
@@ -28,8 +28,8 @@ def server(tmp_path: Path) -> Iterator[Served]:
         yield make(HEXAPODS_TOKEN=TOKEN, HEXAPODS_MAX_VIEWERS=str(PLACES))
 
 
-def watching(server: Served, stack: ExitStack, source: str, *, operator: bool = False) -> Viewer:
-    """A viewer from one of this machine's addresses."""
+def open_viewer(server: Served, stack: ExitStack, source: str, *, operator: bool = False) -> Viewer:
+    """Connect a viewer from one of this machine's loopback addresses."""
     port = int(server.address.rpartition(":")[2])
     headers = {"Authorization": f"Bearer {TOKEN}"} if operator else {}
     sock = socket.create_connection(("127.0.0.1", port), source_address=(source, 0))
@@ -45,22 +45,24 @@ def refusal(viewer: Viewer) -> tuple[int, str]:
 
 
 @pytest.mark.timeout(600)
-def test_places_before_the_stage(server: Served) -> None:
+def test_one_address_cannot_take_all_viewer_places(server: Served) -> None:
     with ExitStack() as stack:
-        crowd = [watching(server, stack, "127.0.0.2") for _ in range(SHARE)]
+        crowd = [open_viewer(server, stack, "127.0.0.2") for _ in range(SHARE)]
         crowd[-1].frame()
-        assert refusal(watching(server, stack, "127.0.0.2")) == (1013, "address full")
-        others = [watching(server, stack, "127.0.0.3") for _ in range(PLACES - SHARE)]
+        assert refusal(open_viewer(server, stack, "127.0.0.2")) == (1013, "address full")
+        others = [open_viewer(server, stack, "127.0.0.3") for _ in range(PLACES - SHARE)]
         others[-1].frame()
-        # All are taken now.
-        assert watching(server, stack, "127.0.0.4").frame().raw
+        # All places are taken now.
+        assert open_viewer(server, stack, "127.0.0.4").frame().raw
         assert refusal(crowd[-1]) == (1013, "place taken")
-        assert watching(server, stack, "127.0.0.2", operator=True).frame().raw
+        assert open_viewer(server, stack, "127.0.0.2", operator=True).frame().raw
         assert refusal(crowd[-2]) == (1013, "place taken")
 
 
-def listening(server: Served, stack: ExitStack, source: str, *, operator: bool = False) -> bytes:
-    """Begin to follow the events; the head of the answer."""
+def open_event_stream(
+    server: Served, stack: ExitStack, source: str, *, operator: bool = False
+) -> bytes:
+    """Open an event stream, and return the head of the answer."""
     port = int(server.address.rpartition(":")[2])
     sock = socket.create_connection(("127.0.0.1", port), source_address=(source, 0), timeout=30)
     stack.enter_context(sock)
@@ -73,21 +75,23 @@ def listening(server: Served, stack: ExitStack, source: str, *, operator: bool =
 
 
 @pytest.mark.timeout(600)
-def test_places_for_streams_of_events(server: Served) -> None:
+def test_one_address_cannot_take_all_event_streams(server: Served) -> None:
     with ExitStack() as stack:
         for _ in range(SHARE):
-            assert listening(server, stack, "127.0.0.2").startswith(b"HTTP/1.1 200")
-        refused = listening(server, stack, "127.0.0.2")
+            assert open_event_stream(server, stack, "127.0.0.2").startswith(b"HTTP/1.1 200")
+        refused = open_event_stream(server, stack, "127.0.0.2")
         assert refused.startswith(b"HTTP/1.1 429")
         assert b"retry-after: 10" in refused.lower()
         for _ in range(PLACES - SHARE):
-            assert listening(server, stack, "127.0.0.3").startswith(b"HTTP/1.1 200")
-        assert listening(server, stack, "127.0.0.4").startswith(b"HTTP/1.1 200")
-        assert listening(server, stack, "127.0.0.2", operator=True).startswith(b"HTTP/1.1 200")
-    # Those who left have left: their places are free again.
+            assert open_event_stream(server, stack, "127.0.0.3").startswith(b"HTTP/1.1 200")
+        assert open_event_stream(server, stack, "127.0.0.4").startswith(b"HTTP/1.1 200")
+        assert open_event_stream(server, stack, "127.0.0.2", operator=True).startswith(
+            b"HTTP/1.1 200"
+        )
+    # Closed connections free their places.
     with ExitStack() as stack:
         for _ in range(SHARE):
-            assert listening(server, stack, "127.0.0.5").startswith(b"HTTP/1.1 200")
+            assert open_event_stream(server, stack, "127.0.0.5").startswith(b"HTTP/1.1 200")
         with server.client.stream("GET", "/api/v1/events") as stream:
             lines = stream.iter_lines()
             data = next(line for line in lines if line.startswith("data: "))

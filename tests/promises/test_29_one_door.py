@@ -1,10 +1,11 @@
-"""Promise 29: one door. Every listening socket of the server and its children is guarded like the
-app's own, or other users cannot reach it; and no connection ever leaves the machine.
+"""Promise 29: a single entry point. Every listening socket of the server and its children is
+guarded like the app's own, or other users cannot reach it; and no connection ever leaves the
+machine.
 
 A training, a race and an experiment run while a hostile viewer sends every message type that viser
-has, `ShareUrlRequest` among them. All sockets are looked at twice a second, and an audit
-hook in every process of the tree writes down what is connected to, looked up and started, so that
-no short connection is missed. The gate's short form watches one round, `make soak` ten.
+has, `ShareUrlRequest` among them. All sockets are sampled twice a second, and an audit hook in
+every process of the tree logs connections, name look-ups and started programs, so that no short
+connection is missed. The gate's short form runs one round, `make soak` ten.
 """
 
 import ipaddress
@@ -45,25 +46,25 @@ _INET = {socket.AF_INET, socket.AF_INET6}
 
 
 class Sockets:
-    """All that a tree of processes had open while it was watched."""
+    """All sockets that a process tree has had open while it was monitored."""
 
     def __init__(self, pid: int) -> None:
         self._server = psutil.Process(pid)
         self.listening: set[tuple[str, int]] = set()
-        self.guarded: dict[tuple[str, int], str] = {}
-        """How each listener but the app's own answers whoever has no certificate."""
+        self.answers: dict[tuple[str, int], str] = {}
+        """Each listener's answer to a client without a certificate."""
         self.unix: set[str] = set()
         self.peers: set[tuple[str, int]] = set()
-        self.looks = 0
+        self.samples = 0
 
-    def look(self) -> None:
-        self.looks += 1
+    def sample(self) -> None:
+        self.samples += 1
         for process in [self._server, *self._server.children(recursive=True)]:
             with suppress(psutil.Error):
                 for one in process.net_connections(kind="all"):
-                    self._note(one)
+                    self._record(one)
 
-    def _note(self, one: Any) -> None:
+    def _record(self, one: Any) -> None:
         if one.family not in _INET:
             if one.laddr:
                 self.unix.add(one.laddr)
@@ -74,16 +75,16 @@ class Sockets:
             address = (one.laddr.ip, one.laddr.port)
             if address not in self.listening:
                 self.listening.add(address)
-                self.guarded[address] = answer_to_a_stranger(*address)
+                self.answers[address] = answer_without_certificate(*address)
 
 
-def answer_to_a_stranger(host: str, port: int) -> str:
-    """`refused` if a listener lets nobody in without a certificate; else what it said."""
-    asked = b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n"
+def answer_without_certificate(host: str, port: int) -> str:
+    """Return `refused` if a listener requires a client certificate, else its answer."""
+    request = b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n"
     with suppress(OSError), socket.create_connection((host, port), timeout=3) as plain:
-        plain.sendall(asked)
-        if said := plain.recv(100):
-            return f"to plain HTTP: {said!r}"
+        plain.sendall(request)
+        if received := plain.recv(100):
+            return f"to plain HTTP: {received!r}"
     context = ssl.create_default_context()
     context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
     with (
@@ -91,36 +92,36 @@ def answer_to_a_stranger(host: str, port: int) -> str:
         socket.create_connection((host, port), timeout=3) as below,
         context.wrap_socket(below) as secure,
     ):
-        secure.sendall(asked)
-        # TLS 1.3 refuses a missing certificate only after the client's side is done.
-        if said := secure.recv(100):
-            return f"to TLS without a certificate: {said!r}"
+        secure.sendall(request)
+        # TLS 1.3 refuses a missing certificate only after the client has finished the handshake.
+        if received := secure.recv(100):
+            return f"to TLS without a certificate: {received!r}"
     return "refused"
 
 
 @contextmanager
 def watched(server: Served) -> Iterator[Sockets]:
-    sockets, over = Sockets(server.process.pid), threading.Event()
+    sockets, finished = Sockets(server.process.pid), threading.Event()
 
     def watch() -> None:
-        while not over.wait(0.5):
-            sockets.look()
+        while not finished.wait(0.5):
+            sockets.sample()
 
     thread = threading.Thread(target=watch)
     thread.start()
     try:
         yield sockets
     finally:
-        over.set()
+        finished.set()
         thread.join()
 
 
 def hostile_messages() -> list[bytes]:
-    """Every message type of viser, as short and as long as one pleases to send it."""
-    said = [{"type": cls.__name__} for cls in _messages.Message.get_subclasses()]
-    assert {"type": "ShareUrlRequest"} in said
+    """Return a message of every type of viser, and one that would run JavaScript."""
+    received = [{"type": cls.__name__} for cls in _messages.Message.get_subclasses()]
+    assert {"type": "ShareUrlRequest"} in received
     javascript = {"type": "RunJavascriptMessage", "source": "1"}
-    return [msgspec.msgpack.encode(one) for one in [*said, javascript]]
+    return [msgspec.msgpack.encode(one) for one in [*received, javascript]]
 
 
 def attack(server: Served) -> None:
@@ -133,9 +134,9 @@ def attack(server: Served) -> None:
 
 
 def wait_for_trials(server: Served, run: dict[str, Any]) -> None:
-    """All of an experiment's trials; its report, which comes then, opens nothing.
+    """Wait for all of an experiment's trials, not for its report, which opens no sockets.
 
-    Its processes are at nice 15: beside others that keep all cores busy it takes minutes.
+    Its processes run at nice 15: on a busy machine it takes minutes.
     """
     deadline = time.monotonic() + 600
     while server.look(run)["progress"]["done"] < run["progress"]["total"]:
@@ -164,7 +165,9 @@ def is_of_this_machine(host: str) -> bool:
 
 
 @pytest.mark.timeout(1800)
-def test_nothing_listens_but_the_app_and_nothing_leaves(server: Served, audit: Path) -> None:
+def test_only_the_app_listens_and_no_connection_leaves_the_machine(
+    server: Served, audit: Path
+) -> None:
     server.client.headers["Authorization"] = f"Bearer {TOKEN}"
     own = int(server.address.rpartition(":")[2])
     with watched(server) as sockets:
@@ -179,14 +182,14 @@ def test_nothing_listens_but_the_app_and_nothing_leaves(server: Served, audit: P
                 assert server.in_state(run, "finished", "failed")["state"] == "finished"
             wait_for_trials(server, runs[2])
             server.client.get(f"/api/v1/races/{runs[1]['id']}/recording?format=viser")
-            # At what is left once everything has ended, too.
-            seen = sockets.looks
-            while sockets.looks < seen + 2:
+            # Sample the sockets that are left after the runs' ends, too.
+            seen = sockets.samples
+            while sockets.samples < seen + 2:
                 time.sleep(0.05)
 
-    others = {address: sockets.guarded[address] for address in sockets.listening}
+    others = {address: sockets.answers[address] for address in sockets.listening}
     del others["127.0.0.1", own]
-    assert others, "an experiment's cluster was not seen: this test looks at nothing"
+    assert others, "no socket of the experiment's cluster was sampled"
     assert set(others.values()) == {"refused"}, others
     assert all(ipaddress.ip_address(host).is_loopback for host, _ in sockets.listening)
     assert all(ipaddress.ip_address(host).is_loopback for host, _ in sockets.peers)
@@ -196,16 +199,16 @@ def test_nothing_listens_but_the_app_and_nothing_leaves(server: Served, audit: P
 
 
 def check_audit(lines: list[str]) -> None:
-    """No process has connected to, or looked up, anything but this machine."""
+    """Check that no process has connected to, or looked up, another machine."""
     assert any(line.startswith("socket.connect ") for line in lines)
     for line in lines:
-        event, _, said = line.partition(" ")
+        event, _, received = line.partition(" ")
         if not event.startswith("socket."):
             continue
         if event == "socket.getaddrinfo":
-            assert is_of_this_machine(said.strip("(").split(",")[0].strip("'\"")), line
+            assert is_of_this_machine(received.strip("(").split(",")[0].strip("'\"")), line
         elif event in ("socket.connect", "socket.sendto", "socket.sendmsg", "socket.bind"):
-            host = said.strip("(").split(",")[0].strip("'\"")
+            host = received.strip("(").split(",")[0].strip("'\"")
             assert host.startswith("/") or is_of_this_machine(host), line
         else:
             raise AssertionError(line)

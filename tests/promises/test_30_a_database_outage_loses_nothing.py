@@ -1,9 +1,9 @@
 """Promise 30: a database outage loses nothing.
 
 PostgreSQL is stopped, crashes, or hangs with its connections open, at a random moment of a run's
-life: the run waits, goes on, and ends with the table of the unbroken run. Promised: 1 s to 10 min
-at random moments; here 1 s once in each of the three ways, by `make soak` 1 s to 60 s at 20. A job
-that has waited for ten minutes is kept as `interrupted`, which is shown with a shorter limit.
+life: the run waits, continues, and ends with the table of an uninterrupted run. Promised: 1 s to
+10 min at random moments; here 1 s once in each of the three ways, by `make soak` 1 s to 60 s at 20.
+A job that has waited for ten minutes becomes `interrupted`, which is shown with a shorter limit.
 """
 
 import random
@@ -29,18 +29,18 @@ MOMENTS = at_length(3, 20)
 LONGEST_S = at_length(1.0, 60.0)
 PACED = {**BODY, "steps": 300, "pace": 20, "evaluate_every": 50, "seed": 30}
 RUN_S = 7.0
-"""About as long as such a run takes."""
+"""Approximate duration of such a run."""
 
 
 @pytest.fixture
 def own_postgresql() -> Iterator[PostgresServer]:
-    """A server that no other test uses."""
+    """A PostgreSQL server used by this test alone."""
     with postgres_server() as server:
         yield server
 
 
 def outage(server: PostgresServer, kind: str, length_s: float) -> None:
-    """Let the database be away for a while."""
+    """Make the database unavailable for a while."""
     if kind == "hangs":
         server.freeze()
         time.sleep(length_s)
@@ -52,7 +52,7 @@ def outage(server: PostgresServer, kind: str, length_s: float) -> None:
 
 
 @pytest.mark.timeout(at_length(300, 7200))
-def test_every_run_goes_on_to_the_same_end(
+def test_every_run_survives_an_outage_with_the_same_result(
     launch: Callable[..., Served], own_postgresql: PostgresServer
 ) -> None:
     chance = random.Random(30)
@@ -76,7 +76,7 @@ def test_every_run_goes_on_to_the_same_end(
         assert server.end(signal.SIGTERM) == 0
 
 
-def test_reads_fail_at_once_while_the_database_hangs(
+def test_reads_fail_fast_while_the_database_hangs(
     launch: Callable[..., Served], own_postgresql: PostgresServer
 ) -> None:
     with own_postgresql.database() as url:
@@ -127,7 +127,7 @@ def ready_store(jobs: Jobs) -> bool:
 
 
 def until_ended(server: Served, run: dict[str, object]) -> dict[str, object]:
-    """The run once it has ended; a server whose database is away may not know it yet."""
+    """Wait for a run's end; the server may report it only after the database is back."""
     deadline = time.monotonic() + LONG_S
     while True:
         answer = server.client.get(f"/api/v1/trainings/{run['id']}")

@@ -1,8 +1,8 @@
 """Promise 31: a database has exactly one owner.
 
-A second server on the same data folder or database is refused. If it gets in all the same, through
-a restart of PostgreSQL or a lock file that somebody removed, the first is fenced: it writes nothing
-more, ends its jobs and itself, and the runs go on with the second, bit by bit as they would have.
+A second server on the same data folder or database is refused. If it acquires the lock all the
+same, after a restart of PostgreSQL or the removal of the lock file, the first is fenced: it writes
+nothing more, ends its jobs and itself, and the runs resumed by the second are bit-exact.
 """
 
 import signal
@@ -30,8 +30,8 @@ ROUNDS = at_length(1, 20)
 PACED = {**BODY, "steps": 600, "pace": 20, "evaluate_every": 100, "seed": 31}
 
 
-def take_the_lock_away(data: Path, url: str | None) -> None:
-    """Do what a restart of the database does, or a person who tidies the data folder up."""
+def remove_lock(data: Path, url: str | None) -> None:
+    """Release the first server's lock: delete its lock file, end its advisory lock's session."""
     (data / LOCK_FILE).unlink(missing_ok=True)
     if url is not None:
         with psycopg.connect(url, autocommit=True) as connection:
@@ -54,12 +54,12 @@ def test_the_first_of_two_servers_is_fenced(
             run = first.start(PACED)
             first.after_step(run, 50)
             children = first.jobs()
-            # As a machine that is suspended, or a network that is cut: it cannot keep its lock.
+            # Simulates a suspended machine or a network partition: it cannot renew its lock.
             first.process.send_signal(signal.SIGSTOP)
-            take_the_lock_away(data, url)
+            remove_lock(data, url)
             second = launch(**variables)
             first.process.send_signal(signal.SIGCONT)
-            assert first.process.wait(LONG_S) == 2, "it ends, and says why"
+            assert first.process.wait(LONG_S) == 2, "a fenced server exits with an error"
             _, left = psutil.wait_procs(children, timeout=10)
             assert not left
             assert second.look(run)["state"] == "interrupted"
@@ -70,10 +70,10 @@ def test_the_first_of_two_servers_is_fenced(
 
 @contextmanager
 def second_store(data: Path, settings: Settings, url: str | None) -> Iterator[SqlStore]:
-    """A store opened beside another one, which may take its lock back more than once before."""
+    """Open a second store; retries, since the first may reacquire its lock in between."""
     with ExitStack() as stack:
         while True:
-            take_the_lock_away(data, url)
+            remove_lock(data, url)
             with suppress(InvalidInput):
                 yield stack.enter_context(open_store(settings))
                 return
@@ -104,16 +104,16 @@ def test_a_fenced_server_writes_nothing(
                     assert time.monotonic() < deadline
                     time.sleep(0.05)
                 second.update("a", name="of the second")
-                assert first.get("a").name == "of the second", "reading goes on"
+                assert first.get("a").name == "of the second", "a fenced store can still read"
 
 
-def test_a_server_whose_database_was_restarted_keeps_it(
+def test_a_server_reacquires_its_lock_after_the_database_restarts(
     postgresql: PostgresServer, tmp_path: Path
 ) -> None:
-    """It takes its lock again, so that a second one is refused as before."""
+    """A second server is then still refused."""
     with postgresql.database() as url, serving_from(tmp_path / "one") as launch:
         first = launch(HEXAPODS_DATABASE_URL=url)
-        take_the_lock_away(tmp_path / "one", url)
+        remove_lock(tmp_path / "one", url)
         deadline = time.monotonic() + LONG_S
         held = "SELECT count(*) FROM pg_locks WHERE locktype = 'advisory' AND granted"
         with psycopg.connect(url, autocommit=True) as connection:

@@ -1,8 +1,8 @@
 """Promise 32: every write is all or nothing.
 
-Promised: `kill -9` and a full disk at each write of start, import, finish and delete: no half run
-is visible, and no file without a row stays for longer than a start. Here an eighth of the writes,
-chosen at random, and 2 kills of a server that takes in runs; all of them, and 30 kills, by
+Promised: `kill -9` and a full disk at each write of start, import, finish and delete: no partial
+run is visible, and an orphaned file lasts until the next start at most. Here an eighth of the
+writes, chosen at random, and 2 kills of a server that imports runs; all of them, and 30 kills, by
 `make soak`.
 """
 
@@ -34,23 +34,23 @@ QUOTA_MB = 10
 
 
 @pytest.mark.timeout(at_length(300, 1800))
-def test_it_is_so_wherever_it_breaks_off(tmp_path: Path) -> None:
+def test_an_operation_interrupted_at_any_write_is_all_or_nothing(tmp_path: Path) -> None:
     process = start_script("tests.promises.breaking_writes", str(tmp_path), str(SHARE))
     out, _ = process.communicate()
     assert process.returncode == 0
     whole: dict[str, Any] = {}
-    tried = 0
+    attempts = 0
     for report in map(json.loads, out.splitlines()):
         assert "broke" not in report, report["broke"]
         operation = report["operation"]
         if report["how"] == "none":
             assert report["refused"] is None
             whole[operation] = report
-        tried += report["how"] != "none"
+        attempts += report["how"] != "none"
         check(report, whole[operation])
     assert set(whole) == set(OPERATIONS)
     assert all(report["writes"] > 3 for report in whole.values())
-    assert tried >= SHARE * 100
+    assert attempts >= SHARE * 100
 
 
 def check(report: dict[str, Any], whole: dict[str, Any]) -> None:
@@ -58,7 +58,7 @@ def check(report: dict[str, Any], whole: dict[str, Any]) -> None:
     assert after["missing_files"] == after["files_of_nobody"] == 0, report
     if report["how"] == "kill":
         assert report["killed"], report
-        # What has returned has lasted.
+        # A completed operation is durable.
         assert report["at"] <= whole["writes"] or after == whole["after"], report
     if report["how"] == "full":
         assert report["at_once"]["files_of_nobody"] == 0, report
@@ -77,7 +77,7 @@ def check_finish(after: dict[str, Any], whole: dict[str, Any]) -> None:
     if learned["state"] == "finished":
         assert learned == learned_whole
     else:
-        # It can be resumed, and shows nothing of an end that it has not come to.
+        # It can be resumed, and has neither a result nor a table yet.
         assert (learned["state"], learned["has_result"]) == ("interrupted", False)
         assert not learned["has_table"]
         assert learned["recorded"] <= learned["evaluations"]
@@ -85,7 +85,7 @@ def check_finish(after: dict[str, Any], whole: dict[str, Any]) -> None:
 
 @pytest.fixture
 def files(tmp_path: Path) -> dict[str, bytes]:
-    """By address what can be imported there."""
+    """A file to import, by the import's path."""
     with opened(tmp_path / "source", None) as store:
         ended_training(store, "00000000000m1", "Moved", steps=120)
         return {
@@ -94,19 +94,19 @@ def files(tmp_path: Path) -> dict[str, bytes]:
         }
 
 
-def left_of(folder: Path) -> int:
+def folder_bytes(folder: Path) -> int:
     return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
 
 
-def test_over_quota_nothing_is_left_of_an_import(
+def test_an_import_over_quota_leaves_nothing(
     files: dict[str, bytes], launch: Callable[..., Served], tmp_path: Path
 ) -> None:
     server = launch(HEXAPODS_QUOTA_MB=str(QUOTA_MB))
     filler = tmp_path / "filler"
     for path, data in files.items():
         headers = {"Idempotency-Key": path}
-        # Room for a part of it.
-        filler.write_bytes(bytes(QUOTA_MB * MB - left_of(tmp_path) - len(data) // 2))
+        # Leave space for half of the file.
+        filler.write_bytes(bytes(QUOTA_MB * MB - folder_bytes(tmp_path) - len(data) // 2))
         names = {one.name for one in tmp_path.glob("artifacts/*/*")}
         for _ in range(3):
             answer = server.client.post(path, content=data, headers=headers)
@@ -131,15 +131,17 @@ def test_a_server_that_is_killed_leaves_no_half_run(
     unlimited = {"HEXAPODS_STARTS_PER_MINUTE": "1000000"}
     server = launch(**unlimited)
     for _ in range(KILLS):
-        takers = [
-            threading.Thread(target=take_in, args=(server.address, path, data, acknowledged))
+        importers = [
+            threading.Thread(
+                target=import_repeatedly, args=(server.address, path, data, acknowledged)
+            )
             for path, data in files.items()
         ]
-        for one in takers:
+        for one in importers:
             one.start()
         time.sleep(chance.uniform(0.3, 2))
         server.process.send_signal(signal.SIGKILL)
-        for one in takers:
+        for one in importers:
             one.join()
         server.end(signal.SIGKILL)
         server = launch(**unlimited)
@@ -163,8 +165,8 @@ def all_ids(server: Served) -> list[str]:
     return ids
 
 
-def take_in(address: str, path: str, data: bytes, acknowledged: list[str]) -> None:
-    """Import a file again and again, until the server is gone."""
+def import_repeatedly(address: str, path: str, data: bytes, acknowledged: list[str]) -> None:
+    """Import a file repeatedly, until the server is gone."""
     with httpx2.Client(base_url=address, timeout=60, trust_env=False) as client:
         while True:
             try:

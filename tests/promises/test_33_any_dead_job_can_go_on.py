@@ -1,8 +1,8 @@
-"""Promise 33: any dead job can go on.
+"""Promise 33: any dead job can be resumed.
 
-SIGKILL (which is also what a system sends that is out of memory) and SIGSTOP at random moments are
-noticed within 10 s: the run is `failed`, and resumed from its newest checkpoint it comes to the
-table of an unbroken run, bit by bit. Here once each; by `make soak` 20 times.
+SIGKILL (which the OOM killer sends as well) and SIGSTOP at random moments are detected within 10 s:
+the run is `failed`, and resumed from its newest checkpoint it ends with the table of an
+uninterrupted run, bit by bit. Here once each; by `make soak` 20 times.
 """
 
 import random
@@ -24,26 +24,26 @@ PACED = {**BODY, "steps": 400, "pace": 20, "evaluate_every": 100, "seed": 33}
 
 
 def table_of(server: Served, body: dict[str, Any]) -> str:
-    """The hash of what an unbroken run learns."""
+    """Return the hash of the table that an uninterrupted run learns."""
     run = server.in_state(server.start({**body, "pace": "max"}), "finished", "failed")
     assert run["state"] == "finished", run
     return str(run["result"]["q_table_sha256"])
 
 
-@pytest.mark.parametrize("fate", [signal.SIGKILL, signal.SIGSTOP])
+@pytest.mark.parametrize("signal_sent", [signal.SIGKILL, signal.SIGSTOP])
 @pytest.mark.timeout(at_length(120, 3600))
-def test_a_dead_job_is_noticed_and_goes_on(
-    launch: Callable[..., Served], fate: signal.Signals
+def test_a_dead_job_is_detected_and_can_be_resumed(
+    launch: Callable[..., Served], signal_sent: signal.Signals
 ) -> None:
     chance = random.Random(33)
     server = launch()
-    unbroken = table_of(server, PACED)
+    uninterrupted = table_of(server, PACED)
     for _ in range(ROUNDS):
         run = server.start(PACED)
         server.after_step(run, chance.randrange(1, 200))
         (job,) = server.jobs()
         began = time.monotonic()
-        job.send_signal(fate)
+        job.send_signal(signal_sent)
         dead = server.in_state(run, "failed", "finished")
         assert dead["state"] == "failed"
         assert time.monotonic() - began < NOTICED_S
@@ -51,11 +51,13 @@ def test_a_dead_job_is_noticed_and_goes_on(
         assert server.tell(run, "resume").status_code == 202
         ended = server.in_state(run, "failed", "finished")
         assert ended["state"] == "finished", ended
-        assert ended["result"]["q_table_sha256"] == unbroken
+        assert ended["result"]["q_table_sha256"] == uninterrupted
 
 
-def test_changing_a_stopped_process_keeps_nobody_waiting(launch: Callable[..., Served]) -> None:
-    """An answer that nothing was changed, and other calls as quick as ever."""
+def test_a_change_to_a_stopped_process_delays_no_other_request(
+    launch: Callable[..., Served],
+) -> None:
+    """The change is refused, and other requests are answered without delay."""
     server = launch()
     run = server.start({**PACED, "steps": 100_000})
     server.after_step(run, 5)

@@ -1,20 +1,20 @@
-"""Promise 34: the contract is the truth: schemathesis with all checks finds nothing to object to.
+"""Promise 34: the contract is the truth: schemathesis with all checks finds no failure.
 
 In full by `make soak`: 5,000 cases of all of schemathesis's phases against a real server whose
-jobs run and are stopped meanwhile, as one of the class would. The gate has the same phases with
-fewer cases of each operation.
+jobs run and are stopped meanwhile. The gate has the same phases with fewer cases per operation.
 
-Every check is on, with these exceptions, each for one reason:
+Every check is enabled, with these exceptions:
 
-- `object_level_authorization` needs users who own objects. There is one operator here, and all
-  who may read see the same.
-- `ignored_auth` has a server of its own, since only one with a token refuses anyone. It guesses,
-  and who guesses 20 times is answered 429 whatever comes next: so each kind of run has its turn.
-- `/api/v1/events` is a stream without an end, which schemathesis would read to its end: its
-  answers are held to the contract by a test of their own.
+- `object_level_authorization` needs users who own objects. Here is one operator role, and all
+  readers see the same.
+- `ignored_auth` runs against a server of its own, since only one with a token refuses requests.
+  It sends wrong tokens, and after 20 guesses an address is rate limited (429): so each kind of
+  run is tested separately.
+- `/api/v1/events` is an endless stream, which schemathesis would read to its end: its answers are
+  checked against the contract by a separate test.
 
-`positive_data_acceptance` takes a 422 for an answer to valid data only where our own check,
-`refused_for_its_meaning_only`, does; and 503 is no server's error where it is documented.
+`positive_data_acceptance` accepts a 422 to valid data only where our custom check,
+`refused_for_its_meaning_only`, does; and a documented 503 is not a server error.
 """
 
 import os
@@ -51,18 +51,18 @@ Serve = Callable[..., Served]
 
 @pytest.fixture
 def serve(tmp_path: Path) -> Iterator[Serve]:
-    """Servers that nothing is too often for."""
+    """A function that starts a server without a rate limit for starts."""
     with serving_from(tmp_path / "data") as start:
         yield lambda **more: start(HEXAPODS_STARTS_PER_MINUTE="1000000", **more)
 
 
 def schemathesis(server: Served, folder: Path, *options: str) -> int:
-    """How many cases schemathesis made, all of them passed."""
+    """Run schemathesis, check that all cases pass, and return their number."""
     config = folder / "schemathesis.toml"
     config.write_text(CONFIG)
     command = [sys.executable, "-m", "schemathesis.cli", "--config-file", str(config), "run"]
     common = ["--seed", "1", "--continue-on-failure", "--exclude-path", ENDLESS, "--no-color"]
-    # A what-if takes as long as the machine is busy.
+    # A what-if can take long on a busy machine.
     common += ["--request-timeout", "120", "--max-response-time", "120"]
     began_s = time.monotonic()
     paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
@@ -86,13 +86,13 @@ def schemathesis(server: Served, folder: Path, *options: str) -> int:
 
 
 @contextmanager
-def stopping(server: Served) -> Iterator[None]:
-    """Stop what was started every now and then, so that the queue has room for more."""
-    over = threading.Event()
+def stopping_runs(server: Served) -> Iterator[None]:
+    """Stop all runs twice a second, so that the queue does not fill up."""
+    finished = threading.Event()
 
     def stop_all() -> None:
         with httpx2.Client(base_url=server.address, timeout=120, trust_env=False) as client:
-            while not over.wait(0.5):
+            while not finished.wait(0.5):
                 for kind in ("races", "trainings", "experiments"):
                     for state in ("paused", "running", "queued"):
                         runs = client.get(f"/api/v1/{kind}?state={state}").json()["items"]
@@ -104,15 +104,15 @@ def stopping(server: Served) -> Iterator[None]:
     try:
         yield
     finally:
-        over.set()
+        finished.set()
         stopper.join()
 
 
 @pytest.mark.timeout(3600)
-def test_all_checks_pass(serve: Serve, tmp_path: Path) -> None:
+def test_all_schemathesis_checks_pass(serve: Serve, tmp_path: Path) -> None:
     server = serve()
     options = ("--checks", "all", "--exclude-checks", "object_level_authorization,ignored_auth")
-    with stopping(server):
+    with stopping_runs(server):
         count = schemathesis(server, tmp_path, *options, "-n", str(MOST_PER_OPERATION))
     assert count >= CASES
     assert server.client.get("/readyz").status_code == 200
@@ -122,22 +122,24 @@ def test_all_checks_pass(serve: Serve, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "paths", at_length(["trainings"], ["trainings", "races|stage|what-if", "experiments"])
 )
-def test_no_operation_ignores_who_asks(serve: Serve, tmp_path: Path, paths: str) -> None:
+def test_no_operation_ignores_its_authentication(serve: Serve, tmp_path: Path, paths: str) -> None:
     server = serve(HEXAPODS_TOKEN=TOKEN)
     options = ("--checks", "ignored_auth", "--include-path-regex", f"^/api/v1/({paths})")
-    told = ("--header", f"Authorization: Bearer {TOKEN}")
+    credentials = ("--header", f"Authorization: Bearer {TOKEN}")
     phases = ("--phases", "fuzzing,stateful", "--generation-with-security-parameters", "false")
-    assert schemathesis(server, tmp_path, *options, *told, *phases, "-n", "5") > 20
+    assert schemathesis(server, tmp_path, *options, *credentials, *phases, "-n", "5") > 20
 
 
-def test_our_own_check_is_among_them() -> None:
+def test_our_custom_check_is_registered() -> None:
     options = [sys.executable, "-m", "schemathesis.cli", "run", "--help"]
     env = {**os.environ, "SCHEMATHESIS_HOOKS": "tests.promises.contract_checks", "COLUMNS": "200"}
-    told = subprocess.run(options, cwd=ROOT, env=env, capture_output=True, text=True, check=True)
-    assert CHECK in re.sub(r"\s", "", told.stdout)
+    help_text = subprocess.run(
+        options, cwd=ROOT, env=env, capture_output=True, text=True, check=True
+    )
+    assert CHECK in re.sub(r"\s", "", help_text.stdout)
 
 
-def test_the_stream_of_events_answers_as_described(serve: Serve) -> None:
+def test_the_event_stream_conforms_to_its_description(serve: Serve) -> None:
     server = serve()
     described = server.client.get("/openapi.json").json()
     answers = described["paths"][ENDLESS]["get"]["responses"]

@@ -1,5 +1,5 @@
-"""Promise 35: guessing is limited, and other ports are foreign: every credential is counted, and
-the Origin matrix of promise 19 has the same host on another port.
+"""Promise 35: guessing is rate limited, and other ports are foreign: every kind of credential is
+counted, and the Origin matrix of promise 19 has the same host on another port.
 
 In full: 2,000 wrong guesses of each kind, over raw sockets, each kind against a server of its own;
 an operator's browser stays signed in meanwhile, across a restart too, and until the token changes.
@@ -16,7 +16,7 @@ from tests.promises.raw import send, status_of
 TOKEN, OTHER = "a-token-for-tests", "another-token-for-tests"
 GUESSES = 2000
 ALLOWED = 30
-"""20 at once, and one each five seconds, for as long as a slow machine takes."""
+"""The token bucket's 20 guesses, and its refill of one per 5 s on a slow machine."""
 Guess = Callable[[int, int], tuple[str, ...]]
 
 KINDS: dict[str, Guess] = {
@@ -38,20 +38,20 @@ KINDS: dict[str, Guess] = {
 }
 
 
-def ask(server: Serving, *lines: str) -> bytes:
-    """What the server answers to a request with these lines."""
+def request(server: Serving, *lines: str) -> bytes:
+    """Send a request with these lines, and return the server's answer."""
     return send(server.port, lines[0], f"Host: 127.0.0.1:{server.port}", *lines[1:])
 
 
 def sign_in(server: Serving) -> str:
-    """The header with the cookie that the token's link gives."""
-    answer = ask(server, f"GET /?token={TOKEN} HTTP/1.1").decode("latin-1")
+    """Sign in by the link with the token; return the header with the session's cookie."""
+    answer = request(server, f"GET /?token={TOKEN} HTTP/1.1").decode("latin-1")
     (cookie,) = [line for line in answer.split("\r\n") if line.lower().startswith("set-cookie:")]
     return "Cookie: " + cookie.partition(":")[2].partition(";")[0].strip()
 
 
 def may_change(server: Serving, *headers: str) -> bool:
-    """Whether a request with these headers is an operator's."""
+    """Whether the server accepts a writing request with these headers."""
     more = ("X-Requested-With: tests", "Content-Type: application/json", "Content-Length: 2")
     head = ("PUT /api/v1/stage HTTP/1.1", f"Host: 127.0.0.1:{server.port}", *headers, *more)
     return status_of(send(server.port, *head, body=b"{}")) == 200
@@ -59,20 +59,20 @@ def may_change(server: Serving, *headers: str) -> bool:
 
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize("kind", KINDS)
-def test_every_credential_is_counted(kind: str, tmp_path: Path) -> None:
+def test_wrong_guesses_of_every_credential_are_rate_limited(kind: str, tmp_path: Path) -> None:
     with serving(tmp_path, token=TOKEN) as server:
         cookie = sign_in(server)
         refused = 0
         for number in range(GUESSES):
-            answer = ask(server, *KINDS[kind](server.port, number))
-            # A websocket is refused without saying why.
+            answer = request(server, *KINDS[kind](server.port, number))
+            # A websocket is refused by 403 in either case.
             refused += status_of(answer) in (429, 403)
         assert refused >= GUESSES - ALLOWED
-        assert may_change(server, cookie), "others' guesses keep no operator out"
+        assert may_change(server, cookie), "guesses must not lock out a signed-in operator"
         assert not may_change(server)
 
 
-def test_a_session_outlives_the_server_but_not_its_token(tmp_path: Path) -> None:
+def test_a_session_survives_a_restart_but_not_a_change_of_token(tmp_path: Path) -> None:
     with serving(tmp_path, token=TOKEN) as server:
         port = server.port
         cookie = sign_in(server)

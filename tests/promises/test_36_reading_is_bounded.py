@@ -1,4 +1,4 @@
-"""Promise 36: reading is bounded: 25 clients that ask for the largest table and read nothing of it
+"""Promise 36: reading is bounded: 25 clients that request the largest table and read nothing of it
 cost the server less than 100 MB, and so do 25 of every other heavy answer.
 
 The largest table is one of 8 divisions, 52,728,000 values, as JSON, CSV and `.npz`. Beside it a
@@ -53,7 +53,7 @@ EXPERIMENTS = ("trials", "trials?format=csv", "summary", "report", "files/trials
 
 
 def large_table() -> bytes:
-    """The file of a table of 8 divisions as a long training leaves it."""
+    """Build the file of a table of 8 divisions as after a long training."""
     config = TrainingConfig(gait="left-right-origin", simulator="kinematic", divisions=8, steps=1)
     table, chance = QTable(3, len(config.grid)), np.random.default_rng(0)
     for state in chance.permutation(table.states)[:VISITED_STATES].tolist():
@@ -73,7 +73,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 @pytest.fixture(scope="module")
 def paths(server: Served) -> list[str]:
-    """Every heavy answer that the server has."""
+    """The paths of the server's heavy answers."""
     table = large_table()
     answer = server.client.post("/api/v1/trainings/import", content=table)
     assert answer.status_code == 201, answer.text
@@ -92,8 +92,8 @@ def paths(server: Served) -> list[str]:
 
 
 @contextmanager
-def unread(server: Served, path: str) -> Iterator[list[socket.socket]]:
-    """Clients that ask and do not read."""
+def unread_clients(server: Served, path: str) -> Iterator[list[socket.socket]]:
+    """Connect clients that send a request and do not read the answer."""
     host, port = server.address.removeprefix("http://").split(":")
     with ExitStack() as stack:
         clients = []
@@ -113,7 +113,7 @@ def statuses(clients: list[socket.socket]) -> set[bytes]:
 
 
 def settle(server: Served) -> None:
-    """Wait until the server has nothing to do any more."""
+    """Wait until the server is idle."""
     process, quiet_s = psutil.Process(server.process.pid), 0.0
     deadline = time.monotonic() + 60
     while quiet_s < SETTLED_S and time.monotonic() < deadline:
@@ -122,16 +122,16 @@ def settle(server: Served) -> None:
 
 
 @pytest.mark.timeout(1800)
-def test_unread_answers_cost_little(server: Served, paths: list[str]) -> None:
+def test_unread_answers_use_bounded_memory(server: Served, paths: list[str]) -> None:
     for path in paths:
-        # Whatever is loaded for the first time is loaded once for all.
+        # Warm up, so that modules and caches are loaded before memory is measured.
         with server.client.stream("GET", path) as response:
             assert response.status_code == 200, path
             next(response.iter_bytes())
     grown = {}
     for path in paths:
         settle(server)
-        with watched_memory(server.process.pid) as memory, unread(server, path) as clients:
+        with watched_memory(server.process.pid) as memory, unread_clients(server, path) as clients:
             settle(server)
             answered = statuses(clients)
         assert answered == {b"HTTP/1.1 200"}, path
@@ -141,9 +141,9 @@ def test_unread_answers_cost_little(server: Served, paths: list[str]) -> None:
 
 
 @pytest.mark.timeout(1800)
-def test_a_table_that_is_read_meanwhile_is_whole(server: Served, paths: list[str]) -> None:
+def test_a_table_read_beside_unread_ones_is_complete(server: Served, paths: list[str]) -> None:
     npz = next(path for path in paths if path.endswith("format=npz"))
-    with unread(server, paths[0]), unread(server, npz):
+    with unread_clients(server, paths[0]), unread_clients(server, npz):
         whole = server.client.get(npz).content
 
     with np.load(io.BytesIO(whole)) as file:
@@ -151,8 +151,8 @@ def test_a_table_that_is_read_meanwhile_is_whole(server: Served, paths: list[str
 
 
 @pytest.mark.timeout(1800)
-def test_a_large_training_needs_little(tmp_path: Path) -> None:
-    """The training's own process: 1.5 GB before its table was sparse."""
+def test_a_training_with_a_large_table_uses_bounded_memory(tmp_path: Path) -> None:
+    """The job's process, which needed 1.5 GB before the table was sparse."""
     steps = at_length(2_000, 200_000)
     body = {**BODY, "divisions": 8, "steps": steps, "evaluate_every": steps // 2}
     with serving_from(tmp_path) as make:
@@ -160,7 +160,7 @@ def test_a_large_training_needs_little(tmp_path: Path) -> None:
         run = server.start(body)
         peak = 0
         while server.look(run)["state"] not in ("finished", "failed"):
-            with suppress(psutil.Error):  # it may end at any moment
+            with suppress(psutil.Error):  # the process may end at any moment
                 peak = max(peak, *(job.memory_info().rss for job in server.jobs()), 0)
             time.sleep(0.02)
         assert server.look(run)["state"] == "finished"

@@ -1,4 +1,4 @@
-"""What the promises about trainings compare: checkpoints, and a run that nothing ever stopped."""
+"""References for tests of trainings: an uninterrupted run, and the step of a checkpoint."""
 
 import sqlite3
 from collections.abc import Mapping, Sequence
@@ -16,17 +16,17 @@ from app.storage.database.opening import DATABASE_FILE
 from app.storage.store import CHECKPOINT
 
 
-def unbroken(
+def uninterrupted(
     shown: Mapping[str, Any], changes: Sequence[Mapping[str, Any]]
 ) -> tuple[bytes, list[dict[str, Any]]]:
-    """A training from its start to its end in one go, in this process.
+    """Run a training without interruption, in this process.
 
     Args:
-        shown: its config, as the API shows it.
-        changes: of its rates, after which steps.
+        shown: its config, as returned by the API.
+        changes: changes of its rates, each with its step.
 
     Returns:
-        the file of its table, with generator and robot; and its curve.
+        The file of its table, with random generator and robot; and its curve.
     """
     config = config_from_json({k: v for k, v in shown.items() if k != "continue_from"})
     assert isinstance(config, TrainingConfig)
@@ -45,7 +45,7 @@ def unbroken(
 
 
 def checkpoint_step(folder: Path, run_id: str) -> int | None:
-    """The step of a run's newest checkpoint, from beside a server that has the data folder."""
+    """Return the step of a run's newest checkpoint, read beside the running server."""
     query = "SELECT file FROM artifacts WHERE run_id = ? AND name = ?"
     with closing(sqlite3.connect(folder / DATABASE_FILE)) as connection:
         row = connection.execute(query, (run_id, CHECKPOINT)).fetchone()

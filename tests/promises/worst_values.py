@@ -1,4 +1,4 @@
-"""The worst that may stand in a row of the database, or in a file that is imported."""
+"""Adverse values for columns of the database, and for fields of imported files."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -35,8 +35,8 @@ STORED: list[Any] = [
     float("inf"),
     1e308,
 ]
-"""For any column of SQLite, which holds values of any type in each; by `CAST` also text that is no
-UTF-8, see `BROKEN_TEXT`."""
+"""For any column of SQLite, which is dynamically typed; by `CAST` also text that is not UTF-8, see
+`BROKEN_TEXT`."""
 BROKEN_TEXT = b"\xff\xc3\x28"
 IMPORTED: list[Any] = [
     None,
@@ -62,23 +62,23 @@ IMPORTED: list[Any] = [
     float("nan"),
     float("-inf"),
 ]
-"""For any field of JSON."""
+"""For any field of a JSON document."""
 
 
-def places(shown: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """Where there is a value in plain types; of lists the first two entries."""
+def paths_to_values(shown: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """Yield the path of every value in a JSON document; of lists the first two entries."""
     if path:
         yield path
     if isinstance(shown, dict):
         for name, value in shown.items():
-            yield from places(value, (*path, name))
+            yield from paths_to_values(value, (*path, name))
     if isinstance(shown, list):
         for number, value in enumerate(shown[:2]):
-            yield from places(value, (*path, number))
+            yield from paths_to_values(value, (*path, number))
 
 
-def put(shown: Any, path: tuple[Any, ...], value: Any) -> None:
-    """Put a value to a place."""
+def put_value(shown: Any, path: tuple[Any, ...], value: Any) -> None:
+    """Set the value at a path."""
     for part in path[:-1]:
         shown = shown[part]
     shown[path[-1]] = value

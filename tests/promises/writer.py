@@ -1,4 +1,4 @@
-"""Writes to a store as a job does, and says what has been acknowledged, until it is killed."""
+"""Write to a store as a job does, and print each acknowledged write, until killed."""
 
 import sys
 from pathlib import Path
@@ -9,7 +9,7 @@ CHECKPOINT = "q-table.npz"
 
 
 def checkpoint(step: int) -> bytes:
-    """A file that shows by itself which step it is of, and whether it is whole."""
+    """Build a file whose content identifies its step and reveals truncation."""
     return f"{step:08}".encode() * 5_000
 
 
@@ -18,21 +18,21 @@ def main(folder: str, url: str, first: int) -> None:
         for number in range(first, first + 1_000_000):
             run_id = f"{number:06}"
             store.create(training(run_id, total=1000, state="running"))
-            say(f"created {run_id}")
+            emit(f"created {run_id}")
             for step in range(1, 6):
                 store.append_evaluations(
                     run_id, [{"step": step, "distance_m": step / 8, "epsilon": 0.5}]
                 )
-                say(f"evaluated {run_id} {step}")
+                emit(f"evaluated {run_id} {step}")
                 store.put_artifact(run_id, CHECKPOINT, checkpoint(step))
-                say(f"saved {run_id} {step}")
+                emit(f"saved {run_id} {step}")
             store.change(run_id, {"running"}, "finished", done=5)
-            say(f"finished {run_id}")
+            emit(f"finished {run_id}")
 
 
-def say(words: str) -> None:
-    """One write, so that no half line is left by a kill."""
-    sys.stdout.write(words + "\n")
+def emit(line: str) -> None:
+    """Print a line by a single write, so that a kill leaves no partial line."""
+    sys.stdout.write(line + "\n")
     sys.stdout.flush()
 
 

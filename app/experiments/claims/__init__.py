@@ -1,4 +1,10 @@
-"""What the paper says, and whether the trials bear it out."""
+"""The paper's claims, and their verdicts over many seeds.
+
+- `cases`: the cases in which each claim is judged (one observation on one robot).
+- `judging`: a claim, a finding in one case, and the verdict over all cases.
+- `table1`, `figure4`, `sweep`: the claims of each experiment; `gaits`: those about the gaits.
+- `distance_to_paper`: the case whose distances are closest to the printed numbers.
+"""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,28 +1,28 @@
-"""The cases of an experiment: each reading of the state on each robot, seen on its own.
+"""The cases of an experiment: every combination of an observation and a robot.
 
-The paper does not say which reading it used, and nothing of its servos; so each of its claims is
-judged once in each case.
+The paper states neither which observation it used nor how stiff its servos were, so each of its
+claims is judged once in each case.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from app.experiments.formatting import READINGS
+from app.experiments.formatting import OBSERVATION_LABELS
 
 PAPERS_AGENT = "q-learning"
 
 
 @dataclass(frozen=True)
 class Case:
-    """What a summary has for one observation and one robot.
+    """The part of a summary that belongs to one observation and one robot.
 
     Attributes:
-        observation, robot: which.
-        label: in words; the robot only where there are several.
-        seed: of every resampling.
-        simulator: of all trials.
-        settings, pooled, curves, timed: of the summary.
+        observation, robot: their names.
+        label: display label; it names the robot only where there are several.
+        seed: the experiment's seed, used for every resampling.
+        simulator: the simulator of all trials.
+        settings, pooled, curves, timed: this case's entries of the summary's lists.
     """
 
     observation: str
@@ -36,28 +36,28 @@ class Case:
     timed: Sequence[Mapping[str, Any]]
 
     def setting(self, gait: str, steps: int, agent: str = PAPERS_AGENT) -> Mapping[str, Any] | None:
-        """A setting that has trials."""
-        return _first(self.settings, gait=gait, steps=steps, agent=agent)
+        """Return a setting's entry, or None if it has no trials yet."""
+        return _first_with_trials(self.settings, gait=gait, steps=steps, agent=agent)
 
     def pool(self, steps: int, agent: str = PAPERS_AGENT) -> Mapping[str, Any] | None:
-        """An agent over all gaits, if it has trials."""
-        return _first(self.pooled, steps=steps, agent=agent)
+        """Return an agent's pooled entry over all gaits, or None if it has no trials yet."""
+        return _first_with_trials(self.pooled, steps=steps, agent=agent)
 
     def curve(self, gait: str) -> Mapping[str, Any] | None:
-        """Q-learning's curve of a gait, if it has trials."""
-        found = (c for c in self.curves if (c["gait"], c["agent"]) == (gait, PAPERS_AGENT))
-        return next((one for one in found if one["steps"]), None)
+        """Return Q-learning's learning curve in a gait, or None if it has no trials yet."""
+        curves = (c for c in self.curves if (c["gait"], c["agent"]) == (gait, PAPERS_AGENT))
+        return next((one for one in curves if one["steps"]), None)
 
 
-def cases(summary: Mapping[str, Any]) -> list[Case]:
-    """All of them, in the order of the experiment."""
-    places = dict.fromkeys((one["observation"], one["robot"]) for one in summary["settings"])
-    several = len({robot for _, robot in places}) > 1
+def cases_of(summary: Mapping[str, Any]) -> list[Case]:
+    """Return all cases of a summary, in the experiment's order."""
+    pairs = dict.fromkeys((one["observation"], one["robot"]) for one in summary["settings"])
+    several = len({robot for _, robot in pairs}) > 1
     return [
         Case(
             observation=observation,
             robot=robot,
-            label=label(observation, robot if several else None),
+            label=case_label(observation, robot if several else None),
             seed=summary["config"]["seed"],
             simulator=summary["config"]["simulator"],
             **{
@@ -69,13 +69,13 @@ def cases(summary: Mapping[str, Any]) -> list[Case]:
                 for part in ("settings", "pooled", "curves", "timed")
             },
         )
-        for observation, robot in places
+        for observation, robot in pairs
     ]
 
 
-def label(observation: str, robot: str | None) -> str:
-    """`feet read back (stiff robot)`."""
-    reading = READINGS.get(observation, observation)
+def case_label(observation: str, robot: str | None) -> str:
+    """Return the display label of a case: `feet measured (stiff robot)`."""
+    reading = OBSERVATION_LABELS.get(observation, observation)
     return (
         reading
         if robot is None
@@ -83,7 +83,9 @@ def label(observation: str, robot: str | None) -> str:
     )
 
 
-def _first(entries: Sequence[Mapping[str, Any]], **wanted: Any) -> Mapping[str, Any] | None:
+def _first_with_trials(
+    entries: Sequence[Mapping[str, Any]], **wanted: Any
+) -> Mapping[str, Any] | None:
     for one in entries:
         if one["n"] and all(one[name] == value for name, value in wanted.items()):
             return one

@@ -1,4 +1,4 @@
-"""Which of our cases comes nearest to the numbers that the paper printed."""
+"""Compare cases by the distance of their results to the paper's printed numbers."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from app.experiments.statistics import (
     Interval,
     Points,
     Verdict,
-    decided,
+    bootstrap_exceeds,
     interval,
     iqm,
     quantile_of,
@@ -26,51 +26,56 @@ class _Printed(NamedTuple):
     points: Points
 
 
-class Near(NamedTuple):
-    """A case beside the printed total distances of Q-learning.
+class Closeness(NamedTuple):
+    """Agreement of a case with the printed total distances of Q-learning.
 
     Attributes:
-        inside: how many of the printed values lie in the central 95 % of our seeds.
-        of: how many there are.
-        apart_m: from our middle to the printed value, averaged without sign.
+        case: the case.
+        inside: number of printed values within the central 95 % of our seeds.
+        compared: number of printed values.
+        mean_error_m: mean absolute difference of our interquartile mean and the printed value.
     """
 
     case: Case
     inside: int
-    of: int
-    apart_m: float
+    compared: int
+    mean_error_m: float
 
 
-def near(case: Case) -> Near | None:
-    """How near a case comes; None if nothing was printed of it, or a setting has no trials."""
+def closeness(case: Case) -> Closeness | None:
+    """Return a case's agreement; None if nothing was printed of it or a setting has no trials."""
     printed = _printed(case)
     if not printed:
         return None
     tail = (1 - CONFIDENCE) / 2
     inside = sum(tail <= quantile_of(one.total_m, one.points) <= 1 - tail for one in printed)
-    apart = _apart([np.asarray(one.points) for one in printed], printed, -1)
-    return Near(case, inside, len(printed), float(apart))
+    apart = _mean_error([np.asarray(one.points) for one in printed], printed, -1)
+    return Closeness(case, inside, len(printed), float(apart))
 
 
-def nearer(a: Case, b: Case) -> tuple[Verdict, Interval] | None:
-    """Whether `a` comes nearer than `b`, and by how much [m]: yes, no, or not established.
+def compare_closeness(a: Case, b: Case) -> tuple[Verdict, Interval] | None:
+    """Test whether `a` is closer to the printed values than `b`.
 
-    The interval is of our seeds only; that each printed value is one run it cannot know.
+    Returns:
+        The verdict, and the difference of their mean errors with its interval [m], positive if `a`
+        is closer; None if the two cannot be compared. The interval covers the variation of our
+        seeds only, not that each printed value is a single run.
     """
     ours, others = _printed(a), _printed(b)
     if not ours or len(ours) != len(others):
         return None
 
-    def by(*samples: FloatArray, axis: int = -1) -> FloatArray:
+    def difference(*samples: FloatArray, axis: int = -1) -> FloatArray:
         mine, theirs = samples[: len(ours)], samples[len(ours) :]
-        return _apart(theirs, others, axis) - _apart(mine, ours, axis)
+        return _mean_error(theirs, others, axis) - _mean_error(mine, ours, axis)
 
-    found = interval([one.points for one in (*ours, *others)], by, a.seed)
-    return decided(found, 0, min(len(one.points) for one in (*ours, *others))), found
+    estimate = interval([one.points for one in (*ours, *others)], difference, a.seed)
+    fewest = min(len(one.points) for one in (*ours, *others))
+    return bootstrap_exceeds(estimate, 0, fewest), estimate
 
 
 def _printed(case: Case) -> list[_Printed]:
-    """Q-learning's settings that the paper has too, if all of them have trials."""
+    """Return Q-learning's settings that the paper also has; none unless all have trials."""
     learners = [one for one in case.settings if one["agent"] == PAPERS_AGENT and one["published"]]
     if not all(one["n"] for one in learners):
         return []
@@ -82,8 +87,10 @@ def _printed(case: Case) -> list[_Printed]:
     ]
 
 
-def _apart(samples: Sequence[FloatArray], printed: Sequence[_Printed], axis: int) -> FloatArray:
-    """The mean distance between a printed value and our middle [m]."""
+def _mean_error(
+    samples: Sequence[FloatArray], printed: Sequence[_Printed], axis: int
+) -> FloatArray:
+    """Return the mean absolute difference of printed values and interquartile means [m]."""
     each = [
         np.abs(iqm(points, axis) - one.total_m)
         for points, one in zip(samples, printed, strict=True)

@@ -1,4 +1,4 @@
-"""What the paper says about its Figure 4, and about tuning."""
+"""The paper's claims about its Figure 4, the learning curves."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -7,19 +7,28 @@ import numpy as np
 
 from app.domain.types import FloatArray
 from app.experiments.claims.cases import PAPERS_AGENT, Case
-from app.experiments.claims.gaits import ODD_GAIT, gaits
+from app.experiments.claims.gaits import ODD_GAIT, gait_claims
 from app.experiments.claims.judging import Claim, Finding
-from app.experiments.formatting import gait_name, metres, percent, shares
-from app.experiments.measures import WALKS
-from app.experiments.statistics import Interval, Verdict, at_least, decided, paired_interval
+from app.experiments.formatting import gait_name_with_papers, metres, percent, shares
+from app.experiments.measures import WALKER_SHARE
+from app.experiments.statistics import (
+    Interval,
+    Verdict,
+    bootstrap_exceeds,
+    paired_interval,
+    share_at_least,
+)
 
-FLAT = 0.25
-"""The second thousand steps bring less than this part of the first, where a curve is flat."""
+FLAT_RATIO = 0.25
+"""A curve counts as flat if steps 1,001 to 2,000 add less than this share of the first 1,000."""
 FIRST, MIDDLE, LAST = 250, 1000, 2000
 
 
 class _Curve:
-    """Q-learning's curve over all gaits at 250, 1,000 and 2,000 steps, as shares of greedy."""
+    """Q-learning's learning curve over all gaits at 250, 1,000 and 2,000 steps.
+
+    Heights are shares of greedy's distance; the gaits are the strata.
+    """
 
     def __init__(self, case: Case) -> None:
         curves = [
@@ -33,23 +42,23 @@ class _Curve:
         self._seed = case.seed
         self.fewest = min((one.shape[1] for one in self._strata), default=0)
 
-    def over(self, number: Callable[[FloatArray], FloatArray]) -> Interval:
-        """A number made of the curve's three heights, (3, …)."""
+    def statistic(self, number: Callable[[FloatArray], FloatArray]) -> Interval:
+        """Return the interval of a function of the curve's three heights, (3, …)."""
         return paired_interval(self._strata, number, self._seed)
 
     def at(self, steps: int) -> Interval:
-        """The curve's height."""
+        """Return the curve's height at one of the three steps."""
         place = (FIRST, MIDDLE, LAST).index(steps)
-        return self.over(lambda heights: heights[place])
+        return self.statistic(lambda heights: heights[place])
 
 
 def _shares(curve: Mapping[str, Any]) -> FloatArray:
-    """Each seed at the three places, (3, n)."""
+    """Return each seed's share of greedy's distance at the three steps, (3, n)."""
     at = [curve["points_m"][curve["steps"].index(steps)] for steps in (FIRST, MIDDLE, LAST)]
     return np.asarray(at, dtype=np.float64) / float(curve["greedy_m"])
 
 
-def _judging(find: Callable[[_Curve], Finding]) -> Callable[[Case], Finding | None]:
+def _judge_curve(find: Callable[[_Curve], Finding]) -> Callable[[Case], Finding | None]:
     def find_in(case: Case) -> Finding | None:
         curve = _Curve(case)
         return find(curve) if curve.fewest else None
@@ -60,35 +69,35 @@ def _judging(find: Callable[[_Curve], Finding]) -> Callable[[Case], Finding | No
 def _improves(curve: _Curve) -> Finding:
     middle = curve.at(MIDDLE)
     return Finding.of(
-        decided(middle, WALKS, curve.fewest),
+        bootstrap_exceeds(middle, WALKER_SHARE, curve.fewest),
         f"{shares(curve.at(FIRST))} of greedy's distance after 250 steps, {shares(middle)} after "
         "1,000.",
     )
 
 
 def _flattens(curve: _Curve) -> Finding:
-    more = curve.over(lambda at: (at[2] - at[1]) - FLAT * at[1])
+    more = curve.statistic(lambda at: (at[2] - at[1]) - FLAT_RATIO * at[1])
     middle, last = curve.at(MIDDLE), curve.at(LAST)
     adds = f"{percent(last.value / middle.value - 1)}" if middle.value > 0 else "all"
     return Finding.of(
-        decided(-more, 0, curve.fewest),
+        bootstrap_exceeds(-more, 0, curve.fewest),
         f"{shares(middle)} of greedy's distance after 1,000 steps, {shares(last)} after 2,000: the "
         f"second thousand steps add {adds} to what the first brought.",
     )
 
 
 def _inclines(curve: _Curve) -> Finding:
-    gain = curve.over(lambda at: at[2] - at[1])
+    gain = curve.statistic(lambda at: at[2] - at[1])
     return Finding.of(
-        decided(gain, 0, curve.fewest),
+        bootstrap_exceeds(gain, 0, curve.fewest),
         f"From 1,000 to 2,000 steps the curve rises by {shares(gain)} of greedy's distance.",
     )
 
 
 def _approaches(curve: _Curve) -> Finding:
-    closer, last = curve.over(lambda at: at[2] - at[0]), curve.at(LAST)
-    under = decided(-last, -1, curve.fewest)
-    nearer = decided(closer, 0, curve.fewest)
+    closer, last = curve.statistic(lambda at: at[2] - at[0]), curve.at(LAST)
+    under = bootstrap_exceeds(-last, -1, curve.fewest)
+    nearer = bootstrap_exceeds(closer, 0, curve.fewest)
     both: Verdict = (
         "no" if "no" in (under, nearer) else "yes" if under == nearer else "not established"
     )
@@ -103,9 +112,9 @@ def _satisfies(case: Case) -> Finding | None:
     curve = case.curve(ODD_GAIT)
     if curve is None or curve["greedy_m"] is None:
         return None
-    walkers = at_least(curve["points_m"][-1], WALKS * curve["greedy_m"])
+    walkers = share_at_least(curve["points_m"][-1], WALKER_SHARE * curve["greedy_m"])
     return Finding.of(
-        walkers.against(0.5),
+        walkers.exceeds(0.5),
         f"After {curve['steps'][-1]:,} steps {shares(walkers)} of its seeds walk; the middle "
         f"covers {metres(curve['iqm_m'][-1])}, greedy {metres(curve['greedy_m'])}.",
     )
@@ -117,30 +126,31 @@ FIGURE4_CLAIMS: Sequence[Claim] = (
         "“improves substantially in the first few hundred trials, up to around 1000” (§5.1)",
         "It starts from nothing; after 1,000 steps the middle covers more than half of greedy's "
         "distance.",
-        _judging(_improves),
+        _judge_curve(_improves),
     ),
     Claim(
         "flattens",
         "“the improvement flattens out quickly before 1000 steps of learning” (§5.1)",
         "The second thousand steps add less than a quarter of what the first brought.",
-        _judging(_flattens),
+        _judge_curve(_flattens),
     ),
     Claim(
         "inclines",
         "“the plateau in Figure 4 is really a small incline” (§6)",
         "From 1,000 to 2,000 steps the curve still rises.",
-        _judging(_inclines),
+        _judge_curve(_inclines),
     ),
     Claim(
         "approaches",
         "Greedy “is higher than all walking gaits, the Q-Learning curves slowly approach” (§5.1)",
         "After 2,000 steps the curve is under greedy, and nearer to it than after 250.",
-        _judging(_approaches),
+        _judge_curve(_approaches),
     ),
-    *gaits(alike_after=2000, slow_after=500),
+    *gait_claims(alike_after=2000, slow_after=500),
     Claim(
         "odd-gait-satisfies",
-        f"{gait_name(ODD_GAIT)} “eventually Q-Learns its way to a satisfactory gait” (§5.1)",
+        f"{gait_name_with_papers(ODD_GAIT)} “eventually Q-Learns its way to a satisfactory gait” "
+        "(§5.1)",
         "After 2,000 steps more than half of the seeds cover half of greedy's distance.",
         _satisfies,
     ),

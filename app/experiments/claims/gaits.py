@@ -1,4 +1,4 @@
-"""What the paper says about its gaits: alike, but for one."""
+"""The paper's claims about its gaits: three are alike, and one is slow."""
 
 from functools import partial
 
@@ -7,53 +7,60 @@ import numpy as np
 from app.domain.types import FloatArray
 from app.experiments.claims.cases import Case
 from app.experiments.claims.judging import Claim, Finding
-from app.experiments.formatting import metres, percent, shares, span
+from app.experiments.formatting import gait_name_with_papers, metres, percent, shares, span
 from app.experiments.published import GAITS
-from app.experiments.statistics import Interval, Points, decided, interval, iqm, iqm_of_all
+from app.experiments.statistics import (
+    Interval,
+    Points,
+    bootstrap_exceeds,
+    interval,
+    iqm,
+    pooled_iqm,
+)
 
 ODD_GAIT = "left-right-vertical"
-OTHERS = tuple(gait for gait in GAITS if gait != ODD_GAIT)
-ALIKE = 0.8
-"""Of the best gait: the worst comes at least so far, where gaits are alike."""
-SLOW = 0.9
-"""Of the other gaits: who comes less far is slow."""
+OTHER_GAITS = tuple(gait for gait in GAITS if gait != ODD_GAIT)
+ALIKE_RATIO = 0.8
+"""Gaits count as alike if the worst covers at least this share of the best one's distance."""
+SLOW_RATIO = 0.9
+"""A gait counts as slow if it covers less than this share of the others' distance."""
 
 
-def gaits(alike_after: int, slow_after: int) -> tuple[Claim, Claim]:
-    """Both claims, each after this practice [steps]."""
+def gait_claims(alike_after: int, slow_after: int) -> tuple[Claim, Claim]:
+    """Build both claims, each for its steps of practice."""
     return (
         Claim(
             "gaits-alike",
             "“All the walking gaits have pretty similar results, except for LeftRight-Vertical” "
             "(§5.1)",
             f"After {alike_after:,} steps the worst of the other three covers at least "
-            f"{percent(ALIKE)} of the best.",
+            f"{percent(ALIKE_RATIO)} of the best.",
             partial(_alike, steps=alike_after),
         ),
         Claim(
             "odd-gait-slow",
-            "LeftRight-Vertical “get[s] off to a slow start” (§5.1)",
-            f"After {slow_after:,} steps it covers less than {percent(SLOW)} of what the other "
-            "three do.",
+            f"{gait_name_with_papers(ODD_GAIT)} “get[s] off to a slow start” (§5.1)",
+            f"After {slow_after:,} steps it covers less than {percent(SLOW_RATIO)} of what the "
+            "other three do.",
             partial(_slow, steps=slow_after),
         ),
     )
 
 
-def odd_against_others(case: Case, steps: int) -> Interval | None:
-    """How far LeftRight-Vertical comes as a share of the other three gaits together."""
-    odd, others = walked(case, ODD_GAIT, steps), _others(case, steps)
-    if not odd or others is None or iqm_of_all(*map(np.asarray, others)) <= 0:
+def odd_gait_ratio(case: Case, steps: int) -> Interval | None:
+    """Return the distance of left-right, mirrored as a share of the other three gaits' together."""
+    odd, others = total_distances(case, ODD_GAIT, steps), _others(case, steps)
+    if not odd or others is None or pooled_iqm(*map(np.asarray, others)) <= 0:
         return None
 
     def ratio(odd: FloatArray, *others: FloatArray, axis: int = -1) -> FloatArray:
-        return iqm(odd, axis) / iqm_of_all(*others, axis=axis)
+        return iqm(odd, axis) / pooled_iqm(*others, axis=axis)
 
     return interval((odd, *others), ratio, case.seed)
 
 
-def walked(case: Case, gait: str, steps: int) -> Points:
-    """Every seed's total distance after this practice, in one go or in blocks [m]."""
+def total_distances(case: Case, gait: str, steps: int) -> Points:
+    """Return every seed's total distance after steps of practice, in one or several blocks [m]."""
     curve = case.curve(gait)
     if curve is not None and steps in curve["steps"]:
         return tuple(curve["points_m"][curve["steps"].index(steps)])
@@ -63,8 +70,8 @@ def walked(case: Case, gait: str, steps: int) -> Points:
 
 
 def _others(case: Case, steps: int) -> list[Points] | None:
-    found = [walked(case, gait, steps) for gait in OTHERS]
-    return found if all(found) else None
+    walks = [total_distances(case, gait, steps) for gait in OTHER_GAITS]
+    return walks if all(walks) else None
 
 
 def _alike(case: Case, steps: int) -> Finding | None:
@@ -76,23 +83,23 @@ def _alike(case: Case, steps: int) -> Finding | None:
         middles = np.stack([iqm(one, axis) for one in walks])
         return np.asarray(middles.min(axis=0) / middles.max(axis=0), dtype=np.float64)
 
-    found = interval(others, worst_of_best, case.seed)
+    ratio = interval(others, worst_of_best, case.seed)
     middles = [float(iqm(np.asarray(points))) for points in others]
     return Finding.of(
-        decided(found, ALIKE, min(map(len, others))),
+        bootstrap_exceeds(ratio, ALIKE_RATIO, min(map(len, others))),
         f"The other three cover {span(middles)} after "
-        f"{steps:,} steps; the worst {shares(found)} of the best.",
+        f"{steps:,} steps; the worst {shares(ratio)} of the best.",
     )
 
 
 def _slow(case: Case, steps: int) -> Finding | None:
-    found = odd_against_others(case, steps)
-    if found is None:
+    ratio = odd_gait_ratio(case, steps)
+    if ratio is None:
         return None
-    odd = walked(case, ODD_GAIT, steps)
-    fewest = min(len(odd), *(len(walked(case, gait, steps)) for gait in OTHERS))
+    odd = total_distances(case, ODD_GAIT, steps)
+    fewest = min(len(odd), *(len(total_distances(case, gait, steps)) for gait in OTHER_GAITS))
     return Finding.of(
-        decided(-found, -SLOW, fewest),
+        bootstrap_exceeds(-ratio, -SLOW_RATIO, fewest),
         f"It covers {metres(float(iqm(np.asarray(odd))))} after {steps:,} steps, "
-        f"{shares(found)} of the other three.",
+        f"{shares(ratio)} of the other three.",
     )

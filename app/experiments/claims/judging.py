@@ -1,21 +1,21 @@
-"""Which of the paper's claims hold over many seeds, as far as the intervals say."""
+"""Judge the paper's claims over many seeds by their confidence intervals."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
-from app.experiments.claims.cases import Case, cases
+from app.experiments.claims.cases import Case, cases_of
 from app.experiments.formatting import listed
 from app.experiments.statistics import Verdict
 
 Judgement = Literal["holds", "does not hold", "not established", "depends"]
-"""`depends`: one thing in one case, another in another."""
+"""`depends`: the cases disagree."""
 _AS_JUDGEMENT: Mapping[Verdict, Judgement] = {
     "yes": "holds",
     "no": "does not hold",
     "not established": "not established",
 }
 
-_SAID: Mapping[Judgement, str] = {
+_PHRASES: Mapping[Judgement, str] = {
     "holds": "holds",
     "does not hold": "does not hold",
     "not established": "is not established",
@@ -24,25 +24,25 @@ _SAID: Mapping[Judgement, str] = {
 
 
 class Finding(NamedTuple):
-    """What one case says of a claim."""
+    """The verdict on a claim in one case, with its evidence as a sentence."""
 
     verdict: Judgement
     evidence: str
 
     @classmethod
     def of(cls, verdict: Verdict, evidence: str) -> "Finding":
-        """Where a claim is that a number is over its threshold."""
+        """Build the finding of a claim that a number exceeds its threshold."""
         return cls(_AS_JUDGEMENT[verdict], evidence)
 
 
 class Claim(NamedTuple):
-    """Something that the paper says.
+    """A claim of the paper.
 
     Attributes:
-        id: for links.
-        claim: the paper's words, and where they stand.
-        criterion: what we take them to mean, so that a number can decide.
-        find: None where the case has no trials that could answer.
+        id: identifier, for links.
+        claim: quotation from the paper with its section.
+        criterion: our interpretation as a criterion that a number can decide.
+        find: function that judges it in a case; it returns None without the trials for it.
     """
 
     id: str
@@ -52,30 +52,30 @@ class Claim(NamedTuple):
 
 
 def judge(summary: Mapping[str, Any], claims: Sequence[Claim]) -> list[dict[str, Any]]:
-    """Every claim that these trials can answer, over all cases and in each.
+    """Judge every claim for which there are trials, in each case and over all cases.
 
-    Where the cases disagree it depends, since the paper does not say which of them is its own;
-    the evidence then says where what holds.
+    Where the cases disagree the overall verdict is `depends`, since the paper does not say which
+    case is its own; the evidence then lists the cases by verdict.
     """
-    places = cases(summary)
+    cases = cases_of(summary)
     judged = []
     for one in claims:
-        found = [(case, one.find(case)) for case in places]
-        where = [(case, finding) for case, finding in found if finding is not None]
-        if where:
-            judged.append(_judged(one, where))
+        results = [(case, one.find(case)) for case in cases]
+        findings = [(case, finding) for case, finding in results if finding is not None]
+        if findings:
+            judged.append(_judged(one, findings))
     return judged
 
 
-def _judged(claim: Claim, where: Sequence[tuple[Case, Finding]]) -> dict[str, Any]:
-    verdicts = {finding.verdict for _, finding in where}
+def _judged(claim: Claim, findings: Sequence[tuple[Case, Finding]]) -> dict[str, Any]:
+    verdicts = {finding.verdict for _, finding in findings}
     overall = verdicts.pop() if len(verdicts) == 1 else "depends"
     return {
         "id": claim.id,
         "claim": claim.claim,
         "criterion": claim.criterion,
         "verdict": overall,
-        "evidence": _together(where),
+        "evidence": _overall_evidence(findings),
         "where": [
             {
                 "observation": case.observation,
@@ -83,21 +83,24 @@ def _judged(claim: Claim, where: Sequence[tuple[Case, Finding]]) -> dict[str, An
                 "label": case.label,
                 **finding._asdict(),
             }
-            for case, finding in where
+            for case, finding in findings
         ],
     }
 
 
-def _together(where: Sequence[tuple[Case, Finding]]) -> str:
-    """One or two sentences for all cases: the numbers if they agree, else who says what."""
-    said: dict[Judgement, list[str]] = {}
-    for case, finding in where:
-        said.setdefault(finding.verdict, []).append(case.label)
-    first, finding = where[0]
-    if len(said) > 1:
-        parts = (f"{_SAID[verdict]} with {listed(labels)}" for verdict, labels in said.items())
+def _overall_evidence(findings: Sequence[tuple[Case, Finding]]) -> str:
+    """Return the evidence over all cases: the numbers if they agree, else the cases by verdict."""
+    labels_by_verdict: dict[Judgement, list[str]] = {}
+    for case, finding in findings:
+        labels_by_verdict.setdefault(finding.verdict, []).append(case.label)
+    first, finding = findings[0]
+    if len(labels_by_verdict) > 1:
+        parts = (
+            f"{_PHRASES[verdict]} with {listed(labels)}"
+            for verdict, labels in labels_by_verdict.items()
+        )
         return f"It depends: it {'; it '.join(parts)}."
-    if len(where) == 1:
+    if len(findings) == 1:
         return finding.evidence
-    cases = "both" if len(where) == 2 else f"all {len(where)}"
-    return f"The same in {cases} cases. With {first.label}: {finding.evidence}"
+    which = "both" if len(findings) == 2 else f"all {len(findings)}"
+    return f"The same in {which} cases. With {first.label}: {finding.evidence}"

@@ -1,21 +1,23 @@
-"""What the paper hopes of tuning."""
+"""The paper's expectation that tuning its parameters makes Q-learning faster."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.claims.judging import Claim, Finding
-from app.experiments.formatting import RATES as WORDS
-from app.experiments.formatting import percent, shares
-from app.experiments.statistics import CONFIDENCE, Points, decided, improvement
+from app.experiments.formatting import PARAMETER_FORMATS, percent, shares
+from app.experiments.statistics import CONFIDENCE, Points, bootstrap_exceeds, improvement
 from app.runs.config import TrainingConfig
 
-RATES = ("alpha", "gamma", "epsilon_start", "epsilon_end", "steps_per_episode")
+PARAMETERS = ("alpha", "gamma", "epsilon_start", "epsilon_end", "steps_per_episode")
 _REST = ("steps", "divisions", "grid_side_m", "blocks")
 
 
 def _tuning(case: Case) -> Finding | None:
-    """The best of many is compared once, at a confidence that pays for having picked it."""
+    """Compare the best of the other parameter values with the paper's.
+
+    The confidence level has a Bonferroni correction for selecting the best of several candidates.
+    """
     ours = [
         one
         for one in case.pooled
@@ -24,34 +26,40 @@ def _tuning(case: Case) -> Finding | None:
         and len(_seeds(case, one)) == len(one["gaits"])
     ]
     papers = [one for one in ours if _is_papers(one)]
-    rivals = [one for one in ours if any(_comparable(one, own) for own in papers)]
-    if not rivals:
+    candidates = [
+        one for one in ours if any(_comparable(one, papers_pool) for papers_pool in papers)
+    ]
+    if not candidates:
         return None
-    best = max(rivals, key=lambda one: float(one["relative"]["iqm"]))
-    own = next(one for one in papers if _comparable(best, one))
-    a, b = _seeds(case, best), _seeds(case, own)
-    chance = improvement(a, b, case.seed, 1 - (1 - CONFIDENCE) / len(rivals))
-    told = ", ".join(WORDS[name].format(best[name]) for name in RATES if best[name] != own[name])
+    best = max(candidates, key=lambda one: float(one["relative"]["iqm"]))
+    papers_pool = next(one for one in papers if _comparable(best, one))
+    a, b = _seeds(case, best), _seeds(case, papers_pool)
+    chance = improvement(a, b, case.seed, 1 - (1 - CONFIDENCE) / len(candidates))
+    values = ", ".join(
+        PARAMETER_FORMATS[name].format(best[name])
+        for name in PARAMETERS
+        if best[name] != papers_pool[name]
+    )
     return Finding.of(
-        decided(chance, 0.5, min(len(points) for points in (*a, *b))),
-        f"The best of {len(rivals)} others ({told}) covers {shares(best['relative'])} of greedy, "
-        f"the paper's values {shares(own['relative'])}; a seed of the best comes further with a "
-        f"probability of {percent(chance.value)}.",
+        bootstrap_exceeds(chance, 0.5, min(len(points) for points in (*a, *b))),
+        f"The best of {len(candidates)} others ({values}) covers {shares(best['relative'])} of "
+        f"greedy, the paper's values {shares(papers_pool['relative'])}; a seed of the best comes "
+        f"further with a probability of {percent(chance.value)}.",
     )
 
 
 def _is_papers(one: Mapping[str, Any]) -> bool:
-    return all(one[name] == getattr(TrainingConfig, name) for name in RATES)
+    return all(one[name] == getattr(TrainingConfig, name) for name in PARAMETERS)
 
 
-def _comparable(one: Mapping[str, Any], own: Mapping[str, Any]) -> bool:
-    same = all(one[name] == own[name] for name in (*_REST, "gaits"))
+def _comparable(one: Mapping[str, Any], papers_pool: Mapping[str, Any]) -> bool:
+    same = all(one[name] == papers_pool[name] for name in (*_REST, "gaits"))
     return same and not _is_papers(one)
 
 
 def _seeds(case: Case, pool: Mapping[str, Any]) -> tuple[Points, ...]:
-    """The distances of a pool's settings [m], gait by gait."""
-    named = (*RATES, *_REST, "agent")
+    """Return the seeds' distances [m] of a pool's settings, one tuple per gait."""
+    named = (*PARAMETERS, *_REST, "agent")
     return tuple(
         tuple(one["total"]["points_m"])
         for one in case.settings

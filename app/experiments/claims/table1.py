@@ -1,4 +1,4 @@
-"""What the paper says about its Table 1."""
+"""The paper's claims about its Table 1."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -6,20 +6,20 @@ from statistics import fmean, median
 from typing import Any
 
 from app.experiments.claims.cases import PAPERS_AGENT, Case
-from app.experiments.claims.gaits import gaits
+from app.experiments.claims.gaits import gait_claims
 from app.experiments.claims.judging import Claim, Finding
 from app.experiments.formatting import (
     counted,
     distance,
-    gait_name,
+    gait_name_with_papers,
     listed,
     metres,
     percent,
     shares,
 )
-from app.experiments.measures import REACHES
+from app.experiments.measures import REACHED_SHARE
 from app.experiments.published import GAITS, published
-from app.experiments.statistics import Interval, Verdict, decided
+from app.experiments.statistics import Interval, Verdict, bootstrap_exceeds
 
 AFTER = (500, 1000)
 
@@ -33,11 +33,11 @@ def _dominates(case: Case) -> Finding | None:
     if not raced:
         return None
     verdicts = {one["beats_greedy_total"]["verdict"] for one in raced}
-    found: Verdict = (
+    verdict: Verdict = (
         "no" if "yes" in verdicts else "yes" if verdicts == {"no"} else ("not established")
     )
     pools = [(steps, case.pool(steps)) for steps in AFTER]
-    shown = [
+    shares_of_greedy = [
         f"{shares(pool['relative'])} of greedy's total after {steps:,} steps"
         for steps, pool in pools
         if pool and pool["relative"]
@@ -45,8 +45,9 @@ def _dominates(case: Case) -> Finding | None:
     n = sum(one["n"] for one in raced)
     wins = sum(one["n"] * one["beats_greedy_total"]["share"] for one in raced)
     return Finding.of(
-        found,
-        f"Q-learning covers {listed(shown)}; {wins:.0f} of its {n} seeds came further than greedy.",
+        verdict,
+        f"Q-learning covers {listed(shares_of_greedy)}; {wins:.0f} of its {n} seeds came further "
+        "than greedy.",
     )
 
 
@@ -54,19 +55,19 @@ def _real_time(case: Case, steps: int) -> Finding | None:
     pool = case.pool(steps)
     if pool is None or pool["relative_finished"] is None:
         return None
-    shown = pool["relative_finished"]
-    middle = Interval(shown["iqm"], shown["low"], shown["high"])
+    relative = pool["relative_finished"]
+    middle = Interval(relative["iqm"], relative["low"], relative["high"])
     fewest = min(one["n"] for one in case.settings if one["steps"] == steps)
     return Finding.of(
-        decided(middle, REACHES, fewest),
-        f"When Q-learning has taken its 50 steps it has come {shares(shown)} as far as greedy, "
+        bootstrap_exceeds(middle, REACHED_SHARE, fewest),
+        f"When Q-learning has taken its 50 steps it has come {shares(relative)} as far as greedy, "
         f"and {percent(pool['beats_greedy']['share'])} of the seeds are ahead. The paper's own "
         f"four gaits average {percent(_papers_share(steps))}.",
     )
 
 
 def _papers_share(steps: int) -> float:
-    """Finished distance of Q-learning as a share of greedy's, averaged over the paper's gaits."""
+    """Return Q-learning's share of greedy's printed distance at time-out, averaged over gaits."""
     pairs = ((published(g, PAPERS_AGENT, steps), published(g, "greedy", 0)) for g in GAITS)
     return fmean(q.finished_m / greedy.finished_m for q, greedy in pairs if q and greedy)
 
@@ -94,17 +95,13 @@ def _on_par(case: Case) -> Finding | None:
     pool = case.pool(AFTER[0])
     if pool is None or pool["reaches_greedy"] is None:
         return None
-    found = pool["reaches_greedy"]
+    reached = pool["reaches_greedy"]
     finished = pool["beats_greedy"]
-    also = (
-        f" On finished distance {percent(finished['share'])} are ahead of greedy."
-        if finished
-        else ""
-    )
+    also = f" At time-out {percent(finished['share'])} are ahead of greedy." if finished else ""
     return Finding.of(
-        Interval(found["share"], found["low"], found["high"]).against(0.5),
-        f"After 500 steps {shares(found)} of {counted(pool['n'], 'seed')} reach "
-        f"{percent(REACHES)} of greedy's total distance.{also}",
+        Interval(reached["share"], reached["low"], reached["high"]).exceeds(0.5),
+        f"After 500 steps {shares(reached)} of {counted(pool['n'], 'seed')} reach "
+        f"{percent(REACHED_SHARE)} of greedy's total distance.{also}",
     )
 
 
@@ -113,10 +110,10 @@ def _two_step(case: Case) -> Finding | None:
     if not thinks:
         return None
     slowest, fastest = max(share for share, _ in thinks), min(share for share, _ in thinks)
-    found: Verdict = "yes" if fastest > 1 else "no" if slowest < 1 else "not established"
+    verdict: Verdict = "yes" if fastest > 1 else "no" if slowest < 1 else "not established"
     seconds = median(decided_s for _, decided_s in thinks)
     return Finding.of(
-        found,
+        verdict,
         f"On this machine two-step thought {seconds:.2g} s in 50 steps, between "
         f"{percent(fastest)} and {percent(slowest)} of the time that it walked, in "
         f"{counted(len(thinks), 'timed race')}."
@@ -125,7 +122,7 @@ def _two_step(case: Case) -> Finding | None:
 
 
 def _thinking(lanes: list[Mapping[str, Any]]) -> tuple[float, float]:
-    """Two-step's time to decide as a share of its walking, and in seconds."""
+    """Return two-step's decision time as a share of its walking time, and in seconds."""
     lane = next(one for one in lanes if one["agent"] == "two-step")
     return lane["decision_s"] / (lane["elapsed_s"] - lane["decision_s"]), lane["decision_s"]
 
@@ -154,8 +151,8 @@ TABLE1_CLAIMS: tuple[Claim, ...] = (
         Claim(
             f"real-time-{steps}",
             f"“Q-Learning walks just as fast in real time” (§5.1), after {steps:,} steps",
-            f"Finished distance at least {percent(REACHES)} of greedy's, over all gaits, under the "
-            "paper clock.",
+            f"Distance at time-out at least {percent(REACHED_SHARE)} of greedy's, over all gaits, "
+            "under the paper clock.",
             partial(_real_time, steps=steps),
         )
         for steps in AFTER
@@ -164,21 +161,21 @@ TABLE1_CLAIMS: tuple[Claim, ...] = (
         "text-beats-greedy",
         "“beats the Greedy Agent for the LeftRight-Origin walking gait after 1000 trials” (§5.1, "
         "text)",
-        "More than half of the seeds are ahead in finished distance.",
+        "More than half of the seeds are ahead at time-out.",
         partial(_beats, gait="left-right-origin"),
     ),
     Claim(
         "table-beats-greedy",
-        f"{gait_name('front-back-origin')} is where Q-learning beats greedy after 1,000 trials "
-        "(Table 1, against the text)",
-        "More than half of the seeds are ahead in finished distance.",
+        f"{gait_name_with_papers('front-back-origin')} is where Q-learning beats greedy after "
+        "1,000 trials (Table 1, against the text)",
+        "More than half of the seeds are ahead at time-out.",
         partial(_beats, gait="front-back-origin"),
     ),
     Claim(
         "on-par-500",
         "“on par with greedy search algorithms often in less than 500 steps” (§4)",
-        f"After 500 steps more than half of the seeds reach {percent(REACHES)} of greedy's total "
-        "distance.",
+        f"After 500 steps more than half of the seeds reach {percent(REACHED_SHARE)} of greedy's "
+        "total distance.",
         _on_par,
     ),
     Claim(
@@ -187,5 +184,5 @@ TABLE1_CLAIMS: tuple[Claim, ...] = (
         "On this machine it thinks longer than it walks, in every timed race.",
         _two_step,
     ),
-    *gaits(alike_after=1000, slow_after=500),
+    *gait_claims(alike_after=1000, slow_after=500),
 )

@@ -1,1 +1,6 @@
-"""What a reader sees, in sentences whose numbers come from the run."""
+"""Explanatory text of a report; every number in it is computed from the experiment's results.
+
+- `narrative`: assembles the text of an experiment from its paragraphs.
+- `table1`, `figure4`, `sweep`: the paragraphs of each experiment.
+- `gaits`: the paragraph about the gait that differs from the others.
+"""

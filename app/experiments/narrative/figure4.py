@@ -1,21 +1,21 @@
-"""What Figure 4 shows."""
+"""Paragraphs about Figure 4, the learning curves."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.formatting import agent_name, counted, gait_name, listed, metres, percent
-from app.experiments.narrative.gaits import odd_gait
+from app.experiments.narrative.gaits import ODD_GAIT_HEADING, explain_odd_gait
 
 Curve = Mapping[str, Any]
 
 
-def one_seed(places: Sequence[Case]) -> str | None:
-    """The spread at the end of a curve, and how often a seed's own curve falls."""
-    curves = [one for case in places for one in case.curves if one["steps"]]
+def describe_seed_spread(cases: Sequence[Case]) -> str | None:
+    """Describe the seeds' spread at the end of a curve, and how often a single curve falls."""
+    curves = [one for case in cases for one in case.curves if one["steps"]]
     if not curves or len(curves[0]["points_m"][0]) < 2:
         return None
-    one, at = curves[0], next(c.label for c in places if curves[0] in c.curves)
+    one, at = curves[0], next(c.label for c in cases if curves[0] in c.curves)
     last, falls = one["points_m"][-1], [_falls(curve) for curve in curves]
     blocks = sum(of for _, of in falls)
     return (
@@ -29,7 +29,7 @@ def one_seed(places: Sequence[Case]) -> str | None:
 
 
 def _falls(curve: Curve) -> tuple[int, int]:
-    """How often a seed comes less far than a block before, and of how many times."""
+    """Count how often a seed's distance falls from one block to the next, and all such pairs."""
     pairs = [
         (before, after)
         for blocks in zip(curve["points_m"], curve["points_m"][1:], strict=False)
@@ -38,22 +38,22 @@ def _falls(curve: Curve) -> tuple[int, int]:
     return sum(after < before for before, after in pairs), max(1, len(pairs))
 
 
-def readings(places: Sequence[Case]) -> str | None:
-    """How the two readings differ, and which has the shape that the paper describes."""
-    told = [_rise(case) for case in places]
-    said = [one for one in told if one]
-    if not said:
+def compare_observations(cases: Sequence[Case]) -> str | None:
+    """Compare the learning curves of the two observations with the shape the paper describes."""
+    descriptions = [_describe_curve(case) for case in cases]
+    sentences = [one for one in descriptions if one]
+    if not sentences:
         return None
     return (
-        "The paper does not say whether the robot reads back where its feet are, or remembers "
-        f"where it sent them. {' '.join(said)} The paper prints no numbers for its Figure 4, but "
-        "says that the curves rise fast at first and flatten before 1,000 steps. Which reading "
+        "The paper does not say whether the robot measures where its feet are, or remembers "
+        f"where it sent them. {' '.join(sentences)} The paper prints no numbers for its Figure 4, "
+        "but says that the curves rise fast at first and flatten before 1,000 steps. Which reading "
         "does so is among the claims above."
     )
 
 
-def _rise(case: Case) -> str | None:
-    """The middle of the gaits' curves at a few places, as shares of greedy."""
+def _describe_curve(case: Case) -> str | None:
+    """Describe the gaits' mean curve at its first, middle and last block, as shares of greedy."""
     curves = [
         one
         for one in case.curves
@@ -63,10 +63,10 @@ def _rise(case: Case) -> str | None:
         return None
     steps = curves[0]["steps"]
     chosen = dict.fromkeys((steps[0], steps[(len(steps) - 1) // 2], steps[-1]))
-    shown = [f"{percent(_mean_share(curves, steps.index(at)))} after {at:,}" for at in chosen]
+    shares = [f"{percent(_mean_share(curves, steps.index(at)))} after {at:,}" for at in chosen]
     return (
         f"With {case.label} the curves stand, as a share of greedy and averaged over the gaits, "
-        f"at {listed(shown)} steps."
+        f"at {listed(shares)} steps."
     )
 
 
@@ -74,24 +74,24 @@ def _mean_share(curves: Sequence[Curve], block: int) -> float:
     return sum(float(one["iqm_m"][block] / one["greedy_m"]) for one in curves) / len(curves)
 
 
-def rivals(places: Sequence[Case]) -> str | None:
-    """Where several agents learn: how far each comes in the end."""
-    said = []
-    for case in places:
+def compare_agents(cases: Sequence[Case]) -> str | None:
+    """Compare the final distances of the learning agents; None if there is only one."""
+    sentences = []
+    for case in cases:
         pools = [one for one in case.pooled if one["relative"]]
         if len({one["agent"] for one in pools}) > 1:
-            shown = [
+            shares = [
                 f"{agent_name(one['agent'])} {percent(one['relative']['iqm'])}" for one in pools
             ]
-            said.append(f"With {case.label}: {listed(shown)}.")
-    if not said:
+            sentences.append(f"With {case.label}: {listed(shares)}.")
+    if not sentences:
         return None
-    return f"At the end of the curves, as a share of greedy over all gaits. {' '.join(said)}"
+    return f"At the end of the curves, as a share of greedy over all gaits. {' '.join(sentences)}"
 
 
-FIGURE4_STORY: Sequence[tuple[str, Callable[[Sequence[Case]], str | None]]] = (
-    ("One seed misleads", one_seed),
-    ("Two readings of the same robot", readings),
-    ("The agents", rivals),
-    ("Why LeftRight-Vertical is the odd one", odd_gait),
+FIGURE4_NARRATIVE: Sequence[tuple[str, Callable[[Sequence[Case]], str | None]]] = (
+    ("One seed misleads", describe_seed_spread),
+    ("Two readings of the same robot", compare_observations),
+    ("The agents", compare_agents),
+    (ODD_GAIT_HEADING, explain_odd_gait),
 )

@@ -1,47 +1,53 @@
-"""The gait that the paper found odd."""
+"""The paragraph about left-right, mirrored, which differs from the paper's other gaits."""
 
 from collections.abc import Sequence
 
 from app.experiments.claims.cases import PAPERS_AGENT, Case
-from app.experiments.claims.gaits import ODD_GAIT, OTHERS, SLOW, odd_against_others
-from app.experiments.formatting import listed, metres, shares, span
+from app.experiments.claims.gaits import ODD_GAIT, OTHER_GAITS, SLOW_RATIO, odd_gait_ratio
+from app.experiments.formatting import gait_name_with_papers, listed, metres, shares, span
 from app.experiments.published import published
 
-AFTER = 500
+STEPS = 500
+_ODD_GAIT_NAME = gait_name_with_papers(ODD_GAIT)
+ODD_GAIT_HEADING = f"Why {_ODD_GAIT_NAME} is the odd one"
 
 
-def odd_gait(places: Sequence[Case]) -> str | None:
-    """LeftRight-Vertical on each robot; nothing to say where the simulator knows no servos."""
-    told = [_told(case) for case in places if case.simulator == "mujoco"]
-    said = [one for one in told if one]
-    if not said:
+def explain_odd_gait(cases: Sequence[Case]) -> str | None:
+    """Describe left-right, mirrored on each robot.
+
+    None for the kinematic simulator, which models no servos.
+    """
+    descriptions = [_describe_case(case) for case in cases if case.simulator == "mujoco"]
+    sentences = [one for one in descriptions if one]
+    if not sentences:
         return None
     return (
-        "LeftRight-Vertical pairs the legs that stand opposite each other, so that both front legs "
+        f"{_ODD_GAIT_NAME} pairs the legs that stand opposite each other, so that both front legs "
         "leave the ground at once. Stiff servos hold the body level meanwhile; compliant ones let "
-        "it pitch, and distance is lost.\n" + "\n".join([*said, _printed() + _slowed(places)])
+        "it pitch, and distance is lost.\n"
+        + "\n".join([*sentences, _printed_numbers() + _greedy_slow_too(cases)])
     )
 
 
-def _told(case: Case) -> str | None:
-    greedy, rest = case.setting(ODD_GAIT, 0, "greedy"), _greedy_elsewhere(case)
-    ratio = odd_against_others(case, AFTER)
+def _describe_case(case: Case) -> str | None:
+    greedy, rest = case.setting(ODD_GAIT, 0, "greedy"), _greedy_in_other_gaits(case)
+    ratio = odd_gait_ratio(case, STEPS)
     if greedy is None or not rest or ratio is None:
         return None
     return (
         f"With {case.label}, greedy covers {metres(greedy['total']['iqm_m'])} in this gait and "
-        f"{span(rest)} in the other three; Q-learning after {AFTER} "
+        f"{span(rest)} in the other three; Q-learning after {STEPS} "
         f"steps covers {shares(ratio)} of what it does in the other three."
     )
 
 
-def _greedy_elsewhere(case: Case) -> list[float]:
-    found = [case.setting(gait, 0, "greedy") for gait in OTHERS]
-    return [float(one["total"]["iqm_m"]) for one in found if one]
+def _greedy_in_other_gaits(case: Case) -> list[float]:
+    settings = [case.setting(gait, 0, "greedy") for gait in OTHER_GAITS]
+    return [float(one["total"]["iqm_m"]) for one in settings if one]
 
 
-def _printed() -> str:
-    learner, greedy = published(ODD_GAIT, PAPERS_AGENT, AFTER), published(ODD_GAIT, "greedy", 0)
+def _printed_numbers() -> str:
+    learner, greedy = published(ODD_GAIT, PAPERS_AGENT, STEPS), published(ODD_GAIT, "greedy", 0)
     if learner is None or greedy is None:
         return ""
     return (
@@ -50,12 +56,12 @@ def _printed() -> str:
     )
 
 
-def _slowed(places: Sequence[Case]) -> str:
-    """Where greedy loses in this gait too, our robot is not quite the paper's."""
+def _greedy_slow_too(cases: Sequence[Case]) -> str:
+    """Name the robots on which greedy is slow in this gait too, unlike in the paper."""
     both = []
-    for case in places:
-        greedy, rest = case.setting(ODD_GAIT, 0, "greedy"), _greedy_elsewhere(case)
-        if greedy and rest and greedy["total"]["iqm_m"] < SLOW * min(rest):
+    for case in cases:
+        greedy, rest = case.setting(ODD_GAIT, 0, "greedy"), _greedy_in_other_gaits(case)
+        if greedy and rest and greedy["total"]["iqm_m"] < SLOW_RATIO * min(rest):
             both.append(case.robot)
     if not both:
         return ""

@@ -1,45 +1,52 @@
-"""What a sweep shows."""
+"""Paragraphs about a sweep."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from app.experiments.claims.cases import Case
 from app.experiments.config import GRID
-from app.experiments.formatting import RATES, agent_name, counted, metres, percent, shares
+from app.experiments.formatting import (
+    PARAMETER_FORMATS,
+    agent_name,
+    counted,
+    metres,
+    percent,
+    shares,
+)
 
 
-def extremes(places: Sequence[Case]) -> str | None:
-    """The best and the worst of the grid, and that the best was picked."""
-    pools = [(case, one) for case in places for one in case.pooled if one["walkers"]]
+def describe_best_and_worst(cases: Sequence[Case]) -> str | None:
+    """Describe the best and the worst combination, with a caution about the selection bias."""
+    pools = [(case, one) for case in cases for one in case.pooled if one["walkers"]]
     if len(pools) < 2:
         return None
-    ordered = sorted(pools, key=lambda found: float(found[1]["relative"]["iqm"]))
-    told = [
-        f"The {word} is {named(one, [pool for _, pool in pools])} with {case.label}: "
+    ordered = sorted(pools, key=lambda pool: float(pool[1]["relative"]["iqm"]))
+    sentences = [
+        f"The {word} is {combination_name(one, [pool for _, pool in pools])} with {case.label}: "
         f"{shares(one['relative'])} of greedy's distance, {percent(one['walkers']['share'])} of "
         "the seeds walk."
         for word, (case, one) in (("best", ordered[-1]), ("worst", ordered[0]))
     ]
     return (
-        f"{len(pools)} combinations were tried, each over all gaits. {' '.join(told)} The best of "
-        "many looks better than it is, because luck helped to pick it: try it again with another "
-        "seed before you believe it."
+        f"{len(pools)} combinations were tried, each over all gaits. {' '.join(sentences)} The "
+        "best of many looks better than it is, because luck helped to pick it: try it again with "
+        "another seed before you believe it."
     )
 
 
-def named(one: Mapping[str, Any], among: Sequence[Mapping[str, Any]]) -> str:
-    """What tells a combination from the others; its agent where nothing else does."""
+def combination_name(one: Mapping[str, Any], among: Sequence[Mapping[str, Any]]) -> str:
+    """Name a combination by the parameters that vary among the pools, or else by its agent."""
     varied = [n for n in GRID if len({other[n] for other in among if other["walkers"]}) > 1]
-    said = [RATES[name].format(one[name]) for name in varied if one[name] is not None]
-    if len({other["agent"] for other in among}) > 1 or not said:
-        said.insert(0, agent_name(one["agent"]))
-    return ", ".join(said)
+    parts = [PARAMETER_FORMATS[name].format(one[name]) for name in varied if one[name] is not None]
+    if len({other["agent"] for other in among}) > 1 or not parts:
+        parts.insert(0, agent_name(one["agent"]))
+    return ", ".join(parts)
 
 
-def one_seed(places: Sequence[Case]) -> str | None:
-    """The spread of the setting that spreads most."""
+def describe_seed_spread(cases: Sequence[Case]) -> str | None:
+    """Describe the setting whose seeds spread most."""
     learners = [
-        one for case in places for one in case.settings if one["role"] == "learner" and one["n"] > 1
+        one for case in cases for one in case.settings if one["role"] == "learner" and one["n"] > 1
     ]
     if not learners:
         return None
@@ -52,7 +59,7 @@ def one_seed(places: Sequence[Case]) -> str | None:
     )
 
 
-SWEEP_STORY: Sequence[tuple[str, Callable[[Sequence[Case]], str | None]]] = (
-    ("Best and worst", extremes),
-    ("One seed misleads", one_seed),
+SWEEP_NARRATIVE: Sequence[tuple[str, Callable[[Sequence[Case]], str | None]]] = (
+    ("Best and worst", describe_best_and_worst),
+    ("One seed misleads", describe_seed_spread),
 )

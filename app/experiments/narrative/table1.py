@@ -1,36 +1,37 @@
-"""What Table 1 shows."""
+"""Paragraphs about Table 1."""
 
 from collections.abc import Callable, Mapping, Sequence
 from statistics import fmean, median
 from typing import Any
 
 from app.experiments.claims.cases import PAPERS_AGENT, Case
-from app.experiments.claims.distance_to_paper import near, nearer
+from app.experiments.claims.distance_to_paper import closeness, compare_closeness
 from app.experiments.formatting import (
     counted,
     distance,
     gait_name,
+    gait_name_with_papers,
     listed,
     metres,
     percent,
     shares,
 )
-from app.experiments.narrative.gaits import odd_gait
+from app.experiments.narrative.gaits import ODD_GAIT_HEADING, explain_odd_gait
 from app.experiments.statistics import Points, improvement
 
 Settings = list[Any]
 
 
-def one_seed(places: Sequence[Case]) -> str | None:
-    """The spread of one setting, and how often a single seed names the wrong winner."""
-    learners = _learners(places)
+def describe_seed_spread(cases: Sequence[Case]) -> str | None:
+    """Describe the seeds' spread, and how often a single seed would name the wrong winner."""
+    learners = _learners(cases)
     if not learners:
         return None
     one = max(learners, key=lambda s: max(s["total"]["points_m"]) - min(s["total"]["points_m"]))
     first = learners[0]
-    at = next(case.label for case in places if first in case.settings)
+    at = next(case.label for case in cases if first in case.settings)
     points = first["total"]["points_m"]
-    said = [
+    sentences = [
         f"A printed number is one run of a learner that throws dice. {gait_name(first['gait'])} "
         f"after {first['steps']:,} steps, with {at}: the middle is {distance(first['total'])}, "
         f"but of {counted(first['n'], 'seed')} the worst covers {metres(min(points))} and the best "
@@ -38,23 +39,23 @@ def one_seed(places: Sequence[Case]) -> str | None:
         f"The widest spread of all settings is {metres(min(one['total']['points_m']))} to "
         f"{metres(max(one['total']['points_m']))}."
     ]
-    settled = [s["beats_greedy"] for s in learners if s["beats_greedy"]]
-    shares_ = [b["share"] for b in settled if b["verdict"] != "not established"]
-    if shares_:
-        wrong = fmean(min(share, 1 - share) for share in shares_)
-        worst = max(min(share, 1 - share) for share in shares_)
-        said.append(
-            f"In {len(shares_)} of {len(settled)} settings the seeds together settle who is "
-            "ahead when the race ends, Q-learning or greedy; one seed alone would name the wrong "
-            f"one in {percent(wrong)} of cases, and in {percent(worst)} in the worst of these "
-            f"settings. In the other {len(settled) - len(shares_)} the seeds do not settle it, "
-            "and yet one seed would name a winner."
+    comparisons = [s["beats_greedy"] for s in learners if s["beats_greedy"]]
+    decided_shares = [b["share"] for b in comparisons if b["verdict"] != "not established"]
+    if decided_shares:
+        wrong = fmean(min(share, 1 - share) for share in decided_shares)
+        worst = max(min(share, 1 - share) for share in decided_shares)
+        sentences.append(
+            f"In {len(decided_shares)} of {len(comparisons)} settings the seeds together settle "
+            "who is ahead when the race ends, Q-learning or greedy; one seed alone would name the "
+            f"wrong one in {percent(wrong)} of cases, and in {percent(worst)} in the worst of "
+            f"these settings. In the other {len(comparisons) - len(decided_shares)} the seeds do "
+            "not settle it, and yet one seed would name a winner."
         )
-    return "\n".join([*said, *_backwards(places)])
+    return "\n".join([*sentences, *_more_practice_worse(cases)])
 
 
-def _backwards(places: Sequence[Case]) -> list[str]:
-    case = places[0]
+def _more_practice_worse(cases: Sequence[Case]) -> list[str]:
+    case = cases[0]
     gaits = dict.fromkeys(s["gait"] for s in case.settings)
     both = [(case.setting(g, 500), case.setting(g, 1000)) for g in gaits]
     pairs = [(_points(a), _points(b)) for a, b in both if a and b]
@@ -67,90 +68,92 @@ def _backwards(places: Sequence[Case]) -> list[str]:
     ]
 
 
-def readings(places: Sequence[Case]) -> str | None:
-    """How much the two readings differ, and which comes nearer to what was printed."""
+def compare_observations(cases: Sequence[Case]) -> str | None:
+    """Compare the two observations, and name the one closer to the printed numbers."""
     by_robot: dict[str, list[Case]] = {}
-    for case in places:
+    for case in cases:
         by_robot.setdefault(case.robot, []).append(case)
-    said = []
+    sentences = []
     for robot, pair in by_robot.items():
         pools = [(case, case.pool(1000)) for case in pair]
-        shown = [
-            f"{shares(pool['relative'])} with {_reading(case)} "
+        phrases = [
+            f"{shares(pool['relative'])} with {_observation_label(case)} "
             f"({percent(pool['walkers']['share'])} of the seeds walk)"
             for case, pool in pools
             if pool and pool["relative"]
         ]
-        if len(shown) == 2:
-            told = (
+        if len(phrases) == 2:
+            sentence = (
                 f"On the {robot} robot Q-learning covers, of greedy's distance after 1,000 "
-                f"steps, {listed(shown)}."
+                f"steps, {listed(phrases)}."
             )
-            said.append(" ".join([told, *_which_is_nearer(pair)]))
-    if not said:
+            sentences.append(" ".join([sentence, *_describe_nearer(pair)]))
+    if not sentences:
         return None
     return (
-        "The paper does not say whether the robot reads back where its feet are, or remembers "
+        "The paper does not say whether the robot measures where its feet are, or remembers "
         "where it sent them. The algorithm is the same; only what it sees differs. "
-        + "\n".join(["", *said])
+        + "\n".join(["", *sentences])
     )
 
 
-def _reading(case: Case) -> str:
+def _observation_label(case: Case) -> str:
     return case.label.partition(" (")[0]
 
 
-def _which_is_nearer(pair: Sequence[Case]) -> list[str]:
+def _describe_nearer(pair: Sequence[Case]) -> list[str]:
     a, b = pair
-    close, verdict = [near(one) for one in pair], nearer(a, b)
+    close, verdict = [closeness(one) for one in pair], compare_closeness(a, b)
     if close[0] is None or close[1] is None or verdict is None:
         return []
     counts = [
-        f"{one.inside} of the {one.of} printed distances lie within the central 95 % of the seeds "
-        f"with {_reading(one.case)}, {metres(one.apart_m)} from our middle on average"
+        f"{one.inside} of the {one.compared} printed distances lie within the central 95 % of the "
+        f"seeds with {_observation_label(one.case)}, {metres(one.mean_error_m)} from our middle on "
+        "average"
         for one in close
         if one
     ]
-    who = {"yes": a, "no": b}.get(verdict[0])
+    nearer_case = {"yes": a, "no": b}.get(verdict[0])
     last = (
-        f"The printed numbers are nearer to those with {_reading(who)}."
-        if who
+        f"The printed numbers are nearer to those with {_observation_label(nearer_case)}."
+        if nearer_case
         else "Which reading is nearer to the printed numbers is not established."
     )
     return [f"{'; '.join(counts)}. {last}"]
 
 
-def text_against_table(places: Sequence[Case]) -> str | None:
-    """Where the paper's text says that Q-learning beats greedy, and where its table does."""
+def compare_text_with_table(cases: Sequence[Case]) -> str | None:
+    """Compare the gait in which the paper's text has Q-learning beat greedy with its table's."""
     gaits = ("left-right-origin", "front-back-origin")
-    said = []
-    for case in places:
-        found = [case.setting(gait, 1000) for gait in gaits]
-        shown = [
+    sentences = []
+    for case in cases:
+        settings = [case.setting(gait, 1000) for gait in gaits]
+        phrases = [
             f"{shares(one['beats_greedy'])} in {gait_name(one['gait'])} "
             f"({_VERDICTS[one['beats_greedy']['verdict']]})"
-            for one in found
+            for one in settings
             if one and one["beats_greedy"]
         ]
-        if len(shown) == 2:
-            said.append(f"With {case.label}: {listed(shown)}.")
-    if not said:
+        if len(phrases) == 2:
+            sentences.append(f"With {case.label}: {listed(phrases)}.")
+    if not sentences:
         return None
     return (
-        "The text says that after 1,000 trials Q-learning beats greedy in LeftRight-Origin, by "
-        "finished distance. The table has it behind there (0.325 against 0.375), and ahead in "
-        "FrontBack-Origin (0.375 against 0.35). One of the two is a slip, and we take the table. "
-        "The share of our seeds that are ahead:\n" + "\n".join(said)
+        "The text says that after 1,000 trials Q-learning beats greedy in "
+        f"{gait_name_with_papers(gaits[0])}, by distance at time-out. The table has it behind "
+        f"there (0.325 against 0.375), and ahead in {gait_name_with_papers(gaits[1])} (0.375 "
+        "against 0.35). One of the two is a slip, and we take the table. The share "
+        "of our seeds that are ahead:\n" + "\n".join(sentences)
     )
 
 
-def clocks(places: Sequence[Case]) -> str | None:
-    """The paper clock, the wall clock, and what each does to the race."""
-    timed = [one["lanes"] for case in places for one in case.timed]
+def compare_clocks(cases: Sequence[Case]) -> str | None:
+    """Compare the paper clock with times measured on this machine, and their effect on races."""
+    timed = [one["lanes"] for case in cases for one in case.timed]
     times = {
         agent: [
             one["elapsed_s"]
-            for case in places
+            for case in cases
             for one in case.settings
             if one["agent"] == agent and one["elapsed_s"]
         ]
@@ -158,30 +161,30 @@ def clocks(places: Sequence[Case]) -> str | None:
     }
     if not timed or not all(times.values()):
         return None
-    thought = {
+    thinking_s = {
         agent: median(
             lane["decision_s"] for lanes in timed for lane in lanes if lane["agent"] == agent
         )
         for agent in ("greedy", "two-step")
     }
-    walks = median(lane["elapsed_s"] - lane["decision_s"] for lanes in timed for lane in lanes)
+    walking_s = median(lane["elapsed_s"] - lane["decision_s"] for lanes in timed for lane in lanes)
     first = sum(lanes[0]["rank"] == 1 for lanes in timed)
     return (
-        f"Everyone takes 50 steps, {walks:.0f} s of walking. What differs is the thinking. The "
+        f"Everyone takes 50 steps, {walking_s:.0f} s of walking. What differs is the thinking. The "
         "paper clock charges for every simulated future what the paper's greedy agent must have "
         f"paid: greedy then ends after {median(times['greedy']):.0f} s and two-step after "
         f"{median(times['two-step']):.0f} s. On this machine, timed alone, greedy thought "
-        f"{thought['greedy']:.2g} s and two-step {thought['two-step']:.2g} s. By that wall clock "
-        f"Q-learning was ahead at the finish in {first} of {counted(len(timed), 'timed race')} "
-        "after 500 steps of practice. Finished distance depends on who computes how fast; total "
-        "distance does not."
+        f"{thinking_s['greedy']:.2g} s and two-step {thinking_s['two-step']:.2g} s. By that wall "
+        f"clock Q-learning was ahead at time-out in {first} of {counted(len(timed), 'timed race')} "
+        "after 500 steps of practice. Distance at time-out depends on who computes how fast; "
+        "total distance does not."
     )
 
 
-def _learners(places: Sequence[Case]) -> Settings:
+def _learners(cases: Sequence[Case]) -> Settings:
     return [
         one
-        for case in places
+        for case in cases
         for one in case.settings
         if one["agent"] == PAPERS_AGENT and one["n"] > 1
     ]
@@ -193,10 +196,10 @@ def _points(setting: Mapping[str, Any]) -> Points:
 
 _VERDICTS = {"yes": "more than half", "no": "fewer than half", "not established": "not established"}
 
-TABLE1_STORY: Sequence[tuple[str, Callable[[Sequence[Case]], str | None]]] = (
-    ("One seed misleads", one_seed),
-    ("Two readings of the same robot", readings),
-    ("Why LeftRight-Vertical is the odd one", odd_gait),
-    ("Where the paper's text and table disagree", text_against_table),
-    ("Whose clock?", clocks),
+TABLE1_NARRATIVE: Sequence[tuple[str, Callable[[Sequence[Case]], str | None]]] = (
+    ("One seed misleads", describe_seed_spread),
+    ("Two readings of the same robot", compare_observations),
+    (ODD_GAIT_HEADING, explain_odd_gait),
+    ("Where the paper's text and table disagree", compare_text_with_table),
+    ("Whose clock?", compare_clocks),
 )

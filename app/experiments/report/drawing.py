@@ -1,4 +1,4 @@
-"""How every figure looks, and how it becomes a file."""
+"""Common style of the figures, and their rendering as PNG, PDF and SVG."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,7 +12,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 INK, MUTED, FAINT, PAPER = "#1f2329", "#646b75", "#dfe2e6", "#fffffe"
-"""Text, quiet text, grid lines, and the ground; a page gives them its own colours."""
+"""Colours of text, secondary text, grid lines and background.
+
+The page replaces them by its CSS variables, see `CSS_NAMES`.
+"""
 CSS_NAMES: Mapping[str, str] = {INK: "ink", MUTED: "muted", FAINT: "line", PAPER: "paper"}
 
 AGENT_COLOURS: Mapping[str, str] = {
@@ -21,15 +24,15 @@ AGENT_COLOURS: Mapping[str, str] = {
     "two-step": "#009E73",
 }
 FURTHER_COLOURS = ("#CC79A7", "#D55E00", "#F0E442", "#0072B2")
-"""Okabe and Ito: told apart by colour-blind people too."""
+"""Okabe-Ito palette, which colour-blind readers can distinguish."""
 
 FORMATS = ("png", "svg", "pdf")
-_UNDATED: Mapping[str, Mapping[str, Any]] = {
+_NO_METADATA: Mapping[str, Mapping[str, Any]] = {
     "png": {"Software": None},
     "svg": {"Date": None, "Creator": None},
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
-_LOOK = {
+_STYLE = {
     "font.size": 10,
     "axes.edgecolor": MUTED,
     "axes.labelcolor": MUTED,
@@ -43,7 +46,7 @@ _LOOK = {
     "figure.facecolor": PAPER,
     "grid.color": FAINT,
     "text.color": INK,
-    "text.parse_math": False,  # a $ in a name is a $
+    "text.parse_math": False,  # names are user input: a $ is literal
     "xtick.color": MUTED,
     "ytick.color": MUTED,
     "legend.frameon": False,
@@ -52,32 +55,32 @@ _LOOK = {
 
 
 class Picture(NamedTuple):
-    """A figure with the words that stand for it."""
+    """A figure with its file name, title and alternative text."""
 
     name: str
-    """Of its files."""
+    """Base name of its files."""
     title: str
     alt: str
-    """What it shows, for who does not see it."""
+    """Alternative text, for screen readers."""
     figure: Figure
 
 
 @contextmanager
-def look() -> Iterator[None]:
-    """Within it, figures are made in the one style; matplotlib's own settings stay as they are."""
-    with rc_context(_LOOK):  # type: ignore[arg-type]
+def figure_style() -> Iterator[None]:
+    """Apply the figures' style within the context; Matplotlib's global settings do not change."""
+    with rc_context(_STYLE):  # type: ignore[arg-type]
         yield
 
 
 def figure(width_in: float, height_in: float) -> Figure:
-    """An empty figure that needs no display."""
-    made = Figure(figsize=(width_in, height_in), layout="constrained")
-    FigureCanvasAgg(made)
-    return made
+    """Create an empty figure with the Agg canvas, which needs no display."""
+    fig = Figure(figsize=(width_in, height_in), layout="constrained")
+    FigureCanvasAgg(fig)
+    return fig
 
 
-def colours(agents: Sequence[str]) -> dict[str, str]:
-    """One colour an agent; those that are not the paper's share the further ones in order."""
+def agent_colours(agents: Sequence[str]) -> dict[str, str]:
+    """Return a colour for each agent; users' own agents cycle through `FURTHER_COLOURS`."""
     own = [agent for agent in agents if agent not in AGENT_COLOURS]
     further = {
         agent: FURTHER_COLOURS[place % len(FURTHER_COLOURS)] for place, agent in enumerate(own)
@@ -85,51 +88,58 @@ def colours(agents: Sequence[str]) -> dict[str, str]:
     return {**AGENT_COLOURS, **further}
 
 
-def rendered(made: Figure, kind: str) -> bytes:
-    """The bytes of a file, the same for the same numbers: without dates and random names."""
+def render(fig: Figure, kind: str) -> bytes:
+    """Render a figure to bytes, reproducibly: without dates and with a fixed hash salt.
+
+    Args:
+        fig: the figure.
+        kind: one of `FORMATS`.
+    """
     out = BytesIO()
-    with look(), rc_context({"svg.fonttype": "path"}):
-        made.savefig(out, format=kind, dpi=150, metadata=dict(_UNDATED[kind]))
+    with figure_style(), rc_context({"svg.fonttype": "path"}):
+        fig.savefig(out, format=kind, dpi=150, metadata=dict(_NO_METADATA[kind]))
     return out.getvalue()
 
 
-def inlined(made: Figure, prefix: str) -> str:
-    """SVG to stand in a page: its text as text, its greys the page's own, its names its own.
+def inline_svg(fig: Figure, prefix: str) -> str:
+    """Render a figure as SVG for embedding in the page.
+
+    Text stays text in the page's font, the greys become CSS variables, and ids are unique.
 
     Args:
-        made: a figure.
-        prefix: before every id, because a page has several figures.
+        fig: the figure.
+        prefix: prefix of every id, since a page has several figures.
     """
     out = BytesIO()
-    with look(), rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):
-        made.savefig(out, format="svg", transparent=True, metadata=dict(_UNDATED["svg"]))
+    with figure_style(), rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):
+        fig.savefig(out, format="svg", transparent=True, metadata=dict(_NO_METADATA["svg"]))
     text = out.getvalue().decode()
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>\s*", "", text, flags=re.DOTALL)
     text = re.sub(r'(\bid="|"#|url\(#)', rf"\g<1>{prefix}-", text)
     text = re.sub(r' (?:width|height)="[\d.]+pt"', "", text, count=2)
-    # The text's font is the page's.
+    # Drop the font family, so that text inherits the page's.
     text = re.sub(r"font: ((?:[\w.]+ )*?)([\d.]+)px [^;\"]+", _font, text)
     for grey, name in CSS_NAMES.items():
         text = text.replace(grey, f"var(--{name})")
     return re.sub(r"\n\s*", "\n", text)
 
 
-def _font(found: re.Match[str]) -> str:
-    weight = "700" if "bold" in found[1] or "700" in found[1] else "400"
-    return f"font-weight: {weight}; font-size: {found[2]}px"
+def _font(match: re.Match[str]) -> str:
+    weight = "700" if "bold" in match[1] or "700" in match[1] else "400"
+    return f"font-weight: {weight}; font-size: {match[2]}px"
 
 
-def spread(count: int, height: float) -> list[float]:
-    """Where to put points beside their line so that they hide each other little, −height to it.
+def jitter(count: int, height: float) -> list[float]:
+    """Return deterministic jitter in [−height, height], so that points overlap little.
 
-    Always the same, and with no two neighbours alike: multiples of the golden ratio.
+    A low-discrepancy sequence: multiples of the golden ratio, modulo 1.
     """
     return [height * (2 * ((place * 0.618034) % 1) - 1) for place in range(count)]
 
 
-def quiet(ax: Axes, along: str) -> None:
-    """Grid lines along one axis only, under everything, and no tick marks."""
+def style_axes(ax: Axes, along: str) -> None:
+    """Draw grid lines along one axis only, below the data; hide tick marks and spines."""
     ax.grid(axis=along, linewidth=0.8)  # type: ignore[arg-type]
     ax.set_axisbelow(True)
     ax.tick_params(length=0)

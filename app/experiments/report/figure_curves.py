@@ -1,4 +1,4 @@
-"""Figure 4 drawn: distance against practice, every seed, the middle and its interval."""
+"""The figure of Figure 4: learning curves of all seeds, their interquartile mean and interval."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,32 +10,32 @@ from matplotlib.patches import Patch
 
 from app.experiments.claims.cases import Case
 from app.experiments.formatting import agent_name, gait_name, metres
-from app.experiments.report.drawing import INK, MUTED, Picture, colours, figure, quiet
+from app.experiments.report.drawing import INK, MUTED, Picture, agent_colours, figure, style_axes
 
 Curve = Mapping[str, Any]
 PANEL_IN = (3.0, 2.7)
 
 
 def panels(case: Case, highest_m: float, name: str) -> list[Picture]:
-    """One picture a gait."""
-    made = []
+    """Draw one picture per gait."""
+    pictures = []
     for number, gait in enumerate(_gaits(case)):
         one = figure(*PANEL_IN)
         ax = one.subplots()
         draw(ax, case, gait, highest_m)
         ax.set_title(gait_name(gait), pad=12)
-        made.append(Picture(f"{name}-{number + 1}", gait_name(gait), _alt(case, gait), one))
-    return made
+        pictures.append(Picture(f"{name}-{number + 1}", gait_name(gait), _alt(case, gait), one))
+    return pictures
 
 
-def sheet(places: Sequence[Case]) -> Picture:
-    """A row of gaits for each case."""
-    columns = max(len(_gaits(case)) for case in places)
+def sheet(cases: Sequence[Case]) -> Picture:
+    """Draw one sheet, with a row of gaits for each case."""
+    columns = max(len(_gaits(case)) for case in cases)
     width, height = PANEL_IN
-    one = figure(columns * width * 0.85, len(places) * height + 0.9)
-    rows = one.subfigures(len(places), 1, squeeze=False).ravel()
-    limit = highest(places)
-    for row, case in zip(rows, places, strict=True):
+    one = figure(columns * width * 0.85, len(cases) * height + 0.9)
+    rows = one.subfigures(len(cases), 1, squeeze=False).ravel()
+    limit = highest(cases)
+    for row, case in zip(rows, cases, strict=True):
         row.suptitle(
             case.label[:1].upper() + case.label[1:], x=0.01, ha="left", weight="bold", color=INK
         )
@@ -45,17 +45,17 @@ def sheet(places: Sequence[Case]) -> Picture:
             ax.set_title(gait_name(gait), size=10, weight="normal", pad=12)
             if ax is not axes[0]:
                 ax.set_ylabel("")
-    _key(one, places)
-    alt = " ".join(_alt(case, gait) for case in places for gait in _gaits(case))
+    _key(one, cases)
+    alt = " ".join(_alt(case, gait) for case in cases for gait in _gaits(case))
     return Picture("figure4", "Distance against practice", alt, one)
 
 
-def highest(places: Sequence[Case]) -> float:
-    """The top of all axes [m]."""
-    greedy = [one["greedy_m"] for case in places for one in case.curves if one["greedy_m"]]
+def highest(cases: Sequence[Case]) -> float:
+    """Return the common upper limit of the distance axes [m]."""
+    greedy = [one["greedy_m"] for case in cases for one in case.curves if one["greedy_m"]]
     points = [
         point
-        for case in places
+        for case in cases
         for one in case.curves
         for block in one["points_m"]
         for point in block
@@ -64,22 +64,22 @@ def highest(places: Sequence[Case]) -> float:
 
 
 def draw(ax: Axes, case: Case, gait: str, highest_m: float) -> None:
-    """The curves of all agents in one gait."""
+    """Draw the curves of all agents in one gait."""
     curves = [one for one in case.curves if one["gait"] == gait]
-    colour = colours([one["agent"] for one in curves])
+    colour = agent_colours([one["agent"] for one in curves])
     for one in curves:
         _curve(ax, one, colour[one["agent"]], alone=len(curves) == 1)
     greedy = next((one["greedy_m"] for one in curves if one["greedy_m"]), None)
     steps = max((one["steps"][-1] for one in curves if one["steps"]), default=2000)
     if greedy is not None:
-        ax.plot([0, steps], [greedy] * 2, color=colours([])["greedy"], lw=2, ls=(0, (4, 2)))
+        ax.plot([0, steps], [greedy] * 2, color=agent_colours([])["greedy"], lw=2, ls=(0, (4, 2)))
         ax.text(0, greedy + 0.012 * highest_m, "greedy", va="bottom", size=9, color=MUTED)
     ax.set_xlim(0, steps * 1.02)
     ax.set_ylim(min(0.0, *_lowest(curves)), highest_m)
     ax.set_xticks([0, steps / 2, steps], ["0", f"{steps // 2:,}", f"{steps:,}"])
     ax.set_xlabel("steps of practice")
     ax.set_ylabel("distance [m]")
-    quiet(ax, "y")
+    style_axes(ax, "y")
 
 
 def _curve(ax: Axes, one: Curve, colour: str, alone: bool) -> None:
@@ -101,9 +101,9 @@ def _gaits(case: Case) -> list[str]:
     return list(dict.fromkeys(one["gait"] for one in case.curves))
 
 
-def _key(one: Figure, places: Sequence[Case]) -> None:
-    agents = list(dict.fromkeys(c["agent"] for case in places for c in case.curves))
-    colour, alone = colours(agents), len(agents) == 1
+def _key(one: Figure, cases: Sequence[Case]) -> None:
+    agents = list(dict.fromkeys(c["agent"] for case in cases for c in case.curves))
+    colour, alone = agent_colours(agents), len(agents) == 1
     handles: list[Any] = []
     for agent in agents:
         shade, name = colour[agent], agent_name(agent)
@@ -119,7 +119,7 @@ def _key(one: Figure, places: Sequence[Case]) -> None:
 
 
 def _alt(case: Case, gait: str) -> str:
-    said = [
+    sentences = [
         f"{agent_name(one['agent'])}: "
         + ", ".join(
             f"{metres(middle)} after {steps:,} steps"
@@ -129,4 +129,4 @@ def _alt(case: Case, gait: str) -> str:
         for one in case.curves
         if one["gait"] == gait and one["steps"]
     ]
-    return f"{gait_name(gait)} with {case.label}. {' '.join(said) or 'No trials yet.'}"
+    return f"{gait_name(gait)} with {case.label}. {' '.join(sentences) or 'No trials yet.'}"

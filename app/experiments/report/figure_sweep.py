@@ -1,4 +1,4 @@
-"""A sweep drawn: each combination's share of greedy, over all gaits."""
+"""The figure of a sweep: each combination's share of greedy's distance, over all gaits."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -7,16 +7,16 @@ from matplotlib.axes import Axes
 
 from app.experiments.claims.cases import Case
 from app.experiments.formatting import agent_name, percent
-from app.experiments.narrative.sweep import named
-from app.experiments.report.drawing import INK, MUTED, Picture, colours, figure, quiet
+from app.experiments.narrative.sweep import combination_name
+from app.experiments.report.drawing import INK, MUTED, Picture, agent_colours, figure, style_axes
 
 MOST = 40
-"""Rows on a figure; of more combinations it shows the best."""
+"""Maximal number of rows of a figure; of more combinations the best are drawn."""
 _ROW_IN = 0.27
 
 
 def panel(case: Case, name: str) -> Picture:
-    """One row a combination, in the order of the grid."""
+    """Draw one row per combination, in the order of the grid."""
     rows, left_out = chosen(case)
     one = figure(4.8, 1.0 + _ROW_IN * max(1, len(rows)))
     ax = one.subplots()
@@ -28,14 +28,14 @@ def panel(case: Case, name: str) -> Picture:
 
 
 def chosen(case: Case) -> tuple[list[Mapping[str, Any]], int]:
-    """Combinations that have trials, and how many more there are than fit."""
-    found = [one for one in case.pooled if one["relative"]]
-    best = sorted(found, key=lambda one: -float(one["relative"]["iqm"]))[:MOST]
-    return [one for one in found if one in best], len(found) - len(best)
+    """Return the combinations to draw, and the number of those left out."""
+    pools = [one for one in case.pooled if one["relative"]]
+    best = sorted(pools, key=lambda one: -float(one["relative"]["iqm"]))[:MOST]
+    return [one for one in pools if one in best], len(pools) - len(best)
 
 
 def _draw(ax: Axes, rows: Sequence[Mapping[str, Any]], case: Case) -> None:
-    shade = colours([one["agent"] for one in case.pooled])
+    shade = agent_colours([one["agent"] for one in case.pooled])
     for place, one in enumerate(rows):
         middle = one["relative"]
         if middle["low"] is not None:
@@ -43,18 +43,23 @@ def _draw(ax: Axes, rows: Sequence[Mapping[str, Any]], case: Case) -> None:
         ax.plot([middle["iqm"]], [-place], "o", ms=7, color=shade[one["agent"]], mec=INK, mew=0.8)
     ax.axvline(1, color=shade["greedy"], lw=2, ls=(0, (4, 2)))
     ax.text(0.99, 0.75, "greedy", size=9, color=MUTED, ha="right", va="center")
-    ax.set_yticks([-place for place in range(len(rows))], [named(one, case.pooled) for one in rows])
+    ax.set_yticks(
+        [-place for place in range(len(rows))], [combination_name(one, case.pooled) for one in rows]
+    )
     ax.set_ylim(-len(rows) + 0.4, 1.1)
     lowest = min((one["relative"]["low"] or one["relative"]["iqm"] for one in rows), default=0)
     ax.set_xlim(min(0, lowest) - 0.02, 1.05)
     ax.xaxis.set_major_formatter(lambda value, _: percent(value))
     ax.set_xlabel("share of greedy's distance")
-    quiet(ax, "x")
+    style_axes(ax, "x")
 
 
 def _alt(rows: Sequence[Mapping[str, Any]], case: Case) -> str:
-    said = [
-        f"{agent_name(one['agent'])} {named(one, case.pooled)}: {percent(one['relative']['iqm'])}"
+    sentences = [
+        f"{agent_name(one['agent'])} {combination_name(one, case.pooled)}: "
+        f"{percent(one['relative']['iqm'])}"
         for one in rows
     ]
-    return f"Share of greedy's distance with {case.label}. {'; '.join(said) or 'No trials yet'}."
+    return (
+        f"Share of greedy's distance with {case.label}. {'; '.join(sentences) or 'No trials yet'}."
+    )

@@ -1,4 +1,4 @@
-"""Table 1 drawn: every seed of every setting beside greedy and the printed number."""
+"""The figure of Table 1: every seed of every setting, with greedy and the printed number."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -8,63 +8,63 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from app.experiments.claims.cases import Case
-from app.experiments.formatting import agent_name, gait_name, metres
+from app.experiments.formatting import agent_name, gait_name, gait_name_with_papers, metres
 from app.experiments.report.drawing import (
     INK,
     MUTED,
     PAPER,
     Picture,
-    colours,
+    agent_colours,
     figure,
-    quiet,
-    spread,
+    jitter,
+    style_axes,
 )
 
 Setting = Mapping[str, Any]
 PANEL_IN = (4.7, 4.6)
 _ROW, _HEAD, _GAP = 1.0, 0.85, 0.35
 _POINTS = 0.28
-"""How far points lie over and under their row."""
+"""Vertical jitter of the points about their row."""
 
 
-def panels(places: Sequence[Case]) -> list[Picture]:
-    """One picture a case."""
-    made = []
-    limits = _limits(places)
-    for number, case in enumerate(places):
+def panels(cases: Sequence[Case]) -> list[Picture]:
+    """Draw one picture per case."""
+    pictures = []
+    limits = _limits(cases)
+    for number, case in enumerate(cases):
         one = figure(*_size(case))
         draw(one.subplots(), case, limits)
-        made.append(Picture(f"table1-{number + 1}", case.label, _alt(case), one))
-    return made
+        pictures.append(Picture(f"table1-{number + 1}", case.label, _alt(case), one))
+    return pictures
 
 
-def sheet(places: Sequence[Case]) -> Picture:
-    """All cases on one sheet, two beside each other."""
-    columns = min(2, len(places))
-    rows = -(-len(places) // columns)
-    width, height = _size(places[0])
+def sheet(cases: Sequence[Case]) -> Picture:
+    """Draw all cases on one sheet, in two columns."""
+    columns = min(2, len(cases))
+    rows = -(-len(cases) // columns)
+    width, height = _size(cases[0])
     one = figure(columns * width, rows * height + 0.5)
     axes = one.subplots(rows, columns, squeeze=False).ravel()
-    limits = _limits(places)
-    for ax, case in zip(axes, places, strict=False):
+    limits = _limits(cases)
+    for ax, case in zip(axes, cases, strict=False):
         draw(ax, case, limits)
         ax.set_title(case.label[:1].upper() + case.label[1:], pad=10)
-    for ax in axes[len(places) :]:
+    for ax in axes[len(cases) :]:
         ax.set_visible(False)
     one.get_layout_engine().set(hspace=0.05, wspace=0.04)  # type: ignore[union-attr,call-arg]
     _key(one)
-    alt = " ".join(_alt(case) for case in places)
+    alt = " ".join(_alt(case) for case in cases)
     return Picture("table1", "Total distance, every seed", alt, one)
 
 
 def draw(ax: Axes, case: Case, limits: tuple[float, float]) -> None:
-    """A block of rows a gait, from top to bottom."""
+    """Draw a block of rows for each gait, from top to bottom."""
     learners = [one for one in case.settings if one["role"] == "learner"]
-    colour = colours([one["agent"] for one in learners])
+    colour = agent_colours([one["agent"] for one in learners])
     y, ticks, names = 0.0, [], []
     for gait in dict.fromkeys(one["gait"] for one in learners):
         rows = [one for one in learners if one["gait"] == gait]
-        ax.text(0, y, gait_name(gait), va="center", weight="bold", color=INK)
+        ax.text(0, y, gait_name_with_papers(gait), va="center", weight="bold", color=INK)
         bottom = y - _HEAD - _ROW * (len(rows) - 1)
         _greedy(ax, case.setting(gait, 0, "greedy"), y - 0.35, bottom - 0.45)
         for place, one in enumerate(rows):
@@ -77,18 +77,18 @@ def draw(ax: Axes, case: Case, limits: tuple[float, float]) -> None:
     ax.set_ylim(y + 0.3, 0.5)
     ax.set_xlim(*limits)
     ax.set_xlabel("distance in 50 steps [m]")
-    quiet(ax, "x")
+    style_axes(ax, "x")
 
 
 def _row(ax: Axes, one: Setting, at: float, colour: str) -> None:
-    found = one["total"]
-    if found is not None:
-        points = sorted(found["points_m"])
-        heights = [at + off for off in spread(len(points), _POINTS)]
+    distances = one["total"]
+    if distances is not None:
+        points = sorted(distances["points_m"])
+        heights = [at + off for off in jitter(len(points), _POINTS)]
         ax.plot(points, heights, "o", ms=4, mew=0, color=colour, alpha=0.55)
-        if found["low_m"] is not None:
-            ax.plot([found["low_m"], found["high_m"]], [at, at], color=INK, lw=2.2)
-        ax.plot([found["iqm_m"]], [at], "o", ms=5.5, color=INK)
+        if distances["low_m"] is not None:
+            ax.plot([distances["low_m"], distances["high_m"]], [at, at], color=INK, lw=2.2)
+        ax.plot([distances["iqm_m"]], [at], "o", ms=5.5, color=INK)
     if one["published"] and one["published"]["total_m"] is not None:
         ax.plot([one["published"]["total_m"]], [at], "D", ms=7.5, mfc=PAPER, mec=INK, mew=1.4)
 
@@ -96,7 +96,7 @@ def _row(ax: Axes, one: Setting, at: float, colour: str) -> None:
 def _greedy(ax: Axes, greedy: Setting | None, top: float, bottom: float) -> None:
     if greedy is None:
         return
-    blue = colours([])["greedy"]
+    blue = agent_colours([])["greedy"]
     ax.plot([greedy["total"]["iqm_m"]] * 2, [bottom, top], color=blue, lw=2.4)
     if greedy["finished"] is not None:
         ax.plot(
@@ -105,8 +105,8 @@ def _greedy(ax: Axes, greedy: Setting | None, top: float, bottom: float) -> None
 
 
 def key_lines() -> list[Line2D]:
-    """What the marks mean."""
-    blue, orange = colours([])["greedy"], colours([])["q-learning"]
+    """Return the legend's entries."""
+    blue, orange = agent_colours([])["greedy"], agent_colours([])["q-learning"]
     return [
         Line2D([], [], ls="", marker="o", ms=5, mew=0, color=orange, label="a seed of Q-learning"),
         Line2D([], [], color=INK, lw=2.2, marker="o", ms=5.5, label="middle, 95 % interval"),
@@ -126,19 +126,19 @@ def _size(case: Case) -> tuple[float, float]:
     return PANEL_IN[0], 0.8 + 0.3 * (rows + len(gaits) * (_HEAD + _GAP))
 
 
-def _limits(places: Sequence[Case]) -> tuple[float, float]:
-    """One axis for all panels, from zero or what lies under it."""
-    totals = [s["total"] for case in places for s in case.settings if s["total"]]
+def _limits(cases: Sequence[Case]) -> tuple[float, float]:
+    """Return the common limits of the distance axes [m], which include zero."""
+    totals = [s["total"] for case in cases for s in case.settings if s["total"]]
     points = [point for one in totals for point in one["points_m"]] or [0.5]
     return min(0.0, *points) - 0.015, max(0.05, *points) * 1.04
 
 
 def _alt(case: Case) -> str:
-    said = [
+    sentences = [
         f"{gait_name(one['gait'])}, {agent_name(one['agent'])} after {one['steps']:,} steps: "
         f"{one['n']} seeds from {metres(min(one['total']['points_m']))} to "
         f"{metres(max(one['total']['points_m']))}, middle {metres(one['total']['iqm_m'])}."
         for one in case.settings
         if one["role"] == "learner" and one["total"]
     ]
-    return f"Distances with {case.label}. {' '.join(said) or 'No trials yet.'}"
+    return f"Distances with {case.label}. {' '.join(sentences) or 'No trials yet.'}"

@@ -1,35 +1,35 @@
-"""The figures of a report: as panels for a page, and as sheets for files."""
+"""The figures of a report: as panels for the page, and as sheets for files."""
 
 from collections.abc import Mapping
 from typing import Any
 
-from app.experiments.claims.cases import cases
+from app.experiments.claims.cases import cases_of
 from app.experiments.report import figure_curves, figure_sweep, figure_table1
-from app.experiments.report.drawing import Picture, look
+from app.experiments.report.drawing import Picture, figure_style
 
 
 def panels(summary: Mapping[str, Any]) -> list[tuple[str, list[Picture]]]:
-    """Small pictures in groups, each group under its own heading, fit for a page that reflows."""
-    places = cases(summary)
-    with look():
+    """Draw small pictures for the page, in groups of (heading, pictures)."""
+    cases = cases_of(summary)
+    with figure_style():
         if summary["experiment"] == "table1":
-            return [("", figure_table1.panels(places))]
+            return [("", figure_table1.panels(cases))]
         if summary["experiment"] == "figure4":
-            top = figure_curves.highest(places)
+            top = figure_curves.highest(cases)
             return [
                 (case.label, figure_curves.panels(case, top, f"figure4-{number + 1}"))
-                for number, case in enumerate(places)
+                for number, case in enumerate(cases)
             ]
-        pictures = [figure_sweep.panel(c, f"sweep-{n + 1}") for n, c in enumerate(places)]
+        pictures = [figure_sweep.panel(c, f"sweep-{n + 1}") for n, c in enumerate(cases)]
         return [("", pictures)]
 
 
 def sheets(summary: Mapping[str, Any]) -> list[Picture]:
-    """Whole figures, for slides and handouts."""
-    places = cases(summary)
-    with look():
+    """Draw whole figures for files, such as for slides and handouts."""
+    cases = cases_of(summary)
+    with figure_style():
         if summary["experiment"] == "table1":
-            return [figure_table1.sheet(places)]
+            return [figure_table1.sheet(cases)]
         if summary["experiment"] == "figure4":
-            return [figure_curves.sheet(places)]
+            return [figure_curves.sheet(cases)]
     return [picture for _, group in panels(summary) for picture in group]

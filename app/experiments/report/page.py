@@ -1,4 +1,4 @@
-"""The report as one page that needs nothing beside it: no scripts, no other files, no network."""
+"""Render the report as a self-contained HTML page: no scripts, no other files, no network."""
 
 import json
 import shlex
@@ -11,11 +11,11 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from app.experiments.claims.cases import Case, cases
+from app.experiments.claims.cases import Case, cases_of
 from app.experiments.config import GRID, as_json, experiment_config
 from app.experiments.formatting import agent_name, counted, gait_name, listed
 from app.experiments.report import tables
-from app.experiments.report.drawing import Picture, colours, inlined
+from app.experiments.report.drawing import Picture, agent_colours, inline_svg
 from app.experiments.report.figures import panels
 
 TITLES: Mapping[str, str] = {
@@ -24,7 +24,7 @@ TITLES: Mapping[str, str] = {
     "sweep": "A sweep",
 }
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
-"""The page's Content-Security-Policy; it says so itself too."""
+"""The page's Content-Security-Policy, also set by a `<meta>` element of the page."""
 _OPTIONS = {
     "agents": "agent",
     "gaits": "gait",
@@ -35,66 +35,68 @@ _OPTIONS = {
 
 
 def page(summary: Mapping[str, Any]) -> str:
-    """The whole page as HTML; every name in it is text."""
-    places = cases(summary)
-    shown: Mapping[str, Any] = {
+    """Render the page; Jinja escapes every value, so that names cannot inject markup."""
+    cases = cases_of(summary)
+    context: Mapping[str, Any] = {
         "summary": summary,
         "title": TITLES[summary["experiment"]],
         "policy": POLICY,
         "lead": _lead(summary),
-        "in_short": _in_short(summary["claims"]),
-        "figures": [(heading, _inlined(group)) for heading, group in panels(summary)],
-        "cases": places,
-        "agents": _agents(places),
+        "in_short": _claims_summary(summary["claims"]),
+        "figures": [(heading, _inlined_figures(group)) for heading, group in panels(summary)],
+        "cases": cases,
+        "agents": _agent_colours(cases),
         "units": tables.UNITS,
-        "table1": _of("table1", tables.table1, summary, places),
-        "plain_tables": _of("figure4", tables.curves, summary, places)
-        + _of("sweep", tables.sweep, summary, places),
+        "table1": _tables_of("table1", tables.table1, summary, cases),
+        "plain_tables": _tables_of("figure4", tables.curves, summary, cases)
+        + _tables_of("sweep", tables.sweep, summary, cases),
         "versus": tables.versus(summary) if summary["versus"] else None,
         "story": [
-            {"heading": told["heading"], "paragraphs": told["text"].split("\n")}
-            for told in summary["story"]
+            {"heading": section["heading"], "paragraphs": section["text"].split("\n")}
+            for section in summary["story"]
         ],
         "command": command(summary["config"]),
     }
-    return _environment().get_template("report.html").render(shown)
+    return _environment().get_template("report.html").render(context)
 
 
 def command(config: Mapping[str, Any]) -> str:
-    """What to type for the same experiment: all that differs from its defaults, and the seeds."""
+    """Return the shell command of an experiment: its seeds and all options other than defaults."""
     name = config["experiment"]
-    usual = as_json(experiment_config(name, {}))
-    said = ["hexapods", *(["sweep"] if name == "sweep" else ["experiment", name])]
+    defaults = as_json(experiment_config(name, {}))
+    arguments = ["hexapods", *(["sweep"] if name == "sweep" else ["experiment", name])]
     for field, option in _OPTIONS.items():
-        if field in ("seeds", "seed") or config[field] != usual[field]:
-            said += [part for text in _texts(config[field]) for part in (f"--{option}", text)]
-    return shlex.join(said)
+        if field in ("seeds", "seed") or config[field] != defaults[field]:
+            arguments += [
+                part for text in _option_values(config[field]) for part in (f"--{option}", text)
+            ]
+    return shlex.join(arguments)
 
 
-def _texts(value: Any) -> list[str]:
-    """What follows an option: values with commas between; one that is JSON stands alone."""
+def _option_values(value: Any) -> list[str]:
+    """Return an option's arguments: one comma-separated list, or each alone if one is JSON."""
     values = value if isinstance(value, list) else [value]
-    plain = [_plain(one) for one in values]
+    plain = [_as_word(one) for one in values]
     if None not in plain:
         return [",".join(map(str, plain))]
     return [one or json.dumps(value) for one, value in zip(plain, values, strict=True)]
 
 
-def _plain(value: Any) -> str | None:
-    """A value as it is typed; None if it has to be JSON."""
+def _as_word(value: Any) -> str | None:
+    """Return a value as a plain word, or None if it can only be written as JSON."""
     if isinstance(value, Mapping):
         return str(value["preset"]) if set(value) == {"preset"} else None
     return str(value)
 
 
-def _of(
-    experiment: str, table: Any, summary: Mapping[str, Any], places: Sequence[Case]
+def _tables_of(
+    experiment: str, table: Any, summary: Mapping[str, Any], cases: Sequence[Case]
 ) -> list[Any]:
-    return [table(case) for case in places] if summary["experiment"] == experiment else []
+    return [table(case) for case in cases] if summary["experiment"] == experiment else []
 
 
 def _lead(summary: Mapping[str, Any]) -> str:
-    """What was run, in one line."""
+    """Describe in one line which trials were run."""
     config, trials = summary["config"], summary["trials"]
     gaits = [g if isinstance(g, str) else None for g in config["gaits"]]
     named = (
@@ -111,8 +113,8 @@ def _lead(summary: Mapping[str, Any]) -> str:
     )
 
 
-def _in_short(claims: Sequence[Mapping[str, Any]]) -> str:
-    """How the claims came out, counted."""
+def _claims_summary(claims: Sequence[Mapping[str, Any]]) -> str:
+    """Count the claims by verdict, in one sentence."""
     if len(claims) < 2:
         return ""
     count = Counter(claim["verdict"] for claim in claims)
@@ -135,21 +137,21 @@ def _in_short(claims: Sequence[Mapping[str, Any]]) -> str:
     return f"Of {counted(len(claims), 'claim')} of the paper, {listed(parts)}."
 
 
-def _agents(places: Sequence[Case]) -> list[tuple[str, str]]:
-    """Who learns, and in which colour."""
-    agents = dict.fromkeys(one["agent"] for case in places for one in case.curves)
-    shade = colours(list(agents))
-    return [(agent_name(agent), shade[agent]) for agent in agents]
+def _agent_colours(cases: Sequence[Case]) -> list[tuple[str, str]]:
+    """Return name and colour of each learning agent, for the legend."""
+    agents = dict.fromkeys(one["agent"] for case in cases for one in case.curves)
+    colour_by_agent = agent_colours(list(agents))
+    return [(agent_name(agent), colour_by_agent[agent]) for agent in agents]
 
 
-def _inlined(group: Sequence[Picture]) -> list[dict[str, Any]]:
+def _inlined_figures(group: Sequence[Picture]) -> list[dict[str, Any]]:
     return [
-        # Our own drawing; what users named in it, matplotlib has escaped.
+        # The SVG is generated by us, and Matplotlib escapes the names in it.
         {
             "title": one.title,
             "alt": one.alt,
             "name": one.name,
-            "svg": Markup(inlined(one.figure, one.name)),  # noqa: S704
+            "svg": Markup(inline_svg(one.figure, one.name)),  # noqa: S704
         }
         for one in group
     ]
@@ -157,26 +159,26 @@ def _inlined(group: Sequence[Picture]) -> list[dict[str, Any]]:
 
 @lru_cache(maxsize=1)
 def _environment() -> Environment:
-    made = Environment(
+    environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent / "templates"),
         autoescape=select_autoescape(),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.filters["cost"] = _cost
-    made.filters["capitalize"] = lambda text: text[:1].upper() + text[1:]
-    return made
+    environment.filters["cost"] = _cost
+    environment.filters["capitalize"] = lambda text: text[:1].upper() + text[1:]
+    return environment
 
 
 def _cost(cost: Mapping[str, Any]) -> str:
-    """Whatever of the cost is known, in words."""
+    """Format the known parts of the cost: times, throughput and workers."""
     parts = (
         ("wall_s", "{:,.0f} s from start to end"),
         ("compute_s", "{:,.0f} s of computing"),
         ("trials_per_s", "{:.2f} trials a second"),
     )
-    said = [words.format(cost[k]) for k, words in parts if cost.get(k) is not None]
+    formatted = [words.format(cost[k]) for k, words in parts if cost.get(k) is not None]
     if cost.get("workers") is not None:
-        said.append(counted(cost["workers"], "worker"))
-    return ", ".join(said)
+        formatted.append(counted(cost["workers"], "worker"))
+    return ", ".join(formatted)

@@ -1,11 +1,18 @@
-"""The report's tables, cell by cell, in the words and numbers that are printed."""
+"""The report's tables as formatted cells."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from app.experiments.claims.cases import Case
-from app.experiments.formatting import agent_name, gait_name, number, percent, shares
-from app.experiments.narrative.sweep import named
+from app.experiments.formatting import (
+    agent_name,
+    gait_name,
+    gait_name_with_papers,
+    number,
+    percent,
+    shares,
+)
+from app.experiments.narrative.sweep import combination_name
 from app.experiments.published import COLUMNS, DISTANCES, published
 from app.experiments.statistics import CONFIDENCE
 
@@ -15,32 +22,33 @@ UNITS: Mapping[str, str] = {
     "r": "of greedy",
 }
 MOST_ROWS = 200
+_DISTANCE_NAMES: Mapping[str, str] = {"finished": "At time-out", "total": "Total"}
 _NONE = "–"
 
 
 class Number(NamedTuple):
-    """One number in one unit."""
+    """A value formatted in one unit."""
 
     unit: str
     value: str
     span: str
     """Its interval; empty without one."""
     printed: str
-    """What the paper has; empty if nothing."""
+    """The paper's value; empty if it has none."""
 
 
 class Cell(NamedTuple):
-    """Ours beside the paper's."""
+    """A cell of Table 1: our value in each unit, with the paper's."""
 
     numbers: Sequence[Number]
     quantile: str
-    """`P10`: so many percent of our seeds lie under the printed value; empty without one."""
+    """`P10`: 10 % of our seeds lie below the printed value; empty without one."""
     outside: bool
     """Whether the printed value lies outside the central 95 % of our seeds."""
 
 
 def table1(case: Case) -> dict[str, Any]:
-    """The paper's Table 1 for a case: gaits, and in each a row a distance."""
+    """Build the paper's Table 1 for a case: for each gait a row per kind of distance."""
     steps = {one["steps"] for one in case.settings if one["role"] == "learner"}
     columns = [one for one in COLUMNS if one[1] in steps or not one[1]]
     gaits = dict.fromkeys(one["gait"] for one in case.settings)
@@ -49,11 +57,13 @@ def table1(case: Case) -> dict[str, Any]:
         "columns": [name for _, _, name in columns],
         "gaits": [
             {
-                "name": gait_name(gait),
+                "name": gait_name_with_papers(gait),
                 "rows": [
                     {
-                        "name": kind.capitalize(),
-                        "cells": [_cell(case, gait, kind, agent, n) for agent, n, _ in columns],
+                        "name": _DISTANCE_NAMES[kind],
+                        "cells": [
+                            _table1_cell(case, gait, kind, agent, n) for agent, n, _ in columns
+                        ],
                     }
                     for kind in DISTANCES
                 ],
@@ -63,19 +73,19 @@ def table1(case: Case) -> dict[str, Any]:
     }
 
 
-def _cell(case: Case, gait: str, kind: str, agent: str, steps: int) -> Cell:
+def _table1_cell(case: Case, gait: str, kind: str, agent: str, steps: int) -> Cell:
     one, greedy = case.setting(gait, steps, agent), case.setting(gait, 0, "greedy")
-    found = one[kind] if one else None
+    distances = one[kind] if one else None
     half_m = next(s["half_side_m"] for s in case.settings)
-    papers = _papers(gait, kind, agent, steps)
+    papers = _papers_value(gait, kind, agent, steps)
     numbers = []
     for unit, by, papers_by in (
         ("m", 1.0, 1.0),
         ("h", half_m, half_m),
-        ("r", _middle(greedy, kind), _papers(gait, kind, "greedy", 0)),
+        ("r", _iqm_m(greedy, kind), _papers_value(gait, kind, "greedy", 0)),
     ):
-        value, span = _in(unit, found, by)
-        numbers.append(Number(unit, value, span, _printed(unit, papers, papers_by, gait)))
+        value, span = _in_unit(unit, distances, by)
+        numbers.append(Number(unit, value, span, _printed_text(unit, papers, papers_by, gait)))
     quantile = one["published"][f"{kind}_quantile"] if one and one["published"] else None
     tail = (1 - CONFIDENCE) / 2
     return Cell(
@@ -85,50 +95,50 @@ def _cell(case: Case, gait: str, kind: str, agent: str, steps: int) -> Cell:
     )
 
 
-def _in(unit: str, found: Mapping[str, Any] | None, by: float | None) -> tuple[str, str]:
-    if found is None or not by:
+def _in_unit(unit: str, distances: Mapping[str, Any] | None, by: float | None) -> tuple[str, str]:
+    if distances is None or not by:
         return _NONE, ""
-    value = _shown(unit, found["iqm_m"] / by)
-    if found["low_m"] is None:
+    value = _format(unit, distances["iqm_m"] / by)
+    if distances["low_m"] is None:
         return value, ""
-    return value, _between(*(_shown(unit, found[end] / by) for end in ("low_m", "high_m")))
+    return value, _range_text(*(_format(unit, distances[end] / by) for end in ("low_m", "high_m")))
 
 
-def _between(low: str, high: str) -> str:
-    """A dash would hide in front of a minus."""
+def _range_text(low: str, high: str) -> str:
+    """Join an interval's limits, with "to" before a negative limit, where a dash is unreadable."""
     low = low.removesuffix("\u00a0%")
     return f"{low} to {high}" if "−" in low else f"{low}–{high}"
 
 
-def _shown(unit: str, value: float) -> str:
+def _format(unit: str, value: float) -> str:
     if unit == "r":
         return percent(value)
     return number(value, 2 if unit == "m" else 1)
 
 
-def _printed(unit: str, papers: float | None, by: float | None, gait: str) -> str:
+def _printed_text(unit: str, papers: float | None, by: float | None, gait: str) -> str:
     if papers is None:
         return "" if published(gait, "two-step", 0) is None else "unfinished"
     if not by:
         return ""
-    return f"{papers:g}" if unit == "m" else _shown(unit, papers / by)
+    return f"{papers:g}" if unit == "m" else _format(unit, papers / by)
 
 
-def _papers(gait: str, kind: str, agent: str, steps: int) -> float | None:
+def _papers_value(gait: str, kind: str, agent: str, steps: int) -> float | None:
     cell = published(gait, agent, steps)
     return None if cell is None else (cell.total_m if kind == "total" else cell.finished_m)
 
 
-def _middle(one: Mapping[str, Any] | None, kind: str) -> float | None:
+def _iqm_m(one: Mapping[str, Any] | None, kind: str) -> float | None:
     return float(one[kind]["iqm_m"]) if one and one[kind] else None
 
 
 def curves(case: Case) -> dict[str, Any]:
-    """Figure 4 in numbers: a row a curve, at a few places."""
-    shown = [one for one in case.curves if one["steps"]]
-    steps = shown[0]["steps"] if shown else []
+    """Build the table of Figure 4: one row per curve, at a few steps of practice."""
+    drawn = [one for one in case.curves if one["steps"]]
+    steps = drawn[0]["steps"] if drawn else []
     chosen = [at for at in (250, 500, 1000, 2000) if at in steps] or steps
-    several = len({one["agent"] for one in shown}) > 1
+    several = len({one["agent"] for one in drawn}) > 1
     return {
         "label": case.label,
         "columns": [f"{at:,} steps" for at in chosen] + ["Walk", "Greedy"],
@@ -136,33 +146,33 @@ def curves(case: Case) -> dict[str, Any]:
             {
                 "name": gait_name(one["gait"])
                 + (f", {agent_name(one['agent'])}" if several else ""),
-                "cells": [_at(one, steps.index(at)) for at in chosen]
+                "cells": [_curve_cell(one, steps.index(at)) for at in chosen]
                 + [
                     (_NONE if one["walkers"][-1] is None else percent(one["walkers"][-1]), ""),
                     (_NONE if one["greedy_m"] is None else number(one["greedy_m"]), ""),
                 ],
             }
-            for one in shown
+            for one in drawn
         ],
         "left_out": 0,
     }
 
 
-def _at(curve: Mapping[str, Any], block: int) -> tuple[str, str]:
+def _curve_cell(curve: Mapping[str, Any], block: int) -> tuple[str, str]:
     value, low, high = curve["iqm_m"][block], curve["low_m"][block], curve["high_m"][block]
-    return number(value), "" if low is None else _between(number(low), number(high))
+    return number(value), "" if low is None else _range_text(number(low), number(high))
 
 
 def sweep(case: Case) -> dict[str, Any]:
-    """Every combination over all gaits, the best first."""
-    found = [one for one in case.pooled if one["relative"]]
-    best = sorted(found, key=lambda one: -float(one["relative"]["iqm"]))
+    """Build the table of a sweep: every combination over all gaits, best first."""
+    pools = [one for one in case.pooled if one["relative"]]
+    best = sorted(pools, key=lambda one: -float(one["relative"]["iqm"]))
     return {
         "label": case.label,
-        "columns": ["Of greedy's distance", "Walk", "Ahead at the finish", "Seeds"],
+        "columns": ["Of greedy's distance", "Walk", "Ahead at time-out", "Seeds"],
         "rows": [
             {
-                "name": named(one, case.pooled),
+                "name": combination_name(one, case.pooled),
                 "cells": [
                     _share(one["relative"], "iqm"),
                     _share(one["walkers"]),
@@ -176,17 +186,17 @@ def sweep(case: Case) -> dict[str, Any]:
     }
 
 
-def _share(found: Mapping[str, Any] | None, middle: str = "share") -> tuple[str, str]:
-    if found is None:
+def _share(share: Mapping[str, Any] | None, middle: str = "share") -> tuple[str, str]:
+    if share is None:
         return _NONE, ""
-    low, high = found["low"], found["high"]
-    value = percent(found[middle])
-    return value, "" if low is None else _between(*(number(100 * end, 0) for end in (low, high)))
+    low, high = share["low"], share["high"]
+    value = percent(share[middle])
+    return value, "" if low is None else _range_text(*(number(100 * end, 0) for end in (low, high)))
 
 
 def versus(summary: Mapping[str, Any]) -> dict[str, Any]:
-    """Agent against agent."""
-    said = {"yes": "the first", "no": "the second", "not established": "not established"}
+    """Build the table of pairs of learning agents, with the probability of improvement."""
+    furthest = {"yes": "the first", "no": "the second", "not established": "not established"}
     pairs = summary["versus"]
     return {
         "label": "",
@@ -198,7 +208,7 @@ def versus(summary: Mapping[str, Any]) -> dict[str, Any]:
                 f"{one['blocks'] * one['steps']:,} steps",
                 "cells": [
                     (shares({**one, "share": one["probability"]}), ""),
-                    (said[one["verdict"]], ""),
+                    (furthest[one["verdict"]], ""),
                 ],
             }
             for one in pairs[:MOST_ROWS]

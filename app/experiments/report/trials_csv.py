@@ -1,4 +1,4 @@
-"""Every trial as a row of numbers that anyone can compute with."""
+"""All trials of an experiment as CSV."""
 
 import csv
 from collections.abc import Iterator, Mapping
@@ -28,12 +28,15 @@ COLUMNS = (*_FIRST, *_RATES, *_LAST)
 def trials_csv(
     config: ExperimentConfig, results: Mapping[str, TrialResult], set_aside: Mapping[str, str]
 ) -> bytes:
-    """All trials that were done or set aside, in the order of the plan, a row a distance.
+    """Return the completed and the set-aside trials in the plan's order, one row per distance.
+
+    A trial with several blocks has a row for each block. Text cells are protected against being
+    evaluated as formulas by a spreadsheet (`text_cell`).
 
     Args:
         config: the experiment.
-        results: by trial key.
-        set_aside: why, by trial key.
+        results: results by trial key.
+        set_aside: reasons by trial key, of trials without a result.
     """
     out = StringIO()
     writer = csv.writer(out)

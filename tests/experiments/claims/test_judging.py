@@ -1,4 +1,4 @@
-"""Claims: each verdict follows from the interval, in each case and over all of them."""
+"""Claims: each verdict follows from the interval, in each case and over all cases."""
 
 from collections.abc import Callable
 
@@ -36,21 +36,23 @@ def everywhere(middle_m: float, spread_m: float = 0.02) -> Far:
         (lambda one: around(0.6 if one.gait == ODD_GAIT else 0.4), "does not hold"),
     ],
 )
-def test_greedy_dominates_in_total_distance(far: Far, verdict: str) -> None:
+def test_greedy_dominates_only_if_it_is_ahead_in_every_gait(far: Far, verdict: str) -> None:
     assert table1(far, name="greedy-dominates")["verdict"] == verdict
 
 
 @pytest.mark.parametrize(
-    ("middle_m", "verdict"),  # greedy is at 0.36 m when the first has ended
+    ("middle_m", "verdict"),  # greedy is at 0.36 m at time-out
     [(0.40, "holds"), (0.355, "holds"), (0.30, "does not hold"), (0.337, "not established")],
 )
-def test_walking_as_fast_is_within_a_twentieth(middle_m: float, verdict: str) -> None:
+def test_as_fast_in_real_time_means_at_least_95_percent_of_greedy(
+    middle_m: float, verdict: str
+) -> None:
     found = table1(everywhere(middle_m), name="real-time-500")
     assert found["verdict"] == verdict
 
 
-def test_the_papers_text_and_table_are_judged_apart() -> None:
-    """The table's gait wins, the text's does not."""
+def test_the_papers_text_and_table_are_judged_separately() -> None:
+    """Q-learning wins in the table's gait, and not in the text's."""
 
     def far(one: Setting) -> Callable[[int], float]:
         return around(0.42 if one.gait == "front-back-origin" else 0.3)
@@ -62,11 +64,11 @@ def test_the_papers_text_and_table_are_judged_apart() -> None:
 
 
 @pytest.mark.parametrize(("middle_m", "verdict"), [(0.49, "holds"), (0.4, "does not hold")])
-def test_on_par_in_500_steps_means_to_reach_greedy(middle_m: float, verdict: str) -> None:
+def test_on_par_in_500_steps_means_reaching_greedys_distance(middle_m: float, verdict: str) -> None:
     assert table1(everywhere(middle_m, 0.01), name="on-par-500")["verdict"] == verdict
 
 
-def test_two_step_is_slow_if_it_thinks_longer_than_it_walks() -> None:
+def test_two_step_is_slow_if_it_decides_longer_than_it_walks() -> None:
     found = table1(everywhere(0.3), name="two-step-slow")
     assert found["verdict"] == "does not hold"
     assert "8 s in 50 steps, between 50\xa0% and 50\xa0%" in str(found["evidence"])
@@ -76,7 +78,7 @@ def test_two_step_is_slow_if_it_thinks_longer_than_it_walks() -> None:
     ("odd_m", "verdict"),
     [(0.2, "holds"), (0.4, "does not hold"), (0.36, "not established")],
 )
-def test_the_odd_gait_is_slow_if_it_stays_behind_the_others(odd_m: float, verdict: str) -> None:
+def test_the_odd_gait_is_slow_if_it_covers_less_than_the_others(odd_m: float, verdict: str) -> None:
     found = table1(lambda one: around(odd_m if one.gait == ODD_GAIT else 0.4), name="odd-gait-slow")
     assert found["verdict"] == verdict
 
@@ -94,19 +96,19 @@ def test_the_other_gaits_are_alike_unless_one_is_far_behind() -> None:
     assert table1(uneven, name="gaits-alike")["verdict"] == "does not hold"
 
 
-def test_without_all_four_gaits_nothing_is_said_of_the_odd_one() -> None:
+def test_the_odd_gait_is_not_judged_without_all_four_gaits() -> None:
     summary = summary_of("table1", everywhere(0.3), seeds=6, gaits=("left-right-origin", ODD_GAIT))
     assert "odd-gait-slow" not in [one["id"] for one in summary["claims"]]
 
 
 @pytest.mark.parametrize("seeds", [1, 2])
-def test_few_seeds_establish_nothing_of_a_learner(seeds: int) -> None:
+def test_with_too_few_seeds_no_claim_about_a_learner_is_established(seeds: int) -> None:
     summary = summary_of("table1", everywhere(0.4), seeds=seeds)
     learners = [one for one in summary["claims"] if one["id"] != "two-step-slow"]
     assert {one["verdict"] for one in learners} == {"not established"}
 
 
-def test_where_the_cases_disagree_it_depends_and_says_on_what() -> None:
+def test_where_the_cases_disagree_the_verdict_depends_and_the_evidence_lists_them() -> None:
     summary = summary_of(
         "table1",
         lambda one: around(0.42 if one.training.observation == "measured" else 0.1),
@@ -116,7 +118,7 @@ def test_where_the_cases_disagree_it_depends_and_says_on_what() -> None:
     found = claim(summary, "real-time-1000")
     assert found["verdict"] == "depends"
     assert found["evidence"] == (
-        "It depends: it holds with feet read back; it does not hold with commands remembered."
+        "It depends: it holds with feet measured; it does not hold with commands remembered."
     )
     assert [(one["observation"], one["verdict"]) for one in found["where"]] == [
         ("measured", "holds"),
@@ -124,7 +126,7 @@ def test_where_the_cases_disagree_it_depends_and_says_on_what() -> None:
     ]
 
 
-def test_the_curve_that_halves_its_distance_to_the_end_flattens_and_still_inclines() -> None:
+def test_a_curve_that_halves_its_distance_to_the_end_flattens_and_still_inclines() -> None:
     """The made-up curve is at 50, 94 and 100 % of its end after 250, 1,000 and 2,000 steps."""
     for name in ("improves", "flattens", "inclines", "approaches", "odd-gait-satisfies"):
         assert figure4(everywhere(0.45), name)["verdict"] == "holds", name
@@ -135,7 +137,7 @@ def test_a_curve_that_ends_above_greedy_does_not_approach_it() -> None:
     assert figure4(everywhere(0.6), "approaches")["verdict"] == "does not hold"
 
 
-def test_a_curve_of_shufflers_neither_improves_nor_satisfies() -> None:
+def test_a_curve_that_stays_near_zero_neither_improves_nor_satisfies() -> None:
     assert figure4(everywhere(0.06), "improves")["verdict"] == "does not hold"
     assert figure4(everywhere(0.06), "odd-gait-satisfies")["verdict"] == "does not hold"
 
@@ -151,7 +153,7 @@ def test_tuning_helps_if_the_best_is_established_to_come_further() -> None:
     assert same["verdict"] == "not established"
 
 
-def test_tuning_compares_the_same_gaits_while_trials_come_in() -> None:
+def test_tuning_is_judged_only_over_the_same_gaits_while_trials_are_incomplete() -> None:
     tried = config("sweep", seeds=6, alpha=(0.1, 0.3, 0.6))
     results = made_up(tried, everywhere(0.3))
     parts = [dict(list(results.items())[:done]) for done in range(len(results) + 1)]
@@ -162,11 +164,11 @@ def test_tuning_compares_the_same_gaits_while_trials_come_in() -> None:
     assert found[-1] == ["tuning"]
 
 
-def test_a_sweep_without_the_papers_values_says_nothing_of_tuning() -> None:
+def test_tuning_is_not_judged_without_the_papers_values() -> None:
     assert summary_of("sweep", everywhere(0.3), seeds=8, alpha=(0.1, 0.6))["claims"] == []
 
 
-def test_claims_fill_in_as_trials_end() -> None:
+def test_claims_are_added_as_trials_complete() -> None:
     tried = config("table1", seeds=6)
     results = made_up(tried, everywhere(0.4))
     assert summarise(tried, {})["claims"] == []

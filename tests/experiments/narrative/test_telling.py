@@ -1,4 +1,4 @@
-"""The story: its numbers are the run's, and it says nothing that the run does not."""
+"""The narrative: its numbers come from the results, and it states nothing they do not support."""
 
 from collections.abc import Callable, Sequence
 
@@ -10,8 +10,8 @@ from tests.experiments.made import ROBOTS, around, summary_of
 ODD_GAIT = "left-right-vertical"
 
 
-def told(summary: dict[str, list[dict[str, str]]], heading: str) -> str:
-    """One text, with plain blanks."""
+def text_under(summary: dict[str, list[dict[str, str]]], heading: str) -> str:
+    """Return the text under a heading, with no-break spaces replaced."""
     found = next(one["text"] for one in summary["story"] if one["heading"] == heading)
     return found.replace("\xa0", " ")
 
@@ -20,21 +20,21 @@ def headings(summary: dict[str, list[dict[str, str]]]) -> Sequence[str]:
     return [one["heading"] for one in summary["story"]]
 
 
-def test_one_seed_misleads_by_its_spread_and_by_the_wrong_winner() -> None:
-    """Greedy is at 0.36 m at the finish; of ten seeds nine are ahead."""
+def test_the_seeds_spread_and_wrong_winners_are_described() -> None:
+    """Greedy is at 0.36 m at time-out; of ten seeds nine are ahead."""
     summary = summary_of(
         "table1",
         lambda _: lambda n: 0.31 + 0.06 * min(n, 1) + 0.01 * n,
         seeds=10,
         robots=ROBOTS[:1],
     )
-    text = told(summary, "One seed misleads")
+    text = text_under(summary, "One seed misleads")
     assert "of 10 seeds the worst covers 0.31 m and the best 0.46 m" in text
     assert "In 16 of 16 settings" in text
     assert "one seed alone would name the wrong one in 10 % of cases" in text
 
 
-def test_the_reading_that_is_nearer_to_the_printed_numbers_is_named() -> None:
+def test_the_observation_closer_to_the_printed_numbers_is_named() -> None:
     printed = {500: 0.16, 1000: 0.28}  # the printed numbers' averages
 
     def far(one: Setting) -> Callable[[int], float]:
@@ -42,26 +42,26 @@ def test_the_reading_that_is_nearer_to_the_printed_numbers_is_named() -> None:
         return around(printed[one.training.steps] if near else 0.49)
 
     summary = summary_of("table1", far, seeds=10, robots=ROBOTS[:1])
-    text = told(summary, "Two readings of the same robot")
+    text = text_under(summary, "Two readings of the same robot")
     assert "are nearer to those with commands remembered" in text
     assert "0 of the 8 printed distances lie within the central 95 % of the seeds with feet" in text
 
 
-def test_two_readings_alike_are_not_told_apart() -> None:
+def test_equal_observations_leave_the_closer_one_not_established() -> None:
     summary = summary_of("table1", lambda _: around(0.3, 0.1), seeds=10, robots=ROBOTS[:1])
-    text = told(summary, "Two readings of the same robot")
+    text = text_under(summary, "Two readings of the same robot")
     assert "nearer to the printed numbers is not established" in text
 
 
-def test_the_odd_gait_is_explained_only_where_there_are_servos() -> None:
+def test_the_odd_gait_is_explained_only_on_mujoco() -> None:
     def far(one: Setting) -> Callable[[int], float]:
         return around(0.15 if one.gait == ODD_GAIT and one.robot == "compliant" else 0.4)
 
-    heading = "Why LeftRight-Vertical is the odd one"
+    heading = "Why Left-right, mirrored (LeftRight-Vertical) is the odd one"
     assert heading not in headings(summary_of("table1", far, seeds=6))
-    text = told(summary_of("table1", far, seeds=6, simulator="mujoco"), heading)
+    text = text_under(summary_of("table1", far, seeds=6, simulator="mujoco"), heading)
     stiff, compliant = (
-        next(line for line in text.split("\n") if f"read back ({name} robot)" in line)
+        next(line for line in text.split("\n") if f"measured ({name} robot)" in line)
         for name in ("stiff", "compliant")
     )
     assert "covers 100 %" in stiff
@@ -69,15 +69,15 @@ def test_the_odd_gait_is_explained_only_where_there_are_servos() -> None:
     assert "softer servos alone" not in text  # because greedy is not slow in it here
 
 
-def test_the_clocks_are_told_with_this_machines_times() -> None:
-    text = told(summary_of("table1", lambda _: around(0.3), seeds=3), "Whose clock?")
+def test_the_clocks_are_compared_with_times_measured_on_this_machine() -> None:
+    text = text_under(summary_of("table1", lambda _: around(0.3), seeds=3), "Whose clock?")
     assert "greedy then ends after 22 s and two-step after 91 s" in text
     assert "greedy thought 0.9 s and two-step 8 s" in text
-    assert "ahead at the finish in 0 of 16 timed races" in text
+    assert "ahead at time-out in 0 of 16 timed races" in text
 
 
-def test_the_caution_says_what_is_missing_and_which_simulator_it_was() -> None:
-    text = told(summary_of("figure4", lambda _: around(0.3), seeds=3), "How sure this is")
+def test_the_caution_names_few_seeds_missing_trials_and_the_simulator() -> None:
+    text = text_under(summary_of("figure4", lambda _: around(0.3), seeds=3), "How sure this is")
     assert "3 seeds a setting is few" in text
     assert "kinematic simulator" in text
     assert "missing" not in text
@@ -90,13 +90,13 @@ def test_a_sweep_names_its_best_and_worst() -> None:
         seeds=5,
         alpha=(0.1, 0.3, 0.6),
     )
-    text = told(summary, "Best and worst")
-    assert "The best is α 0.6 with feet read back: 80 % (80 to 80)" in text
+    text = text_under(summary, "Best and worst")
+    assert "The best is α 0.6 with feet measured: 80 % (80 to 80)" in text
     assert "The worst is α 0.1" in text
 
 
 @pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep"])
-def test_an_experiment_without_trials_has_no_story(experiment: str) -> None:
+def test_an_experiment_without_trials_has_no_narrative(experiment: str) -> None:
     from app.experiments.summary import summarise
     from tests.experiments.made import config
 

@@ -1,4 +1,4 @@
-"""Figures: readable files, the same bytes each time, and words for who does not see them."""
+"""Figures: reproducible files, and alternative text for screen readers."""
 
 import re
 from itertools import pairwise
@@ -12,11 +12,11 @@ from app.experiments.report.drawing import (
     CSS_NAMES,
     FORMATS,
     FURTHER_COLOURS,
-    colours,
+    agent_colours,
     figure,
-    inlined,
-    rendered,
-    spread,
+    inline_svg,
+    jitter,
+    render,
 )
 from app.experiments.report.figures import panels, sheets
 from app.experiments.summary import summarise
@@ -32,10 +32,10 @@ def small(experiment: str, seeds: int = 3) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
-def test_a_figure_is_the_same_bytes_each_time_and_has_no_date(experiment: str) -> None:
+def test_a_figure_renders_to_the_same_bytes_each_time_without_a_date(experiment: str) -> None:
     summary = small(experiment)
     for kind in FORMATS:
-        first, second = ([rendered(one.figure, kind) for one in sheets(summary)] for _ in range(2))
+        first, second = ([render(one.figure, kind) for one in sheets(summary)] for _ in range(2))
         assert first == second
         assert all(one.startswith(_BEGINS[kind]) for one in first)
         assert not any(re.search(rb"CreationDate|dc:date|Creation Time", one) for one in first)
@@ -43,20 +43,20 @@ def test_a_figure_is_the_same_bytes_each_time_and_has_no_date(experiment: str) -
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
 @pytest.mark.parametrize("done", [0, 2, 5])
-def test_what_is_not_there_yet_is_not_drawn(experiment: str, done: int) -> None:
+def test_figures_of_an_incomplete_experiment_can_be_drawn(experiment: str, done: int) -> None:
     tried = config(experiment, seeds=2, gaits=("left-right-origin",), robots=ROBOTS[:1])
     results = made_up(tried, lambda _: around(0.3))
     summary = summarise(tried, dict(list(results.items())[:done]))
     for _, group in panels(summary):
         for one in group:
-            ElementTree.fromstring(inlined(one.figure, one.name))
+            ElementTree.fromstring(inline_svg(one.figure, one.name))
             assert done or "No trials yet" in one.alt
     for one in sheets(summary):
-        assert rendered(one.figure, "png")
+        assert render(one.figure, "png")
 
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
-def test_every_picture_says_in_words_what_it_shows(experiment: str) -> None:
+def test_every_picture_has_its_numbers_in_the_alternative_text(experiment: str) -> None:
     summary = summary_of(experiment, lambda _: around(0.3, 0.0), seeds=3)
     for one in [picture for _, group in panels(summary) for picture in group] + sheets(summary):
         alt = one.alt.replace("\xa0", " ")
@@ -65,16 +65,16 @@ def test_every_picture_says_in_words_what_it_shows(experiment: str) -> None:
 
 def test_every_seed_is_drawn() -> None:
     few, many = (
-        inlined(panels(small("table1", seeds))[0][1][0].figure, "t").count("<use")
+        inline_svg(panels(small("table1", seeds))[0][1][0].figure, "t").count("<use")
         for seeds in (4, 14)
     )
     assert many - few == 2 * 10  # after 500 and after 1,000 steps
 
 
-def test_what_stands_in_a_page_takes_its_greys_and_shares_no_names() -> None:
+def test_inline_svg_uses_css_variables_and_unique_ids() -> None:
     shown = [
-        inlined(one.figure, one.name) for _, group in panels(small("table1")) for one in group
-    ] + [inlined(one.figure, one.name) for _, group in panels(small("figure4")) for one in group]
+        inline_svg(one.figure, one.name) for _, group in panels(small("table1")) for one in group
+    ] + [inline_svg(one.figure, one.name) for _, group in panels(small("figure4")) for one in group]
     names = [name for one in shown for name in re.findall(r'\bid="([^"]+)"', one)]
     assert len(names) == len(set(names))
     for one in shown:
@@ -86,22 +86,22 @@ def test_what_stands_in_a_page_takes_its_greys_and_shares_no_names() -> None:
             assert "".join(name) in names
 
 
-def test_a_name_is_text_in_a_figure_too() -> None:
+def test_names_are_escaped_in_figures() -> None:
     made = figure(2, 1)
     made.subplots().set_title("$x^{ <b>one</b> & another")
-    shown = inlined(made, "t")
+    shown = inline_svg(made, "t")
     assert "$x^{ &lt;b&gt;one&lt;/b&gt; &amp; another" in shown
-    rendered(made, "pdf")
+    render(made, "pdf")
 
 
-def test_an_agent_keeps_its_colour() -> None:
-    shade = colours(["q-learning", "mine:One", "mine:Two"])
+def test_the_papers_agents_have_fixed_colours() -> None:
+    shade = agent_colours(["q-learning", "mine:One", "mine:Two"])
     assert shade["q-learning"] == AGENT_COLOURS["q-learning"] == "#E69F00"
     assert (shade["mine:One"], shade["mine:Two"]) == FURTHER_COLOURS[:2]
     assert shade["greedy"] == "#56B4E9"
 
 
-def test_neighbours_lie_apart() -> None:
-    heights = spread(30, 1)
+def test_neighbouring_points_have_different_jitter() -> None:
+    heights = jitter(30, 1)
     assert all(-1 <= height <= 1 for height in heights)
     assert min(abs(a - b) for a, b in pairwise(heights)) > 0.5

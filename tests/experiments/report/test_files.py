@@ -1,4 +1,4 @@
-"""The report: one page that needs nothing else, and files that anyone can read."""
+"""The report's files: a self-contained page, CSV, figures and the summary."""
 
 import argparse
 import csv
@@ -30,7 +30,7 @@ LRO = "left-right-origin"
 
 
 def small(experiment: str = "table1", **given: Any) -> tuple[Any, Results]:
-    """One gait in one case, three seeds."""
+    """Return summary and results of one gait in one case with three seeds."""
     only = {"gaits": (LRO,), "observations": ("measured",), "robots": ROBOTS[:1], **given}
     tried = config(experiment, seeds=3, **only)
     results = made_up(tried, lambda _: around(0.3))
@@ -48,12 +48,12 @@ def test_a_whole_report_of_thirty_seeds_is_small_enough_to_commit(experiment: st
     assert sum(map(len, files.values())) < MOST_BYTES
 
 
-def test_the_same_trials_give_the_same_report() -> None:
+def test_the_same_trials_give_the_same_bytes() -> None:
     summary, results = small()
     assert list(report_files(summary, results)) == list(report_files(summary, results))
 
 
-def test_it_is_written_over_an_older_one(tmp_path: Path) -> None:
+def test_an_older_report_is_replaced(tmp_path: Path) -> None:
     summary, results = small()
     (tmp_path / "report.html").write_text("older")
     written = write_report(tmp_path, summary, results)
@@ -68,7 +68,8 @@ def test_the_table_has_the_papers_shape_in_three_units() -> None:
     text = page(small(robots=ROBOTS)[0])
     for column in ("Q-500 trials", "Q-1000 trials", "Greedy Agent", "Two-Steps Agent"):
         assert text.count(f'<th scope="col">{column}</th>') == 2  # one a robot
-    assert ">LeftRight-Origin</th>" in text
+    assert ">Left-right, opposite (LeftRight-Origin)</th>" in text
+    assert ">At time-out</th>" in text
     assert text.count('<span class="in m"><b>0.50</b>') == 4  # total of greedy and two-step
     assert text.count('<span class="in h"><b>25.0</b>') == 4
     assert text.count('<span class="in r"><b>100\xa0%</b>') >= 4
@@ -76,7 +77,7 @@ def test_the_table_has_the_papers_shape_in_three_units() -> None:
     assert "unfinished" in text
 
 
-def test_every_trial_is_a_row() -> None:
+def test_the_csv_has_a_row_for_every_block_of_every_trial() -> None:
     tried, results = walked("figure4", 5, gaits=(LRO,))
     summary = summarise(tried, results)
     rows = _rows(_csv(summary, results))
@@ -90,7 +91,7 @@ def test_every_trial_is_a_row() -> None:
     assert {row["alpha"] for row in learners} == {"0.3"}
 
 
-def test_what_has_no_result_is_named_on_the_page_and_in_the_rows() -> None:
+def test_trials_without_a_result_are_named_on_the_page_and_in_the_csv() -> None:
     tried = config("table1", seeds=3, gaits=(LRO,))
     results = made_up(tried, lambda _: around(0.3))
     bad, worse = (f"{LRO}/measured/stiff/q-learning/500#{n}" for n in (1, 2))
@@ -101,12 +102,14 @@ def test_what_has_no_result_is_named_on_the_page_and_in_the_rows() -> None:
     assert f"<code>{bad}</code> failed: =the physics diverged" in text
     assert f"<code>{worse}</code> was set aside: it killed its worker three times" in text
     rows = {row["trial"]: row for row in _rows(_csv(summary, results))}
-    assert rows[bad]["failure"] == "'=the physics diverged"  # no formula for a spreadsheet
+    assert (
+        rows[bad]["failure"] == "'=the physics diverged"
+    )  # escaped, so that a spreadsheet does not evaluate it
     assert rows[bad]["distance_m"] == ""
     assert rows[worse]["failure"] == "set aside: it killed its worker three times"
 
 
-def test_the_summary_is_the_one_that_was_given() -> None:
+def test_summary_json_is_the_given_summary() -> None:
     summary, results = small("sweep", alpha=(0.1, 0.3))
     name, content = next(report_files(summary, results))
     assert name == "summary.json"
@@ -137,7 +140,7 @@ def test_a_claim_has_its_verdict_in_every_case_and_its_numbers() -> None:
         ("sweep", {"gaits": (LRO, GaitSpec(1, 2, pairs=((1, 2), (3, 4), (5, 6))))}),
     ],
 )
-def test_the_command_on_the_page_makes_the_same_experiment(
+def test_the_command_on_the_page_reproduces_the_experiment(
     name: str, given: dict[str, Any]
 ) -> None:
     tried = experiment_config(name, given)
@@ -146,7 +149,7 @@ def test_the_command_on_the_page_makes_the_same_experiment(
 
 
 def _understood(typed: list[str]) -> ExperimentConfig:
-    """What the command line makes of it."""
+    """Parse a command line as `hexapods` does."""
     parser = argparse.ArgumentParser()
     commands = parser.add_subparsers(dest="command")
     experiment_command.add_to(commands)
@@ -160,7 +163,7 @@ def _understood(typed: list[str]) -> ExperimentConfig:
 
 @pytest.fixture
 def shown(page: Page) -> Page:
-    """A tab that fails its test if the report says anything, or asks for anything."""
+    """A tab that fails its test on any console message, script error or dialog."""
     page.on("console", lambda message: pytest.fail(message.text, pytrace=False))
     page.on("pageerror", lambda error: pytest.fail(str(error), pytrace=False))
     page.on("dialog", lambda dialog: pytest.fail(dialog.message, pytrace=False))
@@ -168,7 +171,7 @@ def shown(page: Page) -> Page:
 
 
 def _open(tab: Page, folder: Path, summary: Any) -> list[str]:
-    """Show a report's page; gives all that the browser asked for."""
+    """Open a report's page; return the URLs of all requests of the browser."""
     asked: list[str] = []
     tab.on("request", lambda request: asked.append(request.url))
     written = folder / "report.html"
@@ -177,7 +180,7 @@ def _open(tab: Page, folder: Path, summary: Any) -> list[str]:
     return asked
 
 
-def test_the_page_needs_nothing_but_itself(shown: Page, tmp_path: Path) -> None:
+def test_the_page_requests_no_other_resource(shown: Page, tmp_path: Path) -> None:
     asked = _open(shown, tmp_path, small()[0])
     assert asked == [(tmp_path / "report.html").as_uri()]
     policy = shown.locator('meta[http-equiv="Content-Security-Policy"]')
@@ -188,7 +191,7 @@ def test_the_page_needs_nothing_but_itself(shown: Page, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep"])
 @pytest.mark.parametrize("width", [390, 1200])
-def test_nothing_is_wider_than_the_screen(
+def test_the_page_does_not_scroll_horizontally(
     shown: Page, tmp_path: Path, experiment: str, width: int
 ) -> None:
     shown.set_viewport_size({"width": width, "height": 800})
@@ -211,7 +214,7 @@ def test_units_change_without_a_script(shown: Page, tmp_path: Path) -> None:
     assert cell.inner_text().startswith("100\xa0%")
 
 
-def test_a_name_is_text_on_the_page(shown: Page, tmp_path: Path) -> None:
+def test_names_are_escaped_on_the_page(shown: Page, tmp_path: Path) -> None:
     summary, _ = small("figure4")
     for part in ("settings", "curves", "pooled"):
         for one in summary[part]:
@@ -226,7 +229,7 @@ def test_a_name_is_text_on_the_page(shown: Page, tmp_path: Path) -> None:
     assert NASTY in shown.locator(".broken").inner_text()
 
 
-def test_it_prints_light_even_in_the_dark(shown: Page, tmp_path: Path) -> None:
+def test_the_page_prints_in_light_colours_in_dark_mode(shown: Page, tmp_path: Path) -> None:
     shown.emulate_media(color_scheme="dark")
     _open(shown, tmp_path, small()[0])
     background = "getComputedStyle(document.body).backgroundColor"

@@ -1,7 +1,7 @@
-"""Writes down what every Python process with this folder in its path connects to, and starts.
+"""Audit hook that logs every connection and started program of a Python process.
 
-Python imports this by its name at its start. `HEXAPODS_AUDIT`-less names keep it out of the app's
-settings: the file to write to is named by `AUDIT_FILE`.
+Python imports `sitecustomize` at its start in every process with this folder in PYTHONPATH. The log
+file is given by `AUDIT_FILE`, without the prefix `HEXAPODS_` of the app's settings.
 """
 
 import os
@@ -26,12 +26,12 @@ _WATCHED = frozenset(
 _file = os.open(os.environ["AUDIT_FILE"], os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o600)
 
 
-def _watch(event: str, arguments: tuple[Any, ...]) -> None:
+def _audit_hook(event: str, arguments: tuple[Any, ...]) -> None:
     if event in _WATCHED:
-        said = arguments[1:] if event.startswith("socket.") and len(arguments) > 1 else arguments
+        details = arguments[1:] if event.startswith("socket.") and len(arguments) > 1 else arguments
         if event.startswith("socket.get"):
-            said = arguments
-        os.write(_file, f"{event} {said!r}\n".encode("utf-8", "replace"))
+            details = arguments
+        os.write(_file, f"{event} {details!r}\n".encode("utf-8", "replace"))
 
 
-sys.addaudithook(_watch)
+sys.addaudithook(_audit_hook)

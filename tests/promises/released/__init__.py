@@ -1,1 +1,1 @@
-"""Dumps of databases as every released version left them, with the runs that are in them."""
+"""Database dumps of every released schema, and the runs that they contain."""

@@ -1,4 +1,4 @@
-"""What is in the dumps. New dumps have the same runs, as far as their schema can hold them."""
+"""The runs in the dumps. New dumps have the same runs, as far as their schema supports them."""
 
 from datetime import UTC, datetime, timedelta
 from typing import Any
