@@ -22,7 +22,7 @@ def explain_odd_gait(cases: Sequence[Case]) -> str | None:
     if not sentences:
         return None
     return (
-        f"{_ODD_GAIT_NAME} pairs the legs that stand opposite each other, so that both front legs "
+        f"{_ODD_GAIT_NAME} moves each leg with its mirror image, so that both front legs "
         "leave the ground at once. Stiff servos hold the body level meanwhile; compliant ones let "
         "it pitch, and distance is lost.\n"
         + "\n".join([*sentences, _printed_numbers() + _greedy_slow_too(cases)])
