@@ -55,8 +55,8 @@ def test_a_number_that_is_none_holds_the_button_back(
     page = dashboard.page
     dashboard.open(shared_server.address)
     alpha = page.get_by_role("spinbutton", name="Learning rate, as a number")
-    alpha.fill("7")
-    expect(page.get_by_role("alert").filter(has_text="from 0 to 1")).to_be_visible()
+    alpha.fill("0")
+    expect(page.get_by_role("alert").filter(has_text="over 0 and at most 1")).to_be_visible()
     expect(dashboard.primary).to_have_attribute("aria-disabled", "true")
     alpha.fill("0.7")
     expect(dashboard.primary).not_to_have_attribute("aria-disabled", "true")
