@@ -172,7 +172,7 @@ class TrainingView(RunView):
 
 
 class FiguresUnderClock(Answer):
-    """Of a lane under one clock; the distance at the first finish ranks the race."""
+    """Of a lane under one clock; the distance at time-out ranks the race."""
 
     finished_distance_m: float
     elapsed_s: float

@@ -11,7 +11,7 @@ from app.agents.registry import learns
 from app.api.answers import OptionsView
 from app.api.deps import ServicesDep
 from app.api.descriptions import SETTINGS
-from app.domain.gait import NAMED_GAITS, resolve
+from app.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
 from app.domain.robot import PRESETS, Robot, as_mapping
 from app.domain.settings import DeclaredSetting, declared_fields
 from app.domain.text import MAX_NAME
@@ -102,20 +102,16 @@ def experiment_limits() -> dict[str, list[float | None]]:
 
 _GAITS = {
     "left-right-origin": (
-        "Left-right, opposite",
-        "Three legs on each side of the way; legs that stand opposite each other move together.",
+        "Three legs on each side of the way; legs that stand opposite each other move together."
     ),
     "left-right-vertical": (
-        "Left-right, mirrored",
-        "Three legs on each side of the way; each leg moves with its mirror image.",
+        "Three legs on each side of the way; each leg moves with its mirror image."
     ),
     "front-back-origin": (
-        "Front-back, opposite",
-        "One leg leads, three in front and three behind; opposite legs move together.",
+        "One leg leads, three in front and three behind; opposite legs move together."
     ),
     "front-back-vertical": (
-        "Front-back, mirrored",
-        "One leg leads, three in front and three behind; each leg moves with its mirror image.",
+        "One leg leads, three in front and three behind; each leg moves with its mirror image."
     ),
 }
 _ROBOTS = {
@@ -189,14 +185,13 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
 
 def _gait(name: str) -> dict[str, Any]:
     gait = resolve(name, Robot().azimuths_deg)
-    title, description = _GAITS[name]
     return {
         "name": name,
-        "title": title,
+        "title": GAIT_TITLES[name],
         "forward_deg": gait.forward_deg,
         "azimuths_deg": gait.azimuths_deg,
         "pairs": gait.pairs,
-        "description": description,
+        "description": _GAITS[name],
     }
 
 

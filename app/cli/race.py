@@ -102,5 +102,5 @@ def show_lanes(result: dict[str, Any], clock: str) -> None:
                 f"{lane['simulated_transitions']:,}",
             )
         )
-    head = ("lane", "at the finish", "in all", "time", "a decision", "simulated transitions")
-    show_table(f"Ranked at the first finish, {clock} clock", head, rows)
+    head = ("lane", "at time-out", "in all", "time", "a decision", "simulated transitions")
+    show_table(f"Ranked at time-out, {clock} clock", head, rows)

@@ -21,7 +21,7 @@ from app.experiments.plan import Plan, Trial
 
 _INTERRUPTED = 130
 _RATE_WINDOW_S = 300.0  # trials of one experiment take from a second to half a minute
-_HEAD = ("setting", "seeds", "total m", "95 %", "finished m", "of greedy")
+_HEAD = ("setting", "seeds", "total m", "95 %", "at time-out m", "of greedy")
 
 
 def run_experiment(

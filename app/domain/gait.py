@@ -4,7 +4,7 @@ Elsewhere in the field a gait is a pattern of footfalls over time. Here (paper Â
 an orientation of the robot and a symmetry that pairs its legs; the pattern over time is learned.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -51,6 +51,13 @@ NAMED_GAITS: dict[str, GaitSpec] = {
     "front-back-origin": GaitSpec(1, 3, "origin"),
     "front-back-vertical": GaitSpec(1, 3, "vertical"),
 }
+GAIT_TITLES: Mapping[str, str] = {
+    "left-right-origin": "Left-right, opposite",
+    "left-right-vertical": "Left-right, mirrored",
+    "front-back-origin": "Front-back, opposite",
+    "front-back-vertical": "Front-back, mirrored",
+}
+"""Display names of the named gaits."""
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from app.domain.gait import GAIT_TITLES
 from app.experiments.published import GAITS
 from app.experiments.statistics import Interval
 
@@ -17,14 +18,6 @@ OBSERVATION_LABELS: Mapping[str, str] = {
     "commanded": "commands remembered",
 }
 """Label of each observation."""
-
-GAIT_NAMES: Mapping[str, str] = {
-    "left-right-origin": "Left-right, opposite",
-    "left-right-vertical": "Left-right, mirrored",
-    "front-back-origin": "Front-back, opposite",
-    "front-back-vertical": "Front-back, mirrored",
-}
-"""Display name of each gait."""
 
 PARAMETER_FORMATS: Mapping[str, str] = {
     "steps": "{:,}\u00a0steps",
@@ -41,7 +34,7 @@ PARAMETER_FORMATS: Mapping[str, str] = {
 
 def gait_name(gait: str) -> str:
     """Return a gait's display name; a user's own gait keeps its name."""
-    return GAIT_NAMES.get(gait, gait)
+    return GAIT_TITLES.get(gait, gait)
 
 
 def gait_name_with_papers(gait: str) -> str:

@@ -41,7 +41,7 @@ def finish_s(lanes: Sequence[LaneRecording], steps: int, clock: Clock) -> float 
 
 
 def _under(lanes: Sequence[LaneRecording], steps: int, clock: Clock) -> list[dict[str, Any]]:
-    """Each lane's figures under one clock; the distance at the first finish ranks the race."""
+    """Each lane's figures under one clock; the distance at time-out ranks the race."""
     tables = [Timetable.of(lane.steps, clock) for lane in lanes]
     finish = finish_s(lanes, steps, clock)
     finished = [

@@ -186,7 +186,7 @@ class RaceShow:
             lane.update(self._run_ended)
 
     def _with_ranks(self, lanes: tuple[LaneView, ...]) -> tuple[LaneView, ...]:
-        """Rank the lanes by distance now; after the first finish by distance at that time."""
+        """Rank the lanes by distance now; after time-out by distance at that time."""
         first = self.first_finish_s
         distances = [lane.distance_m for lane in lanes]
         if first is not None and self._time_s >= first:

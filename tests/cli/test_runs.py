@@ -72,7 +72,7 @@ def test_a_run_is_shown(data: Path, tmp_path: Path) -> None:
     assert shown["name"] == "[b]old[/b]"
     assert len(shown["curve"]) == 24
     said = hexapods("runs", "show", RACED, *here, folder=tmp_path).stdout
-    assert "Ranked at the first finish, paper clock" in said
+    assert "Ranked at time-out, paper clock" in said
     assert "16 of 16" in said
 
 
