@@ -50,6 +50,11 @@ export const setEntry = (record, key, value) => {
 let eventCount = 0;
 /** Run id, or "stage" → the number of its newest event. @type {Map<string, number>} */
 const newestEvents = new Map();
+/** Ids of runs that were deleted while the page was open. @type {Set<string>} */
+const deletedIds = new Set();
+
+/** @param {string} id */
+export const isDeleted = (id) => deletedIds.has(id);
 
 /** @type {Record<string, (data: any) => void>} */
 const handlers = {
@@ -69,6 +74,7 @@ const handlers = {
   },
   "run-deleted"({ id }) {
     newestEvents.set(id, eventCount);
+    deletedIds.add(id);
     forgetRun(id);
   },
   evaluation({ run_id, ...evaluation }) {

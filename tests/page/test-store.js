@@ -7,7 +7,8 @@ import {
   raceInView, simulatedPerDecision, trainingInView, work,
 } from "../../static/js/selectors.js";
 import {
-  applyEvent, damagedRuns, evaluations, options, rates, requestRun, requestRuns, requestStage, role, runs, stage,
+  applyEvent, damagedRuns, evaluations, isDeleted, options, rates, requestRun, requestRuns, requestStage, role, runs,
+  stage,
 } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
@@ -67,6 +68,7 @@ test("an answer does not undo the events that overtook it", async () => {
     applyEvent("stage", { ...STAGE, run_id: run.id });
   };
   assert.equal((await requestRun(answerAfter(meanwhile, run))).state, "queued");
+  assert.deepEqual([isDeleted(deleted.id), isDeleted(run.id)], [true, false]);
   assert.equal(runs.value.get(run.id)?.state, "finished");
   await requestRuns(answerAfter(meanwhile, { items: [run, deleted] }));
   assert.deepEqual([...runs.value.values()].map(({ state }) => state), ["finished"]);

@@ -3,7 +3,7 @@ import { computed, effect, signal } from "@preact/signals";
 import { getRun, listRuns } from "../api.js";
 import { place } from "../page.js";
 import { everyRun, isActive } from "../selectors.js";
-import { connection, requestRun, requestRuns, runs } from "../store.js";
+import { connection, isDeleted, requestRun, requestRuns, runs } from "../store.js";
 import { wantedRun } from "./address.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -46,6 +46,10 @@ export function followExperiments() {
   effect(() => {
     const id = unknown.value;
     if (!id) return;
+    if (isDeleted(id)) {
+      wantedRun.value = null;
+      return;
+    }
     requestRun(() => getRun({ kind: "experiment", id })).catch(() => (wantedRun.value = null));
   });
 }
