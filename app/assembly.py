@@ -112,14 +112,14 @@ def build_walkers(
 
 
 def finish_training(
-    learner: Learner, config: TrainingConfig, measure_rival: bool = True
+    learner: Learner, config: TrainingConfig, measure_reference: bool = True
 ) -> dict[str, Any]:
     """The result of a training, as it stands: how far it walks now, and the table's hash.
 
-    Without `measure_rival`, `greedy_distance_m` is None unless it was measured before.
+    Without `measure_reference`, `greedy_distance_m` is None unless it was measured before.
     """
     distance = evaluate(learner, config, learner.epsilon).distance_m
-    if learner.greedy_distance_m is None and measure_rival:
+    if learner.greedy_distance_m is None and measure_reference:
         measure_baseline(learner)
     agent = learner.walker.agent
     return {

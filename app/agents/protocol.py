@@ -8,8 +8,8 @@ A class whose constructor asks, by the names of its parameters, for what it need
 - `explore`: False where the agent is evaluated or raced and should do its best;
 - any further parameter by name, from the settings of the run.
 
-Parameters that a person may choose are declared with their limits (`app.domain.settings`). An agent
-that practice does not change has the attribute `learns = False`.
+Our learner's parameters are declared with their limits (`app.domain.settings`). An agent that
+practice does not change has the attribute `learns = False`.
 """
 
 from collections.abc import Sequence

@@ -481,7 +481,9 @@ class OptionsView(Answer):
     experiments: list[ExperimentOption]
     defaults: DefaultsView
     settings: dict[str, SettingOption]
-    limits: dict[str, tuple[float | None, float | None]]
+    limits: dict[str, tuple[float | None, float | None]] = Field(
+        description="[lowest, highest]; `settings` says which of them are not valid themselves"
+    )
     help: dict[str, str]
 
 

@@ -1,8 +1,9 @@
 """The options: every name, default, limit and sentence of help that a form needs."""
 
 from collections.abc import Collection
-from typing import Any
+from typing import Annotated, Any
 
+from annotated_types import Ge, Le
 from fastapi import APIRouter
 from starlette.responses import JSONResponse, Response
 
@@ -13,7 +14,7 @@ from app.api.deps import ServicesDep
 from app.api.descriptions import SETTINGS
 from app.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
 from app.domain.robot import PRESETS, Robot, as_mapping
-from app.domain.settings import DeclaredSetting, declared_fields
+from app.domain.settings import DeclaredSetting, declare, declared_fields
 from app.domain.text import MAX_NAME
 from app.experiments.config import (
     EXPERIMENTS,
@@ -27,6 +28,7 @@ from app.experiments.config import as_json as experiment_as_json
 from app.jobs.submissions import MAX_SETTINGS, TITLES
 from app.runs.config import (
     MAX_LANES,
+    MAX_RACE_STEPS,
     RACE_STEPS,
     RaceConfig,
     TrainingConfig,
@@ -150,7 +152,14 @@ _HELP = {
     "clock": "What thinking costs in the race; it can change who wins.",
     "name": "What the run is called in the list.",
 }
-_SETTINGS = {**SETTINGS, "race_steps": declared_fields(RaceConfig)["steps"]}
+_RACE_STEPS = declared_fields(RaceConfig)["steps"]
+_SETTINGS = {
+    **SETTINGS,
+    # As many as a race of any number of lanes may have.
+    "race_steps": declare(
+        "race_steps", Annotated[int, Ge(1), Le(MAX_RACE_STEPS // MAX_LANES), _RACE_STEPS.about]
+    ),
+}
 """Every declared setting, by the name of the form's field."""
 
 

@@ -1,4 +1,4 @@
-"""What requests may say. The only Pydantic models; services get frozen dataclasses."""
+"""Request bodies, as Pydantic models; each makes the frozen dataclass that a service takes."""
 
 from collections.abc import Collection
 from typing import Annotated, Any, Literal

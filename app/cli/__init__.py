@@ -1,6 +1,7 @@
 """The `hexapods` command: arguments in, one call out."""
 
 import argparse
+import io
 import sys
 from collections.abc import Sequence
 
@@ -24,6 +25,10 @@ COMMANDS = (serve, train, race, experiment, sweep, runs, export, imports, doctor
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit code is 2 for what cannot be done as asked, with one sentence."""
+    # A terminal that cannot show an α or a tick is no reason to end.
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
     options = _parser().parse_args(arguments)
     sys.path.insert(0, "")  # so that --agent my_agent:Agent finds my_agent.py in this folder
     try:

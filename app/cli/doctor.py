@@ -28,8 +28,6 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
 
 def run(options: argparse.Namespace) -> int:
     """Check everything; 0 if all is well, else 1."""
-    # A terminal that cannot show a tick is no reason to end.
-    sys.stdout.reconfigure(errors="replace")  # type: ignore[union-attr]
     findings = []
     for finding in examine(options.data):
         findings.append(finding)

@@ -42,10 +42,13 @@ def add_settings(
     """Add an option for each declared setting, or for those that are named."""
     for name in settings if names is None else names:
         setting = settings[name]
-        about = f"{setting.about.help} Valid: {setting.valid} (default {setting.default})"
-        symbol = f"{setting.about.symbol}: " if setting.about.symbol else ""
+        about = setting.about
+        label = f"{about.title} {about.symbol}" if about.symbol else about.title
         parser.add_argument(
-            flag(name), type=parser_of(setting), default=setting.default, help=symbol + about
+            flag(name),
+            type=parser_of(setting),
+            default=setting.default,
+            help=f"{label}. {about.help} Valid: {setting.valid} (default {setting.default})",
         )
 
 

@@ -5,9 +5,9 @@ type is annotated with its limits and with a `Setting`:
 
     alpha: Annotated[float, Gt(0), Le(1), Setting(title="Learning rate", help="…")] = 0.3
 
-Validation, REST bodies and their OpenAPI description, command-line options, the page's controls,
-sweeps, checkpoints and archives follow from that declaration, by `declared_parameters` or
-`declared_fields`.
+`declared_parameters` and `declared_fields` find the declarations. From those of a training follow
+validation, the types and descriptions of request fields, refusals, `GET /options`, options of the
+command line, and labels and limits on the page.
 """
 
 import inspect
@@ -37,7 +37,7 @@ class Setting:
         title: the label of its control.
         help: one sentence.
         symbol: the field's letter for it, such as α.
-        unit: of a physical quantity.
+        unit: what a number counts or measures, such as m.
         live: whether it may change while a run is active; the agent's `tune` receives changes.
         examples: values that a sweep might compare.
     """
@@ -115,10 +115,12 @@ class DeclaredSetting:
     def valid(self) -> str:
         """The valid values in words that follow "must be"."""
         parts = list(self.choices)
-        if self.is_number:
-            parts.append(
-                " ".join(["a whole number" if self.is_whole else "a number", *self._range()])
-            )
+        if self.is_whole:
+            # Of a count the unit is clear from its name.
+            parts.append(" ".join(["a whole number", *self._range()]))
+        elif self.is_number:
+            unit = [self.about.unit] if self.about.unit else []
+            parts.append(" ".join(["a number", *self._range(), *unit]))
         if bool in self.kinds:
             parts.append("true or false")
         if str in self.kinds:

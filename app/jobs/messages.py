@@ -13,7 +13,7 @@ from app.runs.config import RaceConfig, TrainingConfig
 from app.runs.records import RaceRecord, TrainingRecord
 from app.runs.tables import Checkpoint
 
-# Down: an order first, then words.
+# To the process: a task first, then commands.
 
 
 @dataclass(frozen=True)

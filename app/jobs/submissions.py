@@ -67,7 +67,7 @@ class QueuedRun:
 
     Attributes:
         run: as it was stored.
-        make_order: says what its process is to do, when its turn comes.
+        make_task: makes the task for its process, when its turn comes.
         waits_for: trainings that must finish before.
         goes_on: whether it was interrupted, and so is in the store already.
     """

@@ -1,4 +1,4 @@
-"""A job, in its own process: builds what the order names, runs the loop, and reports.
+"""A job, in its own process: builds what the task names, runs the loop, and reports.
 
 Ends when the job does or when the server does, however that ends.
 """
@@ -47,77 +47,77 @@ _logger = logging.getLogger(__name__)
 
 
 def main(pipe: Connection, niceness: int) -> None:
-    """Work on the order that comes first through the pipe, and end the process."""
+    """Work on the task that comes first through the pipe, and end the process."""
     set_up_process(niceness)
     logs.install("warning")
-    order: Task = pipe.recv()
-    words: queue.SimpleQueue[Command] = queue.SimpleQueue()
-    threading.Thread(target=_listen, args=(pipe, words), daemon=True).start()
+    task: Task = pipe.recv()
+    commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(pipe, commands), daemon=True).start()
     send = _one_at_a_time(pipe)
     threading.Thread(target=_send_heartbeats, args=(send,), daemon=True).start()
-    desk = JobControl(send, words)
+    control = JobControl(send, commands)
     try:
-        if isinstance(order, TrainingTask):
-            _train(order, desk)
-        elif isinstance(order, ExperimentTask):
-            experiment(order, desk.send, words)
+        if isinstance(task, TrainingTask):
+            _train(task, control)
+        elif isinstance(task, ExperimentTask):
+            experiment(task, control.send, commands)
         else:
-            _race(order, desk)
+            _race(task, control)
     except HexapodError as error:
-        desk.send(Failed(str(error)))
+        control.send(Failed(str(error)))
     except Exception as error:
         _logger.exception("a job failed")
-        desk.send(Failed(f"something in it broke ({type(error).__name__}: {error})"))
+        control.send(Failed(f"something in it broke ({type(error).__name__}: {error})"))
     pipe.close()
     sys.stderr.flush()
     # Nothing is left to be done, and taking MuJoCo's threads down takes a while.
     os._exit(0)
 
 
-def _train(order: TrainingTask, desk: JobControl) -> None:
-    config = order.config
-    learner = build_learner(config, order.table, threads=0)
+def _train(task: TrainingTask, control: JobControl) -> None:
+    config = task.config
+    learner = build_learner(config, task.table, threads=0)
     walker, rest_qpos = learner.walker, _pose(learner.walker)
-    desk.keep_pace(config.pace, config.robot.step_s)
+    control.keep_pace(config.pace, config.robot.step_s)
     made = ()
-    if order.checkpoint is not None:
-        restore(learner, order.checkpoint)
-        made = order.checkpoint.meta["changes"]
-    desk.repeat(made, order.changes, learner.step, walker.agent)
-    desk.send(Began((rest_qpos,), learner.step))
-    desk.keep_safe(lambda: Checkpointed(_saved(learner, order, desk), learner.step))
+    if task.checkpoint is not None:
+        restore(learner, task.checkpoint)
+        made = task.checkpoint.meta["changes"]
+    control.repeat(made, task.changes, learner.step, walker.agent)
+    control.send(Began((rest_qpos,), learner.step))
+    control.keep_safe(lambda: Checkpointed(_saved(learner, task, control), learner.step))
     result = None
     with suppress(Stopped):
-        for record in train(_attentive(learner, desk), config, record=True):
-            desk.report(record, learner.step)
-            if isinstance(record, StepTaken) and not desk.go_on(learner.step, walker.agent):
+        for record in train(_attentive(learner, control), config, record=True):
+            control.report(record, learner.step)
+            if isinstance(record, StepTaken) and not control.go_on(learner.step, walker.agent):
                 raise Stopped
-        desk.flush()
+        control.flush()
         result = finish_training(learner, config)
-    desk.flush()
-    if desk.leaving and not desk.stopped:
-        desk.checkpoint()
+    control.flush()
+    if control.leaving and not control.stopped:
+        control.checkpoint()
         return
     if result is None:
-        # The rival's walk is long; who stops a training early waits for nothing.
-        result = finish_training(learner, config, measure_rival=False)
-    desk.send(Saved(_saved(learner, order, desk)))
-    desk.send(Ended("stopped" if desk.stopped else "finished", result))
+        # The baseline's walk takes a while; a training that is stopped early does not wait for it.
+        result = finish_training(learner, config, measure_reference=False)
+    control.send(Saved(_saved(learner, task, control)))
+    control.send(Ended("stopped" if control.stopped else "finished", result))
 
 
-def _saved(learner: Learner, order: TrainingTask, desk: JobControl) -> bytes:
-    return to_bytes(snapshot(learner, order.config, changes=desk.changes))
+def _saved(learner: Learner, task: TrainingTask, control: JobControl) -> bytes:
+    return to_bytes(snapshot(learner, task.config, changes=control.changes))
 
 
-def _attentive(learner: Learner, desk: JobControl) -> Learner:
+def _attentive(learner: Learner, control: JobControl) -> Learner:
     """The same learner, whose evaluations obey between two steps as its practice does."""
     evaluator, baseline = learner.evaluator, learner.baseline
 
     def listening(walker: Walker) -> Walker:
         # Once it was stopped, what is left is the last evaluation.
-        if not desk.stopped:
+        if not control.stopped:
             walker.agent = InterruptibleAgent(
-                walker.agent, lambda: desk.listen(learner.step, learner.walker.agent)
+                walker.agent, lambda: control.listen(learner.step, learner.walker.agent)
             )
         return walker
 
@@ -126,18 +126,18 @@ def _attentive(learner: Learner, desk: JobControl) -> Learner:
     return learner
 
 
-def _race(order: RaceTask, desk: JobControl) -> None:
-    walkers = build_walkers(order.config, order.tables)
-    desk.send(Began(tuple(_pose(walker) for walker in walkers)))
+def _race(task: RaceTask, control: JobControl) -> None:
+    walkers = build_walkers(task.config, task.tables)
+    control.send(Began(tuple(_pose(walker) for walker in walkers)))
     done = 0
-    for record in race(walkers, order.config.steps, time.perf_counter):
+    for record in race(walkers, task.config.steps, time.perf_counter):
         done += isinstance(record, LaneStep)
-        desk.report(record, done)
-        if not desk.go_on(done):
+        control.report(record, done)
+        if not control.go_on(done):
             break
-    desk.flush()
-    if not desk.leaving:
-        desk.send(Ended("stopped" if desk.stopped else "finished", None))
+    control.flush()
+    if not control.leaving:
+        control.send(Ended("stopped" if control.stopped else "finished", None))
 
 
 def _pose(walker: Walker) -> NDArray[np.float32]:
@@ -162,10 +162,10 @@ def _send_heartbeats(send: Callable[[Message | Heartbeat], None]) -> None:
             time.sleep(HEARTBEAT_EVERY_S)
 
 
-def _listen(pipe: Connection, words: "queue.SimpleQueue[Command]") -> None:
-    """Take in words until there is nobody to send any."""
+def _listen(pipe: Connection, commands: "queue.SimpleQueue[Command]") -> None:
+    """Take in commands until there is nobody to send any."""
     try:
         while True:
-            words.put(pipe.recv())
+            commands.put(pipe.recv())
     except (EOFError, OSError):
         os._exit(1)

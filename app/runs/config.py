@@ -49,7 +49,7 @@ GridSide = Annotated[
     Setting(
         title="Foot grid, side",
         unit="m",
-        help="Side of the square in which each foot may be put, in metres.",
+        help="Side of the square in which each foot may be put; every leg must reach all of it.",
         examples=(0.03, 0.04),
     ),
 ]
@@ -97,6 +97,7 @@ Pace = Annotated[
     Literal["max"] | PaceFactor,
     Setting(
         title="Pace of practice",
+        unit="times real time",
         help="How fast it practises: max, or a number of times real time.",
         live=True,
     ),

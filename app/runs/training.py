@@ -21,12 +21,12 @@ class Learner:
     Attributes:
         walker: the robot that practises, with its agent.
         rng: the generator that the agent learns with.
-        contender: makes a walker at rest that does its best with what was learned so far, and
+        evaluator: makes a walker at rest that does its best with what was learned so far, and
             learns nothing; its chance comes from the generator that it is given.
-        rival: makes the walker of the one-step look-ahead agent on the same robot.
+        baseline: makes the walker of the one-step look-ahead agent on the same robot.
         step: how many steps it has learned.
         episode_reward_m: earned since the episode began.
-        greedy_distance_m: of the rival, once it was measured.
+        greedy_distance_m: of the baseline, once it was measured.
         due_epsilon: ε of the newest step while its evaluation is yet to come; None if none is.
     """
 

@@ -59,6 +59,9 @@ export const isDeleted = (id) => deletedIds.has(id);
 /** @type {Record<string, (data: any) => void>} */
 const handlers = {
   snapshot(data) {
+    // It tells of the stage and of the newest runs; an answer about an older run is still news.
+    newestEvents.set("stage", eventCount);
+    for (const { id } of data.runs ?? []) newestEvents.set(id, eventCount);
     version.value = data.version ?? null;
     role.value = data.role ?? "operator";
     viewers.value = data.viewers ?? null;

@@ -4,7 +4,7 @@ export type Kind = "training" | "race" | "experiment";
 export type State = "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
 export type Verb = "stop" | "pause" | "resume";
 export type Clock = string;
-/** [lowest, highest]; null where the server sets no bound. */
+/** Of a number; null where the server sets no bound. */
 export interface Limits {
   minimum: number | null;
   maximum: number | null;

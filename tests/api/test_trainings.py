@@ -169,7 +169,7 @@ def test_changed_rates_can_be_repeated_exactly(api: Api) -> None:
                 learner.walker.agent.tune(alpha=change["alpha"])  # type: ignore[attr-defined]
         if learner.step == now["progress"]["done"]:
             break
-    assert finish_training(learner, config, measure_rival=False) == now["result"]
+    assert finish_training(learner, config, measure_reference=False) == now["result"]
 
 
 def test_lists_come_in_pages_newest_first(api: Api, trained: dict[str, Any]) -> None:

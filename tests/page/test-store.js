@@ -76,6 +76,16 @@ test("an answer does not undo the events that overtook it", async () => {
   assert.equal(stage.value?.run_id, run.id);
 });
 
+test("an answer does not undo a snapshot, but tells of runs that the snapshot had no room for", async () => {
+  const [run, older] = [makeRun({ state: "queued" }), makeRun({})];
+  const meanwhile = () => show({ runs: [{ ...run, state: "finished" }], stage: { ...STAGE, run_id: run.id } });
+  await requestRuns(answerAfter(meanwhile, { items: [run, older] }));
+  assert.equal(runs.value.get(run.id)?.state, "finished");
+  assert.ok(runs.value.has(older.id));
+  await requestStage(answerAfter(meanwhile, STAGE));
+  assert.equal(stage.value?.run_id, run.id);
+});
+
 test("an answer that no event has overtaken is taken in", async () => {
   const run = makeRun({ state: "running" });
   applyEvent("run", run);
