@@ -146,7 +146,7 @@ def _add_routes(app: FastAPI, viewer: ViewerService) -> None:
 
 
 def _trouble(jobs: Jobs, store: RunStore) -> str | None:
-    """What keeps runs from being started, in a sentence."""
+    """Return why runs cannot be started, in a sentence; None if they can."""
     if (trouble := jobs.trouble()) is not None:
         return trouble
     try:

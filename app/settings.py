@@ -40,7 +40,7 @@ _HOST_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9_]([a-z0-9_-]*[a-z0-9_])?(\.[a-z0-
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """What a server is told before it starts.
+    """Settings of a server, complete and checked.
 
     Attributes:
         host: address to bind, by number or name.

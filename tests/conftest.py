@@ -1,4 +1,4 @@
-"""What every test shares: a real browser with WebGL2 in software, and a real PostgreSQL."""
+"""Fixtures for every test: a real browser with WebGL2 in software, and a real PostgreSQL."""
 
 from collections.abc import Iterator
 

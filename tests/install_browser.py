@@ -95,7 +95,7 @@ def _install_playwrights_own() -> None:
 
 
 def _as_root() -> list[str] | None:
-    """What to put before a command that needs root; None where root cannot be had."""
+    """Return the prefix of commands that need root; None where there is no root."""
     if os.geteuid() == 0:
         return []
     if shutil.which("sudo") and _succeeds(["sudo", "--non-interactive", "true"]):

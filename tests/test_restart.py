@@ -19,7 +19,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def before(data: Path) -> dict[str, bytes]:
-    """What a server says of a race and its practice, by the address of each."""
+    """Return a server's answers about a race and its practice, by address."""
     server = Served(data)
     try:
         race = server.start({**BODY, "steps": 10, "lanes": LANES}, "/races")

@@ -1,4 +1,4 @@
-"""What an agent is. Ours and yours are written to this protocol.
+"""The agent protocol, which our agents and a user's own implement.
 
 A class whose constructor asks, by the names of its parameters, for what it needs:
 
@@ -33,7 +33,7 @@ class Problem(NamedTuple):
 
 
 class Transition(NamedTuple):
-    """What an agent may learn from: one step as it was seen."""
+    """One step as the agent observed it; learners learn from it."""
 
     observation: Cells
     action: Action

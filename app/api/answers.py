@@ -66,7 +66,7 @@ class WalkView(Answer):
 
 
 class TrainingConfigView(WalkView):
-    """What a training was asked to do."""
+    """Config of a training."""
 
     steps: int
     seed: int
@@ -91,7 +91,7 @@ class LaneView(Answer):
 
 
 class RaceConfigView(WalkView):
-    """What a race was asked to do."""
+    """Config of a race."""
 
     lanes: list[LaneView]
     steps: int
@@ -99,7 +99,7 @@ class RaceConfigView(WalkView):
 
 
 class ExperimentConfigView(Answer):
-    """What an experiment was asked to do: every combination of the lists is a setting."""
+    """Config of an experiment: every combination of the lists is a setting."""
 
     experiment: ExperimentName
     seeds: int
@@ -189,7 +189,7 @@ class LaneFigures(Answer):
 
 
 class LaneResult(Answer):
-    """What came of a lane; `trained_robot` where its table was learned on another robot."""
+    """Result of a lane; `trained_robot` where its table was learned on another robot."""
 
     agent: str
     training_id: str | None
@@ -203,7 +203,7 @@ class LaneResult(Answer):
 
 
 class RaceResult(Answer):
-    """What came of a race, by lane."""
+    """Result of a race, by lane."""
 
     lanes: list[LaneResult]
     shared_machine: bool
@@ -228,14 +228,14 @@ class TrialCounts(Answer):
 
 
 class Verdict(Answer):
-    """What became of one of the paper's claims."""
+    """Verdict on one of the paper's claims."""
 
     id: str
     verdict: Literal["holds", "does not hold", "not established", "depends"]
 
 
 class ExperimentResult(Answer):
-    """What came of an experiment; `files` are those of its report."""
+    """Result of an experiment; `files` are those of its report."""
 
     trials: TrialCounts
     claims: list[Verdict]
@@ -367,7 +367,7 @@ class TimelineView(Answer):
 
 
 class StageView(Answer):
-    """What everyone is shown."""
+    """The stage: the run that all viewers see."""
 
     run_id: str | None
     kind: Literal["idle", "training", "race"]

@@ -1,4 +1,4 @@
-"""What every answer says to browsers, and how much a request may send."""
+"""Set security headers on each answer, and limit how much a request may send."""
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send

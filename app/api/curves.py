@@ -1,4 +1,4 @@
-"""What a training learned, row by row, in the forms that people take away."""
+"""Learning curves and Q-tables as CSV and JSON, row by row."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""What routes are given: the services that `create_app` built, and who is asking."""
+"""Dependencies of routes: the services that `create_app` built, and the client's role."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field

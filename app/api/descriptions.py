@@ -1,4 +1,4 @@
-"""What is valid in each field, in words: for error messages and for the API's description."""
+"""Valid values of each field in words, for refusals and for the API's description."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any

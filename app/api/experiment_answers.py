@@ -23,7 +23,7 @@ class WallLane(Answer):
 
 
 class TrialFigures(Answer):
-    """What came of a trial; `distances_m` after each block."""
+    """Result of a trial; `distances_m` after each block."""
 
     distances_m: list[float]
     finished_distance_m: float | None
@@ -66,7 +66,7 @@ class SummaryCounts(Answer):
 
 
 class Cost(Answer):
-    """What the run took."""
+    """Cost of the run."""
 
     wall_s: float
     compute_s: float
@@ -115,7 +115,7 @@ class Distances(Answer):
 
 
 class PublishedView(Answer):
-    """What the paper printed [m], and in which quantile of our seeds it falls."""
+    """Printed value of the paper [m], and the quantile of our seeds in which it falls."""
 
     total_m: float | None
     finished_m: float | None
@@ -134,7 +134,7 @@ class Practice(Answer):
 
 
 class Named(Practice):
-    """What tells a setting from the others, without its gait."""
+    """Parameters that identify a setting, without its gait."""
 
     observation: Observation
     robot: str
@@ -222,7 +222,7 @@ class TimedView(Answer):
 
 
 class Finding(Answer):
-    """What one case says of a claim."""
+    """Verdict on a claim in one case."""
 
     observation: Observation
     robot: str
@@ -250,7 +250,7 @@ class Told(Answer):
 
 
 class SummaryView(Answer):
-    """What an experiment's trials show so far."""
+    """Summary of an experiment's trials so far."""
 
     format: int
     experiment: ExperimentName

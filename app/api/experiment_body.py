@@ -1,4 +1,4 @@
-"""What a request for an experiment may say."""
+"""Request body of an experiment."""
 
 from collections.abc import Collection
 from typing import Annotated, Any, TypeVar
@@ -99,7 +99,7 @@ class ExperimentBody(Body):
     ] = None
 
     def start(self, agents: Collection[str]) -> ExperimentStart:
-        """What the service is asked to start.
+        """Convert to the request of the service.
 
         Raises:
             InvalidInput: for what cannot be.

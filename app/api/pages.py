@@ -41,7 +41,7 @@ def page_routes(folder: Path) -> list[BaseRoute]:
 
 
 def content_policy(page: str) -> str:
-    """What the page may load and run: its own files, and the scripts that stand in it."""
+    """Build a page's content security policy: its own files, its inline scripts by hash."""
     digests = (hashlib.sha256(body.encode()).digest() for body in _INLINE_SCRIPT.findall(page))
     inline = "".join(f" 'sha256-{base64.b64encode(digest).decode()}'" for digest in digests)
     return (

@@ -1,4 +1,4 @@
-"""What trainings and races have in common: list, look, stop, pause, resume, delete."""
+"""Routes that all kinds of runs share: list, get, stop, pause, resume, delete."""
 
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any

@@ -148,7 +148,7 @@ class TrainingBody(PracticeBody, WalkBody):
     agent: str = TrainingConfig.agent
 
     def start(self, agents: Collection[str]) -> TrainingStart:
-        """What the service is asked to start.
+        """Convert to the request of the service.
 
         Raises:
             InvalidInput: for what cannot be.
@@ -165,7 +165,7 @@ class LaneBody(Body):
     training: Annotated[PracticeBody | None, Field(description=VALID["training"])] = None
 
     def start(self, walk: WalkingProblem, seed: int, agents: Collection[str]) -> LaneStart:
-        """What the service is asked to start."""
+        """Convert to the request of the service."""
         check_agent(self.agent, agents)
         if self.training is None:
             return LaneStart(self.agent, self.training_id)
@@ -189,7 +189,7 @@ class RaceBody(WalkBody):
     ] = Field(default_factory=_papers_lanes)
 
     def start(self, agents: Collection[str]) -> RaceStart:
-        """What the service is asked to start.
+        """Convert to the request of the service.
 
         Raises:
             InvalidInput: for what cannot be.
@@ -200,7 +200,7 @@ class RaceBody(WalkBody):
 
 
 class ChangeBody(Body):
-    """What may be changed while a training runs."""
+    """Changes to a training while it runs."""
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -223,12 +223,12 @@ class ChangeBody(Body):
         return self
 
     def changes(self) -> dict[str, Any]:
-        """What is given."""
+        """Return the fields that are given."""
         return self.model_dump(exclude_none=True)
 
 
 class StageBody(Body):
-    """What everyone is to be shown; what is left out stays as it is."""
+    """Changes to the stage; fields that are left out stay as they are."""
 
     run_id: RunId | None = None
     time_s: Annotated[float, number(ge=0)] | None = None

@@ -1,4 +1,4 @@
-"""What everyone is shown."""
+"""Routes of the stage, the run that all viewers see."""
 
 from fastapi import APIRouter
 from starlette.responses import JSONResponse, Response
@@ -18,6 +18,6 @@ def get_stage(services: ServicesDep) -> Response:
 
 @router.put("", response_model=StageView, summary="Show a run, or command the show")
 def put_stage(services: ServicesDep, body: StageBody) -> Response:
-    """What is left out stays as it is."""
+    """Change the given fields; the others stay as they are."""
     services.stage.set(**body.model_dump())
     return JSONResponse(services.stage.state())

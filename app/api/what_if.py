@@ -1,4 +1,4 @@
-"""What if one learned so: an answer while the slider is still warm."""
+"""The what-if route: kinematic trials of a training's settings."""
 
 from fastapi import APIRouter
 from starlette.responses import JSONResponse, Response

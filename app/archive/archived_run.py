@@ -208,7 +208,7 @@ def _part(raw: Raw, kind: Any) -> Any:
 
 
 def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
-    """What holds for every run, beyond the shape of each field."""
+    """Check what a run's fields must satisfy beyond their shape."""
     check_name(run.name)
     for name in ("created_at", "started_at", "ended_at"):
         check_moment(name, getattr(run, name))

@@ -14,7 +14,7 @@ from app.runs.tables import Checkpoint
 
 
 class TableMeta(msgspec.Struct):
-    """What a table says of itself that is shown, or gone on from."""
+    """Metadata of a table that is shown or that a resumed training relies on."""
 
     agent: Name
     step: Step

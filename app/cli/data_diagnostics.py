@@ -1,4 +1,4 @@
-"""What `hexapods doctor` looks at where the runs are kept, and where the server would listen."""
+"""Checks of `hexapods doctor` on the data folder, the database and the server's address."""
 
 import os
 import shutil

@@ -52,7 +52,7 @@ class Trouble(Exception):
 
 
 class Finding(NamedTuple):
-    """What came of one check."""
+    """Result of one check."""
 
     name: str
     ok: bool

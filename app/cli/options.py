@@ -78,7 +78,7 @@ def add_observation(parser: argparse.ArgumentParser, help_text: str) -> None:
 
 
 def walk_from(options: argparse.Namespace) -> dict[str, Any]:
-    """What `add_walk_options` read, as fields of a config."""
+    """Convert options of `add_walk_options` to fields of a config."""
     return {
         "gait": read_gait(options.gait),
         "robot": read_robot(options.robot),

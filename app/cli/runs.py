@@ -109,7 +109,7 @@ def _local(moment: datetime) -> str:
 
 
 def _outcome(run: Run) -> str:
-    """What came of it, in a word or two."""
+    """Summarise the result in a word or two."""
     if not run.result:
         return ""
     if run.kind == "training":

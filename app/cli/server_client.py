@@ -13,7 +13,7 @@ _WAIT_S = 60.0
 
 
 def call_server(settings: Settings, method: str, path: str, body: bytes | None = None) -> Any:
-    """What the server of the data folder answers.
+    """Call the server of the data folder and return its answer.
 
     Args:
         settings: its data folder, and the token if it has one.

@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 
 def add_trial_options(parser: argparse.ArgumentParser, observations: str, robots: str) -> None:
-    """What is tried, beside what a command has of its own.
+    """Add the options of a trial grid that commands share.
 
     Args:
         parser: of the command.
@@ -57,13 +57,13 @@ def add_machine_options(parser: argparse.ArgumentParser) -> None:
 
 
 def where_from(options: argparse.Namespace) -> ClusterSpec:
-    """What `add_machine_options` read."""
+    """Build the cluster's specification from `add_machine_options`."""
     names = ("workers", "scheduler", "tls_ca", "tls_cert", "tls_key")
     return ClusterSpec(**{name: getattr(options, name) for name in names})
 
 
 def trial_grid_from(options: argparse.Namespace) -> dict[str, Any]:
-    """What `add_trial_options` read, as fields of an experiment; None where nothing was said."""
+    """Convert options of `add_trial_options` to fields of an experiment; None where not given."""
     return {
         "seeds": options.seeds,
         "seed": options.seed,
@@ -77,12 +77,12 @@ def trial_grid_from(options: argparse.Namespace) -> dict[str, Any]:
 def _several(
     texts: Sequence[str] | None, read: Callable[[str], Sequence[T]]
 ) -> tuple[T, ...] | None:
-    """What an option that may be there several times names in all."""
+    """Join the values of an option that may be repeated."""
     return None if texts is None else tuple(value for text in texts for value in read(text))
 
 
 def split(text: str) -> list[str]:
-    """What a list with commas names."""
+    """Split a list with commas."""
     return [part.strip() for part in text.split(",")]
 
 

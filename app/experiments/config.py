@@ -1,4 +1,4 @@
-"""What an experiment tries: a grid of settings, each over many seeds."""
+"""Configs of experiments: a grid of settings, each over many seeds."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -26,8 +26,8 @@ GRID = (
     "divisions",
     "grid_side_m",
 )
-"""What a sweep may vary beside agent, gait, observation and robot; table1 and figure4 keep all of
-it at the paper's values."""
+"""Parameters that a sweep varies beside agent, gait, observation and robot; table1 and figure4 keep
+them at the paper's values."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,7 +91,7 @@ _MAY_SAY: Mapping[str, tuple[str, ...]] = {
 
 
 def fields_of(experiment: ExperimentName) -> tuple[str, ...]:
-    """What an experiment may be told."""
+    """Return the fields that an experiment accepts."""
     return _MAY_SAY[experiment]
 
 

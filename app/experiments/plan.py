@@ -42,7 +42,7 @@ class Setting:
 
     @property
     def training(self) -> TrainingConfig:
-        """What is practised."""
+        """The training of the trials."""
         return self.trial.training
 
     @property

@@ -20,7 +20,7 @@ from app.runs.training import evaluate, train
 
 @dataclass(frozen=True, kw_only=True)
 class TrialConfig:
-    """What one trial does.
+    """Config of one trial.
 
     Attributes:
         training: a block of practice with its seed; of an agent that does not learn only the
@@ -42,7 +42,7 @@ class TrialConfig:
 
 @dataclass(frozen=True)
 class TrialResult:
-    """What came of a trial. All but `wall` is the same whenever and wherever it is run.
+    """Result of a trial. All but `wall` is the same whenever and wherever it is run.
 
     Attributes:
         distances_m: over 50 steps from rest after each block; one entry without practice.
@@ -68,7 +68,7 @@ class TrialResult:
 
     @classmethod
     def from_json(cls, shown: Mapping[str, Any]) -> "TrialResult":
-        """What `as_json` wrote.
+        """Parse the output of `as_json`.
 
         Raises:
             KeyError, TypeError, ValueError: if it did not.

@@ -1,4 +1,4 @@
-"""What goes through the pipe between the server and a job's process: all of it picklable."""
+"""Messages between the server and a job's process, through a pipe; all are picklable."""
 
 import math
 from collections.abc import Mapping
@@ -90,7 +90,7 @@ class Began(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """What happened since the last one."""
+    """Records since the last batch."""
 
     records: tuple[TrainingRecord | RaceRecord, ...]
     done: int

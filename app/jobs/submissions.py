@@ -163,7 +163,7 @@ def check_walk(walk: WalkingProblem) -> None:
 
 
 def load_table(store: RunStore, training_id: str) -> Checkpoint:
-    """What a training has learned.
+    """Load the table of a training.
 
     Raises:
         NotFound: if there is no such training.

@@ -30,7 +30,7 @@ def check_clock(name: str) -> None:
 
 
 def decision_s(step: LaneStep, clock: Clock) -> float:
-    """What a step's decision costs under a clock [s]."""
+    """Return the duration of a step's decision under a clock [s]."""
     if clock == "free":
         return 0.0
     if clock == "wall":

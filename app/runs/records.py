@@ -1,4 +1,4 @@
-"""What the two loops yield: frozen records of what happened, in order."""
+"""Records that the two loops yield: frozen, in the order of events."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from app.domain.types import Action, Cells, FloatArray
 
 @dataclass(frozen=True)
 class ActionValues:
-    """What a learner expects in the state in which it is about to act."""
+    """Action values of a learner in the state in which it is about to act."""
 
     values: FloatArray
     """(pairs, cells) expected return [m], NaN where illegal."""
@@ -26,7 +26,7 @@ class StepTaken:
     """Counted from 0."""
     epsilon: float
     observation: Cells
-    """What the agent saw before it acted."""
+    """Observation before the action."""
     action: Action
     reward_m: float
     distance_m: float
@@ -49,7 +49,7 @@ class EpisodeEnded:
 
 @dataclass(frozen=True)
 class Reference:
-    """What the one-step look-ahead agent covers in 50 steps on the same robot: the line to beat."""
+    """Distance of the one-step look-ahead agent in 50 steps on the same robot: the line to beat."""
 
     greedy_distance_m: float
 

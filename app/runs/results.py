@@ -1,4 +1,4 @@
-"""What came of a race: distances, times and ranks under each clock."""
+"""Results of a race: distances, times and ranks under each clock."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -55,7 +55,7 @@ def practice_recording(arrays: Arrays, evaluations: Iterable[Arrays]) -> Practic
 
 
 def rewound(recording: PracticeRecording, step: int) -> PracticeRecording:
-    """What the recording was after `step` steps, for a training that goes on from there."""
+    """Return the recording truncated after `step` steps, for a training that resumes there."""
     earlier = PracticeRecording(recording.rest_qpos)
     records: list[StepTaken | Evaluated] = [*recording.steps, *recording.evaluations]
     for record in records:

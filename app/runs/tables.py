@@ -1,4 +1,4 @@
-"""What was learned, with all that is needed to go on learning, as one `.npz` file.
+"""Checkpoints: all that is needed to continue learning, as one `.npz` file.
 
 Values, visits, rates, the learning generator's state, the whole state of the simulator, counters,
 and what the table was learned for. No pickle, and nothing compressed, so that a file unpacks to
@@ -107,7 +107,7 @@ def continue_from(learner: Learner, checkpoint: Checkpoint) -> None:
 
 
 def agent_state(checkpoint: Checkpoint) -> Arrays:
-    """What the agent had learned."""
+    """Return the agent's state."""
     return checkpoint.part(_AGENT)
 
 

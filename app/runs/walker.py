@@ -46,7 +46,7 @@ class SimulatorExpand:
         self.here = FutureNode(self, state)
 
     def legal(self, state: WalkState) -> Sequence[Action]:
-        """What may be done in a state."""
+        """Return the legal actions in a state."""
         seen = observe(self._simulator, state, self._observation)
         return legal_actions(seen, len(self._simulator.grid))
 
@@ -100,7 +100,7 @@ class Walker:
         return step
 
     def knowledge(self) -> ActionValues | None:
-        """What the agent expects of each action here, if it is one that can say."""
+        """Return the action values of the current state; None for agents without."""
         if not isinstance(self.agent, Valuing):
             return None
         return ActionValues(self.agent.values(self.seen), self.agent.visits(self.seen))

@@ -1,4 +1,4 @@
-"""What-ifs: 30 kinematic trials with a form's settings beside 30 with the defaults, in a second.
+"""Quick trials for the form: 30 kinematic seeds of its settings beside 30 of the defaults.
 
 `what_if` answers and caches; `trial_pool` keeps the processes that run the trials.
 """

@@ -1,4 +1,4 @@
-"""What if one learned so: many seeds of a training, beside as many at the default values."""
+"""The what-if service: many seeds of a training, beside as many at the default values."""
 
 import threading
 import time
@@ -25,7 +25,7 @@ MAX_VALUES = 1_200_000
 MAX_WAITING = 4
 MAX_CACHED = 512
 RATES = ("alpha", "gamma", "epsilon_start", "epsilon_end", "steps_per_episode")
-"""What is as by default in the other half."""
+"""Fields that have their default values in the other half."""
 
 
 class WhatIf:

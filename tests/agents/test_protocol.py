@@ -1,4 +1,4 @@
-"""What every agent promises, tried on all of ours and on a user's own."""
+"""The agent protocol, tested on all our agents and on users' own."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What tests say to the API, and how they wait for it."""
+"""A client of the API for tests, and waiting for states."""
 
 import time
 from dataclasses import dataclass

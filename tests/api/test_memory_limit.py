@@ -26,7 +26,7 @@ async def answer(scope: Scope, receive: Receive, send: Send) -> None:
 
 
 class AsOperator:
-    """What the guard of tokens says of every request."""
+    """Set the role of every request, as the token guard does."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app

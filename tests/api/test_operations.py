@@ -1,4 +1,4 @@
-"""What keeps a server usable: allowances, and figures."""
+"""Rate limits and metrics."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,4 +1,4 @@
-"""Who gets in: over every route that the app has, not over those that someone thought of."""
+"""Authorisation of every route that the app has, found by iteration over the app."""
 
 from collections.abc import Callable
 from typing import Any

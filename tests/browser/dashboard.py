@@ -54,7 +54,7 @@ class Dashboard:
         return self.page.locator(".board tbody")
 
     def distances(self) -> list[str]:
-        """What stands in the scoreboard's column of distances."""
+        """Return the texts of the scoreboard's column of distances."""
         return self.page.locator(".board .big").all_inner_texts()
 
     def picture(self) -> str:
@@ -81,13 +81,13 @@ class Dashboard:
         return width
 
     def violations(self) -> list[str]:
-        """What axe finds on the page, without viser's own page in the frame."""
+        """Return axe's violations on the page, without viser's own page in the frame."""
         self.page.evaluate(_AXE.read_text("utf-8"))
         found = self.page.evaluate("axe.run(document, {iframes: false})")
         return [f"{v['id']}: {n['html']}" for v in found["violations"] for n in v["nodes"]]
 
     def get(self, path: str) -> Any:
-        """What the API answers to this page."""
+        """Return the API's answer to this page."""
         return self.page.evaluate("path => fetch(path).then(r => r.json())", path)
 
     def _heard(self, message: ConsoleMessage) -> None:

@@ -1,4 +1,4 @@
-"""What a dead server left behind is offered on the page, and goes on at a click."""
+"""A run that a dead server left interrupted is offered on the page and resumes at a click."""
 
 import json
 from pathlib import Path

@@ -24,7 +24,7 @@ def hexapods(*arguments: str, folder: Path, **variables: str) -> subprocess.Comp
 
 
 def output(*arguments: str, folder: Path) -> Any:
-    """What a command that must succeed prints as JSON."""
+    """Return the JSON that a command, which must succeed, prints."""
     done = hexapods(*arguments, "--json", folder=folder)
     assert done.returncode == 0, done.stderr
     assert done.stderr == "", "a program that reads JSON gets no progress bar"

@@ -29,7 +29,7 @@ def examined(folder: Path, **variables: str) -> dict[str, Any]:
 
 
 def trouble(found: dict[str, Any]) -> dict[str, str]:
-    """What is not well."""
+    """Return the failed checks."""
     return {name: said for name, (ok, said) in found.items() if not ok}
 
 

@@ -1,4 +1,4 @@
-"""What the README says in Python does what it says."""
+"""The README's Python examples do what it says."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""What a user may ask for."""
+"""Configs of trainings and races: valid values and refusals."""
 
 import json
 import math

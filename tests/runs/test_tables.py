@@ -1,4 +1,4 @@
-"""What was learned as a file: whole, checked, and for one problem only."""
+"""Checkpoint files: whole, checked, and for one problem only."""
 
 import io
 import json

@@ -1,4 +1,4 @@
-"""What other rates would do: the trials behind the answer, and the processes that run them."""
+"""What-ifs: the trials behind an answer, and the processes that run them."""
 
 import os
 import signal
