@@ -4,19 +4,18 @@ The one place that knows all of them; loops and commands take what comes out of 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from app.agents import registry
-from app.agents.protocol import Problem
-from app.agents.q_learning import QLearning
+from app.agents.protocol import Problem, Tabular
 from app.domain.kinematic import KinematicSimulator
 from app.domain.observation import Observation
+from app.domain.settings import complete
 from app.domain.simulator import Simulator
 from app.physics.mujoco_simulator import MujocoSimulator
-from app.runs.config import RaceConfig, TrainingConfig, WalkingProblem
+from app.runs.config import RaceConfig, TrainingConfig, WalkingProblem, agent_settings
 from app.runs.seeding import LEARNING, RACING, generator
 from app.runs.tables import Checkpoint, check_fits, continue_from, load_agent
 from app.runs.training import Learner, evaluate, measure_baseline
@@ -49,10 +48,12 @@ def build_learner(
         TableMismatch: if the table is of another problem, or of another agent.
         Unreachable: if the robot's legs cannot reach the grid.
     """
-    simulator, settings = build_simulator(config, threads), asdict(config)
+    simulator = build_simulator(config, threads)
+    settings = complete(agent_settings(config.agent), config.settings, config.agent)
+    offered = {**vars(config), **settings}
     rng = generator(config.seed, LEARNING)
     walker = _walker(
-        simulator, config.agent, config.observation, rng=rng, settings=settings, explore=True
+        simulator, config.agent, config.observation, rng=rng, offered=offered, explore=True
     )
 
     def evaluator(chance: np.random.Generator) -> Walker:
@@ -61,10 +62,10 @@ def build_learner(
             config.agent,
             config.observation,
             rng=chance,
-            settings=settings,
+            offered=offered,
             explore=False,
         )
-        if isinstance(walker.agent, QLearning) and isinstance(copy.agent, QLearning):
+        if isinstance(copy.agent, Tabular):
             # A large table, copied for every evaluation, would be most of the memory.
             copy.agent.share_table(walker.agent)
         else:
@@ -72,7 +73,7 @@ def build_learner(
         return copy
 
     def baseline() -> Walker:
-        return _walker(simulator, "greedy", "measured", rng=rng, settings={}, explore=False)
+        return _walker(simulator, "greedy", "measured", rng=rng, offered={}, explore=False)
 
     learner = Learner(walker, rng, evaluator, baseline)
     if table is not None:
@@ -97,13 +98,13 @@ def build_walkers(
     simulator = build_simulator(config, threads)
     walkers = []
     for number, (lane, table) in enumerate(zip(config.lanes, tables, strict=True)):
-        settings: Mapping[str, Any] = {}
+        practised: Mapping[str, Any] = {}
         if table is not None:
             check_fits(table, config, lane.observation)
-            settings = table.meta["config"]
+            practised = table.meta["config"]
         rng = generator(config.seed, RACING, number)
         walker = _walker(
-            simulator, lane.agent, lane.observation, rng=rng, settings=settings, explore=False
+            simulator, lane.agent, lane.observation, rng=rng, offered=practised, explore=False
         )
         if table is not None:
             load_agent(walker.agent, table)
@@ -125,7 +126,7 @@ def finish_training(
     return {
         "distance_m": distance,
         "greedy_distance_m": learner.greedy_distance_m,
-        "q_table_sha256": agent.table.sha256() if isinstance(agent, QLearning) else None,
+        "q_table_sha256": agent.table.sha256() if isinstance(agent, Tabular) else None,
     }
 
 
@@ -135,7 +136,7 @@ def _walker(
     observation: Observation,
     *,
     rng: np.random.Generator,
-    settings: Mapping[str, Any],
+    offered: Mapping[str, Any],
     explore: bool,
 ) -> Walker:
     """A walker whose agent gets what it asks for; one that does not ask for `expand` is blind."""
@@ -143,11 +144,11 @@ def _walker(
     foresight = None
     if "expand" in registry.asks_for(agent_class):
         foresight = SimulatorExpand(simulator, observation)
-    offered = {
-        **settings,
+    every = {
+        **offered,
         "rng": rng,
         "problem": Problem(simulator.gait.pairs, simulator.grid.cells),
         "explore": explore,
         "expand": foresight,
     }
-    return Walker(simulator, registry.build(agent_class, offered), observation, foresight)
+    return Walker(simulator, registry.build(agent_class, every), observation, foresight)

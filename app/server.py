@@ -27,8 +27,8 @@ from app.api import (
     stage,
     trainings,
     transfer,
-    what_if,
 )
+from app.api.agent_bodies import AgentBodies
 from app.api.auth import TokenGuard
 from app.api.body_limit import BodyLimit, SecurityHeaders
 from app.api.concurrency_limit import ConcurrencyLimit
@@ -37,6 +37,7 @@ from app.api.disconnects import Disconnects
 from app.api.host_check import HostGuard
 from app.api.memory_limit import HeldBodies
 from app.api.rate_limit import RateLimit
+from app.api.starts import start_routes
 from app.api.wellformed import WellFormed
 from app.domain.errors import HexapodError
 from app.events import logs
@@ -116,7 +117,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
         listeners=Places(settings.max_viewers, settings.viewers_per_address),
     )
     app.state.metrics = metrics.registry_of(app.state.services)
-    _add_routes(app, viewer)
+    _add_routes(app, viewer, app.state.services.agents)
     problems.install(app)
     contract.install(app, app.state.services.agents, settings)
     # The last is the first to see a request.
@@ -133,11 +134,12 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
     return app
 
 
-def _add_routes(app: FastAPI, viewer: ViewerService) -> None:
+def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) -> None:
     versioned = APIRouter(prefix="/api/v1")
     # First: `import` is no run's id.
-    for module in (transfer, trainings, races, experiments, stage, events, what_if, options):
+    for module in (transfer, trainings, races, experiments, stage, events, options):
         versioned.include_router(module.router)
+    versioned.include_router(start_routes(AgentBodies(agents)))
     app.include_router(versioned)
     app.include_router(health.router)
     app.include_router(metrics.router)

@@ -63,12 +63,20 @@ class _Best:
 class Greedy(LookAhead):
     """One step ahead (Algorithm 3): 12 simulated transitions a decision at two divisions."""
 
+    title = "Greedy"
+    description = "Simulates every possible step, and takes the best one."
+    color = "#56B4E9"
+
     def __init__(self, expand: Expand) -> None:
         super().__init__(expand, depth=1)
 
 
 class TwoStep(LookAhead):
     """Two steps ahead (Algorithm 4): 156 simulated transitions a decision at two divisions."""
+
+    title = "Two-step"
+    description = "Simulates every possible pair of steps, and takes the best one."
+    color = "#009E73"
 
     def __init__(self, expand: Expand) -> None:
         super().__init__(expand, depth=2)

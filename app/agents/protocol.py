@@ -6,17 +6,28 @@ A class whose constructor asks, by the names of its parameters, for what it need
 - `problem`: what the walking problem looks like (`Problem`);
 - `expand`: a simulator to look ahead with (`Expand`); who asks for it is not blind;
 - `explore`: False where the agent is evaluated or raced and should do its best;
-- any further parameter by name, from the settings of the run.
+- a field of the training's config by its name, such as `steps` or `steps_per_episode`.
 
-Our learner's parameters are declared with their limits (`app.domain.settings`). An agent that
-practice does not change has the attribute `learns = False`.
+Every other parameter is a setting of the agent, best declared with its limits, title and help
+(`app.domain.settings`): REST, the command line, the page and sweeps then offer it. Attributes of
+the class say the rest:
+
+- `title`, `description`, `color`: how it is shown;
+- `learns = False`: practice does not change it;
+- `needs_practice = True`: it races only with what it has learned;
+- `is_on_policy = True`: it chooses its next action before it learns from the last one.
+
+An agent may have more methods: those of `Tunable`, `Valuing` and `Tabular`, and
+`check_state(state)`, a static method that raises `ValueError` or `InvalidInput` for a state that
+`load` could not go on from, such as one in a file from elsewhere.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 from numpy.typing import NDArray
 
+from app.agents.q_table import QTable
 from app.domain.types import Action, Cells, FloatArray
 
 AgentState = dict[str, NDArray[Any]]
@@ -40,6 +51,8 @@ class Transition(NamedTuple):
     reward_m: float
     next_observation: Cells
     next_legal: Sequence[Action]
+    next_action: Action | None = None
+    """The action that the agent has chosen to take next; only if it `is_on_policy`."""
 
 
 @runtime_checkable
@@ -61,19 +74,15 @@ class Agent(Protocol):
 
 @runtime_checkable
 class Tunable(Protocol):
-    """An agent whose rates may be changed between two steps."""
+    """An agent whose settings may be changed between two steps.
 
-    def tune(
-        self,
-        alpha: float | None = None,
-        gamma: float | None = None,
-        epsilon: float | None = None,
-    ) -> None:
-        """Change the rates that are given; a given epsilon replaces the schedule."""
+    A parameter of `tune` that is none of the constructor is a setting too, such as an exploration
+    rate that replaces a schedule.
+    """
 
     @property
-    def epsilon(self) -> float:
-        """The probability of a random action at the next step."""
+    def tune(self) -> Callable[..., None]:
+        """Change the settings that are given by name, from the next step on."""
 
 
 @runtime_checkable
@@ -85,6 +94,19 @@ class Valuing(Protocol):
 
     def visits(self, observation: Cells) -> FloatArray:
         """(pairs, cells) how often each was tried from here."""
+
+
+@runtime_checkable
+class Tabular(Protocol):
+    """An agent whose knowledge is a Q-table, all of it."""
+
+    table: QTable
+
+    def share_table(self, other: Any) -> None:
+        """Use the table that another agent of this class writes, to evaluate it without a copy."""
+
+    def continue_from(self, state: AgentState) -> None:
+        """Take over what was learned, but neither the settings nor the place in a schedule."""
 
 
 class Node(Protocol):

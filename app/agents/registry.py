@@ -10,12 +10,22 @@ from typing import Any
 from app.agents.lookahead import Greedy, TwoStep
 from app.agents.protocol import Agent
 from app.agents.q_learning import QLearning
+from app.agents.sarsa_lambda import SarsaLambda
 from app.domain.errors import InvalidInput, UnknownName
+from app.domain.settings import DeclaredSetting, declared_parameters, parameters_of, required
 
 ENTRY_POINT_GROUP = "hexapods.agents"
 AgentClass = Callable[..., Agent]
 
-OURS: Mapping[str, AgentClass] = {"q-learning": QLearning, "greedy": Greedy, "two-step": TwoStep}
+_OFFERED = frozenset({"rng", "problem", "expand", "explore"})
+"""What every run offers to an agent's constructor; no settings."""
+
+OURS: Mapping[str, AgentClass] = {
+    "q-learning": QLearning,
+    "sarsa-lambda": SarsaLambda,
+    "greedy": Greedy,
+    "two-step": TwoStep,
+}
 _BY_HAND = re.compile(r"[\w.]+:\w+")
 
 
@@ -68,9 +78,38 @@ def learns(name: str) -> bool:
     return bool(getattr(find(name), "learns", True))
 
 
+def needs_practice(name: str) -> bool:
+    """Whether an agent races with what it has learned only: it says so by `needs_practice`.
+
+    Raises:
+        UnknownName, InvalidInput: as `find`.
+    """
+    return bool(getattr(find(name), "needs_practice", False))
+
+
+def settings_of(agent: AgentClass) -> Mapping[str, DeclaredSetting]:
+    """The parameters of an agent's constructor that a person may choose."""
+    declared = declared_parameters(agent)
+    return {name: one for name, one in declared.items() if name not in _OFFERED}
+
+
+def live_settings_of(agent: AgentClass) -> Mapping[str, DeclaredSetting]:
+    """The settings that an agent's `tune` takes while it learns; none without a `tune`.
+
+    They are those of its constructor that are declared `live`, and the parameters of `tune`.
+    """
+    if not hasattr(agent, "tune"):
+        return {}
+    own = settings_of(agent)
+    live = {name: one for name, one in own.items() if one.about.live}
+    for name, one in declared_parameters(agent, "tune").items():
+        live.setdefault(name, own[name] if name in own else required(one))
+    return live
+
+
 def asks_for(agent: AgentClass) -> set[str]:
     """The names of what an agent's constructor asks for."""
-    return set(inspect.signature(agent).parameters)
+    return set(parameters_of(agent))
 
 
 def build(agent: AgentClass, offered: Mapping[str, Any]) -> Agent:
@@ -79,8 +118,8 @@ def build(agent: AgentClass, offered: Mapping[str, Any]) -> Agent:
     Raises:
         InvalidInput: if it needs something that is not offered.
     """
-    parameters = inspect.signature(agent).parameters.values()
-    needs = {p.name for p in parameters if p.default is p.empty and p.kind not in (2, 4)}
+    parameters = parameters_of(agent).values()
+    needs = {p.name for p in parameters if p.default is p.empty}
     if needs - set(offered):
         raise InvalidInput(
             f"an agent asks for {', '.join(sorted(needs - set(offered)))}; "

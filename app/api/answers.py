@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.domain.observation import Observation
 from app.domain.robot import PRESETS
+from app.domain.settings import Value
 from app.experiments.config import ExperimentName
 from app.runs.clocks import Clock
 from app.runs.config import SimulatorName
@@ -66,15 +67,14 @@ class WalkView(Answer):
 
 
 class TrainingConfigView(WalkView):
-    """Config of a training."""
+    """Config of a training, with the settings of its agent by their names."""
+
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, Value]
 
     steps: int
     seed: int
     observation: Observation
-    alpha: float
-    gamma: float
-    epsilon_start: float
-    epsilon_end: float
     steps_per_episode: int
     evaluate_every: int
     pace: float | Literal["max"]
@@ -101,6 +101,9 @@ class RaceConfigView(WalkView):
 class ExperimentConfigView(Answer):
     """Config of an experiment: every combination of the lists is a setting."""
 
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, list[Value]]
+
     experiment: ExperimentName
     seeds: int
     seed: int
@@ -110,10 +113,6 @@ class ExperimentConfigView(Answer):
     robots: list[RobotView]
     simulator: SimulatorName
     steps: list[int]
-    alpha: list[float]
-    gamma: list[float]
-    epsilon_start: list[float]
-    epsilon_end: list[float]
     steps_per_episode: list[int]
     divisions: list[int]
     grid_side_m: list[float]
@@ -151,14 +150,13 @@ class TrainingResult(Answer):
     q_table_sha256: str | None
 
 
-class Change(Answer):
-    """Rates and pace that were changed after so many steps; the others are left out."""
+class Change(BaseModel):
+    """Live settings that were changed after so many steps, by their names."""
+
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, Value]
 
     step: Count
-    pace: float | Literal["max"] = "max"
-    alpha: float = 0.0
-    gamma: float = 0.0
-    epsilon: float = 0.0
 
 
 class TrainingView(RunView):
@@ -382,13 +380,12 @@ class StageView(Answer):
     holder: str | None
 
 
-class WhatIfHalf(Answer):
-    """Thirty seeds with these rates: how far each comes [m], and what lies in the middle."""
+class WhatIfHalf(BaseModel):
+    """Thirty seeds with these settings: how far each comes [m], and what lies in the middle."""
 
-    alpha: float
-    gamma: float
-    epsilon_start: float
-    epsilon_end: float
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, Value]
+
     steps_per_episode: int
     distances_m: list[float]
     walkers: Annotated[float, Field(ge=0, le=1)]
@@ -427,14 +424,6 @@ class RobotOption(Described):
     robot: RobotView
 
 
-class AgentOption(Described):
-    """An agent."""
-
-    title: str
-    learns: bool
-    color: str
-
-
 class ExperimentOption(Described):
     """An experiment, the fields that it takes, and their defaults."""
 
@@ -464,8 +453,22 @@ class SettingOption(Answer):
     maximum: float | None
     excludes_minimum: bool = Field(description="whether the minimum itself is not valid")
     excludes_maximum: bool = Field(description="whether the maximum itself is not valid")
+    is_number: bool
     is_whole: bool
+    choices: list[str] = Field(description="the valid words, if only certain words are valid")
+    default: Value
     is_live: bool = Field(description="whether it may change while a training runs")
+
+
+class AgentOption(Described):
+    """An agent, the settings of its constructor, and those that may change while it learns."""
+
+    title: str
+    learns: bool
+    needs_practice: bool
+    color: str
+    settings: dict[str, SettingOption]
+    live_settings: dict[str, SettingOption]
 
 
 class OptionsView(Answer):

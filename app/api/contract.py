@@ -205,8 +205,6 @@ def _link_runs(schema: Schema) -> None:
 
 def _name_agents(schemas: Schema, agents: tuple[str, ...]) -> None:
     """Which agents there are is known when the server starts."""
-    for name in ("TrainingBody", "LaneBody"):
-        schemas[name]["properties"]["agent"]["enum"] = list(agents)
     for kind in schemas["ExperimentBody"]["properties"]["agents"]["anyOf"]:
         named = kind.get("items", kind)
         if named.get("type") == "string":

@@ -6,11 +6,11 @@ from typing import Any
 from app.domain.gait import NAMED_GAITS
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS
-from app.domain.settings import DeclaredSetting, declared_fields
+from app.domain.settings import declared_fields
 from app.domain.text import NAMES
 from app.experiments.config import EXPERIMENTS, MAX_SEEDS
 from app.runs.clocks import CLOCKS
-from app.runs.config import CHANGEABLE, MAX_LANES, SIMULATORS, TrainingConfig
+from app.runs.config import MAX_LANES, SIMULATORS, TrainingConfig
 from app.storage.store import STATES
 
 MAX_PAGE = 100
@@ -20,11 +20,8 @@ def _one_of(names: Iterable[str]) -> str:
     return f"one of {', '.join(names)}"
 
 
-SETTINGS: Mapping[str, DeclaredSetting] = {**declared_fields(TrainingConfig), **CHANGEABLE}
-"""Every setting of a training, by the name of its field."""
-
 VALID: Mapping[str, str] = {
-    **{name: setting.valid for name, setting in SETTINGS.items()},
+    **{name: setting.valid for name, setting in declared_fields(TrainingConfig).items()},
     "name": NAMES,
     "gait": f"{_one_of(NAMED_GAITS)}, or {{right_leg, left_leg, and symmetry or pairs}}",
     "right_leg": "a leg's number, from 1 on",
@@ -66,7 +63,11 @@ def in_sentences(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
     """
     said: dict[str, str] = {}
     for error in errors:
-        place = [part for part in error["loc"] if part in VALID or isinstance(part, int)]
+        # Not the names of agents, which the schemas of bodies are chosen by.
+        known = {*VALID, error.get("ctx", {}).get("name")}
+        if error["type"] == "missing":
+            known.add(error["loc"][-1])
+        place = [part for part in error["loc"] if part in known or isinstance(part, int)]
         if error["type"] == "json_invalid":
             place = []
         field = ".".join(str(part) for part in place)
@@ -75,7 +76,7 @@ def in_sentences(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
 
 
 def _sentence(field: str, error: Mapping[str, Any], place: list[Any]) -> str:
-    named = [part for part in place if part in VALID]
+    named = [part for part in place if isinstance(part, str)]
     if error["type"] in ("unknown_field", "says_all"):
         where = f"{field}: " if field else ""
         return f"{where}{error['msg']}."
@@ -86,4 +87,5 @@ def _sentence(field: str, error: Mapping[str, Any], place: list[Any]) -> str:
     if not named:
         return "The request's body must be a JSON object, sent as application/json."
     is_missing = error["type"] == "missing"
-    return f"{field} {'is missing; it ' if is_missing else ''}must be {VALID[named[-1]]}."
+    valid = VALID.get(named[-1], "given")
+    return f"{field} {'is missing; it ' if is_missing else ''}must be {valid}."

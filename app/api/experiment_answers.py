@@ -2,10 +2,11 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import BaseModel, ConfigDict, Field
 
 from app.api.answers import Answer, Count, ExperimentConfigView
 from app.domain.observation import Observation
+from app.domain.settings import Value
 from app.experiments.config import ExperimentName
 
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -123,17 +124,16 @@ class PublishedView(Answer):
     finished_quantile: Share | None
 
 
-class Practice(Answer):
-    """Rates of a setting; an agent that looks ahead has none."""
+class Parameters(BaseModel):
+    """Parameters of a setting: also the settings of its agent, by name; null where it has none."""
 
-    alpha: float | None
-    gamma: float | None
-    epsilon_start: float | None
-    epsilon_end: float | None
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, Value]
+
     steps_per_episode: int | None
 
 
-class Named(Practice):
+class Named(Parameters):
     """Parameters that identify a setting, without its gait."""
 
     observation: Observation
@@ -157,7 +157,7 @@ class Measured(Answer):
     reaches_greedy: SharedBy | None
 
 
-class SettingView(Named, Measured):
+class SettingView(Measured, Named):
     """A setting over its seeds."""
 
     key: str
@@ -171,7 +171,7 @@ class SettingView(Named, Measured):
     published: PublishedView | None
 
 
-class PooledView(Named, Measured):
+class PooledView(Measured, Named):
     """A setting over its gaits."""
 
     gaits: list[str]
@@ -193,7 +193,7 @@ class CurveOfSetting(Named):
     steps: list[int]  # type: ignore[assignment] # after each block, in place of a block's own
 
 
-class VersusView(Practice):
+class VersusView(Parameters):
     """The probability that agent `a` comes farther than agent `b`."""
 
     gait: str
@@ -259,6 +259,7 @@ class SummaryView(Answer):
     machine: Machine
     trials: SummaryCounts
     cost: Cost | None
+    parameters: list[str] = Field(description="names of what is varied beside place and agent")
     settings: list[SettingView]
     pooled: list[PooledView]
     curves: list[CurveOfSetting]

@@ -10,12 +10,8 @@ from pydantic_core import CoreSchema
 from app.api.descriptions import VALID
 from app.api.fields import (
     INTEGRAL,
-    Alpha,
     Body,
     Divisions,
-    EpsilonEnd,
-    EpsilonStart,
-    Gamma,
     GridSide,
     Name,
     RobotBody,
@@ -23,11 +19,11 @@ from app.api.fields import (
     Steps,
     StepsPerEpisode,
 )
-from app.api.schemas import Gait, GaitBody, check_agent
+from app.api.schemas import Gait, GaitBody
+from app.domain.errors import UnknownName
 from app.domain.observation import Observation
 from app.domain.robot import robot
 from app.experiments.config import (
-    GRID,
     MAX_SEEDS,
     ExperimentConfig,
     ExperimentName,
@@ -65,8 +61,13 @@ Some = Annotated[
 """One value stands for a list of it."""
 
 
+def some(kind: Any) -> Any:
+    """`Some` of a type that is made at run time."""
+    return Some[kind]  # type: ignore[misc]
+
+
 class ExperimentBody(Body):
-    """An experiment. What is left out has the experiment's own default.
+    """An experiment, with the settings of all agents. What is left out has its own default.
 
     Where a list is asked for, one value will do.
     """
@@ -85,10 +86,6 @@ class ExperimentBody(Body):
     simulator: SimulatorName = ExperimentConfig.simulator
     agents: Some[str] = None
     steps: Some[Steps] = None
-    alpha: Some[Alpha] = None
-    gamma: Some[Gamma] = None
-    epsilon_start: Some[EpsilonStart] = None
-    epsilon_end: Some[EpsilonEnd] = None
     steps_per_episode: Some[StepsPerEpisode] = None
     divisions: Some[Divisions] = None
     grid_side_m: Some[GridSide] = None
@@ -105,16 +102,17 @@ class ExperimentBody(Body):
             InvalidInput: for what cannot be.
         """
         for agent in self.agents or ():
-            check_agent(agent, agents)
+            if agent not in agents:
+                raise UnknownName("agent", agent, agents)
         given: dict[str, Any] = {
-            name: None if values is None else tuple(values)
-            for name in ("agents", "observations", *GRID)
+            name: tuple(values) if isinstance(values, list) else values
+            for name in type(self).model_fields
             for values in (getattr(self, name),)
+            if name not in ("experiment", "name", "workers", "gaits", "robots")
         }
         if self.gaits is not None:
             given["gaits"] = tuple(g.spec() if isinstance(g, GaitBody) else g for g in self.gaits)
         if self.robots is not None:
             given["robots"] = tuple(robot(one) for one in self.robots)
-        given |= {"seeds": self.seeds, "seed": self.seed, "simulator": self.simulator}
         config = experiment_config(self.experiment, given)
         return ExperimentStart(config, self.name or None, self.workers)

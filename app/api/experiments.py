@@ -1,17 +1,15 @@
-"""Experiments: start, watch the summary fill, and take the report away."""
+"""Experiments: watch the summary fill, and take the report away."""
 
 from typing import Annotated, Any, Literal
 
 from fastapi import Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
-from app.api.answers import ExperimentView
-from app.api.contract import ATTACHMENT, BINARY, LOCATION, TEXT, answers
-from app.api.deps import ServicesDep, StartRequestDep
+from app.api.contract import ATTACHMENT, BINARY, TEXT, answers
+from app.api.deps import ServicesDep
 from app.api.experiment_answers import SummaryView, TrialsView
-from app.api.experiment_body import ExperimentBody
 from app.api.formats import attachment, chosen, file_response
-from app.api.runs import RunPath, accepted, find, run_routes
+from app.api.runs import RunPath, find, run_routes
 from app.experiments.config import ExperimentConfig
 from app.storage.artifact_file import ArtifactFile
 from app.storage.configs import config_as_json
@@ -43,22 +41,6 @@ _FILES: dict[str, dict[str, Any]] = {
 }
 
 router = run_routes("experiment")
-
-
-@router.post(
-    "",
-    status_code=202,
-    summary="Start an experiment over many seeds",
-    response_model=ExperimentView,
-    responses=answers(202, headers=LOCATION),
-)
-def start_experiment(
-    services: ServicesDep, request: Request, asked: StartRequestDep, body: ExperimentBody
-) -> Response:
-    """Queue it, and answer with its run."""
-    jobs, agents = services.jobs, services.agents
-    run = asked.start(services, lambda key: jobs.experiment(body.start(agents), key))
-    return accepted(request, jobs.view(run))
 
 
 @router.get("/{run_id}/summary", summary="What its trials show so far", response_model=SummaryView)

@@ -10,20 +10,19 @@ from pydantic import (
     Field,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
-    ValidationError,
+    TypeAdapter,
     WithJsonSchema,
     model_validator,
 )
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import PydanticCustomError, core_schema
 
-from app.agents import q_learning
-from app.api.descriptions import SETTINGS, VALID
+from app.api.descriptions import VALID
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.robot import AZIMUTH, MAX_LEGS, MIN_LEGS, MOUNT_RADIUS, PRESETS, RANGES
 from app.domain.settings import DeclaredSetting, declared_fields
 from app.domain.text import MAX_NAME, check_name, invisible_ranges
-from app.runs import config
+from app.runs.config import RaceConfig, TrainingConfig
 
 
 def _name(text: str) -> str:
@@ -49,11 +48,8 @@ def number(**limits: Any) -> Any:
     return Field(strict=True, allow_inf_nan=False, **limits)
 
 
-_whole = Field(strict=True)
-
-
-class _Valid:
-    """Describes a setting's field by its declaration: in the schema, and where it is refused."""
+class Declared:
+    """Makes a request's field of a declared setting: its check, its schema and its description."""
 
     def __init__(self, setting: DeclaredSetting) -> None:
         self._setting = setting
@@ -61,21 +57,22 @@ class _Valid:
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        return core_schema.no_info_wrap_validator_function(self._validate, handler(source))
+        return core_schema.no_info_plain_validator_function(self._validate)
 
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
         about = self._setting.about
-        described = f"{about.help} It must be {self._setting.valid}."
-        return {**handler(schema), "title": about.title, "description": described}
+        described = f"{about.help} It must be {self._setting.valid}.".lstrip()
+        shape = TypeAdapter(self._setting.annotation).json_schema()
+        return {**shape, "title": about.title, "description": described}
 
-    def _validate(self, value: Any, handler: core_schema.ValidatorFunctionWrapHandler) -> Any:
+    def _validate(self, value: Any) -> Any:
         try:
-            return handler(value)
-        except ValidationError as error:
-            valid = {"valid": self._setting.valid}
-            raise PydanticCustomError("setting", "must be {valid}", valid) from error
+            return self._setting.normalized(value)
+        except InvalidInput as error:
+            context = {"name": self._setting.name, "valid": self._setting.valid}
+            raise PydanticCustomError("setting", "must be {valid}", context) from error
 
 
 def _integral(value: Any) -> Any:
@@ -96,24 +93,15 @@ Name = Annotated[
 ]
 RunId = Annotated[str, Field(min_length=1, max_length=64)]
 
-RACE_STEPS = declared_fields(config.RaceConfig)["steps"]
-Steps = Annotated[config.PracticeSteps, _whole, INTEGRAL, _Valid(SETTINGS["steps"])]
-RaceSteps = Annotated[config.RaceSteps, _whole, INTEGRAL, _Valid(RACE_STEPS)]
-StepsPerEpisode = Annotated[
-    config.StepsPerEpisode, _whole, INTEGRAL, _Valid(SETTINGS["steps_per_episode"])
-]
-EvaluateEvery = Annotated[
-    config.EvaluateEvery, _whole, INTEGRAL, _Valid(SETTINGS["evaluate_every"])
-]
-Seed = Annotated[config.Seed, _whole, INTEGRAL, _Valid(SETTINGS["seed"])]
-Divisions = Annotated[config.Divisions, _whole, INTEGRAL, _Valid(SETTINGS["divisions"])]
-GridSide = Annotated[config.GridSide, number(), _Valid(SETTINGS["grid_side_m"])]
-Alpha = Annotated[q_learning.Alpha, number(), _Valid(SETTINGS["alpha"])]
-Gamma = Annotated[q_learning.Gamma, number(), _Valid(SETTINGS["gamma"])]
-Epsilon = Annotated[q_learning.Epsilon, number(), _Valid(SETTINGS["epsilon"])]
-EpsilonStart = Annotated[q_learning.EpsilonStart, number(), _Valid(SETTINGS["epsilon_start"])]
-EpsilonEnd = Annotated[q_learning.EpsilonEnd, number(), _Valid(SETTINGS["epsilon_end"])]
-Pace = Annotated[Literal["max"] | Annotated[config.PaceFactor, number()], _Valid(SETTINGS["pace"])]
+_TRAINING, _RACE = declared_fields(TrainingConfig), declared_fields(RaceConfig)
+Steps = Annotated[int, Declared(_TRAINING["steps"])]
+RaceSteps = Annotated[int, Declared(_RACE["steps"])]
+StepsPerEpisode = Annotated[int, Declared(_TRAINING["steps_per_episode"])]
+EvaluateEvery = Annotated[int, Declared(_TRAINING["evaluate_every"])]
+Seed = Annotated[int, Declared(_TRAINING["seed"])]
+Divisions = Annotated[int, Declared(_TRAINING["divisions"])]
+GridSide = Annotated[float, Declared(_TRAINING["grid_side_m"])]
+Pace = Annotated[Literal["max"] | float, Declared(_TRAINING["pace"])]
 
 
 def _numbers(ranges: dict[str, tuple[float, float]]) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """The options: every name, default, limit and sentence of help that a form needs."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import Annotated, Any
 
 from annotated_types import Ge, Le
@@ -8,13 +8,13 @@ from fastapi import APIRouter
 from starlette.responses import JSONResponse, Response
 
 from app import __version__
-from app.agents.registry import learns
+from app.agents.appearance import colors_of, description_of, title_of
+from app.agents.registry import OURS, learns, needs_practice
 from app.api.answers import OptionsView
 from app.api.deps import ServicesDep
-from app.api.descriptions import SETTINGS
 from app.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
 from app.domain.robot import PRESETS, Robot, as_mapping
-from app.domain.settings import DeclaredSetting, declare, declared_fields
+from app.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
 from app.domain.text import MAX_NAME
 from app.experiments.config import (
     EXPERIMENTS,
@@ -23,6 +23,7 @@ from app.experiments.config import (
     MAX_TRIALS,
     experiment_config,
     fields_of,
+    settings_of,
 )
 from app.experiments.config import as_json as experiment_as_json
 from app.jobs.submissions import MAX_SETTINGS, TITLES
@@ -32,9 +33,12 @@ from app.runs.config import (
     RACE_STEPS,
     RaceConfig,
     TrainingConfig,
+    agent_settings,
     as_json,
+    changeable_settings,
+    training_config,
 )
-from app.stage.palette import lane_colors
+from app.stage.scene_spec import PAPERS_LANES
 from app.what_if.what_if import MAX_STEPS as MAX_WHAT_IF_STEPS
 from app.what_if.what_if import SEEDS as WHAT_IF_SEEDS
 
@@ -51,7 +55,7 @@ def get_options(services: ServicesDep) -> Response:
     return JSONResponse(catalogue(services.agents))
 
 
-_SAID = {
+_EXPERIMENTS = {
     "table1": (
         "The paper's Table 1: Q-learning after 500 and after 1,000 steps beside greedy and "
         "two-step, in all four gaits, for both readings of the state."
@@ -65,43 +69,6 @@ _SAID = {
         "as future work."
     ),
 }
-HELP = {
-    "seeds": "How often each setting is tried, each time with other random numbers.",
-    "gaits": "Which gaits are tried.",
-    "robots": "Which robots are tried.",
-    "observations": "Which readings of the state are tried.",
-    "agents": "Who learns, or looks ahead, and is compared with the others.",
-    "settings": "Combinations of values; each is tried over all seeds.",
-    "trials": "Settings times seeds; agents that look ahead are tried once.",
-    "workers": "How many trials are computed at once; one for each core if nothing is said.",
-}
-
-
-def experiments() -> list[dict[str, Any]]:
-    """Each with its name, title, a sentence, its defaults, and the fields that it takes."""
-    shown = []
-    for name in EXPERIMENTS:
-        defaults = experiment_as_json(experiment_config(name, {}))
-        defaults["robots"] = [robot["preset"] for robot in defaults["robots"]]
-        fields = fields_of(name)
-        shown.append(
-            {
-                "name": name,
-                "title": TITLES[name],
-                "description": _SAID[name],
-                "fields": list(fields),
-                "grid": [field for field in GRID if field in fields],
-                "defaults": defaults,
-            }
-        )
-    return shown
-
-
-def experiment_limits() -> dict[str, list[float | None]]:
-    """From and to, of what only experiments have."""
-    return {"seeds": [1, MAX_SEEDS], "trials": [1, MAX_TRIALS], "settings": [1, MAX_SETTINGS]}
-
-
 _GAITS = {
     "left-right-origin": (
         "Three legs on each side of the way; legs that stand opposite each other move together."
@@ -120,14 +87,6 @@ _ROBOTS = {
     "stiff": "Strong servos on a floor with grip: they hold the body level.",
     "compliant": "Weak servos: the body sags and pitches under its own weight.",
     "slippery": "Feet that slide on the floor.",
-}
-_AGENTS = {
-    "q-learning": (
-        "Q-learning",
-        "Learns by trying, knows nothing beforehand, and then decides without thinking.",
-    ),
-    "greedy": ("Greedy", "Simulates every possible step, and takes the best one."),
-    "two-step": ("Two-step", "Simulates every possible pair of steps, and takes the best one."),
 }
 _OBSERVATIONS = {
     "measured": "Where the feet are, by the joint angles.",
@@ -151,16 +110,25 @@ _HELP = {
     "lanes": "Which agents race.",
     "clock": "What thinking costs in the race; it can change who wins.",
     "name": "What the run is called in the list.",
+    "agent": "Which agent learns.",
+    "seeds": "How often each setting is tried, each time with other random numbers.",
+    "gaits": "Which gaits are tried.",
+    "robots": "Which robots are tried.",
+    "observations": "Which readings of the state are tried.",
+    "agents": "Which agents learn or search, and are compared with each other.",
+    "settings": "Combinations of values; each is tried over all seeds.",
+    "trials": "Settings times seeds; agents that look ahead are tried once.",
+    "workers": "How many trials are computed at once; by default one for each core.",
 }
-_RACE_STEPS = declared_fields(RaceConfig)["steps"]
+# As many as a race of any number of lanes may have.
+_LANE_STEPS = Annotated[
+    int, Ge(1), Le(MAX_RACE_STEPS // MAX_LANES), declared_fields(RaceConfig)["steps"].about
+]
 _SETTINGS = {
-    **SETTINGS,
-    # As many as a race of any number of lanes may have.
-    "race_steps": declare(
-        "race_steps", Annotated[int, Ge(1), Le(MAX_RACE_STEPS // MAX_LANES), _RACE_STEPS.about]
-    ),
+    **declared_fields(TrainingConfig),
+    "race_steps": declare("race_steps", _LANE_STEPS, RACE_STEPS),
 }
-"""Every declared setting, by the name of the form's field."""
+"""Declared settings that are not an agent's, by the name of the form's field."""
 
 
 def catalogue(agents: Collection[str]) -> dict[str, Any]:
@@ -169,6 +137,7 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
     Args:
         agents: the names that were registered at start.
     """
+    settings = _all_settings(agents)
     return {
         "version": __version__,
         "gaits": [_gait(name) for name in NAMED_GAITS],
@@ -180,15 +149,15 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
         "simulators": _described(_SIMULATORS),
         "observations": _described(_OBSERVATIONS),
         "clocks": _described(_CLOCKS),
-        "experiments": experiments(),
+        "experiments": _experiments(agents),
         "defaults": {
             "training": _training_defaults(),
             "race": _race_defaults(),
             "what_if": {"seeds": WHAT_IF_SEEDS},
         },
-        "settings": {name: _setting(setting) for name, setting in _SETTINGS.items()},
-        "limits": _limits() | experiment_limits(),
-        "help": {name: setting.about.help for name, setting in _SETTINGS.items()} | _HELP | HELP,
+        "settings": {name: _setting(setting) for name, setting in settings.items()},
+        "limits": _limits(settings),
+        "help": {name: setting.about.help for name, setting in settings.items()} | _HELP,
     }
 
 
@@ -204,19 +173,53 @@ def _gait(name: str) -> dict[str, Any]:
     }
 
 
+def _all_settings(agents: Collection[str]) -> dict[str, DeclaredSetting]:
+    """Every setting by name: as the first agent that has it declares it."""
+    found = dict(_SETTINGS)
+    for agent in agents:
+        for name, setting in {**agent_settings(agent), **changeable_settings(agent)}.items():
+            found.setdefault(name, setting)
+    return found
+
+
 def _agents(names: Collection[str]) -> list[dict[str, Any]]:
-    ours = [name for name in _AGENTS if name in names]
+    ours = [name for name in OURS if name in names]
     ordered = [*ours, *(name for name in names if name not in ours)]
+    return [
+        {
+            "name": name,
+            "title": title_of(name),
+            "description": description_of(name),
+            "learns": learns(name),
+            "needs_practice": needs_practice(name),
+            "color": color,
+            "settings": {n: _setting(one) for n, one in agent_settings(name).items()},
+            "live_settings": {
+                n: _setting(one)
+                for n, one in changeable_settings(name).items()
+                if n not in _SETTINGS
+            },
+        }
+        for name, color in zip(ordered, colors_of(ordered), strict=True)
+    ]
+
+
+def _experiments(agents: Collection[str]) -> list[dict[str, Any]]:
+    """Each with its name, title, a sentence, its defaults, and the fields that it takes."""
+    settings = settings_of(agents)
     shown = []
-    for name, color in zip(ordered, lane_colors(ordered), strict=True):
-        title, description = _AGENTS.get(name, (name, "An agent of an installed package."))
+    for name in EXPERIMENTS:
+        defaults = experiment_as_json(experiment_config(name, {}))
+        defaults["robots"] = [robot["preset"] for robot in defaults["robots"]]
+        fields = [*fields_of(name), *(settings if name == "sweep" else ())]
         shown.append(
             {
                 "name": name,
-                "title": title,
-                "description": description,
-                "learns": learns(name),
-                "color": color,
+                "title": TITLES[name],
+                "description": _EXPERIMENTS[name],
+                "fields": fields,
+                "grid": [field for field in (*GRID, *settings) if field in fields],
+                "defaults": defaults,
             }
         )
     return shown
@@ -227,21 +230,24 @@ def _described(sentences: dict[str, str]) -> list[dict[str, str]]:
 
 
 def _training_defaults() -> dict[str, Any]:
-    shown = as_json(TrainingConfig(gait=next(iter(NAMED_GAITS))))
+    shown = as_json(training_config(gait=next(iter(NAMED_GAITS))))
     return {**shown, "robot": Robot().name}
 
 
 def _race_defaults() -> dict[str, Any]:
-    lanes = [{"agent": name, **({"training": {}} if learns(name) else {})} for name in _AGENTS]
+    lanes = [{"agent": name, **({"training": {}} if learns(name) else {})} for name in PAPERS_LANES]
     return {"steps": RACE_STEPS, "seed": 0, "lanes": lanes}
 
 
-def _limits() -> dict[str, list[float | None]]:
+def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | None]]:
     return {
-        **{n: [one.low, one.high] for n, one in _SETTINGS.items() if one.is_number},
+        **{name: [one.low, one.high] for name, one in settings.items() if one.is_number},
         "what_if_steps": [1, MAX_WHAT_IF_STEPS],
         "lanes": [1, MAX_LANES],
         "name": [0, MAX_NAME],
+        "seeds": [1, MAX_SEEDS],
+        "trials": [1, MAX_TRIALS],
+        "settings": [1, MAX_SETTINGS],
     }
 
 
@@ -257,6 +263,9 @@ def _setting(setting: DeclaredSetting) -> dict[str, Any]:
         "maximum": setting.high,
         "excludes_minimum": setting.excludes_low,
         "excludes_maximum": setting.excludes_high,
+        "is_number": setting.is_number,
         "is_whole": setting.is_whole,
+        "choices": setting.choices,
+        "default": None if setting.default is REQUIRED else setting.default,
         "is_live": about.live,
     }

@@ -1,16 +1,15 @@
-"""Races: start, and what there is to replay."""
+"""Races: what there is to replay."""
 
 from typing import Annotated, Literal
 
 from fastapi import Query, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
-from app.api.answers import RaceView, RecordingView, TimelineView
-from app.api.contract import BINARY, LOCATION, answers
-from app.api.deps import Services, ServicesDep, StartRequestDep
+from app.api.answers import RecordingView, TimelineView
+from app.api.contract import BINARY, answers
+from app.api.deps import Services, ServicesDep
 from app.api.formats import attachment, chosen
-from app.api.runs import RunPath, accepted, find, run_routes
-from app.api.schemas import RaceBody
+from app.api.runs import RunPath, find, run_routes
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
@@ -22,22 +21,6 @@ from app.storage.store import UNENDED, Run
 from app.storage.stored_recordings import RACE
 
 router = run_routes("race")
-
-
-@router.post(
-    "",
-    status_code=202,
-    summary="Start a race, and the practice that it needs",
-    response_model=RaceView,
-    responses=answers(202, headers=LOCATION),
-)
-def start_race(
-    services: ServicesDep, request: Request, asked: StartRequestDep, body: RaceBody
-) -> Response:
-    """Queue the trainings of its lanes and then the race, and answer with the race's run."""
-    jobs, agents = services.jobs, services.agents
-    run = asked.start(services, lambda key: jobs.race(body.start(agents), key))
-    return accepted(request, jobs.view(run))
 
 
 @router.get(

@@ -1,6 +1,5 @@
 """Request bodies, as Pydantic models; each makes the frozen dataclass that a service takes."""
 
-from collections.abc import Collection
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, WithJsonSchema, model_validator
@@ -9,14 +8,9 @@ from pydantic_core import PydanticCustomError
 from app.api.descriptions import VALID
 from app.api.fields import (
     INTEGRAL,
-    Alpha,
     Body,
     Divisions,
-    Epsilon,
-    EpsilonEnd,
-    EpsilonStart,
     EvaluateEvery,
-    Gamma,
     GridSide,
     Name,
     Pace,
@@ -28,19 +22,18 @@ from app.api.fields import (
     StepsPerEpisode,
     number,
 )
-from app.domain.errors import InvalidInput, UnknownName
+from app.domain.errors import InvalidInput
 from app.domain.gait import NAMED_GAITS, GaitSpec, Symmetry
 from app.domain.observation import Observation
 from app.domain.robot import MAX_LEGS, robot
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
 from app.runs.clocks import Clock
 from app.runs.config import (
-    CHANGEABLE,
-    MAX_LANES,
     RACE_STEPS,
     SimulatorName,
     TrainingConfig,
     WalkingProblem,
+    training_config,
 )
 
 Leg = Annotated[
@@ -109,37 +102,34 @@ class WalkBody(Body):
 
 
 class PracticeBody(Body):
-    """How to practise: what a race's lane may say of its training."""
+    """How to practise: what a race's lane may say of its training, with its agent's settings."""
 
     name: Name | None = None
     steps: Steps = TrainingConfig.steps
     seed: Annotated[Seed | None, Field(description="0 by default; a lane takes the race's")] = None
     observation: Observation = TrainingConfig.observation
-    alpha: Alpha = TrainingConfig.alpha
-    gamma: Gamma = TrainingConfig.gamma
-    epsilon_start: EpsilonStart = TrainingConfig.epsilon_start
-    epsilon_end: EpsilonEnd = TrainingConfig.epsilon_end
     steps_per_episode: StepsPerEpisode = TrainingConfig.steps_per_episode
     evaluate_every: EvaluateEvery = TrainingConfig.evaluate_every
     pace: Pace = TrainingConfig.pace
     continue_from: Annotated[RunId | None, Field(description=VALID["continue_from"])] = None
 
     def practice(self, walk: WalkingProblem, agent: str, seed: int = 0) -> TrainingStart:
-        """The training of an agent, with this seed where none is given."""
+        """The training of an agent, with this seed where none is given.
+
+        Raises:
+            InvalidInput: for what cannot be.
+        """
         if self.continue_from is not None and self.seed is not None:
             raise InvalidInput(
                 "a training that continues another goes on with its generator: leave out seed, "
                 "or leave out continue_from"
             )
-        own = {name: getattr(self, name) for name in _OWN_FIELDS}
+        elsewhere = {"name", "seed", "continue_from", "agent", *WalkBody.model_fields}
+        own = {name: getattr(self, name) for name in type(self).model_fields}
+        given = {name: value for name, value in own.items() if name not in elsewhere}
         chosen = seed if self.seed is None else self.seed
-        config = TrainingConfig(**vars(walk), **own, seed=chosen, agent=agent)
+        config = training_config(**vars(walk), **given, seed=chosen, agent=agent)
         return TrainingStart(config, self.name or None, self.continue_from)
-
-
-_OWN_FIELDS = tuple(
-    name for name in PracticeBody.model_fields if name not in ("name", "seed", "continue_from")
-)
 
 
 class TrainingBody(PracticeBody, WalkBody):
@@ -147,13 +137,12 @@ class TrainingBody(PracticeBody, WalkBody):
 
     agent: str = TrainingConfig.agent
 
-    def start(self, agents: Collection[str]) -> TrainingStart:
+    def start(self) -> TrainingStart:
         """Convert to the request of the service.
 
         Raises:
             InvalidInput: for what cannot be.
         """
-        check_agent(self.agent, agents)
         return self.practice(self.walk(), self.agent)
 
 
@@ -164,18 +153,12 @@ class LaneBody(Body):
     training_id: Annotated[RunId | None, Field(description=VALID["training_id"])] = None
     training: Annotated[PracticeBody | None, Field(description=VALID["training"])] = None
 
-    def start(self, walk: WalkingProblem, seed: int, agents: Collection[str]) -> LaneStart:
+    def start(self, walk: WalkingProblem, seed: int) -> LaneStart:
         """Convert to the request of the service."""
-        check_agent(self.agent, agents)
         if self.training is None:
             return LaneStart(self.agent, self.training_id)
         training = self.training.practice(walk, self.agent, seed)
         return LaneStart(self.agent, self.training_id, training)
-
-
-def _papers_lanes() -> list[LaneBody]:
-    learner = LaneBody(agent="q-learning", training=PracticeBody())
-    return [learner, LaneBody(agent="greedy"), LaneBody(agent="two-step")]
 
 
 class RaceBody(WalkBody):
@@ -184,42 +167,27 @@ class RaceBody(WalkBody):
     name: Name | None = None
     steps: RaceSteps = RACE_STEPS
     seed: Seed = 0
-    lanes: Annotated[
-        list[LaneBody], Field(min_length=1, max_length=MAX_LANES, description=VALID["lanes"])
-    ] = Field(default_factory=_papers_lanes)
+    lanes: list[LaneBody]
 
-    def start(self, agents: Collection[str]) -> RaceStart:
+    def start(self) -> RaceStart:
         """Convert to the request of the service.
 
         Raises:
             InvalidInput: for what cannot be.
         """
         walk = self.walk()
-        lanes = [lane.start(walk, self.seed, agents) for lane in self.lanes]
+        lanes = [lane.start(walk, self.seed) for lane in self.lanes]
         return RaceStart(walk, lanes, self.steps, self.seed, self.name or None)
 
 
 class ChangeBody(Body):
-    """Changes to a training while it runs."""
-
-    model_config = ConfigDict(
-        json_schema_extra={
-            "anyOf": [
-                {"required": [name], "properties": {name: {"not": {"type": "null"}}}}
-                for name in CHANGEABLE
-            ]
-        }
-    )
-
-    pace: Pace | None = None
-    alpha: Alpha | None = None
-    gamma: Gamma | None = None
-    epsilon: Epsilon | None = None
+    """Changes to a training while it runs: of its pace, and of live settings of its agent."""
 
     @model_validator(mode="after")
     def _say_something(self) -> "ChangeBody":
         if not self.changes():
-            raise PydanticCustomError("says_all", f"Give one of {', '.join(CHANGEABLE)}")
+            names = ", ".join(type(self).model_fields)
+            raise PydanticCustomError("says_all", "{message}", {"message": f"Give one of {names}"})
         return self
 
     def changes(self) -> dict[str, Any]:
@@ -235,9 +203,3 @@ class StageBody(Body):
     playing: Annotated[bool, Field(strict=True)] | None = None
     speed: Literal["time-lapse"] | Annotated[float, number(ge=0.25, le=64)] | None = None
     clock: Clock | None = None
-
-
-def check_agent(name: str, agents: Collection[str]) -> None:
-    """Raise `UnknownName` unless an agent was registered when the server started."""
-    if name not in agents:
-        raise UnknownName("agent", name, agents)

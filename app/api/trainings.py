@@ -1,4 +1,4 @@
-"""Trainings: start, change, import, and what they learned."""
+"""Trainings: import, and what they learned."""
 
 from typing import Annotated, Literal
 
@@ -11,8 +11,7 @@ from app.api.contract import BINARY, LOCATION, TEXT, answers, takes_file
 from app.api.deps import ServicesDep, StartRequestDep
 from app.api.fields import Name
 from app.api.formats import attachment, chosen
-from app.api.runs import RunPath, accepted, find, run_routes
-from app.api.schemas import ChangeBody, TrainingBody
+from app.api.runs import RunPath, find, run_routes
 from app.archive import table_import
 from app.domain.errors import InvalidInput
 from app.jobs.submissions import open_table, read_rows
@@ -23,22 +22,6 @@ from app.storage.json_text import finite
 
 # Before the routes that all runs have: `import` is no run's id.
 router = run_routes("training")
-
-
-@router.post(
-    "",
-    status_code=202,
-    summary="Start a training",
-    response_model=TrainingView,
-    responses=answers(202, headers=LOCATION),
-)
-def start_training(
-    services: ServicesDep, request: Request, asked: StartRequestDep, body: TrainingBody
-) -> Response:
-    """Queue a training, and answer with its run."""
-    jobs, agents = services.jobs, services.agents
-    run = asked.start(services, lambda key: jobs.train(body.start(agents), key))
-    return accepted(request, jobs.view(run))
 
 
 @router.post(
@@ -62,15 +45,6 @@ def import_training(
     run = asked.start(services, lambda key: table_import.adopt(jobs, asked.body, agents, name, key))
     location = request.url_for("get_training", run_id=run.id).path
     return JSONResponse(jobs.view(run), 201, {"Location": location})
-
-
-@router.patch(
-    "/{run_id}", summary="Change pace or rates while it runs", response_model=TrainingView
-)
-def change_training(services: ServicesDep, run_id: RunPath, body: ChangeBody) -> Response:
-    """Obeyed between two steps, and kept with the step's number in `changes`."""
-    find(services, "training", run_id)
-    return JSONResponse(services.jobs.view(services.jobs.change(run_id, body.changes())))
 
 
 @router.get(

@@ -100,7 +100,7 @@ def _check_table(run: Run, name: str, data: bytes, label: str) -> None:
     config = run.config
     if not isinstance(config, TrainingConfig):
         return
-    checkpoint, meta, _ = checked_table(data, label)
+    checkpoint, meta, _ = checked_table(data, label, (config.agent,))
     try:
         tables.check_fits(checkpoint, config, config.observation)
         if meta.agent != config.agent:

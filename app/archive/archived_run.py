@@ -4,11 +4,11 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 import msgspec
-from msgspec import UNSET, Meta, Raw, UnsetType
+from msgspec import Meta, Raw
 
 from app import __version__
 from app.archive.archived_trials import ExperimentResult
-from app.archive.imported_tables import check_change
+from app.archive.imported_tables import check_change, check_settings
 from app.archive.untrusted_input import (
     Count,
     Large,
@@ -28,7 +28,7 @@ from app.domain.text import check_name
 from app.experiments.config import ExperimentConfig
 from app.jobs.submissions import MAX_WORKERS, check_walk, plan_of
 from app.runs.clocks import CLOCKS
-from app.runs.config import MAX_LANES, RaceConfig
+from app.runs.config import MAX_LANES, RaceConfig, TrainingConfig
 from app.storage.configs import CONFIGS, config_as_json, config_of
 from app.storage.errors import Conflict
 from app.storage.store import UNENDED, Config, Kind, Run
@@ -39,14 +39,6 @@ _MAX_PART_BYTES = 256_000  # of what is not a curve
 
 _Id = Annotated[str, Meta(pattern="^[0-9a-z]{1,32}$")]
 _Known = Metres | None  # null if it never came about; JSON has no NaN
-
-
-class _Change(UntrustedInput, frozen=True):
-    step: Count
-    pace: float | Literal["max"] | UnsetType = UNSET
-    alpha: float | UnsetType = UNSET
-    gamma: float | UnsetType = UNSET
-    epsilon: float | UnsetType = UNSET
 
 
 class _Evaluation(UntrustedInput, frozen=True):
@@ -97,7 +89,7 @@ class _Shape(UntrustedInput, frozen=True):
     continued_from: _Id | None
     done: Count
     total: Count
-    changes: Annotated[list[_Change], Meta(max_length=10_000)]
+    changes: Annotated[list[dict[Name, float | int | str | bool]], Meta(max_length=10_000)]
     greedy_distance_m: _Known
     result: Raw
     error: PortableText | None
@@ -186,6 +178,8 @@ def _run(shape: _Shape, agents: Collection[str]) -> Run:
         raise ValueError("its kind, its config and its progress do not fit together")
     # First of all: laying out an experiment imports its agents.
     _check_agents(config, agents)
+    if isinstance(config, TrainingConfig):
+        check_settings(config)
     if isinstance(config, ExperimentConfig):
         if plan_of(config).total != shape.total:
             raise ValueError("its total is not that of its trials")
@@ -195,9 +189,13 @@ def _run(shape: _Shape, agents: Collection[str]) -> Run:
     _part(shape.result, _RESULTS[shape.kind] | None)
     result = _part(shape.result, Any)
     values = {name: getattr(shape, name) for name in shape.__struct_fields__}
-    changes = tuple(msgspec.to_builtins(change) for change in shape.changes)
     lanes = tuple(shape.lane_training_ids)
-    values |= {"config": config, "result": result, "changes": changes, "lane_training_ids": lanes}
+    values |= {
+        "config": config,
+        "result": result,
+        "changes": tuple(shape.changes),
+        "lane_training_ids": lanes,
+    }
     return Run(**values)
 
 
@@ -213,7 +211,9 @@ def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
     for name in ("created_at", "started_at", "ended_at"):
         check_moment(name, getattr(run, name))
     for change in run.changes:
-        check_change(change)
+        if not isinstance(run.config, TrainingConfig):
+            raise ValueError(f"it is no training but a {run.kind}, and has changes")
+        check_change(change, run.config.agent)
     _check_curve(run, curve)
     _check_lanes(run)
 

@@ -1,15 +1,17 @@
 """Tables and checkpoints from elsewhere: whole, finite, and fit to be gone on with."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import msgspec
 import numpy as np
 
+from app.agents import registry
 from app.archive.untrusted_input import Metres, Name, Share, Step
-from app.domain.errors import DamagedFile, HexapodError
+from app.domain.errors import DamagedFile, HexapodError, UnknownName
+from app.domain.settings import complete
 from app.runs import seeding, tables
-from app.runs.config import CHANGEABLE, TrainingConfig, config_from_json
+from app.runs.config import TrainingConfig, agent_settings, changeable_settings, config_from_json
 from app.runs.tables import Checkpoint
 
 
@@ -22,31 +24,39 @@ class TableMeta(msgspec.Struct):
     episode_reward_m: Metres
     due_epsilon: Share | None
     greedy_distance_m: Metres | None
+    next_action: tuple[int, int] | None = None
     changes: list[dict[str, Any]] = []
 
 
-def checked_table(data: bytes, said: str) -> tuple[Checkpoint, TableMeta, TrainingConfig]:
+def checked_table(
+    data: bytes, said: str, agents: Collection[str]
+) -> tuple[Checkpoint, TableMeta, TrainingConfig]:
     """The table in a file, what it says of itself, and the training that it is of.
 
     Args:
         data: all of the file.
         said: what to call it in messages.
+        agents: the names that are registered; no other agent is imported.
 
     Raises:
+        UnknownName: if it is of an agent that is not registered.
         DamagedFile: if it is no table, does not hold together, or has a number out of range.
         TableMismatch: if it was learned for another problem than it says.
     """
     checkpoint = tables.from_bytes(data, said)
     config = _training(checkpoint.meta.get("config"), said)
+    if config.agent not in agents:
+        raise UnknownName("agent", config.agent, agents)
     try:
+        check_settings(config)
         tables.check_fits(checkpoint, config, config.observation)
         meta = msgspec.convert(checkpoint.meta, TableMeta)
         if meta.agent != config.agent or meta.step > config.steps:
             raise ValueError("its step or agent is another than its training's")
         for change in meta.changes:
-            check_change(change)
+            check_change(change, config.agent)
         seeding.load(np.random.default_rng(0), meta.rng)
-        _check_agent(checkpoint)
+        _check_state(checkpoint, config.agent)
     except HexapodError:
         raise
     except KeyError as error:
@@ -56,17 +66,31 @@ def checked_table(data: bytes, said: str) -> tuple[Checkpoint, TableMeta, Traini
     return checkpoint, meta, config
 
 
-def check_change(change: Mapping[str, Any]) -> None:
-    """Make sure that a change of rates or pace is one that could have been asked for.
+def check_settings(config: TrainingConfig) -> None:
+    """Make sure that the settings are those of the agent, which is registered, and are valid.
 
     Raises:
-        ValueError, InvalidInput: if it is none.
+        UnknownName, InvalidInput: if they are not.
     """
-    if unknown := set(change) - {"step", *CHANGEABLE}:
+    complete(agent_settings(config.agent), config.settings, config.agent)
+
+
+def check_change(change: Mapping[str, Any], agent: str) -> None:
+    """Make sure that a change of settings or pace is one that could have been asked for.
+
+    Args:
+        change: by name, and the `step`.
+        agent: a registered one.
+
+    Raises:
+        KeyError, TypeError, ValueError, InvalidInput: if it is none.
+    """
+    valid = changeable_settings(agent)
+    if unknown := set(change) - {"step", *valid}:
         raise ValueError(f"{', '.join(unknown)} cannot change while a training runs")
     msgspec.convert(change["step"], Step)
     for name in set(change) - {"step"}:
-        CHANGEABLE[name].check(change[name])
+        valid[name].check(change[name])
 
 
 def _training(shown: Any, said: str) -> TrainingConfig:
@@ -83,16 +107,10 @@ def _training(shown: Any, said: str) -> TrainingConfig:
     return config
 
 
-def _check_agent(checkpoint: Checkpoint) -> None:
+def _check_state(checkpoint: Checkpoint, agent: str) -> None:
     state = tables.agent_state(checkpoint)
-    if "where" not in state:
-        return
-    tables.table_of(checkpoint)
-    alpha, gamma, epsilon = state["rates"].tolist()
-    CHANGEABLE["alpha"].check(alpha)
-    CHANGEABLE["gamma"].check(gamma)
-    # NaN as long as the schedule is in force.
-    if not np.isnan(epsilon):
-        CHANGEABLE["epsilon"].check(epsilon)
-    if state["learned"].dtype.kind != "i" or state["learned"][0] < 0:
-        raise ValueError("it has learned for less than no step")
+    if "where" in state:
+        tables.table_of(checkpoint)
+    check_state = getattr(registry.find(agent), "check_state", None)
+    if check_state is not None:
+        check_state(state)

@@ -4,7 +4,6 @@ from collections.abc import Collection
 from datetime import UTC, datetime
 
 from app.archive.imported_tables import checked_table
-from app.domain.errors import UnknownName
 from app.domain.text import check_name
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import check_walk
@@ -36,10 +35,8 @@ def adopt(
         InvalidInput: if its agent or robot is not supported here.
         StorageFull: if there is too little disk space; nothing is left behind then.
     """
-    checkpoint, meta, config = checked_table(data, "the file")
+    checkpoint, meta, config = checked_table(data, "the file", agents)
     check_walk(config)
-    if config.agent not in agents:
-        raise UnknownName("agent", config.agent, agents)
     digest = None
     if "where" in tables.agent_state(checkpoint):
         digest = tables.table_of(checkpoint).sha256()

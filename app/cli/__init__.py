@@ -18,6 +18,7 @@ from app.cli import (
     sweep,
     train,
 )
+from app.cli.options import CommandParser
 from app.domain.errors import HexapodError
 
 COMMANDS = (serve, train, race, experiment, sweep, runs, export, imports, doctor, bench)
@@ -29,8 +30,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
-    options = _parser().parse_args(arguments)
     sys.path.insert(0, "")  # so that --agent my_agent:Agent finds my_agent.py in this folder
+    options = _parser().parse_args(arguments)
     try:
         code: int = options.run(options)
     except HexapodError as error:
@@ -48,7 +49,9 @@ def _parser() -> argparse.ArgumentParser:
         description="Six-legged robots that learn to walk, and race against look-ahead search.",
     )
     parser.add_argument("--version", action="version", version=f"hexapods {__version__}")
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    commands = parser.add_subparsers(
+        dest="command", required=True, metavar="COMMAND", parser_class=CommandParser
+    )
     for command in COMMANDS:
         command.add_to(commands)
     return parser

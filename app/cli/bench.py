@@ -5,6 +5,7 @@ import json
 from collections.abc import Callable
 
 from app.cli import benchmarks
+from app.cli.options import CommandParser
 from app.cli.terminal import progress, show_table
 
 LIMITS = {
@@ -17,7 +18,7 @@ LIMITS = {
 }
 
 
-def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Describe the command."""
     parser = commands.add_parser("bench", help="measure this machine", description=__doc__)
     parser.add_argument("--json", action="store_true", help="print the figures as one object")

@@ -13,12 +13,13 @@ from importlib.metadata import PackageNotFoundError, distribution, version
 from typing import NamedTuple
 
 from app import __version__, assets
+from app.cli.options import CommandParser
 from app.cli.runs import add_data
 from app.domain.errors import HexapodError
 from app.settings import PREFIX, Settings, is_loopback, read_settings
 
 
-def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Describe the command."""
     parser = commands.add_parser("doctor", help="check this machine", description=__doc__)
     add_data(parser)

@@ -2,10 +2,10 @@
 
 import argparse
 
+from app.cli.options import CommandParser, split
 from app.cli.trial_options import (
     add_machine_options,
     add_trial_options,
-    split,
     trial_grid_from,
     where_from,
 )
@@ -16,7 +16,7 @@ from app.experiments.config import experiment_config
 _NAMES = ("table1", "figure4")
 
 
-def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Describe the command."""
     parser = commands.add_parser(
         "experiment", help="repeat the paper's experiments", description=__doc__

@@ -5,11 +5,12 @@ import json
 
 from app.archive.transfer import export_run
 from app.cli.files import check_writable, write_whole
+from app.cli.options import CommandParser
 from app.cli.runs import add_data, found, looking
 from app.settings import read_settings
 
 
-def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Describe the command."""
     parser = commands.add_parser("export", help="put a run into a file", description=__doc__)
     parser.add_argument("run_id", metavar="RUN", help="its id, as `hexapods runs list` tells it")

@@ -10,13 +10,14 @@ from typing import Any
 
 from app.agents.registry import registered
 from app.archive.archive import MAX_BYTES
+from app.cli.options import CommandParser
 from app.cli.runs import add_data
 from app.cli.server_client import call_server
 from app.domain.errors import InvalidInput
 from app.settings import Settings, read_settings
 
 
-def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Describe the command."""
     parser = commands.add_parser("import", help="take a run out of a file", description=__doc__)
     parser.add_argument("file", metavar="RUN.ZIP", help="what `hexapods export` made")

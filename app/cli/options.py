@@ -1,18 +1,21 @@
 """Options that several commands share, and how their values are read."""
 
 import argparse
+import contextlib
 import json
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from app.domain.errors import InvalidInput
+from app.agents.registry import registered
+from app.domain.errors import HexapodError, InvalidInput
 from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS, Robot, robot
-from app.domain.settings import DeclaredSetting, Value, declared_fields
-from app.runs.config import SIMULATORS, WalkingProblem, gait_from_json
+from app.domain.settings import REQUIRED, DeclaredSetting, Value, declared_fields
+from app.experiments.config import settings_of
+from app.runs.config import SIMULATORS, TrainingConfig, WalkingProblem, gait_from_json
 
 _GAIT_FIELDS = ("right_leg", "left_leg", "symmetry", "pairs")
 
@@ -42,14 +45,90 @@ def add_settings(
     """Add an option for each declared setting, or for those that are named."""
     for name in settings if names is None else names:
         setting = settings[name]
-        about = setting.about
-        label = f"{about.title} {about.symbol}" if about.symbol else about.title
         parser.add_argument(
-            flag(name),
-            type=parser_of(setting),
-            default=setting.default,
-            help=f"{label}. {about.help} Valid: {setting.valid} (default {setting.default})",
+            flag(name), type=parser_of(setting), default=setting.default, help=_help(setting)
         )
+
+
+class CommandParser(argparse.ArgumentParser):
+    """A command's parser; it can have an option for each setting of the agents.
+
+    They are the registered agents, and those that the command line names by `--agent`: their
+    modules are imported when the arguments are parsed, not before.
+
+    Attributes:
+        offers_settings: whether it has such options.
+        takes_lists: whether such an option takes several values, by comma.
+    """
+
+    offers_settings = takes_lists = False
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Add the options, and parse."""
+        if self.offers_settings:
+            peek = argparse.ArgumentParser(add_help=False)
+            peek.add_argument("--agent", action="append", default=[])
+            given, _ = peek.parse_known_args(args)
+            named = [name for text in given.agent for name in split(text)]
+            own: Mapping[str, Sequence[DeclaredSetting]] = {}
+            with contextlib.suppress(HexapodError):  # the command itself refuses the agent
+                own = settings_of(named or [TrainingConfig.agent])
+            self._add_settings(own, settings_of(registered()))
+        return super().parse_known_args(args, namespace)
+
+    def _add_settings(
+        self,
+        own: Mapping[str, Sequence[DeclaredSetting]],
+        every: Mapping[str, Sequence[DeclaredSetting]],
+    ) -> None:
+        """Add options for the settings of the named agents, and of all."""
+        group = self.add_argument_group("settings of the agents")
+        for name, declared in {**every, **own}.items():
+            setting = declared[0]
+            read = parser_of(setting) if name in own else str
+            if self.takes_lists:
+                add_list(group, setting, read)
+            else:
+                group.add_argument(flag(name), type=read, help=_help(setting))
+        self.set_defaults(agent_settings=tuple({**every, **own}))
+
+
+def settings_from(options: argparse.Namespace) -> dict[str, Any]:
+    """The settings of agents that a `CommandParser` found on the command line."""
+    given = {name: getattr(options, name) for name in vars(options).get("agent_settings", ())}
+    return {name: value for name, value in given.items() if value is not None}
+
+
+def add_list(
+    parser: argparse._ActionsContainer,
+    setting: DeclaredSetting,
+    read: Callable[[str], Any] | None = None,
+) -> None:
+    """Add an option for several values of a setting, by comma; `read` reads one of them."""
+    one = parser_of(setting) if read is None else read
+    parser.add_argument(
+        flag(setting.name),
+        type=lambda text: tuple(one(part) for part in split(text)),
+        metavar="LIST",
+        help=_help(setting, lists=True),
+    )
+
+
+def split(text: str) -> list[str]:
+    """Split a list with commas."""
+    return [part.strip() for part in text.split(",")]
+
+
+def _help(setting: DeclaredSetting, lists: bool = False) -> str:
+    about, default = setting.about, setting.default
+    given = "" if default is REQUIRED else f" (default {default})"
+    if lists and about.examples:
+        examples = ",".join(f"{value:g}" for value in about.examples)
+        shown = f"such as {examples}; each {setting.valid}{given}"
+    else:
+        label = f"{about.title} {about.symbol}" if about.symbol else about.title
+        shown = " ".join(filter(None, [f"{label}.", about.help, f"Valid: {setting.valid}{given}"]))
+    return shown.replace("%", "%%")
 
 
 def flag(name: str) -> str:

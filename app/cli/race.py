@@ -6,9 +6,16 @@ import time
 from collections.abc import Sequence
 from typing import Any
 
+from app.agents.registry import needs_practice
 from app.assembly import build_walkers
 from app.cli.files import read_table
-from app.cli.options import add_observation, add_settings, add_walk_options, walk_from
+from app.cli.options import (
+    CommandParser,
+    add_observation,
+    add_settings,
+    add_walk_options,
+    walk_from,
+)
 from app.cli.terminal import progress, show_table
 from app.domain.errors import InvalidInput
 from app.domain.settings import declared_fields
@@ -21,7 +28,7 @@ from app.runs.tables import Checkpoint
 from app.runs.walker import Walker
 
 
-def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Describe the command."""
     parser = commands.add_parser("race", help="race agents", description=__doc__)
     add_walk_options(parser)
@@ -65,9 +72,9 @@ def run(options: argparse.Namespace) -> int:
 def _lane(text: str, observation: Any) -> tuple[LaneConfig, Checkpoint | None]:
     agent, _, path = text.partition("=")
     if not path:
-        if agent == "q-learning":
+        if needs_practice(agent):
             raise InvalidInput(
-                "a q-learning lane needs its table: --lane q-learning=q.npz "
+                f"a {agent} lane needs its table: --lane {agent}=q.npz "
                 "(hexapods train --out q.npz makes one)"
             )
         return LaneConfig(agent=agent, observation=observation), None

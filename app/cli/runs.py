@@ -11,7 +11,7 @@ from contextlib import AbstractContextManager
 from datetime import datetime
 from urllib.parse import quote
 
-from app.cli.options import whole
+from app.cli.options import CommandParser, whole
 from app.cli.race import show_lanes
 from app.cli.server_client import call_server
 from app.cli.terminal import show_table
@@ -26,7 +26,7 @@ _LIMIT = 50
 _HEAD = ("run", "kind", "state", "steps", "result", "began", "name")
 
 
-def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Describe the command."""
     parser = commands.add_parser("runs", help="list, show, delete runs", description=__doc__)
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")

@@ -9,11 +9,11 @@ from typing import Any
 
 import segno
 
-from app.cli.options import whole
+from app.cli.options import CommandParser, whole
 from app.settings import Settings, read_settings
 
 
-def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Describe the command."""
     parser = commands.add_parser("serve", help="open the dashboard", description=__doc__)
     parser.add_argument("--host", help="address to bind (default 127.0.0.1, or HEXAPODS_HOST)")

@@ -6,11 +6,18 @@ from typing import Any
 
 from app.assembly import build_learner, finish_training
 from app.cli.files import check_writable, read_table, write_whole
-from app.cli.options import add_observation, add_settings, add_walk_options, walk_from
+from app.cli.options import (
+    CommandParser,
+    add_observation,
+    add_settings,
+    add_walk_options,
+    settings_from,
+    walk_from,
+)
 from app.cli.terminal import progress
 from app.domain.errors import InvalidInput
 from app.domain.settings import declared_fields
-from app.runs.config import TrainingConfig, WalkingProblem, as_json
+from app.runs.config import TrainingConfig, WalkingProblem, as_json, training_config
 from app.runs.records import Evaluated, StepTaken
 from app.runs.tables import Checkpoint, snapshot, to_bytes
 from app.runs.training import Learner, train
@@ -23,15 +30,16 @@ _SETTINGS = tuple(
 )
 
 
-def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Describe the command."""
     parser = commands.add_parser("train", help="learn to walk", description=__doc__)
+    parser.offers_settings = True
     add_walk_options(parser)
     add_observation(parser, "how the agent reads the state")
     add_settings(parser, declared_fields(TrainingConfig), _SETTINGS)
     # Not given with a table, whose generator goes on.
     parser.set_defaults(seed=None)
-    parser.add_argument("--agent", default="q-learning", help="a name, or my.module:Agent")
+    parser.add_argument("--agent", default=TrainingConfig.agent, help="a name, or my.module:Agent")
     parser.add_argument("--from", dest="table", metavar="Q.NPZ", help="go on with this table")
     parser.add_argument("--out", metavar="Q.NPZ", help="keep the table here")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
@@ -66,14 +74,10 @@ def _config(options: argparse.Namespace, table: Checkpoint | None) -> TrainingCo
         if seed is not None:
             raise InvalidInput("--from goes on with the table's own generator; leave --seed out")
         seed = table.meta["config"]["seed"]
-    return TrainingConfig(
-        **walk_from(options),
-        observation=options.observation,
-        **{
-            **{name: getattr(options, name) for name in _SETTINGS},
-            "seed": TrainingConfig.seed if seed is None else seed,
-        },
-        agent=options.agent,
+    given = {name: getattr(options, name) for name in _SETTINGS} | settings_from(options)
+    given["seed"] = TrainingConfig.seed if seed is None else seed
+    return training_config(
+        options.agent, **walk_from(options), observation=options.observation, **given
     )
 
 

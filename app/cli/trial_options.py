@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from app.cli.options import read_gait, read_robot, whole
+from app.cli.options import read_gait, read_robot, split, whole
 from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS, Robot
@@ -79,11 +79,6 @@ def _several(
 ) -> tuple[T, ...] | None:
     """Join the values of an option that may be repeated."""
     return None if texts is None else tuple(value for text in texts for value in read(text))
-
-
-def split(text: str) -> list[str]:
-    """Split a list with commas."""
-    return [part.strip() for part in text.split(",")]
 
 
 def _gaits(text: str) -> Sequence[str | GaitSpec]:

@@ -5,28 +5,33 @@ type is annotated with its limits and with a `Setting`:
 
     alpha: Annotated[float, Gt(0), Le(1), Setting(title="Learning rate", help="…")] = 0.3
 
-`declared_parameters` and `declared_fields` find the declarations. From those of a training follow
-validation, the types and descriptions of request fields, refusals, `GET /options`, options of the
-command line, and labels and limits on the page.
+`declared_parameters` and `declared_fields` find the declarations. From them follow validation,
+request fields and refusals, `GET /options`, options of the command line, controls on the page,
+the grid of a sweep, and what checkpoints and archives keep.
 """
 
 import inspect
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import MISSING, asdict, dataclass, fields
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import MISSING, asdict, dataclass, fields, replace
 from functools import cache, cached_property
-from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+from inspect import Parameter
+from types import MappingProxyType, NoneType, UnionType
+from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from annotated_types import Ge, Gt, Le, Lt
 
-from app.domain.errors import InvalidInput
+from app.domain.errors import InvalidInput, UnknownName
 
 Value = float | int | str | bool | None
+V = TypeVar("V")
 Limit = Ge | Gt | Le | Lt
 REQUIRED = inspect.Parameter.empty
 """The default of a setting that has none."""
+_REST = (Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD)
 _KINDS = (bool, int, float, str, NoneType)
+MAX_SETTING_NAME = 60
+MAX_TEXT = 200
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +42,8 @@ class Setting:
         title: the label of its control.
         help: one sentence.
         symbol: the field's letter for it, such as α.
+        phrase: how a report says a value, a format string such as `{} divisions`; by default the
+            symbol or title, and the value.
         unit: what a number counts or measures, such as m.
         live: whether it may change while a run is active; the agent's `tune` receives changes.
         examples: values that a sweep might compare.
@@ -45,6 +52,7 @@ class Setting:
     title: str
     help: str
     symbol: str | None = None
+    phrase: str | None = None
     unit: str | None = None
     live: bool = False
     examples: tuple[float, ...] = ()
@@ -124,7 +132,7 @@ class DeclaredSetting:
         if bool in self.kinds:
             parts.append("true or false")
         if str in self.kinds:
-            parts.append("text")
+            parts.append(f"text of at most {MAX_TEXT} characters")
         return ", or ".join(parts)
 
     def check(self, value: Any) -> None:
@@ -136,6 +144,25 @@ class DeclaredSetting:
         if not self._is_valid(value):
             shown = f"{value:,}" if type(value) in (int, float) else repr(value)[:80]
             raise InvalidInput(f"{self.name} must be {self.valid}, not {shown}")
+
+    def normalized(self, value: Any) -> Any:
+        """Return a value as its own type: JSON and people write 2 for 2.0, and 2.0 for 2.
+
+        Raises:
+            InvalidInput: if it is not valid.
+        """
+        if self.is_whole and isinstance(value, float) and value.is_integer():
+            value = int(value)
+        self.check(value)
+        if type(value) is int and int not in self.kinds:
+            return float(value)
+        return value
+
+    def describe(self, value: Any) -> str:
+        """Describe a value for a report: `α 0.3`."""
+        name = self.about.symbol or self.about.title.lower()
+        kind = {float: "g", int: ","}.get(type(value), "")
+        return (self.about.phrase or name + "\u00a0{}").format(format(value, kind))
 
     def parse(self, text: str) -> Value:
         """Parse a value as typed on a command line or in an address.
@@ -156,7 +183,7 @@ class DeclaredSetting:
         if value is None or isinstance(value, bool):
             return type(value) in self.kinds
         if isinstance(value, str):
-            return value in self.choices or str in self.kinds
+            return value in self.choices or (str in self.kinds and len(value) <= MAX_TEXT)
         if not isinstance(value, int | float) or not self.is_number:
             return False
         if isinstance(value, float) and not math.isfinite(value):
@@ -180,36 +207,175 @@ class DeclaredSetting:
 
 
 @cache
-def declared_parameters(function: Callable[..., Any]) -> Mapping[str, DeclaredSetting]:
-    """Find the settings among the parameters of a constructor or function, in their order."""
-    target = function.__init__ if isinstance(function, type) else function  # type: ignore[misc]
-    hints = get_type_hints(target, include_extras=True)
-    parameters = inspect.signature(function).parameters.values()
-    return _declared((p.name, hints.get(p.name), p.default) for p in parameters)
+def parameters_of(
+    function: Callable[..., Any], method: str = "__init__"
+) -> Mapping[str, Parameter]:
+    """Find the named parameters of a function, or of a method of a class.
+
+    Those of the base class are included where a method passes on any others by `**`.
+    """
+    return {name: parameter for name, (parameter, _) in _parameters(function, method).items()}
+
+
+@cache
+def declared_parameters(
+    function: Callable[..., Any], method: str = "__init__"
+) -> Mapping[str, DeclaredSetting]:
+    """Find the settings among the parameters that `parameters_of` finds.
+
+    A parameter without a declaration is a setting too, without limits, if it takes plain values
+    and has a default; its type is that of its annotation, or else of its default.
+    """
+    found = {}
+    for name, (parameter, annotation) in _parameters(function, method).items():
+        default = parameter.default
+        if _about(annotation) is not None:
+            found[name] = declare(name, annotation, default)
+        elif default is not REQUIRED and _is_plain(plain := annotation or type(default)):
+            about = Setting(title=name.replace("_", " ").capitalize(), help="")
+            found[name] = DeclaredSetting(name, plain, default, about)
+    return found
+
+
+def _parameters(function: Callable[..., Any], method: str) -> Mapping[str, tuple[Parameter, Any]]:
+    """The parameters with their annotations: first those of the base classes."""
+    if not isinstance(function, type):
+        functions = [function]
+    else:
+        functions = [vars(one)[method] for one in function.__mro__[:-1] if method in vars(one)]
+    found: dict[str, tuple[Parameter, Any]] = {}
+    for one in functions:
+        try:
+            hints = get_type_hints(one, include_extras=True)
+        except (AttributeError, NameError, TypeError):  # of imports for type checkers only
+            hints = {}
+        own = inspect.signature(one).parameters
+        named = {
+            name: (parameter, hints.get(name))
+            for name, parameter in own.items()
+            if parameter.kind not in _REST and name != "self"
+        }
+        found = {**named, **found}
+        if not any(parameter.kind is Parameter.VAR_KEYWORD for parameter in own.values()):
+            break
+    return found
 
 
 @cache
 def declared_fields(config: type) -> Mapping[str, DeclaredSetting]:
     """Find the settings among the fields of a dataclass, in their order."""
     hints = get_type_hints(config, include_extras=True)
-    return _declared(
-        (f.name, hints[f.name], REQUIRED if f.default is MISSING else f.default)
+    return {
+        f.name: declare(f.name, hints[f.name], REQUIRED if f.default is MISSING else f.default)
         for f in fields(config)
-    )
+        if _about(hints[f.name]) is not None
+    }
 
 
 def declare(name: str, annotation: Any, default: Any = REQUIRED) -> DeclaredSetting:
     """Make a declared setting of a name and an annotation that includes a `Setting`."""
-    (about,) = (one for one in annotation.__metadata__ if isinstance(one, Setting))
+    about = _about(annotation)
+    if about is None:
+        raise TypeError(f"{name} has no Setting in its annotation")
     return DeclaredSetting(name, annotation, default, about)
 
 
-def _declared(candidates: Iterable[tuple[str, Any, Any]]) -> dict[str, DeclaredSetting]:
-    return {
-        name: declare(name, annotation, default)
-        for name, annotation, default in candidates
-        if any(isinstance(one, Setting) for one in getattr(annotation, "__metadata__", ()))
-    }
+def required(setting: DeclaredSetting) -> DeclaredSetting:
+    """Return an optional setting of a function as one that must be given, and not as None."""
+    kinds = get_args(setting.annotation) if _is_union(setting.annotation) else ()
+    (own,) = [one for one in kinds if one is not NoneType] or [setting.annotation]
+    return replace(setting, annotation=own, default=REQUIRED)
+
+
+class SettingValues(Mapping[str, V]):
+    """Values of settings by name: an immutable mapping with a hash, in its own order."""
+
+    def __init__(self, values: Mapping[str, V] = MappingProxyType({})) -> None:
+        """Keep a copy.
+
+        Raises:
+            InvalidInput: if a name or a value is none.
+        """
+        for name, value in values.items():
+            if not name.isidentifier() or len(name) > MAX_SETTING_NAME:
+                raise InvalidInput(f"{name[:MAX_SETTING_NAME]!r} is no name of a setting")
+            if not _is_value(value):
+                raise InvalidInput(f"{name} must be a number, text, true or false")
+        self._values = dict(values)
+
+    def __getitem__(self, name: str) -> V:
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self._values.items()))
+
+    def __or__(self, changes: Mapping[str, V]) -> "SettingValues[V]":
+        return SettingValues({**self._values, **changes})
+
+    def __repr__(self) -> str:
+        return f"SettingValues({self._values!r})"
+
+
+def complete(
+    settings: Mapping[str, DeclaredSetting], given: Mapping[str, Any], owner: str
+) -> SettingValues[Value]:
+    """Check the values that are given, and add the defaults of the others.
+
+    Args:
+        settings: the declarations, whose order the values take.
+        given: values by name.
+        owner: of the settings, for the message.
+
+    Raises:
+        UnknownName: for a setting that there is not.
+        InvalidInput: for a value that is not valid, or is missing.
+    """
+    for name in given:
+        if name not in settings:
+            if not settings:
+                raise InvalidInput(f"{owner} has no settings, so none named {name!r}")
+            raise UnknownName(f"setting of {owner}", name, settings)
+    for name, setting in settings.items():
+        if name not in given and setting.default is REQUIRED:
+            raise InvalidInput(f"{owner} needs {name}, {setting.valid}")
+    return SettingValues(
+        {
+            name: setting.normalized(given[name]) if name in given else setting.default
+            for name, setting in settings.items()
+        }
+    )
+
+
+def _about(annotation: Any) -> Setting | None:
+    """Find the `Setting` of an annotation; that of an optional setting lies one level deeper."""
+    parts = get_args(annotation) if _is_union(annotation) else (annotation,)
+    metadata = (one for part in parts for one in getattr(part, "__metadata__", ()))
+    return next((one for one in metadata if isinstance(one, Setting)), None)
+
+
+def _is_union(annotation: Any) -> bool:
+    return get_origin(annotation) in (Union, UnionType)
+
+
+def _is_plain(annotation: Any) -> bool:
+    try:
+        return set(_kinds(annotation)) != {NoneType}
+    except TypeError:
+        return False
+
+
+def _is_value(value: Any) -> bool:
+    if isinstance(value, tuple):
+        return all(_is_value(one) for one in value)
+    return isinstance(value, bool | int | str | NoneType) or (
+        isinstance(value, float) and math.isfinite(value)
+    )
 
 
 def _kinds(annotation: Any) -> Iterator[type]:

@@ -1,14 +1,22 @@
 """Configs of experiments: a grid of settings, each over many seeds."""
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+import contextlib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Literal, get_args
 
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import OBSERVATIONS, Observation
 from app.domain.robot import Robot, as_mapping, robot
-from app.runs.config import SimulatorName, TrainingConfig, check_whole, gait_from_json
+from app.domain.settings import DeclaredSetting, SettingValues, Value
+from app.runs.config import (
+    SimulatorName,
+    TrainingConfig,
+    agent_settings,
+    check_whole,
+    gait_from_json,
+)
 
 ExperimentName = Literal["table1", "figure4", "sweep"]
 EXPERIMENTS: tuple[ExperimentName, ...] = get_args(ExperimentName)
@@ -16,18 +24,9 @@ MAX_SEEDS = 10_000
 MAX_TRIALS = 200_000
 FIGURE4_BLOCKS = 8
 
-GRID = (
-    "steps",
-    "alpha",
-    "gamma",
-    "epsilon_start",
-    "epsilon_end",
-    "steps_per_episode",
-    "divisions",
-    "grid_side_m",
-)
-"""Parameters that a sweep varies beside agent, gait, observation and robot; table1 and figure4 keep
-them at the paper's values."""
+GRID = ("steps", "steps_per_episode", "divisions", "grid_side_m")
+"""Fields that a sweep varies beside agent, gait, observation, robot and the agents' settings;
+table1 and figure4 keep them at the paper's values."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,8 +40,10 @@ class ExperimentConfig:
         agents: who learns; in a sweep also who looks ahead. Table 1 has its own.
         gaits, observations, robots: every combination is a setting.
         simulator: of all trials.
-        steps, alpha, gamma, epsilon_start, epsilon_end, steps_per_episode, divisions,
-            grid_side_m: of the practice; every combination is a setting.
+        steps, steps_per_episode, divisions, grid_side_m: of the practice; every combination is a
+            setting.
+        settings: values of the agents' settings by name; every combination is a setting of the
+            agents that have them, and others are left at an agent's default.
         blocks: in how many blocks of `steps` is practised, the table saved and loaded in between.
     """
 
@@ -55,10 +56,7 @@ class ExperimentConfig:
     robots: tuple[Robot, ...] = (Robot(),)
     simulator: SimulatorName = "mujoco"
     steps: tuple[int, ...] = (TrainingConfig.steps,)
-    alpha: tuple[float, ...] = (TrainingConfig.alpha,)
-    gamma: tuple[float, ...] = (TrainingConfig.gamma,)
-    epsilon_start: tuple[float, ...] = (TrainingConfig.epsilon_start,)
-    epsilon_end: tuple[float, ...] = (TrainingConfig.epsilon_end,)
+    settings: SettingValues[tuple[Value, ...]] = field(default_factory=SettingValues)
     steps_per_episode: tuple[int, ...] = (TrainingConfig.steps_per_episode,)
     divisions: tuple[int, ...] = (TrainingConfig.divisions,)
     grid_side_m: tuple[float, ...] = (TrainingConfig.grid_side_m,)
@@ -69,14 +67,15 @@ class ExperimentConfig:
             raise UnknownName("experiment", self.experiment, EXPERIMENTS)
         check_whole("seeds", self.seeds, 1, MAX_SEEDS)
         check_whole("seed", self.seed, 0, None)
-        for name in ("agents", "gaits", "observations", "robots", *GRID):
-            values = getattr(self, name)
+        lists = {name: getattr(self, name) for name in (*_PLACES, *GRID)} | dict(self.settings)
+        for name, values in lists.items():
             if not values:
                 raise InvalidInput(f"{name} must name at least one")
             if any(value in values[:place] for place, value in enumerate(values)):
                 raise InvalidInput(f"{name} names something twice")
 
 
+_PLACES = ("agents", "gaits", "observations", "robots")
 _OWN: Mapping[str, Mapping[str, Any]] = {
     "table1": {"steps": (500, 1000), "robots": (robot("stiff"), robot("compliant"))},
     "figure4": {"steps": (250,), "blocks": FIGURE4_BLOCKS},
@@ -91,8 +90,21 @@ _MAY_SAY: Mapping[str, tuple[str, ...]] = {
 
 
 def fields_of(experiment: ExperimentName) -> tuple[str, ...]:
-    """Return the fields that an experiment accepts."""
+    """Return the fields that an experiment accepts; a sweep also takes its agents' settings."""
     return _MAY_SAY[experiment]
+
+
+def settings_of(agents: Iterable[str]) -> Mapping[str, Sequence[DeclaredSetting]]:
+    """The settings of some agents by name, each as the agents that have it declare it.
+
+    Raises:
+        UnknownName, InvalidInput: if there is no such agent.
+    """
+    found: dict[str, list[DeclaredSetting]] = {}
+    for agent in agents:
+        for name, setting in agent_settings(agent).items():
+            found.setdefault(name, []).append(setting)
+    return found
 
 
 def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentConfig:
@@ -100,7 +112,8 @@ def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentCo
 
     Args:
         experiment: its name.
-        given: by attribute of `ExperimentConfig`; None counts as not given.
+        given: by attribute of `ExperimentConfig`, and values of the agents' settings by their
+            names; None counts as not given.
 
     Raises:
         UnknownName: for an experiment, or a field, that there is not.
@@ -109,15 +122,40 @@ def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentCo
     if experiment not in EXPERIMENTS:
         raise UnknownName("experiment", experiment, EXPERIMENTS)
     said = {name: value for name, value in given.items() if value is not None}
+    declared = settings_of(said.get("agents", ExperimentConfig.agents))
+    valid = [*_MAY_SAY[experiment], *(declared if experiment == "sweep" else ())]
     for name in said:
-        if name not in _MAY_SAY[experiment]:
-            raise UnknownName(f"field of {experiment}", name, _MAY_SAY[experiment])
-    return ExperimentConfig(experiment=experiment, **{**_OWN[experiment], **said})
+        if name not in valid:
+            raise UnknownName(f"field of {experiment}", name, valid)
+    settings = {
+        name: tuple(_normalized(value, own) for value in said[name]) if name in said else default
+        for name, own in declared.items()
+        for default in [tuple(dict.fromkeys(setting.default for setting in own))]
+        # Agents of different defaults each keep their own.
+        if name in said or len(default) == 1
+    }
+    own_fields = {name: value for name, value in said.items() if name not in declared}
+    return ExperimentConfig(
+        experiment=experiment,
+        **{**_OWN[experiment], **own_fields},
+        settings=SettingValues(settings),
+    )
+
+
+def _normalized(value: Value, own: Sequence[DeclaredSetting]) -> Value:
+    """A value as one of the agents that have the setting takes it; as the last of them refuses."""
+    for setting in own[:-1]:
+        with contextlib.suppress(InvalidInput):
+            return setting.normalized(value)  # type: ignore[no-any-return]
+    return own[-1].normalized(value)  # type: ignore[no-any-return]
 
 
 def as_json(config: ExperimentConfig) -> dict[str, Any]:
     """In plain types, as the API shows it and files keep it."""
-    shown = asdict(config)
+    shown: dict[str, Any] = {}
+    for one in fields(config):
+        value = getattr(config, one.name)
+        shown |= value if isinstance(value, SettingValues) else {one.name: value}
     shown["robots"] = [as_mapping(one) for one in config.robots]
     shown["gaits"] = [
         {k: v for k, v in asdict(gait).items() if v is not None}
@@ -129,7 +167,7 @@ def as_json(config: ExperimentConfig) -> dict[str, Any]:
 
 
 def from_json(shown: Mapping[str, Any]) -> ExperimentConfig:
-    """The config that `as_json` wrote.
+    """The config that `as_json` wrote; fields that no experiment has are settings of its agents.
 
     Raises:
         InvalidInput: if a value cannot be.
@@ -138,4 +176,6 @@ def from_json(shown: Mapping[str, Any]) -> ExperimentConfig:
     values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in shown.items()}
     values["robots"] = tuple(robot(one) for one in shown["robots"])
     values["gaits"] = tuple(gait_from_json(one) for one in shown["gaits"])
-    return ExperimentConfig(**values)
+    own = {one.name for one in fields(ExperimentConfig)}
+    settings = {name: values.pop(name) for name in list(values) if name not in own}
+    return ExperimentConfig(**values, settings=SettingValues(settings))

@@ -4,14 +4,11 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from app.domain.gait import GAIT_TITLES
+from app.domain.settings import declared_fields
 from app.experiments.published import GAITS
 from app.experiments.statistics import Interval
+from app.runs.config import TrainingConfig, agent_settings
 
-AGENTS: Mapping[str, str] = {
-    "q-learning": "Q-learning",
-    "greedy": "Greedy",
-    "two-step": "Two-step",
-}
 _NO_BREAK_SPACE = "\u00a0"
 OBSERVATION_LABELS: Mapping[str, str] = {
     "measured": "feet measured",
@@ -19,17 +16,11 @@ OBSERVATION_LABELS: Mapping[str, str] = {
 }
 """Label of each observation."""
 
-PARAMETER_FORMATS: Mapping[str, str] = {
-    "steps": "{:,}\u00a0steps",
-    "alpha": "α\u00a0{:g}",
-    "gamma": "γ\u00a0{:g}",
-    "epsilon_start": "ε\u00a0from\u00a0{:g}",
-    "epsilon_end": "ε\u00a0to\u00a0{:g}",
-    "steps_per_episode": "{:,}\u00a0an\u00a0episode",
-    "divisions": "{}\u00a0divisions",
-    "grid_side_m": "grid\u00a0{:g}\u00a0m",
-}
-"""Format string of each parameter that a sweep varies."""
+
+def parameter_text(name: str, value: Any, agent: str) -> str:
+    """Describe a value of a training's field or of a setting of its agent: `α 0.3`."""
+    own = declared_fields(TrainingConfig)
+    return (own[name] if name in own else agent_settings(agent)[name]).describe(value)
 
 
 def gait_name(gait: str) -> str:
@@ -40,11 +31,6 @@ def gait_name(gait: str) -> str:
 def gait_name_with_papers(gait: str) -> str:
     """Return a gait's display name, and the paper's name for it in brackets."""
     return f"{gait_name(gait)} ({GAITS[gait]})" if gait in GAITS else gait_name(gait)
-
-
-def agent_name(agent: str) -> str:
-    """Return an agent's display name; for `my.module:Agent` the name of the class."""
-    return AGENTS.get(agent, agent.rpartition(":")[2])
 
 
 def percent(value: float) -> str:

@@ -1,27 +1,29 @@
 """From an experiment to its trials: every setting, every seed, in the order that fills a report."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from itertools import product
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import chain, product
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from app.agents.registry import learns
-from app.domain.errors import InvalidInput
+from app.domain.errors import InvalidInput, UnknownName
 from app.domain.kinematics import check_reach
 from app.domain.observation import Observation
 from app.domain.robot import Robot
+from app.domain.settings import SettingValues, Value
 from app.experiments.config import GRID, MAX_TRIALS, ExperimentConfig
 from app.experiments.trial import TrialConfig
-from app.runs.config import TrainingConfig, WalkingProblem
+from app.runs.config import TrainingConfig, WalkingProblem, agent_settings, training_config
 
 Role = Literal["learner", "reference", "timed"]
 """`learner`: once a seed; `reference`: an agent that looks ahead, and so once; `timed`:
 once and alone, for the wall clock."""
 
 RIVALS = ("greedy", "two-step")
+_WALK = ("divisions", "grid_side_m")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,12 +35,15 @@ class Setting:
         role: what it is there for.
         robot: the robot's label in this experiment.
         trial: with seed 0.
+        parameters: its values of all that the plan varies but place and agent, by name; None for
+            a setting that its agent does not have.
     """
 
     key: str
     role: Role
     robot: str
     trial: TrialConfig
+    parameters: SettingValues[Value] = field(default_factory=SettingValues)
 
     @property
     def training(self) -> TrainingConfig:
@@ -108,14 +113,26 @@ def trial_seed(seed: int, setting: int, seed_number: int) -> int:
 
 def _settings(config: ExperimentConfig) -> list[Setting]:
     learners, references, timed = [], [], []
+    own = {agent: agent_settings(agent) for agent in (*config.agents, *RIVALS)}
+    for name in config.settings:
+        if not any(name in settings for settings in own.values()):
+            raise UnknownName("setting", name, dict.fromkeys(chain.from_iterable(own.values())))
+    practised = {"steps": config.steps, **config.settings}
+    grid = _combinations({**practised, "steps_per_episode": config.steps_per_episode})
+    searched = _combinations(config.settings)
     for place in _places(config):
-        references += [_setting(place, agent, blocks=0) for agent in _looking_ahead(config)]
-        here = [
-            _setting(place, agent, blocks=config.blocks, **rates)
-            for rates in _rates(config)
+        references += [
+            _setting(place, agent, 0, values)
+            for agent in _looking_ahead(config)
+            for values in dict.fromkeys(_pick(one, own[agent]) for one in searched)
+        ]
+        practices = dict.fromkeys(
+            (agent, _pick(values, (*own[agent], "steps", "steps_per_episode")))
+            for values in grid
             for agent in config.agents
             if learns(agent)
-        ]
+        )
+        here = [_setting(place, agent, config.blocks, values) for agent, values in practices]
         learners += here
         if config.experiment == "table1":
             timed.append(_timed(here[0]))
@@ -123,7 +140,7 @@ def _settings(config: ExperimentConfig) -> list[Setting]:
     key, count = Counter(setting.key for setting in settings).most_common(1)[0]
     if count > 1:
         raise InvalidInput(f"the setting {key} is there twice; name each value once")
-    return settings
+    return _with_parameters(settings)
 
 
 class _Place(NamedTuple):
@@ -166,36 +183,57 @@ def _looking_ahead(config: ExperimentConfig) -> list[str]:
     return ["greedy", *(a for a in config.agents if not learns(a) and a != "greedy")]
 
 
-def _rates(config: ExperimentConfig) -> list[dict[str, Any]]:
-    """Every combination of what is not part of the walking problem."""
-    names = [name for name in GRID if name not in WalkingProblem.__dataclass_fields__]
+def _combinations(lists: Mapping[str, Sequence[Any]]) -> list[SettingValues[Value]]:
     return [
-        dict(zip(names, values, strict=True))
-        for values in product(*(getattr(config, name) for name in names))
+        SettingValues(dict(zip(lists, values, strict=True))) for values in product(*lists.values())
     ]
 
 
-def _setting(place: _Place, agent: str, blocks: int, **rates: Any) -> Setting:
-    training = TrainingConfig(
-        **vars(place.walk), observation=place.observation, agent=agent, evaluate_every=0, **rates
+def _pick(values: Mapping[str, Any], names: Collection[str]) -> SettingValues[Any]:
+    """The values of some names, as far as there are any."""
+    return SettingValues({name: value for name, value in values.items() if name in names})
+
+
+def _setting(place: _Place, agent: str, blocks: int, values: Mapping[str, Value]) -> Setting:
+    training = training_config(
+        **vars(place.walk), observation=place.observation, agent=agent, evaluate_every=0, **values
     )
+    own = {name: one.default for name, one in agent_settings(agent).items()}
+    defaults = {name: getattr(TrainingConfig, name) for name in GRID} | own
     parts = [training.resolved_gait.name, place.observation, place.robot]
-    parts += [
-        f"{name}={getattr(training, name):g}"
-        for name in ("divisions", "grid_side_m")
-        if getattr(training, name) != getattr(TrainingConfig, name)
-    ]
+    parts += _differing({name: getattr(training, name) for name in _WALK}, defaults)
     parts.append(agent)
     if blocks:
         parts.append(f"{blocks}x{training.steps}" if blocks > 1 else f"{training.steps}")
-        parts += [
-            f"{name}={value:g}"
-            for name, value in rates.items()
-            if name != "steps" and value != getattr(TrainingConfig, name)
-        ]
+    parts += _differing({k: v for k, v in values.items() if k != "steps"}, defaults)
     role: Role = "learner" if blocks else "reference"
     trial = TrialConfig(training=training, blocks=blocks)
     return Setting(key="/".join(parts), role=role, robot=place.robot, trial=trial)
+
+
+def _with_parameters(settings: Sequence[Setting]) -> list[Setting]:
+    """Give each setting the parameters of all, in the same order."""
+    names = dict.fromkeys(name for one in settings for name in one.training.settings)
+    found = []
+    for one in settings:
+        training, practises = one.training, one.role != "reference"
+        parameters: dict[str, Value] = {
+            "steps": training.steps if practises else 0,
+            **{name: training.settings.get(name) for name in names},
+            "steps_per_episode": training.steps_per_episode if practises else None,
+            **{name: getattr(training, name) for name in _WALK},
+        }
+        found.append(replace(one, parameters=SettingValues(parameters)))
+    return found
+
+
+def _differing(values: Mapping[str, Value], defaults: Mapping[str, Value]) -> list[str]:
+    """Name the values that are not the default."""
+    return [
+        f"{name}={value}" if isinstance(value, str | bool | None) else f"{name}={value:g}"
+        for name, value in values.items()
+        if value != defaults[name]
+    ]
 
 
 def _timed(setting: Setting) -> Setting:

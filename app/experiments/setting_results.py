@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from app.experiments.config import GRID
 from app.experiments.measures import Reference, Stratum
 from app.experiments.plan import Plan, Setting
 from app.experiments.statistics import Points
@@ -42,7 +41,7 @@ class SettingResults(NamedTuple):
     @property
     def parameters(self) -> tuple[Any, ...]:
         """The training parameters other than agent and conditions."""
-        return (self.setting.trial.blocks, *(getattr(self.setting.training, n) for n in GRID))
+        return (self.setting.trial.blocks, self.setting.parameters)
 
     @property
     def total_m(self) -> Points:
@@ -97,17 +96,12 @@ def _reference(greedy: SettingResults) -> Reference:
 def setting_fields(one: SettingResults) -> dict[str, Any]:
     """Return the fields that identify a setting; search agents have no training parameters."""
     at = one.setting.training
-    practises = one.setting.role == "learner"
-    parameters = {name: getattr(at, name) if practises else None for name in GRID}
     return {
         "gait": one.setting.gait,
         "observation": at.observation,
         "robot": one.setting.robot,
         "agent": at.agent,
-        **parameters,
-        "steps": at.steps if practises else 0,
+        **one.setting.parameters,
         "blocks": one.setting.trial.blocks,
-        "divisions": at.divisions,
-        "grid_side_m": at.grid_side_m,
         "half_side_m": at.grid_side_m / 2,
     }

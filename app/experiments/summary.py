@@ -66,6 +66,7 @@ def summarise(
         "machine": {"platform": platform.platform(), "cores": os.cpu_count()},
         "trials": _count_trials(plan, settings, set_aside or {}),
         "cost": None if cost is None else dict(cost),
+        "parameters": list(plan.settings[0].parameters),
         "settings": [_setting(one, references, config) for one in walked],
         "pooled": _pooled(walked, references, config),
         "curves": [
@@ -155,14 +156,16 @@ def _curve(one: SettingResults, references: Mapping[Any, Reference], seed: int) 
 def _versus(settings: Sequence[SettingResults], seed: int) -> list[dict[str, Any]]:
     """Compare each pair of learning agents by probability of improvement.
 
-    Agents are compared under the same conditions with the same training parameters.
+    Agents are compared under the same conditions with the same values of what both of them have.
     """
     groups: dict[Any, list[SettingResults]] = {}
     for one in settings:
         if one.setting.role == "learner" and one.total_m:
-            groups.setdefault((one.conditions, one.parameters), []).append(one)
+            groups.setdefault((one.conditions, one.setting.trial.blocks), []).append(one)
     entries = []
     for a, b in (pair for group in groups.values() for pair in combinations(group, 2)):
+        if not _are_comparable(a, b):
+            continue
         probability = improvement((a.total_m,), (b.total_m,), seed)
         shared = {k: v for k, v in setting_fields(a).items() if k != "agent"}
         agents = {"a": a.setting.training.agent, "b": b.setting.training.agent}
@@ -178,6 +181,13 @@ def _versus(settings: Sequence[SettingResults], seed: int) -> list[dict[str, Any
             }
         )
     return entries
+
+
+def _are_comparable(a: SettingResults, b: SettingResults) -> bool:
+    if a.setting.training.agent == b.setting.training.agent:
+        return False
+    pairs = [(value, b.setting.parameters[name]) for name, value in a.setting.parameters.items()]
+    return all(x == y for x, y in pairs if x is not None and y is not None)
 
 
 def _timed(one: SettingResults) -> dict[str, Any]:

@@ -145,7 +145,7 @@ class Job:
         """Change learning rates or pace after the current step.
 
         Args:
-            changes: any of alpha, gamma, epsilon, pace.
+            changes: values of settings by name.
             within_s: time after which the process discards the command [s].
 
         Returns:

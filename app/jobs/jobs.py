@@ -5,8 +5,7 @@ import threading
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from app.agents import registry
-from app.domain.errors import HexapodError, InvalidInput
+from app.domain.errors import HexapodError, UnknownName
 from app.events.bus import EventBus
 from app.events.run_view import run_view
 from app.jobs.job import Job
@@ -22,6 +21,7 @@ from app.jobs.submissions import (
     queued_training,
 )
 from app.jobs.supervisor import STUCK_S, Supervisor
+from app.runs.config import changeable_settings
 from app.storage.errors import Busy, Conflict, NotAnswering, StorageFailed
 from app.storage.recordings import Recordings
 from app.storage.run_ids import RunIds
@@ -244,16 +244,16 @@ class Jobs:
         return self._store.get(run_id)
 
     def change(self, run_id: str, changes: Mapping[str, Any]) -> Run:
-        """Change the rates or the pace of a training, and wait for the acknowledgement.
+        """Change settings of a training that may change live, and wait for the acknowledgement.
 
         Args:
             run_id: id of the training.
-            changes: any of alpha, gamma, epsilon, pace.
+            changes: values of its `changeable_settings` by name.
 
         Raises:
             NotFound: if there is no such run.
             Conflict: if it neither runs nor is paused.
-            InvalidInput: if its agent has no rates.
+            UnknownName, InvalidInput: for what cannot be changed so.
             NotAnswering: if its process does not acknowledge in time; nothing is changed then.
             Busy: if too many changes wait for acknowledgement.
         """
@@ -265,10 +265,11 @@ class Jobs:
             with self._changed:
                 job = self._live_job(run_id, LIVE, "changed")
                 agent = getattr(self._store.get(run_id).config, "agent", "")
-                if set(changes) - {"pace"} and not hasattr(registry.find(agent), "tune"):
-                    raise InvalidInput(
-                        f"{agent} has no rates that could be changed; give pace only"
-                    )
+                valid = changeable_settings(agent)
+                for name, value in changes.items():
+                    if name not in valid:
+                        raise UnknownName(f"live setting of {agent}", name, valid)
+                    valid[name].check(value)
                 acknowledged = job.tune(changes, _ACKNOWLEDGE_S) if job.is_answering else None
             if acknowledged is None or not acknowledged.wait(_ACKNOWLEDGE_S):
                 raise NotAnswering(

@@ -69,7 +69,7 @@ class Command(NamedTuple):
     token: int = 0
     """By which the answer to `tune` is known."""
     changes: Mapping[str, Any] = {}
-    """For `tune`: any of alpha, gamma, epsilon, pace."""
+    """For `tune`: values of settings by name."""
     expires_s: float = math.inf
     """For `tune`: when it is too late, by the machine's monotonic clock."""
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from app.agents.q_table import MAX_VALUES
-from app.agents.registry import learns
+from app.agents.registry import learns, needs_practice
 from app.domain.errors import DamagedFile, InvalidInput, TableMismatch
 from app.domain.kinematics import check_reach
 from app.domain.observation import Observation
@@ -232,7 +232,7 @@ def _lane_table(
         raise InvalidInput(f"lane {number + 1}: {lane.agent} does not learn, so it takes no table")
     if lane.training_id is not None and lane.training is not None:
         raise InvalidInput(f"lane {number + 1}: give training_id or training, not both")
-    if lane.agent == "q-learning" and not has_practice:
+    if needs_practice(lane.agent) and not has_practice:
         raise InvalidInput(
             f"lane {number + 1}: {lane.agent} races with what it has learned: give training_id, "
             "a training that is finished or stopped, or training, one that is to come first"
@@ -332,8 +332,9 @@ def wall_s_of(store: RunStore, run_id: str) -> float:
 
 def _settings(config: ExperimentConfig) -> int:
     """How many combinations of values it has, those of agents that look ahead left out."""
-    lists = ("gaits", "observations", "robots", "agents", *GRID)
-    return math.prod(len(getattr(config, name)) for name in lists)
+    names = ("gaits", "observations", "robots", "agents", *GRID)
+    lists = [*(getattr(config, name) for name in names), *config.settings.values()]
+    return math.prod(map(len, lists))
 
 
 def _walk(walk: WalkingProblem) -> WalkingProblem:

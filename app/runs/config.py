@@ -4,12 +4,12 @@ Fields that a person may choose are declared as settings (`app.domain.settings`)
 """
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Annotated, Any, Literal, get_args
 
 from annotated_types import Ge, Le
 
-from app.agents.q_learning import Alpha, Epsilon, EpsilonEnd, EpsilonStart, Gamma, QLearning
+from app.agents import registry
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import Gait, GaitSpec, resolve
 from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M, FootGrid
@@ -18,9 +18,10 @@ from app.domain.robot import Robot, as_mapping, robot
 from app.domain.settings import (
     DeclaredSetting,
     Setting,
-    declare,
+    SettingValues,
+    Value,
+    complete,
     declared_fields,
-    declared_parameters,
 )
 
 SimulatorName = Literal["mujoco", "kinematic"]
@@ -38,6 +39,7 @@ Divisions = Annotated[
     Le(MAX_DIVISIONS),
     Setting(
         title="Foot grid, divisions",
+        phrase="{}\u00a0divisions",
         help="Points along each side of the foot grid: more choices, more to learn.",
         examples=(2, 3),
     ),
@@ -48,6 +50,7 @@ GridSide = Annotated[
     Le(MAX_SIDE_M),
     Setting(
         title="Foot grid, side",
+        phrase="grid\u00a0{}\u00a0m",
         unit="m",
         help="Side of the square in which each foot may be put; every leg must reach all of it.",
         examples=(0.03, 0.04),
@@ -61,23 +64,22 @@ Seed = Annotated[
         help="Everything that is random follows from this number: the same seed, the same run.",
     ),
 ]
+_StepCount = Annotated[int, Ge(1), Le(MAX_STEPS)]
 PracticeSteps = Annotated[
-    int,
-    Ge(1),
-    Le(MAX_STEPS),
+    _StepCount,
     Setting(
         title="Practice",
+        phrase="{}\u00a0steps",
         unit="steps",
         help="How many steps it practises; the paper uses 500 and 1,000.",
         examples=(500, 1000),
     ),
 ]
 StepsPerEpisode = Annotated[
-    int,
-    Ge(1),
-    Le(MAX_STEPS),
+    _StepCount,
     Setting(
         title="Steps per episode",
+        phrase="{}\u00a0an\u00a0episode",
         help="The share of random steps falls after every so many steps.",
         examples=(25, 50),
     ),
@@ -108,8 +110,6 @@ RaceSteps = Annotated[
     Le(MAX_RACE_STEPS),
     Setting(title="Steps of the race", help="How many steps each robot has in the race."),
 ]
-
-_Q_LEARNING = declared_parameters(QLearning)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,13 +144,13 @@ class WalkingProblem:
 
 @dataclass(frozen=True, kw_only=True)
 class TrainingConfig(WalkingProblem):
-    """A training. The defaults are the paper's.
+    """A training. The defaults are the paper's; `training_config` makes a complete one.
 
     Attributes:
         steps: number of learning steps.
         seed: of every generator of the run.
         observation: how the agent reads the state.
-        alpha, gamma, epsilon_start, epsilon_end: as the agent's constructor declares them.
+        settings: of the agent by name; it has its own default for one that is left out.
         steps_per_episode: exploration stays the same so long.
         evaluate_every: steps between two evaluations; 0 is never.
         pace: `max`, or how many times real time.
@@ -160,10 +160,7 @@ class TrainingConfig(WalkingProblem):
     steps: PracticeSteps = 500
     seed: Seed = 0
     observation: Observation = "measured"
-    alpha: Alpha = _Q_LEARNING["alpha"].default
-    gamma: Gamma = _Q_LEARNING["gamma"].default
-    epsilon_start: EpsilonStart = _Q_LEARNING["epsilon_start"].default
-    epsilon_end: EpsilonEnd = _Q_LEARNING["epsilon_end"].default
+    settings: SettingValues[Value] = field(default_factory=SettingValues)
     steps_per_episode: StepsPerEpisode = 50
     evaluate_every: EvaluateEvery = 50
     pace: Pace = "max"
@@ -174,12 +171,43 @@ class TrainingConfig(WalkingProblem):
         check_observation(self.observation)
 
 
-CHANGEABLE: Mapping[str, DeclaredSetting] = {
-    **{name: one for name, one in declared_fields(TrainingConfig).items() if one.about.live},
-    # Not of the config: it replaces the schedule.
-    "epsilon": declare("epsilon", Epsilon),
-}
-"""The settings of a training that may change while it runs."""
+_OWN_FIELDS = frozenset(one.name for one in fields(TrainingConfig))
+
+
+def agent_settings(agent: str) -> Mapping[str, DeclaredSetting]:
+    """The settings of an agent: all that its constructor asks for and no run offers.
+
+    Raises:
+        UnknownName, InvalidInput: if there is no such agent.
+    """
+    found = registry.settings_of(registry.find(agent))
+    return {name: one for name, one in found.items() if name not in _OWN_FIELDS}
+
+
+def changeable_settings(agent: str) -> Mapping[str, DeclaredSetting]:
+    """The settings of a training that may change while it runs.
+
+    Raises:
+        UnknownName, InvalidInput: if there is no such agent.
+    """
+    own = {name: one for name, one in declared_fields(TrainingConfig).items() if one.about.live}
+    return own | dict(registry.live_settings_of(registry.find(agent)))
+
+
+def training_config(agent: str = TrainingConfig.agent, **given: Any) -> TrainingConfig:
+    """A training with the settings of its agent checked and complete.
+
+    Args:
+        agent: a registered name or `my.module:Agent`.
+        given: fields of `TrainingConfig`, and settings of the agent by their names.
+
+    Raises:
+        UnknownName, InvalidInput: for an agent, a setting or a value that cannot be.
+    """
+    own = {name: value for name, value in given.items() if name in _OWN_FIELDS}
+    settings = {name: value for name, value in given.items() if name not in _OWN_FIELDS}
+    config = TrainingConfig(agent=agent, **own)
+    return replace(config, settings=complete(agent_settings(agent), settings, agent))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -219,35 +247,43 @@ class RaceConfig(WalkingProblem):
 
 def as_json(config: WalkingProblem) -> dict[str, Any]:
     """A config in plain types, as the API shows it and files keep it."""
-    shown = asdict(config)
+    shown: dict[str, Any] = {}
+    for one in fields(config):
+        value = getattr(config, one.name)
+        shown |= value if isinstance(value, SettingValues) else {one.name: value}
     shown["robot"] = as_mapping(config.robot)
     if isinstance(config.gait, GaitSpec):
         shown["gait"] = {k: v for k, v in asdict(config.gait).items() if v is not None}
+    if isinstance(config, RaceConfig):
+        shown["lanes"] = [asdict(lane) for lane in config.lanes]
     return shown
 
 
 def config_from_json(shown: Mapping[str, Any]) -> TrainingConfig | RaceConfig:
     """The config that `as_json` wrote; only a race has lanes.
 
+    Fields that no training has are settings of its agent, which is not looked for.
+
     Raises:
         InvalidInput: if a value cannot be.
         KeyError, TypeError, ValueError: if `as_json` did not write it.
     """
-    fields = {**shown, "gait": gait_from_json(shown["gait"]), "robot": robot(shown["robot"])}
-    if "lanes" not in fields:
-        return TrainingConfig(**fields)
-    lanes = tuple(LaneConfig(**lane) for lane in fields.pop("lanes"))
-    return RaceConfig(**fields, lanes=lanes)
+    values = {**shown, "gait": gait_from_json(shown["gait"]), "robot": robot(shown["robot"])}
+    if "lanes" in values:
+        lanes = tuple(LaneConfig(**lane) for lane in values.pop("lanes"))
+        return RaceConfig(**values, lanes=lanes)
+    settings = {name: values.pop(name) for name in list(values) if name not in _OWN_FIELDS}
+    return TrainingConfig(**values, settings=SettingValues(settings))
 
 
 def gait_from_json(value: str | Mapping[str, Any]) -> str | GaitSpec:
     """The gait that `as_json` wrote."""
     if isinstance(value, str):
         return value
-    fields = dict(value)
-    if "pairs" in fields:
-        fields["pairs"] = tuple((int(a), int(b)) for a, b in fields["pairs"])
-    return GaitSpec(**fields)
+    parts = dict(value)
+    if "pairs" in parts:
+        parts["pairs"] = tuple((int(a), int(b)) for a, b in parts["pairs"])
+    return GaitSpec(**parts)
 
 
 def check_whole(name: str, value: int, low: int, high: int | None) -> None:

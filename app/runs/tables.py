@@ -15,8 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from app.agents.protocol import Agent
-from app.agents.q_learning import QLearning
+from app.agents.protocol import Agent, Tabular
 from app.agents.q_table import check_arrays, check_size
 from app.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
 from app.domain.errors import DamagedFile, TableMismatch
@@ -68,6 +67,7 @@ def snapshot(learner: Learner, config: TrainingConfig, **more: Any) -> Checkpoin
         "episode_reward_m": learner.episode_reward_m,
         "greedy_distance_m": learner.greedy_distance_m,
         "due_epsilon": learner.due_epsilon,
+        **({} if learner.next_action is None else {"next_action": learner.next_action}),
         "rng": seeding.dump(learner.rng),
         "config": as_json(config),
         **more,
@@ -76,7 +76,11 @@ def snapshot(learner: Learner, config: TrainingConfig, **more: Any) -> Checkpoin
 
 
 def restore(learner: Learner, checkpoint: Checkpoint) -> None:
-    """Put a fresh learner of the same config exactly where the snapshot was taken."""
+    """Put a fresh learner of the same config exactly where the snapshot was taken.
+
+    Raises:
+        IllegalAction: if the action that comes next is not legal there.
+    """
     walker, meta = learner.walker, checkpoint.meta
     walker.agent.load(checkpoint.part(_AGENT))
     walker.place(walker.simulator.load(checkpoint.part(_STATE)))
@@ -84,6 +88,8 @@ def restore(learner: Learner, checkpoint: Checkpoint) -> None:
     learner.step, learner.episode_reward_m = meta["step"], meta["episode_reward_m"]
     learner.greedy_distance_m = meta["greedy_distance_m"]
     learner.due_epsilon = meta["due_epsilon"]
+    chosen = meta.get("next_action")
+    learner.next_action = None if chosen is None else walker.legal_action(chosen)
 
 
 def continue_from(learner: Learner, checkpoint: Checkpoint) -> None:
@@ -96,7 +102,7 @@ def continue_from(learner: Learner, checkpoint: Checkpoint) -> None:
         DamagedFile: if the generator's state is none.
     """
     agent = learner.walker.agent
-    if isinstance(agent, QLearning):
+    if isinstance(agent, Tabular):
         agent.continue_from(agent_state(checkpoint))
     else:
         load_agent(agent, checkpoint)

@@ -8,6 +8,7 @@ import numpy as np
 
 from app.agents.protocol import Transition
 from app.domain.simulator import Motion
+from app.domain.types import Action
 from app.runs.config import RACE_STEPS, TrainingConfig
 from app.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
 from app.runs.seeding import EVALUATION, generator
@@ -28,6 +29,7 @@ class Learner:
         episode_reward_m: earned since the episode began.
         greedy_distance_m: of the baseline, once it was measured.
         due_epsilon: ε of the newest step while its evaluation is yet to come; None if none is.
+        next_action: the action that an on-policy agent has chosen to take next.
     """
 
     walker: Walker
@@ -38,6 +40,7 @@ class Learner:
     episode_reward_m: float = 0.0
     greedy_distance_m: float | None = None
     due_epsilon: float | None = None
+    next_action: Action | None = None
 
     @property
     def epsilon(self) -> float:
@@ -88,9 +91,13 @@ def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> S
     """One step: act, see what comes of it, learn."""
     walker = learner.walker
     seen, knowledge = walker.seen, walker.knowledge() if record else None
-    action = walker.decide()
+    action = walker.decide() if learner.next_action is None else learner.next_action
     step = walker.carry_out(action, record)
-    walker.agent.learn(Transition(seen, action, step.reward_m, walker.seen, walker.legal))
+    on_policy = getattr(walker.agent, "is_on_policy", False)
+    learner.next_action = walker.decide() if on_policy else None
+    walker.agent.learn(
+        Transition(seen, action, step.reward_m, walker.seen, walker.legal, learner.next_action)
+    )
     learner.step += 1
     learner.episode_reward_m += step.reward_m
     distance = walker.state.distance_m

@@ -84,7 +84,14 @@ class Walker:
         Raises:
             IllegalAction: if that is none of the legal actions.
         """
-        chosen = self.agent.act(self.seen, self.legal)
+        return self.legal_action(self.agent.act(self.seen, self.legal))
+
+    def legal_action(self, chosen: Sequence[int]) -> Action:
+        """Find an action among the legal ones.
+
+        Raises:
+            IllegalAction: if it is none of them.
+        """
         try:
             return self.legal[self.legal.index(Action(*chosen))]
         except (TypeError, ValueError) as error:

@@ -5,6 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from app.agents.appearance import colors_of, title_of
 from app.domain.errors import Unreachable
 from app.domain.gait import Gait
 from app.domain.grid import FootGrid
@@ -12,10 +13,8 @@ from app.domain.kinematic import KinematicSimulator
 from app.domain.robot import Robot
 from app.domain.types import FloatArray
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
-from app.stage.palette import lane_colors
 from app.stage.stage_frame import LaneSpec, SceneSpec
 
-AGENT_TITLES = {"q-learning": "Q-learning", "greedy": "Greedy", "two-step": "Two-step"}
 PAPERS_LANES = ("q-learning", "greedy", "two-step")
 
 
@@ -60,9 +59,9 @@ def _rest_pose(robot: Robot, gait: Gait, grid: FootGrid) -> FloatArray:
 
 
 def _lane_specs(agents: Sequence[str]) -> tuple[LaneSpec, ...]:
-    names = [AGENT_TITLES.get(agent, agent.rpartition(":")[2]) for agent in agents]
+    names = [title_of(agent) for agent in agents]
     lane_specs = []
-    for lane, (agent, color) in enumerate(zip(agents, lane_colors(agents), strict=True)):
+    for lane, (agent, color) in enumerate(zip(agents, colors_of(agents), strict=True)):
         name, before = names[lane], names[:lane].count(names[lane])
         lane_specs.append(LaneSpec(agent, f"{name} {before + 1}" if before else name, color))
     return tuple(lane_specs)

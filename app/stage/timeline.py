@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from typing import Any
 
+from app.agents.appearance import colors_of
 from app.runs.clocks import FINISH_LINE_M, Clock, Timetable, crossing_s
 from app.runs.recording import LaneRecording
 from app.runs.results import finish_s
-from app.stage.palette import lane_colors
 
 
 def timeline(
@@ -27,7 +27,7 @@ def timeline(
     snapshot = [
         LaneRecording(lane.agent, lane.rest_qpos, list(lane.steps), lane.failure) for lane in lanes
     ]
-    colors = lane_colors([lane.agent for lane in snapshot])
+    colors = colors_of([lane.agent for lane in snapshot])
     return {
         "clock": clock,
         "steps": steps,

@@ -11,10 +11,11 @@ import numpy as np
 
 from app.agents.registry import learns
 from app.domain.errors import InvalidInput
+from app.domain.settings import SettingValues
 from app.experiments.plan import trial_seed
 from app.experiments.trial import TrialConfig, TrialResult
 from app.jobs.submissions import check_walk
-from app.runs.config import TrainingConfig
+from app.runs.config import TrainingConfig, training_config
 from app.storage.errors import Busy
 from app.what_if.trial_pool import TrialPool
 
@@ -24,8 +25,6 @@ MAX_VALUES = 1_200_000
 """Of a table: each trial has one, and writes it to a file."""
 MAX_WAITING = 4
 MAX_CACHED = 512
-RATES = ("alpha", "gamma", "epsilon_start", "epsilon_end", "steps_per_episode")
-"""Fields that have their default values in the other half."""
 
 
 class WhatIf:
@@ -52,7 +51,8 @@ class WhatIf:
 
         Returns:
             `seeds`, `greedy_m`, `chosen` and `default` with `distances_m`, `walkers` (the share
-            that covers at least half of greedy's distance), `iqm_m` and the rates; `compute_s`.
+            that covers at least half of greedy's distance), `iqm_m`, the agent's settings and
+            `steps_per_episode`; `compute_s`.
 
         Raises:
             InvalidInput, UnknownName, Unreachable: if it cannot be tried.
@@ -61,9 +61,13 @@ class WhatIf:
         _check(training)
         began_s = time.perf_counter()
         chosen = replace(training, simulator="kinematic", seed=0, evaluate_every=0, pace="max")
-        default = replace(chosen, **{name: getattr(TrainingConfig, name) for name in RATES})
-        # Of an agent that looks ahead no rate counts.
-        greedy = TrialConfig(training=replace(default, agent="greedy", steps=1), blocks=0)
+        default = replace(
+            chosen,
+            settings=training_config(gait=chosen.gait, agent=chosen.agent).settings,
+            steps_per_episode=TrainingConfig.steps_per_episode,
+        )
+        walked = replace(default, agent="greedy", settings=SettingValues(), steps=1)
+        greedy = TrialConfig(training=walked, blocks=0)
         halves = [TrialConfig(training=half) for half in (chosen, default)]
         found = self._distances([greedy, *halves])
         greedy_m = found[greedy][0]
@@ -156,7 +160,8 @@ def _half(
 ) -> dict[str, Any]:
     walkers = sum(distance >= greedy_m / 2 for distance in distances_m)
     return {
-        **{name: getattr(config, name) for name in RATES},
+        **config.settings,
+        "steps_per_episode": config.steps_per_episode,
         "distances_m": list(distances_m),
         "walkers": walkers / len(distances_m),
         "iqm_m": _interquartile_mean(distances_m),

@@ -22,6 +22,7 @@ class Case:
         label: display label; it names the robot only where there are several.
         seed: the experiment's seed, used for every resampling.
         simulator: the simulator of all trials.
+        parameters: names of the parameters that a sweep varies.
         settings, pooled, curves, timed: this case's entries of the summary's lists.
     """
 
@@ -30,6 +31,7 @@ class Case:
     label: str
     seed: int
     simulator: str
+    parameters: Sequence[str]
     settings: Sequence[Mapping[str, Any]]
     pooled: Sequence[Mapping[str, Any]]
     curves: Sequence[Mapping[str, Any]]
@@ -60,6 +62,7 @@ def cases_of(summary: Mapping[str, Any]) -> list[Case]:
             label=case_label(observation, robot if several else None),
             seed=summary["config"]["seed"],
             simulator=summary["config"]["simulator"],
+            parameters=summary["parameters"],
             **{
                 part: [
                     one

@@ -3,13 +3,18 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from app.domain.settings import Value
 from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.claims.judging import Claim, Finding
-from app.experiments.formatting import PARAMETER_FORMATS, percent, shares
+from app.experiments.formatting import parameter_text, percent, shares
 from app.experiments.statistics import CONFIDENCE, Points, bootstrap_exceeds, improvement
-from app.runs.config import TrainingConfig
+from app.runs.config import TrainingConfig, agent_settings
 
-PARAMETERS = ("alpha", "gamma", "epsilon_start", "epsilon_end", "steps_per_episode")
+PARAMETERS: Mapping[str, Value] = {
+    **{name: one.default for name, one in agent_settings(PAPERS_AGENT).items()},
+    "steps_per_episode": TrainingConfig.steps_per_episode,
+}
+"""The paper's values of what a sweep varies."""
 _REST = ("steps", "divisions", "grid_side_m", "blocks")
 
 
@@ -36,7 +41,7 @@ def _tuning(case: Case) -> Finding | None:
     a, b = _seeds(case, best), _seeds(case, papers_pool)
     chance = improvement(a, b, case.seed, 1 - (1 - CONFIDENCE) / len(candidates))
     values = ", ".join(
-        PARAMETER_FORMATS[name].format(best[name])
+        parameter_text(name, best[name], PAPERS_AGENT)
         for name in PARAMETERS
         if best[name] != papers_pool[name]
     )
@@ -49,7 +54,7 @@ def _tuning(case: Case) -> Finding | None:
 
 
 def _is_papers(one: Mapping[str, Any]) -> bool:
-    return all(one[name] == getattr(TrainingConfig, name) for name in PARAMETERS)
+    return all(one[name] == value for name, value in PARAMETERS.items())
 
 
 def _comparable(one: Mapping[str, Any], papers_pool: Mapping[str, Any]) -> bool:

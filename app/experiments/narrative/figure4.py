@@ -3,8 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from app.agents.appearance import title_of
 from app.experiments.claims.cases import PAPERS_AGENT, Case
-from app.experiments.formatting import agent_name, counted, gait_name, listed, metres, percent
+from app.experiments.formatting import counted, gait_name, listed, metres, percent
 from app.experiments.narrative.gaits import ODD_GAIT_HEADING, explain_odd_gait
 
 Curve = Mapping[str, Any]
@@ -81,7 +82,7 @@ def compare_agents(cases: Sequence[Case]) -> str | None:
         pools = [one for one in case.pooled if one["relative"]]
         if len({one["agent"] for one in pools}) > 1:
             shares = [
-                f"{agent_name(one['agent'])} {percent(one['relative']['iqm'])}" for one in pools
+                f"{title_of(one['agent'])} {percent(one['relative']['iqm'])}" for one in pools
             ]
             sentences.append(f"With {case.label}: {listed(shares)}.")
     if not sentences:

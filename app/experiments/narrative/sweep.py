@@ -3,13 +3,12 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from app.agents.appearance import title_of
 from app.experiments.claims.cases import Case
-from app.experiments.config import GRID
 from app.experiments.formatting import (
-    PARAMETER_FORMATS,
-    agent_name,
     counted,
     metres,
+    parameter_text,
     percent,
     shares,
 )
@@ -22,9 +21,9 @@ def describe_best_and_worst(cases: Sequence[Case]) -> str | None:
         return None
     ordered = sorted(pools, key=lambda pool: float(pool[1]["relative"]["iqm"]))
     sentences = [
-        f"The {word} is {combination_name(one, [pool for _, pool in pools])} with {case.label}: "
-        f"{shares(one['relative'])} of greedy's distance, {percent(one['walkers']['share'])} of "
-        "the seeds walk."
+        f"The {word} is {combination_name(one, case, [pool for _, pool in pools])} with "
+        f"{case.label}: {shares(one['relative'])} of greedy's distance, "
+        f"{percent(one['walkers']['share'])} of the seeds walk."
         for word, (case, one) in (("best", ordered[-1]), ("worst", ordered[0]))
     ]
     return (
@@ -34,12 +33,21 @@ def describe_best_and_worst(cases: Sequence[Case]) -> str | None:
     )
 
 
-def combination_name(one: Mapping[str, Any], among: Sequence[Mapping[str, Any]]) -> str:
-    """Name a combination by the parameters that vary among the pools, or else by its agent."""
-    varied = [n for n in GRID if len({other[n] for other in among if other["walkers"]}) > 1]
-    parts = [PARAMETER_FORMATS[name].format(one[name]) for name in varied if one[name] is not None]
+def combination_name(
+    one: Mapping[str, Any], case: Case, among: Sequence[Mapping[str, Any]] | None = None
+) -> str:
+    """Name a combination by the parameters that vary among the pools, or else by its agent.
+
+    The pools are those of the case, or those of several that are given.
+    """
+    among = case.pooled if among is None else among
+    walked = [other for other in among if other["walkers"]]
+    varied = [name for name in case.parameters if len({other[name] for other in walked}) > 1]
+    parts = [
+        parameter_text(name, one[name], one["agent"]) for name in varied if one[name] is not None
+    ]
     if len({other["agent"] for other in among}) > 1 or not parts:
-        parts.insert(0, agent_name(one["agent"]))
+        parts.insert(0, title_of(one["agent"]))
     return ", ".join(parts)
 
 

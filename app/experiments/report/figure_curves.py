@@ -8,8 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from app.agents.appearance import title_of
 from app.experiments.claims.cases import Case
-from app.experiments.formatting import agent_name, gait_name, metres
+from app.experiments.formatting import gait_name, metres
 from app.experiments.report.drawing import INK, MUTED, Picture, agent_colours, figure, style_axes
 
 Curve = Mapping[str, Any]
@@ -106,7 +107,7 @@ def _key(one: Figure, cases: Sequence[Case]) -> None:
     colour, alone = agent_colours(agents), len(agents) == 1
     handles: list[Any] = []
     for agent in agents:
-        shade, name = colour[agent], agent_name(agent)
+        shade, name = colour[agent], title_of(agent)
         line = INK if alone else shade
         handles += [
             Line2D(
@@ -120,7 +121,7 @@ def _key(one: Figure, cases: Sequence[Case]) -> None:
 
 def _alt(case: Case, gait: str) -> str:
     sentences = [
-        f"{agent_name(one['agent'])}: "
+        f"{title_of(one['agent'])}: "
         + ", ".join(
             f"{metres(middle)} after {steps:,} steps"
             for steps, middle in zip(one["steps"], one["iqm_m"], strict=True)

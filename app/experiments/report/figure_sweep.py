@@ -5,8 +5,9 @@ from typing import Any
 
 from matplotlib.axes import Axes
 
+from app.agents.appearance import title_of
 from app.experiments.claims.cases import Case
-from app.experiments.formatting import agent_name, percent
+from app.experiments.formatting import percent
 from app.experiments.narrative.sweep import combination_name
 from app.experiments.report.drawing import INK, MUTED, Picture, agent_colours, figure, style_axes
 
@@ -44,7 +45,8 @@ def _draw(ax: Axes, rows: Sequence[Mapping[str, Any]], case: Case) -> None:
     ax.axvline(1, color=shade["greedy"], lw=2, ls=(0, (4, 2)))
     ax.text(0.99, 0.75, "greedy", size=9, color=MUTED, ha="right", va="center")
     ax.set_yticks(
-        [-place for place in range(len(rows))], [combination_name(one, case.pooled) for one in rows]
+        [-place for place in range(len(rows))],
+        [combination_name(one, case) for one in rows],
     )
     ax.set_ylim(-len(rows) + 0.4, 1.1)
     lowest = min((one["relative"]["low"] or one["relative"]["iqm"] for one in rows), default=0)
@@ -56,8 +58,7 @@ def _draw(ax: Axes, rows: Sequence[Mapping[str, Any]], case: Case) -> None:
 
 def _alt(rows: Sequence[Mapping[str, Any]], case: Case) -> str:
     sentences = [
-        f"{agent_name(one['agent'])} {combination_name(one, case.pooled)}: "
-        f"{percent(one['relative']['iqm'])}"
+        f"{title_of(one['agent'])} {combination_name(one, case)}: {percent(one['relative']['iqm'])}"
         for one in rows
     ]
     return (

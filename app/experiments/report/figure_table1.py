@@ -7,8 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from app.agents.appearance import title_of
 from app.experiments.claims.cases import Case
-from app.experiments.formatting import agent_name, gait_name, gait_name_with_papers, metres
+from app.experiments.formatting import gait_name, gait_name_with_papers, metres
 from app.experiments.report.drawing import (
     INK,
     MUTED,
@@ -135,7 +136,7 @@ def _limits(cases: Sequence[Case]) -> tuple[float, float]:
 
 def _alt(case: Case) -> str:
     sentences = [
-        f"{gait_name(one['gait'])}, {agent_name(one['agent'])} after {one['steps']:,} steps: "
+        f"{gait_name(one['gait'])}, {title_of(one['agent'])} after {one['steps']:,} steps: "
         f"{one['n']} seeds from {metres(min(one['total']['points_m']))} to "
         f"{metres(max(one['total']['points_m']))}, middle {metres(one['total']['iqm_m'])}."
         for one in case.settings

@@ -11,9 +11,10 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
+from app.agents.appearance import title_of
 from app.experiments.claims.cases import Case, cases_of
-from app.experiments.config import GRID, as_json, experiment_config
-from app.experiments.formatting import agent_name, counted, gait_name, listed
+from app.experiments.config import ExperimentConfig, as_json, experiment_config, fields_of
+from app.experiments.formatting import counted, gait_name, listed
 from app.experiments.report import tables
 from app.experiments.report.drawing import Picture, agent_colours, inline_svg
 from app.experiments.report.figures import panels
@@ -30,8 +31,11 @@ _OPTIONS = {
     "gaits": "gait",
     "observations": "observation",
     "robots": "robot",
-    **{name: name.replace("_", "-") for name in ("seeds", "seed", "simulator", *GRID)},
+    "seeds": "seeds",
+    "seed": "seed",
+    "simulator": "simulator",
 }
+"""Options by field; that of any other has its field's name."""
 
 
 def page(summary: Mapping[str, Any]) -> str:
@@ -63,10 +67,12 @@ def page(summary: Mapping[str, Any]) -> str:
 def command(config: Mapping[str, Any]) -> str:
     """Return the shell command of an experiment: its seeds and all options other than defaults."""
     name = config["experiment"]
-    defaults = as_json(experiment_config(name, {}))
+    given = {"agents": tuple(config["agents"])} if "agents" in fields_of(name) else {}
+    defaults = as_json(experiment_config(name, given)) | {"agents": list(ExperimentConfig.agents)}
     arguments = ["hexapods", *(["sweep"] if name == "sweep" else ["experiment", name])]
-    for field, option in _OPTIONS.items():
-        if field in ("seeds", "seed") or config[field] != defaults[field]:
+    for field in dict.fromkeys((*_OPTIONS, *config)):
+        if field in ("seeds", "seed") or config[field] != defaults.get(field):
+            option = _OPTIONS.get(field, field.replace("_", "-"))
             arguments += [
                 part for text in _option_values(config[field]) for part in (f"--{option}", text)
             ]
@@ -141,7 +147,7 @@ def _agent_colours(cases: Sequence[Case]) -> list[tuple[str, str]]:
     """Return name and colour of each learning agent, for the legend."""
     agents = dict.fromkeys(one["agent"] for case in cases for one in case.curves)
     colour_by_agent = agent_colours(list(agents))
-    return [(agent_name(agent), colour_by_agent[agent]) for agent in agents]
+    return [(title_of(agent), colour_by_agent[agent]) for agent in agents]
 
 
 def _inlined_figures(group: Sequence[Picture]) -> list[dict[str, Any]]:

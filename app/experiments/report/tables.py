@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from app.agents.appearance import title_of
 from app.experiments.claims.cases import Case
 from app.experiments.formatting import (
-    agent_name,
     gait_name,
     gait_name_with_papers,
     number,
@@ -144,8 +144,7 @@ def curves(case: Case) -> dict[str, Any]:
         "columns": [f"{at:,} steps" for at in chosen] + ["Walk", "Greedy"],
         "rows": [
             {
-                "name": gait_name(one["gait"])
-                + (f", {agent_name(one['agent'])}" if several else ""),
+                "name": gait_name(one["gait"]) + (f", {title_of(one['agent'])}" if several else ""),
                 "cells": [_curve_cell(one, steps.index(at)) for at in chosen]
                 + [
                     (_NONE if one["walkers"][-1] is None else percent(one["walkers"][-1]), ""),
@@ -172,7 +171,7 @@ def sweep(case: Case) -> dict[str, Any]:
         "columns": ["Of greedy's distance", "Walk", "Ahead at time-out", "Seeds"],
         "rows": [
             {
-                "name": combination_name(one, case.pooled),
+                "name": combination_name(one, case),
                 "cells": [
                     _share(one["relative"], "iqm"),
                     _share(one["walkers"]),
@@ -203,7 +202,7 @@ def versus(summary: Mapping[str, Any]) -> dict[str, Any]:
         "columns": ["Probability", "Further"],
         "rows": [
             {
-                "name": f"{agent_name(one['a'])} before {agent_name(one['b'])}, "
+                "name": f"{title_of(one['a'])} before {title_of(one['b'])}, "
                 f"{gait_name(one['gait'])}, {one['observation']}, {one['robot']}, "
                 f"{one['blocks'] * one['steps']:,} steps",
                 "cells": [

@@ -6,12 +6,11 @@ from io import StringIO
 from typing import Any
 
 from app.domain.text import text_cell
-from app.experiments.config import GRID, ExperimentConfig
+from app.experiments.config import ExperimentConfig
 from app.experiments.plan import Plan, Trial
 from app.experiments.trial import TrialResult
 
 _FIRST = ("trial", "role", "gait", "observation", "robot", "agent")
-_RATES = tuple(name for name in GRID if name != "steps")
 _LAST = (
     "seed_number",
     "seed",
@@ -22,7 +21,6 @@ _LAST = (
     "transitions",
     "failure",
 )
-COLUMNS = (*_FIRST, *_RATES, *_LAST)
 
 
 def trials_csv(
@@ -40,8 +38,10 @@ def trials_csv(
     """
     out = StringIO()
     writer = csv.writer(out)
-    writer.writerow(COLUMNS)
-    for trial in Plan(config).trials():
+    plan = Plan(config)
+    varied = [name for name in plan.settings[0].parameters if name != "steps"]
+    writer.writerow((*_FIRST, *varied, *_LAST))
+    for trial in plan.trials():
         if trial.key in results:
             writer.writerows(_rows(trial, results[trial.key]))
         elif trial.key in set_aside:
@@ -54,15 +54,12 @@ def _rows(trial: Trial, result: TrialResult) -> Iterator[list[Any]]:
     training, setting = trial.config.training, trial.setting
     learns = setting.role != "reference"
     named = [trial.key, setting.role, setting.gait, training.observation, setting.robot]
-    rates = [
-        getattr(training, name) if learns or name in ("divisions", "grid_side_m") else None
-        for name in _RATES
-    ]
+    varied = [value for name, value in setting.parameters.items() if name != "steps"]
     for block, distance_m in enumerate(result.distances_m or (None,)):
         yield [
             *map(text_cell, named),
             text_cell(training.agent),
-            *rates,
+            *(text_cell(value) if isinstance(value, str) else value for value in varied),
             trial.seed_number,
             training.seed,
             training.steps * (1 + block) if learns else 0,

@@ -1,0 +1,44 @@
+"""Names and colours of agents, as the stage, the page and reports show them.
+
+The colours are those of the Okabe–Ito palette, which is safe for colour blindness.
+"""
+
+from collections.abc import Sequence
+
+from app.agents.registry import OURS, registered
+
+_FURTHER_COLORS = ("#CC79A7", "#D55E00", "#F0E442", "#0072B2")
+
+
+def title_of(agent: str) -> str:
+    """Return an agent's title; for `my.module:Agent` the name of the class."""
+    return _attribute(agent, "title") or agent.rpartition(":")[2]
+
+
+def description_of(agent: str) -> str:
+    """Return a sentence about a registered agent."""
+    return _attribute(agent, "description") or "An agent of an installed package."
+
+
+def colors_of(agents: Sequence[str]) -> list[str]:
+    """Return a distinct `#RRGGBB` for each of some agents as long as there are enough.
+
+    Each gets its own colour, or a spare one if that is taken or there is none.
+    """
+    own = [_attribute(agent, "color") for agent in agents]
+    others = (_attribute(agent, "color") for agent in OURS)
+    candidates = list(dict.fromkeys([*_FURTHER_COLORS, *(color for color in others if color)]))
+    assigned: list[str] = []
+    for color in own:
+        free = [one for one in candidates if one not in assigned]
+        spare = next((one for one in free if one not in own), (free or candidates)[0])
+        assigned.append(spare if color is None or color in assigned else color)
+    return assigned
+
+
+def _attribute(agent: str, name: str) -> str | None:
+    """An attribute of a registered agent's class; a module that is named is not imported."""
+    if ":" in agent:
+        return None
+    found = OURS.get(agent) or registered().get(agent)
+    return getattr(found, name, None)

@@ -1,0 +1,104 @@
+"""Start runs, change a training, ask a what-if: the routes whose bodies name agents."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Request
+from starlette.responses import JSONResponse, Response
+
+from app.api.agent_bodies import AgentBodies
+from app.api.answers import ExperimentView, RaceView, TrainingView, WhatIfView
+from app.api.contract import LOCATION, answers
+from app.api.deps import ServicesDep, StartRequestDep
+from app.api.experiment_body import ExperimentBody
+from app.api.runs import RunPath, accepted, find
+from app.api.schemas import ChangeBody, RaceBody, TrainingBody
+from app.domain.errors import InvalidInput
+
+
+def start_routes(bodies: AgentBodies) -> APIRouter:
+    """Make the routes for the agents of a server."""
+    router = APIRouter()
+
+    @router.post(
+        "/trainings",
+        tags=["trainings"],
+        status_code=202,
+        summary="Start a training",
+        response_model=TrainingView,
+        responses=answers(202, headers=LOCATION),
+    )
+    def start_training(
+        services: ServicesDep,
+        request: Request,
+        asked: StartRequestDep,
+        body: Annotated[TrainingBody, bodies.training],
+    ) -> Response:
+        """Queue a training, and answer with its run."""
+        jobs = services.jobs
+        run = asked.start(services, lambda key: jobs.train(body.start(), key))
+        return accepted(request, jobs.view(run))
+
+    @router.patch(
+        "/trainings/{run_id}",
+        tags=["trainings"],
+        summary="Change pace or live settings while it runs",
+        response_model=TrainingView,
+    )
+    def change_training(
+        services: ServicesDep, run_id: RunPath, body: Annotated[ChangeBody, bodies.change]
+    ) -> Response:
+        """Obeyed between two steps, and kept with the step's number in `changes`."""
+        find(services, "training", run_id)
+        return JSONResponse(services.jobs.view(services.jobs.change(run_id, body.changes())))
+
+    @router.post(
+        "/races",
+        tags=["races"],
+        status_code=202,
+        summary="Start a race, and the practice that it needs",
+        response_model=RaceView,
+        responses=answers(202, headers=LOCATION),
+    )
+    def start_race(
+        services: ServicesDep,
+        request: Request,
+        asked: StartRequestDep,
+        body: Annotated[RaceBody, bodies.race],
+    ) -> Response:
+        """Queue the trainings of its lanes and then the race, and answer with the race's run."""
+        jobs = services.jobs
+        run = asked.start(services, lambda key: jobs.race(body.start(), key))
+        return accepted(request, jobs.view(run))
+
+    @router.post(
+        "/experiments",
+        tags=["experiments"],
+        status_code=202,
+        summary="Start an experiment over many seeds",
+        response_model=ExperimentView,
+        responses=answers(202, headers=LOCATION),
+    )
+    def start_experiment(
+        services: ServicesDep,
+        request: Request,
+        asked: StartRequestDep,
+        body: Annotated[ExperimentBody, bodies.experiment],
+    ) -> Response:
+        """Queue it, and answer with its run."""
+        jobs, agents = services.jobs, services.agents
+        run = asked.start(services, lambda key: jobs.experiment(body.start(agents), key))
+        return accepted(request, jobs.view(run))
+
+    @router.post(
+        "/what-if",
+        tags=["what-if"],
+        response_model=WhatIfView,
+        summary="How far 30 seeds would come after a practice, and by default",
+    )
+    def ask(services: ServicesDep, body: Annotated[TrainingBody, bodies.training]) -> Response:
+        """A training's body, of at most 2,000 steps; always computed in the kinematic simulator."""
+        if body.continue_from is not None:
+            raise InvalidInput("a what-if begins with an empty table; leave out continue_from")
+        return JSONResponse(services.what_if.ask(body.start().config))
+
+    return router
