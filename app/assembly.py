@@ -49,8 +49,12 @@ def build_learner(
         Unreachable: if the robot's legs cannot reach the grid.
     """
     simulator = build_simulator(config, threads)
-    settings = complete(agent_settings(config.agent), config.settings, config.agent)
-    offered = {**vars(config), **settings}
+    declared = agent_settings(config.agent)
+    # Earlier versions kept those of Q-learning with every agent.
+    own = {name: value for name, value in config.settings.items() if name in declared}
+    settings = complete(declared, own, config.agent)
+    fields = {name: value for name, value in vars(config).items() if name != "settings"}
+    offered = {**fields, **settings}
     rng = generator(config.seed, LEARNING)
     walker = _walker(
         simulator, config.agent, config.observation, rng=rng, offered=offered, explore=True

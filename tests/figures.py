@@ -11,7 +11,7 @@ from app.assembly import build_learner, build_walkers
 from app.domain.observation import Observation
 from app.domain.robot import robot
 from app.domain.types import FloatArray
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
 from app.runs.tables import Checkpoint, from_bytes, snapshot, to_bytes
 from app.runs.training import evaluate, train, walk
 
@@ -59,7 +59,7 @@ def practise(config: TrainingConfig) -> float:
 
 
 def _kinematic(seed: int, steps: int, observation: Observation, divisions: int = 2) -> Any:
-    return TrainingConfig(
+    return training_config(
         gait="left-right-origin",  # the law is the same in all gaits
         simulator="kinematic",
         seed=seed,

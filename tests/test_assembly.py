@@ -13,12 +13,12 @@ from app.domain.gait import GaitSpec
 from app.domain.kinematic import KinematicSimulator
 from app.domain.robot import robot
 from app.physics.mujoco_simulator import MujocoSimulator
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, WalkingProblem
+from app.runs.config import LaneConfig, RaceConfig, WalkingProblem, training_config
 from app.runs.tables import Checkpoint, snapshot
 from app.runs.training import train
 from tests import own_agents
 
-CONFIG = TrainingConfig(
+CONFIG = training_config(
     gait="left-right-origin", simulator="kinematic", steps=150, evaluate_every=0
 )
 RACE = RaceConfig(
@@ -63,7 +63,11 @@ def test_a_grid_out_of_reach_is_refused_with_leg_and_cell(simulator: Any) -> Non
 
 
 def test_a_learner_gets_its_rates_from_the_config() -> None:
-    learner = build_learner(replace(CONFIG, alpha=0.2, gamma=0.5, epsilon_start=0.7))
+    learner = build_learner(
+        replace(
+            CONFIG, settings=CONFIG.settings | {"alpha": 0.2, "gamma": 0.5, "epsilon_start": 0.7}
+        )
+    )
 
     assert learner.walker.agent.state()["rates"][:2].tolist() == [0.2, 0.5]
     assert learner.epsilon == 0.7
@@ -146,7 +150,7 @@ def test_one_that_looks_ahead_is_given_a_simulator_and_counted() -> None:
 
 
 def test_an_agent_that_cannot_be_had_says_why() -> None:
-    with pytest.raises(InvalidInput, match=r"asks for crystal_ball; on offer: .*alpha.*rng"):
+    with pytest.raises(InvalidInput, match=r"asks for crystal_ball; on offer: .*problem.*rng"):
         build_learner(replace(CONFIG, agent="tests.own_agents:Needy"))
     with pytest.raises(UnknownName, match="unknown agent 'dijkstra'"):
         build_learner(replace(CONFIG, agent="dijkstra"))

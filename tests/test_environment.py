@@ -13,7 +13,7 @@ import app.environment
 from app.assembly import build_learner
 from app.domain.errors import InvalidInput
 from app.domain.robot import robot
-from app.runs.config import TrainingConfig
+from app.runs.config import training_config
 from app.runs.records import StepTaken
 from app.runs.training import train
 
@@ -48,7 +48,7 @@ def test_it_passes_gymnasiums_check_env_without_a_warning(settings: dict[str, An
     ids=["mujoco", "commanded", "a finer grid"],
 )
 def test_each_step_equals_that_of_a_training_to_the_last_bit(settings: dict[str, Any]) -> None:
-    config = TrainingConfig(**settings, steps=60, evaluate_every=0)
+    config = training_config(**settings, steps=60, evaluate_every=0)
     walk = make(**settings, max_episode_steps=60)
     observation, info = walk.reset()
     for record in train(build_learner(config), config):

@@ -67,12 +67,16 @@ def checked_table(
 
 
 def check_settings(config: TrainingConfig) -> None:
-    """Make sure that the settings are those of the agent, which is registered, and are valid.
+    """Make sure that the settings of a training of a registered agent are valid.
+
+    Those of the default agent are ignored: earlier versions kept them with every agent.
 
     Raises:
         UnknownName, InvalidInput: if they are not.
     """
-    complete(agent_settings(config.agent), config.settings, config.agent)
+    declared, others = agent_settings(config.agent), agent_settings(TrainingConfig.agent)
+    given = {k: v for k, v in config.settings.items() if k in declared or k not in others}
+    complete(declared, given, config.agent)
 
 
 def check_change(change: Mapping[str, Any], agent: str) -> None:

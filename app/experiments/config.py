@@ -178,4 +178,6 @@ def from_json(shown: Mapping[str, Any]) -> ExperimentConfig:
     values["gaits"] = tuple(gait_from_json(one) for one in shown["gaits"])
     own = {one.name for one in fields(ExperimentConfig)}
     settings = {name: values.pop(name) for name in list(values) if name not in own}
+    if single := [name for name, value in settings.items() if not isinstance(value, tuple)]:
+        raise InvalidInput(f"{single[0]} must be a list of values")
     return ExperimentConfig(**values, settings=SettingValues(settings))

@@ -25,7 +25,7 @@ from pathlib import Path
 import numpy as np
 
 from app.assembly import build_learner, finish_training
-from app.runs.config import TrainingConfig
+from app.runs.config import training_config
 from app.runs.tables import snapshot, to_bytes
 
 
@@ -96,7 +96,7 @@ def main():
     options = parser.parse_args()
 
     walk = {"gait": options.gait, "simulator": options.simulator}
-    config = TrainingConfig(
+    config = training_config(
         **walk, steps=options.steps, seed=options.seed, agent="dqn_agent:Agent", evaluate_every=0
     )
     learner = build_learner(config)

@@ -7,7 +7,7 @@ from app.assembly import build_learner
 from app.domain.observation import OBSERVATIONS, Observation, observe
 from app.domain.types import Action
 from app.runs import seeding
-from app.runs.config import TrainingConfig
+from app.runs.config import training_config
 from app.runs.training import Learner
 
 AGENTS = [
@@ -22,7 +22,7 @@ AGENTS = [
 
 def learner(agent: str, seed: int = 0, observation: Observation = "measured") -> Learner:
     return build_learner(
-        TrainingConfig(
+        training_config(
             gait="left-right-origin",
             simulator="kinematic",
             agent=agent,

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from app.agents.protocol import Problem, Transition, Tunable, Valuing
-from app.agents.q_learning import EpsilonSchedule, QLearning
+from app.agents.q_learning import QLearning
+from app.agents.tabular import EpsilonSchedule
 from app.domain.grid import FootGrid
 from app.domain.observation import legal_actions
 from app.domain.types import Action, Cells

@@ -42,7 +42,7 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("installed")
 def test_an_installed_package_offers_its_agents() -> None:
     assert registry.find("roaming") is own_agents.Restless
-    assert set(registry.registered()) == {"q-learning", "greedy", "two-step", "roaming"}
+    assert set(registry.registered()) == {*registry.OURS, "roaming"}
 
 
 @pytest.mark.usefixtures("installed")
@@ -53,7 +53,10 @@ def test_but_cannot_take_a_name_of_ours() -> None:
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("dijkstra", "unknown agent 'dijkstra'; .*q-learning, greedy, two-step.*my.module:Agent"),
+        (
+            "dijkstra",
+            "unknown agent 'dijkstra'; .*sarsa-lambda, greedy, two-step.*my.module:Agent",
+        ),
         ("", "unknown agent ''"),
         ("tests.own_agents:", "unknown agent"),
         ("tests.own_agents.Restless", "unknown agent"),

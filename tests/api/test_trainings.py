@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from app.assembly import build_learner, finish_training
-from app.runs.config import TrainingConfig
+from app.runs.config import training_config
 from app.runs.tables import from_bytes, table_of
 from app.runs.training import train
 from tests.api.calls import WALK, Api, refused
 
 
 def train_directly(**fields: Any) -> dict[str, Any]:
-    config = TrainingConfig(gait=WALK["gait"], **fields)
+    config = training_config(gait=WALK["gait"], **fields)
     learner = build_learner(config)
     for _ in train(learner, config):
         pass
@@ -159,7 +159,7 @@ def test_changed_rates_can_be_repeated_exactly(api: Api) -> None:
     api.until(run, lambda then: then["progress"]["done"] > now["changes"][0]["step"] + 20)
     api.stop(run)
     now = api.look(run)
-    config = TrainingConfig(
+    config = training_config(
         gait=WALK["gait"], simulator="kinematic", steps=10_000_000, evaluate_every=0
     )
     learner = build_learner(config)

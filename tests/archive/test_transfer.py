@@ -14,6 +14,7 @@ from app.agents.registry import OURS
 from app.archive import archive
 from app.archive.transfer import RUN, export_run, import_run
 from app.domain.errors import InvalidInput
+from app.domain.settings import SettingValues
 from app.runs.recording import race_arrays
 from app.storage.database.store import SqlStore
 from app.storage.errors import Conflict, NotFound
@@ -134,11 +135,12 @@ def test_checkpoint_is_exported_with_an_interrupted_run_only(source: SqlStore) -
 
 
 def test_unusual_configs_are_imported_but_unregistered_agents_refused() -> None:
+    odd = replace(ODD, agent="q-learning", settings=SettingValues({"alpha": 0.5}))
     store = MemoryStore()
-    store.create(training(ONE, state="finished", config=replace(ODD, agent="q-learning")))
+    store.create(training(ONE, state="finished", config=odd))
     store.create(training(OTHER, state="finished", config=ODD))
     assert imported(export_run(store, ONE)) == store.get(ONE)
-    assert "q-learning, greedy, two-step" in refusal(export_run(store, OTHER))
+    assert "q-learning, sarsa-lambda, greedy, two-step" in refusal(export_run(store, OTHER))
 
 
 def _set(name: str, value: Any, *path: str | int) -> Change:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.assembly import build_learner, finish_training
-from app.runs.config import TrainingConfig
+from app.runs.config import training_config
 from app.runs.training import train
 from tests.cli.running import EXAMPLES, hexapods, output, refusal
 
@@ -32,7 +32,7 @@ def test_train_tells_how_far_it_walks(tmp_path: Path) -> None:
 
 def test_the_command_line_and_a_direct_call_learn_the_same_table(tmp_path: Path) -> None:
     printed = output("train", *GAIT, "--steps", "60", "--seed", "7", folder=tmp_path)
-    config = TrainingConfig(gait="left-right-origin", steps=60, seed=7)
+    config = training_config(gait="left-right-origin", steps=60, seed=7)
     learner = build_learner(config)
     for _ in train(learner, config):
         pass

@@ -31,16 +31,17 @@ class Config:
     name: str = ""
 
 
-def test_parameters_without_a_setting_are_not_settings() -> None:
+def test_parameters_of_plain_values_with_a_default_are_settings() -> None:
     found = declared_parameters(Agent)
-    assert list(found) == ["rate", "count"]
+    assert list(found) == ["rate", "steps", "count"]
+    assert (found["steps"].valid, found["steps"].about.title) == ("a whole number", "Steps")
     assert (found["rate"].default, found["count"].default) == (0.3, REQUIRED)
     assert found["rate"].about is ABOUT
 
 
 def test_settings_are_found_in_dataclasses_and_functions() -> None:
     assert list(declared_fields(Config)) == ["pace"]
-    assert list(declared_parameters(Agent.__init__)) == ["rate", "count"]
+    assert list(declared_parameters(Agent.__init__)) == ["rate", "steps", "count"]
 
 
 @pytest.mark.parametrize(
@@ -57,7 +58,7 @@ def test_settings_are_found_in_dataclasses_and_functions() -> None:
         (Annotated[int, Ge(1), Le(10_000_000)], "a whole number from 1 to 10,000,000"),
         (Annotated[float, None], "a number"),
         (Annotated[bool, None], "true or false"),
-        (Annotated[str, None], "text"),
+        (Annotated[str, None], "text of at most 200 characters"),
         (Annotated[Literal["a", "b"], None], "a, or b"),
         (
             Annotated[Literal["max"] | Annotated[float, Ge(1)], None],

@@ -16,6 +16,7 @@ from app.experiments.config import (
     as_json,
     experiment_config,
     from_json,
+    settings_of,
 )
 
 
@@ -45,10 +46,10 @@ def test_a_sweep_can_vary_every_grid_parameter() -> None:
         "divisions": (2, 3),
         "grid_side_m": (0.03, 0.04),
     }
-    assert set(grid) == set(GRID)
-    config = experiment_config("sweep", grid)
-    assert {name: getattr(config, name) for name in grid} == grid
-    assert config.observations == ("measured",)
+    assert set(grid) == {*GRID, *settings_of(["q-learning"])}
+    shown = as_json(experiment_config("sweep", grid))
+    assert {name: tuple(shown[name]) for name in grid} == grid
+    assert shown["observations"] == ["measured"]
 
 
 def test_none_counts_as_not_given() -> None:

@@ -156,7 +156,7 @@ def test_results_of_another_version_are_refused(folder: Path) -> None:
     [
         (replace(CONFIG, seed=1), "seed"),
         (replace(CONFIG, simulator="mujoco"), "simulator"),
-        (replace(CONFIG, gamma=(0.5, 0.9)), "gamma"),
+        (replace(CONFIG, settings=CONFIG.settings | {"gamma": (0.5, 0.9)}), "gamma"),
         (experiment_config("figure4", {"seeds": 3, "simulator": "kinematic"}), "experiment"),
     ],
 )

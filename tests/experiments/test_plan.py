@@ -88,7 +88,8 @@ def test_references_come_first_and_timed_trials_last() -> None:
 
 def test_greedy_is_always_included_as_a_reference() -> None:
     agents = ("tests.own_agents:Restless", "tests.own_agents:ThreeStep")
-    settings = plan("sweep", gaits=("front-back-origin",), agents=agents, alpha=(0.1, 0.3)).settings
+    gaits = ("front-back-origin",)
+    settings = plan("sweep", gaits=gaits, agents=agents, steps=(40, 80)).settings
     found = [(setting.training.agent, setting.role) for setting in settings]
     assert found == [
         ("greedy", "reference"),
@@ -110,7 +111,7 @@ def test_two_robots_of_one_preset_have_different_labels() -> None:
         ({"seeds": 10_000, "alpha": (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)}, "the most is 200,000"),
         ({"grid_side_m": (0.04, 0.2)}, "cannot reach"),
         ({"gaits": ("moonwalk",)}, "left-right-origin"),
-        ({"agents": ("skynet",)}, "q-learning, greedy, two-step"),
+        ({"agents": ("skynet",)}, "q-learning, sarsa-lambda, greedy, two-step"),
         ({"alpha": (2.0,)}, "over 0 and at most 1"),
         ({"divisions": (9,)}, "from 2 to 8"),
         ({"observations": ("guessed",)}, "measured, commanded"),

@@ -13,13 +13,13 @@ from app.domain.errors import UnknownName
 from app.experiments.config import experiment_config
 from app.experiments.plan import Plan, Trial
 from app.experiments.trial import TrialConfig, TrialResult, run_trial
-from app.runs.config import TrainingConfig
+from app.runs.config import TrainingConfig, training_config
 from tests.figures import GREEDY_H, H_M, interquartile_mean, kinematic_rows
 
 
 def practice(**given: Any) -> TrainingConfig:
     fields: dict[str, Any] = {"simulator": "kinematic", "evaluate_every": 0, **given}
-    return TrainingConfig(**{"gait": "left-right-origin", **fields})
+    return training_config(**{"gait": "left-right-origin", **fields})
 
 
 def trials(experiment: str, **given: Any) -> list[Trial]:
@@ -128,5 +128,5 @@ def test_an_agent_that_fails_on_its_walk_is_a_result() -> None:
 
 
 def test_an_unknown_agent_is_refused() -> None:
-    with pytest.raises(UnknownName, match="q-learning, greedy, two-step"):
+    with pytest.raises(UnknownName, match="q-learning, sarsa-lambda, greedy, two-step"):
         run_trial(TrialConfig(training=practice(agent="skynet")))

@@ -15,7 +15,7 @@ from app.jobs.jobs import Jobs
 from app.jobs.queue import MAX_QUEUED, RunQueue
 from app.jobs.resume import resumed_runs
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
-from app.runs.config import TrainingConfig, WalkingProblem
+from app.runs.config import WalkingProblem, training_config
 from app.storage.errors import Busy, Conflict, StorageFailed
 from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
@@ -26,7 +26,7 @@ WALK = WalkingProblem(gait="left-right-origin", simulator="kinematic")
 
 
 def training(**fields: Any) -> TrainingStart:
-    return TrainingStart(TrainingConfig(**vars(WALK), **{"steps": 10, **fields}))
+    return TrainingStart(training_config(**vars(WALK), **{"steps": 10, **fields}))
 
 
 def endless() -> TrainingStart:
@@ -88,7 +88,7 @@ def test_paused_job_frees_its_core(jobs: Jobs, store: MemoryStore) -> None:
 
 def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: MemoryStore) -> None:
     mujoco = WalkingProblem(gait="left-right-origin")
-    start = TrainingStart(TrainingConfig(**vars(mujoco), steps=1_000_000, evaluate_every=0))
+    start = TrainingStart(training_config(**vars(mujoco), steps=1_000_000, evaluate_every=0))
     run = jobs.train(start)
     wait_for_progress(store, run)
     began = time.monotonic()
@@ -104,7 +104,7 @@ def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: Memory
 def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: MemoryStore) -> None:
     """Its look-ahead baseline would take half a minute at eight divisions."""
     slow = WalkingProblem(gait="left-right-origin", divisions=8, grid_side_m=0.03)
-    config = TrainingConfig(**vars(slow), steps=100, evaluate_every=1, steps_per_episode=1)
+    config = training_config(**vars(slow), steps=100, evaluate_every=1, steps_per_episode=1)
     run = jobs.train(TrainingStart(config))
     wait_for_progress(store, run)
     time.sleep(0.5)
@@ -233,7 +233,7 @@ def test_submission_that_fails_halfway_leaves_no_run_queued() -> None:
     """Two runs are resumed together; the store fails after the first was written."""
     store = FailingStore()
     ids = ["a", "b"]
-    config = TrainingConfig(**vars(WALK), steps=10)
+    config = training_config(**vars(WALK), steps=10)
     for run_id in ids:
         store.create(Run(id=run_id, kind="training", name=run_id, config=config, total=10))
         store.change(run_id, QUEUED, "interrupted")

@@ -11,7 +11,7 @@ from app.domain.errors import DamagedFile, InvalidInput
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.config import LaneConfig, RaceConfig, training_config
 from app.runs.tables import snapshot, to_bytes
 from app.storage.errors import Conflict
 from app.storage.memory_store import MemoryStore
@@ -21,8 +21,8 @@ from tests.jobs.test_jobs import WALK
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 from tests.storage.stores import training
 
-SLOW = TrainingConfig(**vars(WALK), steps=100_000, pace=30, evaluate_every=20)
-SHORT = TrainingConfig(**vars(WALK), steps=60, evaluate_every=20)
+SLOW = training_config(**vars(WALK), steps=100_000, pace=30, evaluate_every=20)
+SHORT = training_config(**vars(WALK), steps=60, evaluate_every=20)
 
 
 @pytest.fixture
@@ -171,7 +171,7 @@ def test_race_restarts_from_its_start(store: MemoryStore, open_jobs: Callable[[]
 def test_race_resumes_its_failed_training(
     store: MemoryStore, open_jobs: Callable[[], Jobs]
 ) -> None:
-    practice = TrainingConfig(gait="left-right-origin", simulator="kinematic", steps=20)
+    practice = training_config(gait="left-right-origin", simulator="kinematic", steps=20)
     store.create(training("t", state="failed", config=practice, total=20))
     config = RaceConfig(**vars(WALK), lanes=(LaneConfig(agent="q-learning"),))
     run = Run(id="r", kind="race", name="r", config=config, total=50, lane_training_ids=("t",))

@@ -8,7 +8,7 @@ import pytest
 from app.domain.gait import NAMED_GAITS
 from app.domain.robot import robot
 from app.domain.types import FloatArray
-from app.runs.config import TrainingConfig
+from app.runs.config import training_config
 from tests.figures import in_a_pool, look_ahead, practise
 
 COMPLIANT = {"servo_kp": 10, "servo_kv": 0.5}
@@ -78,7 +78,7 @@ LEARNERS = {
 def learned_m() -> dict[str, FloatArray]:
     """`measured` Q-learning after 500 steps, for each seed."""
     configs = [
-        TrainingConfig(gait=gait, robot=robot(preset), steps=500, seed=seed, evaluate_every=0)
+        training_config(gait=gait, robot=robot(preset), steps=500, seed=seed, evaluate_every=0)
         for gait, preset in LEARNERS.values()
         for seed in SEEDS
     ]

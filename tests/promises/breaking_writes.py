@@ -31,7 +31,7 @@ from app.jobs.job import Job
 from app.jobs.jobs import Jobs
 from app.jobs.messages import Batch, Began, Checkpointed, Ended, Saved, TrainingTask
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart, load_table
-from app.runs.config import TrainingConfig, WalkingProblem
+from app.runs.config import WalkingProblem, training_config
 from app.runs.records import Evaluated, StepTaken
 from app.runs.tables import snapshot, to_bytes
 from app.runs.training import train
@@ -51,7 +51,7 @@ KEPT_ID, MOVED_ID, EXPERIMENT_ID, LEARNING_ID = (
     "00000000000g1",
 )
 KEY = IdempotencyKey("key", "0" * 64)
-CONFIG = TrainingConfig(gait=GAIT, simulator="kinematic", steps=60, evaluate_every=2)
+CONFIG = training_config(gait=GAIT, simulator="kinematic", steps=60, evaluate_every=2)
 TEMPLATE, FOLDER = "template", "tried"
 
 

@@ -12,7 +12,7 @@ import pytest
 from app.assembly import build_learner
 from app.domain.errors import DamagedFile
 from app.jobs.submissions import load_table
-from app.runs.config import TrainingConfig
+from app.runs.config import training_config
 from app.runs.tables import from_bytes, snapshot, to_bytes
 from app.runs.training import train
 from app.storage.store import TABLE
@@ -22,7 +22,7 @@ DAMAGES = 1000
 
 
 def make_table() -> bytes:
-    config = TrainingConfig(gait="left-right-origin", simulator="kinematic", steps=50)
+    config = training_config(gait="left-right-origin", simulator="kinematic", steps=50)
     learner = build_learner(config)
     for _ in train(learner, config):
         pass

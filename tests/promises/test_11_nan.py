@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from app.assembly import build_learner
-from app.runs.config import TrainingConfig
+from app.runs.config import training_config
 from app.runs.tables import snapshot, to_bytes
 from app.runs.training import train
 from app.storage.store import CHECKPOINT
@@ -20,7 +20,7 @@ from tests.promises.length import at_length
 from tests.served import Served
 from tests.storage.stores import opened, training
 
-CONFIG = TrainingConfig(gait="left-right-origin", steps=500, evaluate_every=1)
+CONFIG = training_config(gait="left-right-origin", steps=500, evaluate_every=1)
 STEP = 3
 
 

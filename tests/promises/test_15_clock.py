@@ -15,7 +15,7 @@ import pytest
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import TrainingStart
-from app.runs.config import TrainingConfig
+from app.runs.config import training_config
 from app.storage.database.store import SqlStore
 from app.storage.recordings import Recordings
 from app.storage.store import Run
@@ -63,7 +63,7 @@ def server(folder: Path) -> Iterator[tuple[SqlStore, Jobs]]:
 
 
 def practice(jobs: Jobs, steps: int = 40) -> Run:
-    config = TrainingConfig(
+    config = training_config(
         gait="left-right-origin", simulator="kinematic", steps=steps, pace=20, evaluate_every=0
     )
     return jobs.train(TrainingStart(config))

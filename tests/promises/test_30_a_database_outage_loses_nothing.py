@@ -17,7 +17,7 @@ import pytest
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import TrainingStart
-from app.runs.config import TrainingConfig, WalkingProblem
+from app.runs.config import WalkingProblem, training_config
 from app.storage.recordings import Recordings
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 from tests.postgresql import PostgresServer, postgres_server
@@ -100,7 +100,7 @@ def test_after_the_longest_wait_a_job_is_interrupted_and_can_be_resumed(
 ) -> None:
     monkeypatch.setattr("app.jobs.job.MAX_OUTAGE_S", 1.0)
     walk = WalkingProblem(gait="left-right-origin", simulator="kinematic")
-    config = TrainingConfig(**vars(walk), steps=300, pace=20, evaluate_every=0)
+    config = training_config(**vars(walk), steps=300, pace=20, evaluate_every=0)
     with own_postgresql.database() as url, opened(tmp_path, url) as store:
         jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
         jobs.open()

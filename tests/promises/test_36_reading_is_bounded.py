@@ -22,7 +22,7 @@ import pytest
 
 from app.agents.q_table import QTable
 from app.assembly import build_learner
-from app.runs.config import TrainingConfig
+from app.runs.config import training_config
 from app.runs.tables import Checkpoint, snapshot, to_bytes
 from tests.promises.length import at_length
 from tests.promises.raw import watched_memory
@@ -54,7 +54,7 @@ EXPERIMENTS = ("trials", "trials?format=csv", "summary", "report", "files/trials
 
 def large_table() -> bytes:
     """Build the file of a table of 8 divisions as after a long training."""
-    config = TrainingConfig(gait="left-right-origin", simulator="kinematic", divisions=8, steps=1)
+    config = training_config(gait="left-right-origin", simulator="kinematic", divisions=8, steps=1)
     table, chance = QTable(3, len(config.grid)), np.random.default_rng(0)
     for state in chance.permutation(table.states)[:VISITED_STATES].tolist():
         q, n = table.row(state)

@@ -9,6 +9,7 @@ import pytest
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import GaitSpec
 from app.domain.robot import robot
+from app.domain.settings import SettingValues
 from app.runs.config import (
     LaneConfig,
     RaceConfig,
@@ -17,6 +18,7 @@ from app.runs.config import (
     as_json,
     config_from_json,
     gait_from_json,
+    training_config,
 )
 
 GAIT = "left-right-origin"
@@ -24,10 +26,15 @@ LANES = (LaneConfig(agent="greedy"),)
 
 
 def test_the_defaults_are_the_papers() -> None:
-    config = TrainingConfig(gait=GAIT)
+    config = training_config(gait=GAIT)
 
-    assert (config.alpha, config.gamma) == (0.3, 0.9)
-    assert (config.epsilon_start, config.epsilon_end, config.steps_per_episode) == (1, 0, 50)
+    assert dict(config.settings) == {
+        "alpha": 0.3,
+        "gamma": 0.9,
+        "epsilon_start": 1,
+        "epsilon_end": 0,
+    }
+    assert config.steps_per_episode == 50
     assert (config.steps, config.divisions, config.grid_side_m) == (500, 2, 0.04)
     assert (config.observation, config.simulator, config.robot.name) == (
         "measured",
@@ -68,7 +75,7 @@ def test_the_defaults_are_the_papers() -> None:
 )
 def test_a_wrong_training_says_what_is_valid(asked: dict[str, Any], message: str) -> None:
     with pytest.raises(InvalidInput, match=message):
-        TrainingConfig(**{"gait": GAIT, **asked})
+        training_config(**{"gait": GAIT, **asked})
 
 
 @pytest.mark.parametrize(
@@ -97,7 +104,7 @@ def test_a_lane_reads_its_state_in_a_known_way() -> None:
 
 @pytest.mark.parametrize("pace", ["max", 0.01, 1, 1000])
 def test_a_pace_is_max_or_a_number_of_times_real_time(pace: float | str) -> None:
-    assert TrainingConfig(gait=GAIT, pace=pace).pace == pace  # type: ignore[arg-type]
+    assert training_config(gait=GAIT, pace=pace).pace == pace
 
 
 @pytest.mark.parametrize(
@@ -107,17 +114,17 @@ def test_a_config_in_plain_types_is_fit_for_json_and_names_the_same_gait(
     gait: str | GaitSpec,
 ) -> None:
     made = robot({"preset": "compliant", "n_legs": 6, "friction": 0.5})
-    shown = json.loads(json.dumps(as_json(TrainingConfig(gait=gait, robot=made))))
+    shown = json.loads(json.dumps(as_json(training_config(gait=gait, robot=made))))
 
     assert gait_from_json(shown.pop("gait")) == gait
     assert robot(shown.pop("robot")) == made
-    assert TrainingConfig(gait=gait, robot=made, **shown) == TrainingConfig(gait=gait, robot=made)
+    assert training_config(gait=gait, robot=made, **shown) == training_config(gait=gait, robot=made)
 
 
 @pytest.mark.parametrize(
     "config",
     [
-        TrainingConfig(gait=GAIT),
+        training_config(gait=GAIT),
         TrainingConfig(
             gait=GaitSpec(1, 4, pairs=((1, 4), (2, 6), (3, 5))),
             robot=robot({"preset": "slippery", "n_legs": 6, "mount_radius_m": 0.12}),
@@ -125,8 +132,11 @@ def test_a_config_in_plain_types_is_fit_for_json_and_names_the_same_gait(
             seed=2**70,
             pace=2.5,
             agent="my.module:Agent",
+            settings=SettingValues({"width": 3, "mode": "wide"}),
         ),
-        TrainingConfig(gait=GaitSpec(1, 3, "vertical"), robot=robot({"n_legs": 8, "femur_m": 0.1})),
+        training_config(
+            gait=GaitSpec(1, 3, "vertical"), robot=robot({"n_legs": 8, "femur_m": 0.1})
+        ),
         RaceConfig(gait=GAIT, lanes=(*LANES, LaneConfig(agent="x", observation="commanded"))),
     ],
 )

@@ -10,7 +10,7 @@ from app.assembly import build_learner, build_walkers
 from app.domain.simulator import Motion
 from app.domain.types import Action
 from app.runs.clocks import Timetable
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.config import LaneConfig, RaceConfig, training_config
 from app.runs.racing import record_race
 from app.runs.recording import (
     FIRST_STEPS,
@@ -31,7 +31,7 @@ START = np.array(qpos(0), np.float32)
 
 def a_race(steps: int) -> list[LaneRecording]:
     """The paper's three lanes on MuJoCo; the learner has practised a little."""
-    practice = TrainingConfig(gait="left-right-origin", simulator="kinematic", steps=200)
+    practice = training_config(gait="left-right-origin", simulator="kinematic", steps=200)
     learner = build_learner(practice)
     for _ in train(learner, practice):
         pass

@@ -8,7 +8,7 @@ import pytest
 
 from app.assembly import build_learner
 from app.domain.simulator import Motion
-from app.runs.config import TrainingConfig
+from app.runs.config import training_config
 from app.runs.recording import Arrays, PracticeRecording
 from app.runs.records import Evaluated, StepTaken
 from app.runs.stored_practice import (
@@ -22,9 +22,9 @@ from app.runs.training import train
 
 def practise(steps: int, simulator: str = "kinematic") -> PracticeRecording:
     """A recording as a job makes it, with an evaluation every 10 steps."""
-    config = TrainingConfig(
+    config = training_config(
         gait="left-right-origin",
-        simulator=simulator,  # type: ignore[arg-type]
+        simulator=simulator,
         steps=steps,
         evaluate_every=10,
     )

@@ -12,11 +12,11 @@ import pytest
 from app.agents.q_table import QTable
 from app.assembly import build_learner
 from app.domain.errors import DamagedFile, TableMismatch
-from app.runs.config import TrainingConfig
+from app.runs.config import TrainingConfig, training_config
 from app.runs.table_file import TableFile
 from app.runs.tables import Checkpoint, snapshot, to_bytes
 
-CONFIG = TrainingConfig(gait="left-right-origin", simulator="kinematic", steps=10)
+CONFIG = training_config(gait="left-right-origin", simulator="kinematic", steps=10)
 
 
 class Held:

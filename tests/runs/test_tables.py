@@ -19,7 +19,7 @@ from app.assembly import build_learner
 from app.domain.errors import DamagedFile, TableMismatch
 from app.domain.gait import GaitSpec
 from app.domain.robot import robot
-from app.runs.config import TrainingConfig
+from app.runs.config import TrainingConfig, training_config
 from app.runs.tables import (
     Checkpoint,
     check_fits,
@@ -31,7 +31,7 @@ from app.runs.tables import (
 )
 from app.runs.training import train
 
-CONFIG = TrainingConfig(
+CONFIG = training_config(
     gait="left-right-origin", simulator="kinematic", steps=120, evaluate_every=0
 )
 

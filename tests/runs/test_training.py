@@ -10,13 +10,13 @@ from app.agents.q_learning import QLearning
 from app.assembly import build_learner, finish_training
 from app.domain.errors import IllegalAction
 from app.runs import seeding
-from app.runs.config import SIMULATORS, SimulatorName, TrainingConfig
+from app.runs.config import SIMULATORS, SimulatorName, TrainingConfig, training_config
 from app.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
 from app.runs.tables import from_bytes, restore, snapshot, to_bytes
 from app.runs.training import Learner, train
 from app.runs.walker import Walker
 
-CONFIG = TrainingConfig(
+CONFIG = training_config(
     gait="left-right-vertical", simulator="kinematic", steps=200, seed=3, evaluate_every=50
 )
 
@@ -77,7 +77,12 @@ def test_epsilon_falls_linearly_over_the_episodes(
 
 
 def test_epsilon_may_run_between_other_numbers() -> None:
-    config = replace(CONFIG, steps=150, epsilon_start=0.9, epsilon_end=0.3, evaluate_every=0)
+    config = replace(
+        CONFIG,
+        steps=150,
+        evaluate_every=0,
+        settings=CONFIG.settings | {"epsilon_start": 0.9, "epsilon_end": 0.3},
+    )
     _, records = run(config)
 
     assert sorted({s.epsilon for s in steps(records)}) == pytest.approx([0.3, 0.6, 0.9])
@@ -244,7 +249,9 @@ def test_changed_rates_survive_being_saved() -> None:
 def test_going_on_from_a_table_takes_what_was_learned_and_nothing_else() -> None:
     first, _ = run(CONFIG)
     table = snapshot(first, CONFIG)
-    onward = build_learner(replace(CONFIG, alpha=0.1, seed=99), table)
+    onward = build_learner(
+        replace(CONFIG, seed=99, settings=CONFIG.settings | {"alpha": 0.1}), table
+    )
     agent, successor = first.walker.agent, onward.walker.agent
     assert isinstance(agent, QLearning)
     assert isinstance(successor, QLearning)
@@ -277,7 +284,7 @@ def test_blocks_restart_the_schedule_and_keep_learning() -> None:
 
 def test_the_blocks_differ_from_each_other() -> None:
     """The generator goes on, so the second block explores elsewhere."""
-    config = replace(CONFIG, evaluate_every=0, epsilon_end=1.0)
+    config = replace(CONFIG, evaluate_every=0, settings=CONFIG.settings | {"epsilon_end": 1.0})
     first, records = run(config)
     onward = build_learner(config, snapshot(first, config))
     again = list(train(onward, config))

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.assembly import build_learner, build_walkers
 from app.events.bus import EventBus
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
 from app.runs.racing import race
 from app.runs.recording import LaneRecording
 from app.runs.records import StepTaken
@@ -110,7 +110,7 @@ class StageParts:
 
     def running_training(self, steps: int = 100, **fields: Any) -> tuple[Run, AdvanceRun]:
         """Return a running training, and a function that computes its next step."""
-        config = TrainingConfig(gait=GAIT, simulator="kinematic", steps=steps, **fields)
+        config = training_config(gait=GAIT, simulator="kinematic", steps=steps, **fields)
         run = self.create(config, state="running")
         learner = build_learner(config)
         pose = learner.walker.simulator.pose(learner.walker.state)

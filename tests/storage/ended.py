@@ -9,7 +9,7 @@ from app.assembly import build_learner, build_walkers, finish_training
 from app.experiments.plan import Plan
 from app.experiments.summary import summarise
 from app.experiments.trial import run_trial
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.config import LaneConfig, RaceConfig, training_config
 from app.runs.racing import record_race
 from app.runs.records import Evaluated, StepTaken
 from app.runs.results import race_result
@@ -26,7 +26,7 @@ GAIT = "left-right-origin"
 
 def ended_training(store: RunStore, run_id: str, name: str = "It learned", steps: int = 120) -> Run:
     """Run a training, and store it with its curve, recording, table and result."""
-    config = TrainingConfig(gait=GAIT, steps=steps, simulator="kinematic", evaluate_every=5)
+    config = training_config(gait=GAIT, steps=steps, simulator="kinematic", evaluate_every=5)
     store.create(training(run_id, name=name, config=config, total=steps))
     recordings, learner = Recordings(store), build_learner(config)
     rest = learner.walker.simulator.pose(learner.walker.state).astype(np.float32)

@@ -7,8 +7,9 @@ from typing import Any
 
 from app.domain.gait import GaitSpec
 from app.domain.robot import robot
+from app.domain.settings import SettingValues
 from app.experiments.config import ExperimentConfig
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
 from app.settings import Settings
 from app.storage.database.opening import open_store
 from app.storage.database.store import SqlStore
@@ -16,7 +17,7 @@ from app.storage.store import Run
 from tests.postgresql import PostgresServer
 
 BACKENDS = ["sqlite", "postgresql"]
-PLAIN = TrainingConfig(gait="left-right-origin")
+PLAIN = training_config(gait="left-right-origin")
 ODD = TrainingConfig(
     gait=GaitSpec(right_leg=1, left_leg=4, pairs=((1, 4), (2, 6), (3, 5))),
     robot=robot({"preset": "slippery", "n_legs": 6, "mount_radius_m": 0.12, "femur_m": 0.09}),
@@ -24,6 +25,7 @@ ODD = TrainingConfig(
     seed=2**80,
     pace=2.5,
     agent="my.module:Agent",
+    settings=SettingValues({"width": 3, "mode": "wide"}),
 )
 RACE = RaceConfig(
     gait="front-back-vertical",
@@ -52,7 +54,7 @@ SWEEP = ExperimentConfig(
     observations=("commanded",),
     robots=(robot("stiff"), ODD.robot),
     simulator="kinematic",
-    alpha=(0.1, 0.3),
+    settings=SettingValues({"alpha": (0.1, 0.3)}),
     divisions=(2, 3),
 )
 TRIALS: list[dict[str, Any]] = [

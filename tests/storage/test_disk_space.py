@@ -10,7 +10,7 @@ import pytest
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import TrainingStart
-from app.runs.config import TrainingConfig
+from app.runs.config import training_config
 from app.settings import Settings
 from app.storage.database.opening import open_store
 from app.storage.database.store import SqlStore
@@ -21,7 +21,7 @@ from app.storage.store import QUEUED, TABLE
 from tests.storage.stores import training
 
 QUOTA_MB = 12
-START = TrainingStart(TrainingConfig(gait="left-right-origin", simulator="kinematic"))
+START = TrainingStart(training_config(gait="left-right-origin", simulator="kinematic"))
 
 
 @pytest.fixture

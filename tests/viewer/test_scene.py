@@ -9,7 +9,7 @@ import pytest
 
 from app.domain.grid import FootGrid
 from app.domain.robot import Robot, ring
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.config import LaneConfig, RaceConfig, training_config
 from app.stage.scene_spec import idle_scene, race_scene, rest_pose, training_scene
 from app.stage.stage_frame import ActionValuesView, Ghost, LaneView, SceneSpec, StageFrame
 from app.viewer import wire
@@ -159,7 +159,7 @@ def test_unchanged_frame_sends_no_messages(server: InProcessViser) -> None:
 
 def test_change_of_scene_removes_all_old_nodes(server: InProcessViser) -> None:
     scene = StageScene(server)
-    practice = training_scene(TrainingConfig(gait=GAIT, divisions=3))
+    practice = training_scene(training_config(gait=GAIT, divisions=3))
     ghosts = (Ghost(50, 0.1), Ghost(100, 0.3))
 
     def show_all() -> None:

@@ -16,13 +16,18 @@ from scipy import stats
 from app.domain.errors import InvalidInput
 from app.experiments.plan import trial_seed
 from app.experiments.trial import TrialConfig, run_trial
-from app.runs.config import TrainingConfig
+from app.runs.config import TrainingConfig, training_config
 from app.storage.errors import Busy
 from app.what_if.trial_pool import TrialPool
 from app.what_if.what_if import MAX_WAITING, SEEDS, WhatIf, _interquartile_mean
 
-SHORT = TrainingConfig(gait="left-right-origin", steps=40)
+SHORT = training_config(gait="left-right-origin", steps=40)
 LONG_S = 60.0
+
+
+def changed(settings: dict[str, float], **fields: Any) -> TrainingConfig:
+    """The training with other settings of its agent."""
+    return replace(SHORT, **fields, settings=SHORT.settings | settings)
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +51,7 @@ def distances(training: TrainingConfig) -> list[float]:
 
 
 def test_it_is_thirty_kinematic_seeds_of_each(what_if: WhatIf) -> None:
-    chosen = replace(SHORT, alpha=0.9, epsilon_end=0.2)
+    chosen = changed({"alpha": 0.9, "epsilon_end": 0.2})
     answer = what_if.ask(chosen)
     assert answer["seeds"] == 30
     assert answer["greedy_m"] == pytest.approx(24.833 * 0.02, abs=1e-5)
@@ -101,12 +106,12 @@ def test_what_cannot_be_tried_is_said(what_if: WhatIf, more: dict[str, Any], wor
 
 
 def test_a_process_that_dies_costs_one_question(what_if: WhatIf, pool: TrialPool) -> None:
-    what_if.ask(replace(SHORT, alpha=0.31))
+    what_if.ask(changed({"alpha": 0.31}))
     for pid in pool.pids:
         os.kill(pid, signal.SIGKILL)
     with pytest.raises(Busy, match="try again"):
-        what_if.ask(replace(SHORT, alpha=0.32))
-    assert what_if.ask(replace(SHORT, alpha=0.32))["chosen"]["alpha"] == 0.32
+        what_if.ask(changed({"alpha": 0.32}))
+    assert what_if.ask(changed({"alpha": 0.32}))["chosen"]["alpha"] == 0.32
 
 
 def test_few_wait_and_the_others_are_told(what_if: WhatIf) -> None:
@@ -114,7 +119,11 @@ def test_few_wait_and_the_others_are_told(what_if: WhatIf) -> None:
 
     def ask(number: int) -> None:
         try:
-            answers.append(what_if.ask(replace(SHORT, steps=100, gamma=number / 50)))
+            answers.append(
+                what_if.ask(
+                    replace(SHORT, steps=100, settings=SHORT.settings | {"gamma": number / 50})
+                )
+            )
         except Busy as busy:
             answers.append(busy)
 

@@ -51,6 +51,12 @@ def test_as_fast_in_real_time_means_at_least_95_percent_of_greedy(
     assert found["verdict"] == verdict
 
 
+def alpha_of(one: Setting) -> float:
+    alpha = one.training.settings["alpha"]
+    assert isinstance(alpha, float)
+    return alpha
+
+
 def test_the_papers_text_and_table_are_judged_separately() -> None:
     """Q-learning wins in the table's gait, and not in the text's."""
 
@@ -144,7 +150,7 @@ def test_a_curve_that_stays_near_zero_neither_improves_nor_satisfies() -> None:
 
 def test_tuning_helps_if_the_best_is_established_to_come_further() -> None:
     def far(one: Setting) -> Callable[[int], float]:
-        return around({0.1: 0.3, 0.3: 0.35, 0.6: 0.45}[one.training.alpha])
+        return around({0.1: 0.3, 0.3: 0.35, 0.6: 0.45}[alpha_of(one)])
 
     found = claim(summary_of("sweep", far, seeds=8, alpha=(0.1, 0.3, 0.6)), "tuning")
     assert found["verdict"] == "holds"

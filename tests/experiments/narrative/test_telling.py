@@ -20,6 +20,12 @@ def headings(summary: dict[str, list[dict[str, str]]]) -> Sequence[str]:
     return [one["heading"] for one in summary["story"]]
 
 
+def alpha_of(one: Setting) -> float:
+    alpha = one.training.settings["alpha"]
+    assert isinstance(alpha, float)
+    return alpha
+
+
 def test_the_seeds_spread_and_wrong_winners_are_described() -> None:
     """Greedy is at 0.36 m at time-out; of ten seeds nine are ahead."""
     summary = summary_of(
@@ -86,7 +92,7 @@ def test_the_caution_names_few_seeds_missing_trials_and_the_simulator() -> None:
 def test_a_sweep_names_its_best_and_worst() -> None:
     summary = summary_of(
         "sweep",
-        lambda one: around({0.1: 0.1, 0.3: 0.3, 0.6: 0.4}[one.training.alpha], 0.001),
+        lambda one: around({0.1: 0.1, 0.3: 0.3, 0.6: 0.4}[alpha_of(one)], 0.001),
         seeds=5,
         alpha=(0.1, 0.3, 0.6),
     )

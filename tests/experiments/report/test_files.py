@@ -1,6 +1,5 @@
 """The report's files: a self-contained page, CSV, figures and the summary."""
 
-import argparse
 import csv
 import io
 import json
@@ -13,6 +12,7 @@ from playwright.sync_api import Page
 
 from app.cli import experiment as experiment_command
 from app.cli import sweep as sweep_command
+from app.cli.options import CommandParser, settings_from
 from app.cli.trial_options import trial_grid_from
 from app.domain.gait import GaitSpec
 from app.domain.robot import robot
@@ -150,12 +150,13 @@ def test_the_command_on_the_page_reproduces_the_experiment(
 
 def _understood(typed: list[str]) -> ExperimentConfig:
     """Parse a command line as `hexapods` does."""
-    parser = argparse.ArgumentParser()
+    parser = CommandParser()
     commands = parser.add_subparsers(dest="command")
     experiment_command.add_to(commands)
     sweep_command.add_to(commands)
     options = parser.parse_args(typed[1:])
     grid = {n: getattr(options, n) for n in GRID} if options.command == "sweep" else {}
+    grid |= settings_from(options)
     agents = experiment_command.agents_from(options.agent)
     name = "sweep" if options.command == "sweep" else options.experiment
     return experiment_config(name, {**trial_grid_from(options), **grid, "agents": agents})

@@ -1,0 +1,94 @@
+"""The same config and seed give the same results, also after the code was redesigned.
+
+On one machine they are the same to the last bit. Other processors round sines differently, so that
+distances and values are compared to a billionth here.
+"""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from app.assembly import build_learner, build_walkers
+from app.experiments.config import experiment_config
+from app.experiments.plan import Plan
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
+from app.runs.racing import record_race
+from app.runs.tables import Checkpoint, snapshot
+from app.runs.training import train
+
+
+@pytest.mark.parametrize(
+    ("config", "value_sum", "distances_m"),
+    [
+        (
+            training_config(gait="left-right-origin", steps=60, seed=3),
+            -0.0022191144659891165,
+            [0.04388996258182566, 0.05818422492351775, 0.05815430715091744],
+        ),
+        (
+            training_config(gait="front-back-vertical", observation="commanded", steps=60, seed=3),
+            -0.0023965468032757726,
+            [0.026096609296010827, 0.0580572694484731, 0.058295708284079956],
+        ),
+        (
+            training_config(gait="left-right-vertical", simulator="kinematic", steps=400, seed=3),
+            0.3557536924154252,
+            [0.04957475994513032, 0.05681755829903978, 0.05681755829903978],
+        ),
+    ],
+)
+def test_a_training_and_its_race_give_the_same_table_and_distances(
+    config: TrainingConfig, value_sum: float, distances_m: Sequence[float]
+) -> None:
+    config = replace(config, evaluate_every=0)
+    learner = build_learner(config)
+    for _ in train(learner, config):
+        pass
+    checkpoint = snapshot(learner, config)
+
+    assert float(checkpoint.arrays["agent.q"].sum()) == pytest.approx(value_sum, abs=1e-9)
+    assert _race(config, checkpoint) == pytest.approx(distances_m, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "total", "digest"),
+    [
+        ("table1", {"seeds": 2}, 112, "a2b8666e87ee9f87"),
+        (
+            "sweep",
+            {
+                "seeds": 2,
+                "gaits": ("left-right-origin",),
+                "steps": (40, 80),
+                "alpha": (0.1, 0.3),
+                "gamma": (0.5, 0.9),
+                "divisions": (2, 3),
+            },
+            34,
+            "5db253b56299eb02",
+        ),
+    ],
+)
+def test_an_experiment_has_the_same_trials_with_the_same_seeds(
+    name: str, given: Mapping[str, Any], total: int, digest: str
+) -> None:
+    trials = list(Plan(experiment_config(name, given)).trials())
+
+    assert len(trials) == total
+    text = "|".join(f"{trial.key} {trial.config.training.seed}" for trial in trials)
+    assert hashlib.sha256(text.encode()).hexdigest().startswith(digest)
+
+
+def _race(training: TrainingConfig, table: Checkpoint) -> list[float]:
+    """How far the learner, greedy and two-step come in six steps [m]."""
+    learner = LaneConfig(agent=training.agent, observation=training.observation)
+    lanes = (learner, LaneConfig(agent="greedy"), LaneConfig(agent="two-step"))
+    race = RaceConfig(
+        gait=training.gait, simulator=training.simulator, lanes=lanes, steps=6, seed=1
+    )
+    walkers = build_walkers(race, [table, None, None], threads=1)
+    *_, recorded = record_race(walkers, race, lambda: 0.0)
+    return [lane.distance_m for lane in recorded]
