@@ -42,7 +42,6 @@ from app.domain.errors import HexapodError
 from app.events import logs
 from app.events.run_metrics import RunMetrics
 from app.jobs.jobs import Jobs
-from app.limits.addresses import caller
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
 from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
@@ -57,8 +56,8 @@ from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
 from app.storage.sessions import Sessions
 from app.storage.store import RunStore
-from app.viewer.protocol import websocket_options
 from app.viewer.service import ViewerService, viewer_routes
+from app.viewer.session import websocket_options
 from app.what_if.trial_pool import TrialPool
 from app.what_if.what_if import WhatIf
 
@@ -89,7 +88,6 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
         allowed_origins=_further_origins(settings),
         max_viewers=settings.max_viewers,
         max_per_address=settings.viewers_per_address,
-        address_of=caller,
     )
     jobs = Jobs(store, recordings, bus, on_queued=show.offer, niceness=settings.job_niceness)
     app = FastAPI(

@@ -2,28 +2,26 @@
 
 import asyncio
 import threading
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from contextlib import ExitStack
-from types import TracebackType
 from typing import Self
 
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 from starlette.routing import BaseRoute, Route, WebSocketRoute
-from starlette.types import Scope
 
 from app.events.bus import EventBus
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage.stage import Stage
-from app.viewer.client_page import ViewerPage, sanitized_query
-from app.viewer.follow import Position
 from app.viewer.hub import Hub
-from app.viewer.in_process import in_process_viser
 from app.viewer.recorded_stream import recorded_stream
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop
+from app.viewer.track import Position
+from app.viewer.viser_internals.client import ViewerPage, sanitized_query
+from app.viewer.viser_internals.server import in_process_viser
 
 
 class ViewerService:
@@ -37,7 +35,6 @@ class ViewerService:
         *,
         max_viewers: int = 300,
         max_per_address: int | None = None,
-        address_of: Callable[[Scope], str] | None = None,
     ) -> None:
         """Create the hub; entering the context starts the rest.
 
@@ -47,7 +44,6 @@ class ViewerService:
             allowed_origins: see `Hub`, as for all below.
             max_viewers: maximum number of viewers.
             max_per_address: maximum number of viewers per address.
-            address_of: returns the address of a connection.
         """
         self._stage, self._bus = stage, bus
         self._scene: StageScene | None = None
@@ -58,7 +54,6 @@ class ViewerService:
             allowed_origins=allowed_origins,
             max_viewers=max_viewers,
             max_per_address=max_per_address,
-            address_of=address_of,
             on_viewers_changed=lambda count: bus.publish("viewers", {"count": count}),
         )
 
@@ -67,12 +62,7 @@ class ViewerService:
         self.hub.start()
         return self
 
-    async def __aexit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    async def __aexit__(self, *_: object) -> None:
         await self.hub.stop()
         await asyncio.to_thread(self._resources.close)
 
