@@ -85,7 +85,6 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
     viewer = ViewerService(
         show,
         bus,
-        allowed_origins=_further_origins(settings),
         max_viewers=settings.max_viewers,
         max_per_address=settings.viewers_per_address,
     )
@@ -153,14 +152,6 @@ def _trouble(jobs: Jobs, store: RunStore) -> str | None:
     except HexapodError as error:
         return f"No run can be started, and what is kept may be looked at: {error}."
     return None
-
-
-def _further_origins(settings: Settings) -> list[str]:
-    """Origins beside a request's own Host, for proxies that change that."""
-    names = [
-        f"{scheme}://{name}" for scheme in ("http", "https") for name in settings.allowed_hosts
-    ]
-    return names if settings.public_origin is None else [*names, settings.public_origin]
 
 
 @contextlib.asynccontextmanager

@@ -2,13 +2,15 @@
 
 viser encodes anew for each client and has no authorization. So the hub is its only reader, in the
 same process, and browsers receive the same bytes on the app's own port. They cannot send anything
-to viser: the hub accepts only the message that chooses the robot to follow.
+to viser: the hub accepts only the message that chooses the robot to follow. Websockets of foreign
+pages do not come here; `api.host_check` refuses them.
 """
 
 import asyncio
 import contextlib
 import logging
-from collections.abc import AsyncGenerator, Callable, Collection
+import sys
+from collections.abc import AsyncGenerator, Callable
 
 from starlette.websockets import WebSocket
 
@@ -48,9 +50,8 @@ class Hub:
         upstream: Upstream | None = None,
         *,
         follow_position: FollowPosition | None = None,
-        max_viewers: int = 300,
-        max_per_address: int | None = None,
-        allowed_origins: Collection[str] = (),
+        max_viewers: int = sys.maxsize,
+        max_per_address: int = sys.maxsize,
         on_viewers_changed: Callable[[int], None] | None = None,
     ) -> None:
         """Create the hub; `start` connects it.
@@ -60,18 +61,14 @@ class Hub:
                 viser stops; None while there is no viser.
             follow_position: Positions of the robots that can be followed; without it, none can.
             max_viewers: Maximum number of viewers; `Places` decides who is refused or evicted.
-            max_per_address: Maximum number of spectators per address; by default no limit.
-            allowed_origins: Origins accepted besides the one that a request's own Host names, for
-                a proxy that changes the Host.
+            max_per_address: Maximum number of spectators per address.
             on_viewers_changed: Called with the number of viewers when that changes.
         """
         self.upstream = upstream
         """May be replaced; used at the next reconnection."""
         self.counters = Counters()
         self._follow_position = follow_position
-        per_address = max_viewers + 1 if max_per_address is None else max_per_address
-        self._places = Places[Session](max_viewers, per_address)
-        self._allowed_origins = frozenset(allowed_origins)
+        self._places = Places[Session](max_viewers, max_per_address)
         self._on_viewers_changed = on_viewers_changed
         self._sessions: set[Session] = set()
         self._snapshot = Snapshot()
@@ -106,10 +103,6 @@ class Hub:
 
         The query's `view` is what it follows at first; see `session.decode_view` for later changes.
         """
-        if not self._is_same_origin(websocket):
-            # A close before the handshake is accepted becomes HTTP 403.
-            await websocket.close()
-            return
         subprotocols = websocket.scope["subprotocols"]
         if refusal := self._refusal(subprotocols):
             # Browsers get a close code and reason only after an accepted handshake.
@@ -144,13 +137,6 @@ class Hub:
         if self._relay_task is None:
             return _GOING_AWAY, "the server stops"
         return None
-
-    def _is_same_origin(self, websocket: WebSocket) -> bool:
-        origin = websocket.headers.get("origin")
-        if origin is None or origin in self._allowed_origins:
-            # Cross-site websocket hijacking needs a browser, and browsers always send an Origin.
-            return True
-        return origin.partition("://")[2] == websocket.headers.get("host")
 
     def _publish_viewer_count(self) -> None:
         self.counters.viewers = len(self._sessions)

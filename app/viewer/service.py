@@ -2,7 +2,7 @@
 
 import asyncio
 import threading
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from typing import Self
 
@@ -28,22 +28,15 @@ class ViewerService:
     """Runs viser, the drawing thread and the hub within `async with`, for the app's lifespan."""
 
     def __init__(
-        self,
-        stage: Stage,
-        bus: EventBus,
-        allowed_origins: Collection[str] = (),
-        *,
-        max_viewers: int = 300,
-        max_per_address: int | None = None,
+        self, stage: Stage, bus: EventBus, *, max_viewers: int, max_per_address: int
     ) -> None:
         """Create the hub; entering the context starts the rest.
 
         Args:
             stage: the stage to draw.
             bus: receives events with the scene and with the number of viewers.
-            allowed_origins: see `Hub`, as for all below.
             max_viewers: maximum number of viewers.
-            max_per_address: maximum number of viewers per address.
+            max_per_address: maximum number of spectators per address.
         """
         self._stage, self._bus = stage, bus
         self._scene: StageScene | None = None
@@ -51,7 +44,6 @@ class ViewerService:
         self._recording_lock = threading.Lock()
         self.hub = Hub(
             follow_position=self._follow_position,
-            allowed_origins=allowed_origins,
             max_viewers=max_viewers,
             max_per_address=max_per_address,
             on_viewers_changed=lambda count: bus.publish("viewers", {"count": count}),

@@ -228,9 +228,9 @@ def test_page_of_another_version_reloads_once(
     assert len(loads) == 2
 
 
-@pytest.mark.parametrize(("places", "share", "told"), [(0, None, "full"), (5, 0, "address full")])
+@pytest.mark.parametrize(("places", "share", "told"), [(0, 5, "full"), (5, 0, "address full")])
 def test_refusal_is_reported_to_the_dashboard(
-    page: Page, viser_server: InProcessViser, places: int, share: int | None, told: str
+    page: Page, viser_server: InProcessViser, places: int, share: int, told: str
 ) -> None:
     root = Route("/", lambda _: HTMLResponse(DASHBOARD))
     hub = Hub(viser_server.frames, max_viewers=places, max_per_address=share)
