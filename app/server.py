@@ -43,7 +43,6 @@ from app.domain.errors import HexapodError
 from app.events import logs
 from app.events.run_metrics import RunMetrics
 from app.jobs.jobs import Jobs
-from app.limits.addresses import caller
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
 from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
@@ -58,8 +57,8 @@ from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
 from app.storage.sessions import Sessions
 from app.storage.store import RunStore
-from app.viewer.protocol import websocket_options
 from app.viewer.service import ViewerService, viewer_routes
+from app.viewer.session import websocket_options
 from app.what_if.trial_pool import TrialPool
 from app.what_if.what_if import WhatIf
 
@@ -87,10 +86,8 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
     viewer = ViewerService(
         show,
         bus,
-        allowed_origins=_further_origins(settings),
         max_viewers=settings.max_viewers,
         max_per_address=settings.viewers_per_address,
-        address_of=caller,
     )
     jobs = Jobs(store, recordings, bus, on_queued=show.offer, niceness=settings.job_niceness)
     app = FastAPI(
@@ -157,14 +154,6 @@ def _trouble(jobs: Jobs, store: RunStore) -> str | None:
     except HexapodError as error:
         return f"No run can be started, and what is kept may be looked at: {error}."
     return None
-
-
-def _further_origins(settings: Settings) -> list[str]:
-    """Origins beside a request's own Host, for proxies that change that."""
-    names = [
-        f"{scheme}://{name}" for scheme in ("http", "https") for name in settings.allowed_hosts
-    ]
-    return names if settings.public_origin is None else [*names, settings.public_origin]
 
 
 @contextlib.asynccontextmanager

@@ -59,7 +59,7 @@ class HostGuard:
             return
         trouble = self._trouble(scope.get("method", "GET"), Headers(scope=scope))
         if trouble is None:
-            await self._app(_without_origin(scope), receive, send)
+            await self._app(scope, receive, send)
         elif scope["type"] == "websocket":
             # Before it was accepted: the server answers 403.
             await send({"type": "websocket.close", "code": 1008, "reason": "foreign"})
@@ -111,13 +111,6 @@ def _could_be_a_form(headers: Headers) -> bool:
         return False
     types = headers.getlist("content-type") or [""]
     return any(one.partition(";")[0].strip().lower() in _FORMS_SEND for one in types)
-
-
-def _without_origin(scope: Scope) -> Scope:
-    """For websockets, whose endpoints would ask again and know less of what is let in."""
-    if scope["type"] != "websocket":
-        return scope
-    return {**scope, "headers": [h for h in scope["headers"] if h[0].lower() != b"origin"]}
 
 
 def _split(address: str) -> tuple[str, int | None] | None:

@@ -143,7 +143,7 @@ def _browser() -> str:
     missing = [name for name in wanted if not (folder / name).is_file()]
     if missing:
         raise Trouble(f"the page lacks {missing[0]}; {_INSTALL}")
-    from app.viewer.client_page import ViewerPage  # noqa: PLC0415 - takes a second
+    from app.viewer.viser_internals.client import ViewerPage  # noqa: PLC0415 - takes a second
 
     ViewerPage()
     return "the dashboard is whole, and the viewer's page is the one that it was made for"

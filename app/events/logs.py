@@ -30,8 +30,6 @@ def install(level: str, stream: TextIO | None = None) -> None:
     handler = LimitedHandler(stream)
     handler.setFormatter(LineFormatter(as_json=not stream.isatty()))
     logging.basicConfig(level=level.upper(), handlers=[handler], force=True)
-    # viser's websocket server logs its internal address, which users cannot open.
-    logging.getLogger("websockets").setLevel(logging.WARNING)
 
 
 class LineFormatter(logging.Formatter):

@@ -52,13 +52,3 @@ def mix(color: Rgb, other: Rgb, fraction: float) -> Rgb:
     """Interpolate linearly between two colours; `fraction` 0 is the first, 1 the other."""
     r, g, b = (round((1 - fraction) * a + fraction * c) for a, c in zip(color, other, strict=True))
     return r, g, b
-
-
-def batch_colors(colors: NDArray[np.uint8], brightness: float = 1.0) -> NDArray[np.uint8]:
-    """Convert sRGB to the linear colours that viser 1.1.1 expects for batched meshes (gamma 2.2).
-
-    Args:
-        colors: (n, 3), 0–255.
-        brightness: factor below 1 for surfaces that face the lamp and would look too pale.
-    """
-    return (255 * brightness * (colors / 255.0) ** 2.2).round().astype(np.uint8)

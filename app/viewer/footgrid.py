@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from app.domain.types import FloatArray, IntArray
 from app.stage.stage_frame import ActionValuesView, LaneView, SceneSpec, yaw_rad
-from app.viewer.colormap import Rgb, batch_colors, rgb, value_colors
+from app.viewer.colormap import Rgb, rgb, value_colors
 from app.viewer.shapes import Shape
+from app.viewer.viser_internals.client import batch_colors
 
 _HOME_RIM: Rgb = rgb("#e5484d")
 _OTHER_RIM: Rgb = rgb("#4c8dff")

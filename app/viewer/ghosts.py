@@ -7,15 +7,39 @@ import viser
 
 from app.stage.scene_spec import rest_pose
 from app.stage.stage_frame import Ghost, SceneSpec, StageFrame
-from app.viewer.colormap import batch_colors, rgb
+from app.viewer.colormap import rgb
 from app.viewer.robot_mesh import RobotMesh
 from app.viewer.shapes import strip
+from app.viewer.viser_internals.client import batch_colors
 
 _BAR_M = 0.05
 _TEXT_SCALE = 1.7
 
 
-class PhotoFinish:
+class _Temporary:
+    """Scene nodes under one frame, which are all drawn anew when what they show changes."""
+
+    def __init__(self, server: viser.ViserServer, root: str, x_m: float = 0.0) -> None:
+        self._server, self._root, self._x_m = server, root, x_m
+        self._shown: tuple[object, ...] = ()
+        self._frame: viser.FrameHandle | None = None
+
+    def _begin(self, content: tuple[object, ...]) -> bool:
+        """Remove what was drawn if the content has changed; True if it is to be drawn anew."""
+        if content == self._shown:
+            return False
+        if self._frame is not None:
+            self._frame.remove()
+            self._frame = None
+        self._shown = content
+        if content:
+            self._frame = self._server.scene.add_frame(
+                self._root, show_axes=False, position=(self._x_m, 0.0, 0.0)
+            )
+        return bool(content)
+
+
+class PhotoFinish(_Temporary):
     """A bar from the start line to each robot with its distance, shown during the photo finish.
 
     Args:
@@ -28,23 +52,15 @@ class PhotoFinish:
     def __init__(
         self, server: viser.ViserServer, root: str, spec: SceneSpec, xs: Sequence[float]
     ) -> None:
-        self._server, self._root, self._spec, self._xs = server, root, spec, xs
-        self._shown: tuple[tuple[int, float], ...] = ()
-        self._frame: viser.FrameHandle | None = None
+        super().__init__(server, root)
+        self._spec, self._xs = spec, xs
 
     def draw(self, frame: StageFrame) -> None:
         """Show or hide the bars as the frame says; redraw them if ranks or distances changed."""
         frozen = frame.phase == "photo-finish"
         ranking = tuple((lane.rank, lane.distance_m) for lane in frame.lanes) if frozen else ()
-        if ranking == self._shown:
+        if not self._begin(ranking):
             return
-        if self._frame is not None:
-            self._frame.remove()
-            self._frame = None
-        self._shown = ranking
-        if not ranking:
-            return
-        self._frame = self._server.scene.add_frame(self._root, show_axes=False)
         for number, ((rank, distance_m), x) in enumerate(zip(ranking, self._xs, strict=True)):
             bar = strip(_BAR_M, max(abs(distance_m), 0.002))
             color = rgb(self._spec.lane_specs[number].color)
@@ -66,7 +82,7 @@ class PhotoFinish:
             )
 
 
-class Ghosts:
+class Ghosts(_Temporary):
     """Evaluations on a lane of their own: a line for each, a translucent robot for the newest.
 
     Args:
@@ -80,25 +96,15 @@ class Ghosts:
     def __init__(
         self, server: viser.ViserServer, root: str, spec: SceneSpec, mesh: RobotMesh, x_m: float
     ) -> None:
-        self._server, self._root, self._x_m, self._mesh = server, root, x_m, mesh
+        super().__init__(server, root, x_m)
+        self._mesh = mesh
         self._width = 2 * spec.robot.home_radius_m
         self._color, self._rest = rgb(spec.lane_specs[0].color), rest_pose(spec)
-        self._shown: tuple[Ghost, ...] = ()
-        self._frame: viser.FrameHandle | None = None
 
     def draw(self, ghosts: tuple[Ghost, ...]) -> None:
         """Show these ghosts, ordered from the oldest to the newest."""
-        if ghosts == self._shown:
+        if not self._begin(ghosts):
             return
-        if self._frame is not None:
-            self._frame.remove()
-            self._frame = None
-        self._shown = ghosts
-        if not ghosts:
-            return
-        self._frame = self._server.scene.add_frame(
-            self._root, show_axes=False, position=(self._x_m, 0.0, 0.0)
-        )
         for number, ghost in enumerate(ghosts):
             self._draw_line(number, ghost.distance_m, (number + 1) / len(ghosts))
         self._draw_robot(ghosts[-1])

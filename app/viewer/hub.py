@@ -2,23 +2,24 @@
 
 viser encodes anew for each client and has no authorization. So the hub is its only reader, in the
 same process, and browsers receive the same bytes on the app's own port. They cannot send anything
-to viser: the hub accepts only the message that chooses the robot to follow.
+to viser: the hub accepts only the message that chooses the robot to follow. Websockets of foreign
+pages do not come here; `api.host_check` refuses them.
 """
 
 import asyncio
 import contextlib
 import logging
-from collections.abc import AsyncGenerator, Callable, Collection
-from types import TracebackType
-from typing import Self
+import sys
+from collections.abc import AsyncGenerator, Callable
 
-from starlette.types import Scope
 from starlette.websockets import WebSocket
 
+from app.limits.addresses import caller
 from app.limits.places import NoPlace, Places
-from app.viewer import follow, wire
-from app.viewer.session import Counters, Session
-from app.viewer.snapshot import BLOCKED_TYPES, Snapshot
+from app.viewer.session import FREE, Counters, Session, valid_view
+from app.viewer.snapshot import Snapshot
+from app.viewer.track import WORLD, Position
+from app.viewer.viser_internals import stream
 
 _RETRY_S = 0.5
 _CLOSE_TIMEOUT_S = 1.0
@@ -31,25 +32,26 @@ _TRY_AGAIN_LATER = 1013
 
 Upstream = Callable[[], AsyncGenerator[bytes, None]]
 
+FollowPosition = Callable[[str], Position | None]
+"""Returns the position in the scene [m] of a view's robot, None if there is no such robot.
+Called for each view in use at each frame, on the event loop."""
+
 _logger = logging.getLogger(__name__)
 
 
 class Hub:
     """Relays viser's stream to many browsers, read-only, and reconnects when viser is lost.
 
-    `async with hub:` keeps it connected; all of it runs on that event loop.
+    All of it runs on the event loop on which it is started.
     """
 
     def __init__(
         self,
         upstream: Upstream | None = None,
         *,
-        follow_position: follow.FollowPosition | None = None,
-        follow_frame: str = "/world",
-        max_viewers: int = 300,
-        max_per_address: int | None = None,
-        address_of: Callable[[Scope], str] | None = None,
-        allowed_origins: Collection[str] = (),
+        follow_position: FollowPosition | None = None,
+        max_viewers: int = sys.maxsize,
+        max_per_address: int = sys.maxsize,
         on_viewers_changed: Callable[[int], None] | None = None,
     ) -> None:
         """Create the hub; `start` connects it.
@@ -58,27 +60,19 @@ class Hub:
             upstream: Opens viser's stream of encoded frames, which raises ConnectionError when
                 viser stops; None while there is no viser.
             follow_position: Positions of the robots that can be followed; without it, none can.
-            follow_frame: The scene node under which all is drawn.
             max_viewers: Maximum number of viewers; `Places` decides who is refused or evicted.
-            max_per_address: Maximum number of spectators per address; by default no limit.
-            address_of: Returns the address of a connection; by default the client's host.
-            allowed_origins: Origins accepted besides the one that a request's own Host names, for
-                a proxy that changes the Host.
+            max_per_address: Maximum number of spectators per address.
             on_viewers_changed: Called with the number of viewers when that changes.
         """
         self.upstream = upstream
         """May be replaced; used at the next reconnection."""
         self.counters = Counters()
         self._follow_position = follow_position
-        self._follow_frame = follow_frame
-        per_address = max_viewers + 1 if max_per_address is None else max_per_address
-        self._places = Places[Session](max_viewers, per_address)
-        self._address_of = address_of or _client_host
-        self._allowed_origins = frozenset(allowed_origins)
+        self._places = Places[Session](max_viewers, max_per_address)
         self._on_viewers_changed = on_viewers_changed
         self._sessions: set[Session] = set()
         self._snapshot = Snapshot()
-        self._catch_up_frames: dict[tuple[int | None, str], wire.Frame] = {}
+        self._catch_up_frames: dict[tuple[int | None, str], stream.Frame] = {}
         self._live = False
         self._relay_task: asyncio.Task[None] | None = None
 
@@ -86,18 +80,6 @@ class Hub:
     def live(self) -> bool:
         """Whether viser is connected and its whole scene was received."""
         return self._live
-
-    async def __aenter__(self) -> Self:
-        self.start()
-        return self
-
-    async def __aexit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        await self.stop()
 
     def start(self) -> None:
         """Connect to viser, and reconnect after each loss. Needs a running event loop."""
@@ -119,26 +101,22 @@ class Hub:
     async def serve(self, websocket: WebSocket) -> None:
         """Serve one browser until it disconnects: the endpoint of the websocket route.
 
-        The query's `view` is what it follows at first; see `follow.decode_view` for later changes.
+        The query's `view` is what it follows at first; see `session.decode_view` for later changes.
         """
-        if not self._is_same_origin(websocket):
-            # A close before the handshake is accepted becomes HTTP 403.
-            await websocket.close()
-            return
         subprotocols = websocket.scope["subprotocols"]
         if refusal := self._refusal(subprotocols):
             # Browsers get a close code and reason only after an accepted handshake.
             await websocket.accept(subprotocol=subprotocols[0] if subprotocols else None)
             await websocket.close(*refusal)
             return
-        view = follow.valid_view(websocket.query_params.get("view")) or follow.FREE
+        view = valid_view(websocket.query_params.get("view")) or FREE
         session = Session(websocket, view, self.counters, self._catch_up_frame)
         is_operator = websocket.scope.get("state", {}).get("role") == "operator"
         try:
             # Before the first await: otherwise concurrent connections would exceed the limit.
-            evicted = self._places.take(session, self._address_of(websocket.scope), is_operator)
+            evicted = self._places.take(session, caller(websocket.scope), is_operator)
         except NoPlace as error:
-            await websocket.accept(subprotocol=wire.SUBPROTOCOL)
+            await websocket.accept(subprotocol=stream.SUBPROTOCOL)
             await websocket.close(_TRY_AGAIN_LATER, error.reason)
             return
         if evicted is not None:
@@ -146,7 +124,7 @@ class Hub:
         self._sessions.add(session)
         self._publish_viewer_count()
         try:
-            await websocket.accept(subprotocol=wire.SUBPROTOCOL)
+            await websocket.accept(subprotocol=stream.SUBPROTOCOL)
             await session.run(self._send_view)
         finally:
             self._places.leave(session)
@@ -154,18 +132,11 @@ class Hub:
             self._publish_viewer_count()
 
     def _refusal(self, subprotocols: list[str]) -> tuple[int, str] | None:
-        if wire.SUBPROTOCOL not in subprotocols:
+        if stream.SUBPROTOCOL not in subprotocols:
             return _PROTOCOL_ERROR, "reload"
         if self._relay_task is None:
             return _GOING_AWAY, "the server stops"
         return None
-
-    def _is_same_origin(self, websocket: WebSocket) -> bool:
-        origin = websocket.headers.get("origin")
-        if origin is None or origin in self._allowed_origins:
-            # Cross-site websocket hijacking needs a browser, and browsers always send an Origin.
-            return True
-        return origin.partition("://")[2] == websocket.headers.get("host")
 
     def _publish_viewer_count(self) -> None:
         self.counters.viewers = len(self._sessions)
@@ -191,9 +162,9 @@ class Hub:
         self._snapshot = Snapshot()
         async with contextlib.aclosing(self.upstream()) as frames:
             async for raw in frames:
-                self._apply(wire.parse(raw).without_types(BLOCKED_TYPES))
+                self._apply(stream.parse(raw).without_blocked())
 
-    def _apply(self, frame: wire.Frame) -> None:
+    def _apply(self, frame: stream.Frame) -> None:
         self._snapshot.apply(frame)
         self._catch_up_frames.clear()
         if self._live:
@@ -213,15 +184,15 @@ class Hub:
                 session.close(_SERVICE_RESTART, "resync")
                 self.counters.resyncs += 1
 
-    def _fan_out(self, frame: wire.Frame) -> None:
-        by_view: dict[str, wire.Frame] = {}
+    def _fan_out(self, frame: stream.Frame) -> None:
+        by_view: dict[str, stream.Frame] = {}
         for session in self._sessions:
             if session.view not in by_view:
                 # In the same frame, so that no browser draws the robot moved but not yet centred.
                 by_view[session.view] = frame.with_messages(*self._centring_messages(session.view))
             session.push(by_view[session.view], self._snapshot.version)
 
-    def _catch_up_frame(self, session: Session) -> tuple[wire.Frame, int] | None:
+    def _catch_up_frame(self, session: Session) -> tuple[stream.Frame, int] | None:
         if not self._live:
             return None
         # Cached: sessions that lag by the same version share one encoding.
@@ -234,14 +205,20 @@ class Hub:
     def _send_view(self, session: Session) -> None:
         centring_message = self._centring_messages(session.view)
         if centring_message and session.version is not None:
-            frame = wire.pack(centring_message, (), self._snapshot.timestamp_s)
+            frame = stream.pack(centring_message, (), self._snapshot.timestamp_s)
             session.push(frame, self._snapshot.version)
 
-    def _centring_messages(self, view: str) -> list[wire.Message]:
-        if view == follow.FREE or self._follow_position is None:
+    def _centring_messages(self, view: str) -> list[stream.Message]:
+        """Return the message that translates the world by minus the position of a view's robot.
+
+        Not in height: a bouncing robot would shake the ground.
+        """
+        if view == FREE or self._follow_position is None:
             return []
         position = self._follow_position(view)
-        return [] if position is None else [follow.centring_message(self._follow_frame, position)]
+        if position is None:
+            return []
+        return [stream.position_message(WORLD, (-position[0], -position[1], 0.0))]
 
     def _drop_tombstones(self) -> None:
         if self._snapshot.tombstones > _MAX_TOMBSTONES:
@@ -249,7 +226,3 @@ class Hub:
                 session.version for session in self._sessions if session.version is not None
             ]
             self._snapshot.drop_tombstones(min(versions, default=self._snapshot.version))
-
-
-def _client_host(scope: Scope) -> str:
-    return scope["client"][0] if scope.get("client") else ""

@@ -8,10 +8,10 @@ from app.runs.recording import LaneRecording
 from app.stage.race_show import RaceShow
 from app.stage.scene_spec import race_scene
 from app.stage.show import RunLabel
-from app.viewer.in_process import in_process_viser
 from app.viewer.scene import StageScene
+from app.viewer.stage_loop import FRAMES_PER_S
+from app.viewer.viser_internals.server import in_process_viser
 
-FRAMES_PER_S = 30
 MAX_LENGTH_S = 90.0
 """Longest duration at normal speed [s]; longer races are played faster, so files stay small."""
 _LAST_FRAME_S = 2.0

@@ -7,10 +7,9 @@ import viser
 from app.stage.stage_frame import SceneSpec, StageFrame
 from app.viewer.footgrid import FootGridDrawing
 from app.viewer.ghosts import Ghosts, PhotoFinish
-from app.viewer.name_labels import NameLabel
 from app.viewer.robot_mesh import RobotMesh
-from app.viewer.robots import Robots
-from app.viewer.track import LAMP, SQUARE_M, WORLD, draw_ground, draw_lanes
+from app.viewer.robots import NameLabel, Robots
+from app.viewer.track import LAMP, SQUARE_M, WORLD, Position, draw_ground, draw_lanes
 
 SCENE_ROOT = f"{WORLD}/cast"
 _SMOOTHING_S = 0.25
@@ -18,8 +17,6 @@ _STEP_FORWARD_M = 0.45
 """Shift of the follow point that brings the camera nearer to a single robot [m]."""
 _LANES_IN_VIEW, _STEP_BACK_M = 3, 0.5
 """Lanes that fit into view, and the shift that moves the camera back for each further one [m]."""
-
-Position = tuple[float, float, float]
 
 
 class StageScene:

@@ -2,52 +2,41 @@
 
 import asyncio
 import threading
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
-from types import TracebackType
 from typing import Self
 
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 from starlette.routing import BaseRoute, Route, WebSocketRoute
-from starlette.types import Scope
 
 from app.events.bus import EventBus
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage.stage import Stage
-from app.viewer.client_page import ViewerPage, sanitized_query
-from app.viewer.follow import Position
 from app.viewer.hub import Hub
-from app.viewer.in_process import in_process_viser
 from app.viewer.recorded_stream import recorded_stream
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop
+from app.viewer.track import Position
+from app.viewer.viser_internals.client import ViewerPage, sanitized_query
+from app.viewer.viser_internals.server import in_process_viser
 
 
 class ViewerService:
     """Runs viser, the drawing thread and the hub within `async with`, for the app's lifespan."""
 
     def __init__(
-        self,
-        stage: Stage,
-        bus: EventBus,
-        allowed_origins: Collection[str] = (),
-        *,
-        max_viewers: int = 300,
-        max_per_address: int | None = None,
-        address_of: Callable[[Scope], str] | None = None,
+        self, stage: Stage, bus: EventBus, *, max_viewers: int, max_per_address: int
     ) -> None:
         """Create the hub; entering the context starts the rest.
 
         Args:
             stage: the stage to draw.
             bus: receives events with the scene and with the number of viewers.
-            allowed_origins: see `Hub`, as for all below.
             max_viewers: maximum number of viewers.
-            max_per_address: maximum number of viewers per address.
-            address_of: returns the address of a connection.
+            max_per_address: maximum number of spectators per address.
         """
         self._stage, self._bus = stage, bus
         self._scene: StageScene | None = None
@@ -55,10 +44,8 @@ class ViewerService:
         self._recording_lock = threading.Lock()
         self.hub = Hub(
             follow_position=self._follow_position,
-            allowed_origins=allowed_origins,
             max_viewers=max_viewers,
             max_per_address=max_per_address,
-            address_of=address_of,
             on_viewers_changed=lambda count: bus.publish("viewers", {"count": count}),
         )
 
@@ -67,12 +54,7 @@ class ViewerService:
         self.hub.start()
         return self
 
-    async def __aexit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    async def __aexit__(self, *_: object) -> None:
         await self.hub.stop()
         await asyncio.to_thread(self._resources.close)
 

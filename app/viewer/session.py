@@ -1,13 +1,32 @@
-"""Session of one browser: its bounded queue of frames, and the view it follows."""
+"""One browser's connection: small buffers, a bounded queue of frames, and the view it follows.
+
+All is drawn under one scene node. Translating that node by minus a robot's position, in one browser
+only, keeps the robot centred there while the user can still orbit the camera.
+"""
 
 import asyncio
+import socket
+from asyncio import BaseTransport
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, Literal
 
+import msgspec
 from starlette.websockets import WebSocket, WebSocketDisconnect
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-from app.viewer import follow, wire
+from app.viewer.viser_internals import stream
+
+FREE = "free"
+VIEWS = frozenset({FREE, "leader", *(str(lane) for lane in range(1, 9))})
+"""Valid views: the leader of the race, the robot on a lane from 1, or none."""
+
+_HIGH_WATER_BYTES = 8 * 1024
+_SEND_BUFFER_BYTES = 16 * 1024
+_MESSAGE_LIMIT_BYTES = 64 * 1024
+_MAX_VIEW_BYTES = 64
+"""Far smaller than the camera poses that every viser client sends, which need no decoding then."""
 
 
 @dataclass(slots=True)
@@ -23,7 +42,7 @@ class Counters:
     """Viewers that were made to reconnect because viser was restarted."""
 
 
-CatchUp = Callable[["Session"], tuple[wire.Frame, int] | None]
+CatchUp = Callable[["Session"], tuple[stream.Frame, int] | None]
 """Returns one frame with all changes since a session's version, and the new version; None while
 there is nothing to show."""
 
@@ -53,14 +72,14 @@ class Session:
         self._websocket = websocket
         self._counters = counters
         self._catch_up = catch_up
-        self._queue: deque[tuple[wire.Frame, int]] = deque()
+        self._queue: deque[tuple[stream.Frame, int]] = deque()
         self._is_lagging = True
         self._wake = asyncio.Event()
         self._wake.set()
         self._close_args: tuple[int, str] | None = None
         self._sender: asyncio.Task[None] | None = None
 
-    def push(self, frame: wire.Frame, version: int) -> None:
+    def push(self, frame: stream.Frame, version: int) -> None:
         """Queue a frame; if the queue is full, replace all of it by a later catch-up frame.
 
         Args:
@@ -126,7 +145,7 @@ class Session:
             # Disconnected; uvicorn raises RuntimeError for a send after it closed by itself.
             return
 
-    def _next(self) -> tuple[wire.Frame, int] | None:
+    def _next(self) -> tuple[stream.Frame, int] | None:
         if self._queue:
             return self._queue.popleft()
         if not self._is_lagging:
@@ -140,7 +159,79 @@ class Session:
             message = await self._websocket.receive()
             if message["type"] == "websocket.disconnect":
                 return
-            view = follow.decode_view(message.get("bytes"))
+            view = decode_view(message.get("bytes"))
             if view is not None and view != self.view:
                 self.view = view
                 on_view(self)
+
+
+class _FollowMessage(msgspec.Struct, forbid_unknown_fields=True):
+    type: Literal["FollowMessage"]
+    view: str
+
+
+_view_decoder = msgspec.msgpack.Decoder(_FollowMessage)
+
+
+def decode_view(data: bytes | None) -> str | None:
+    """Decode a `{"type": "FollowMessage", "view": …}` message (msgpack) of a browser.
+
+    The only message that the hub accepts: returns None for any other input.
+    """
+    if data is None or len(data) > _MAX_VIEW_BYTES:
+        return None
+    try:
+        return valid_view(_view_decoder.decode(data).view)
+    except msgspec.MsgspecError:
+        return None
+
+
+def valid_view(view: str | None) -> str | None:
+    """Return the view if it is valid, else None."""
+    return view if view in VIEWS else None
+
+
+class ViewerProtocol(WebSocketsSansIOProtocol):
+    """Websocket protocol with small send buffers that aborts connections of stalled peers.
+
+    With the system's buffers a viewer at 40 kB/s sees the race ten seconds late, and the lag grows;
+    with these it is a little over a second late, because the hub coalesces waiting frames.
+    """
+
+    def connection_made(self, transport: BaseTransport) -> None:
+        """Set the size of the send buffers."""
+        super().connection_made(transport)
+        self.transport.set_write_buffer_limits(high=_HIGH_WATER_BYTES)
+        self.transport.get_extra_info("socket").setsockopt(
+            socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES
+        )
+
+    def shutdown(self) -> None:
+        """Close the connection without waiting for a peer that does not read."""
+        super().shutdown()
+        self._abort_if_blocked()
+
+    def keepalive_timeout(self) -> None:
+        """Close a connection without pongs, and do not wait for the peer to read."""
+        super().keepalive_timeout()
+        self._abort_if_blocked()
+
+    def _abort_if_blocked(self) -> None:
+        # close() waits until the buffer is flushed, which never happens if the peer does not read.
+        if self.transport.get_write_buffer_size() > 0:
+            self.transport.abort()
+
+
+def websocket_options() -> dict[str, Any]:
+    """Return the options of `uvicorn.Config` for viewers.
+
+    No compression: viser's frames are compressed already, and a second time doubles the CPU load.
+    Large messages are rejected, because browsers only send short ones.
+    """
+    return {
+        "ws": ViewerProtocol,
+        "ws_max_size": _MESSAGE_LIMIT_BYTES,
+        "ws_per_message_deflate": False,
+        "ws_ping_interval": 20.0,
+        "ws_ping_timeout": 20.0,
+    }

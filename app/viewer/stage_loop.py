@@ -18,7 +18,7 @@ _logger = logging.getLogger(__name__)
 class StageLoop:
     """Draws the stage 30 times a second, and publishes a `scene` event at most five times a second.
 
-    `with loop:` runs it. Without motion the frame rate drops and no events are published.
+    `with loop:` runs it, once. Without motion the frame rate drops and no events are published.
 
     Args:
         stage: advanced by each frame.
@@ -34,22 +34,12 @@ class StageLoop:
         self._published_s = -1.0
         self._has_failed = False
 
-    def start(self) -> None:
-        """Start the thread; may be called once."""
+    def __enter__(self) -> None:
         self._thread.start()
 
-    def stop(self) -> None:
-        """Stop the thread and wait for it. May be called twice, or without a start."""
-        self._stop.set()
-        if self._thread.is_alive():
-            self._thread.join()
-
-    def __enter__(self) -> "StageLoop":
-        self.start()
-        return self
-
     def __exit__(self, *_: object) -> None:
-        self.stop()
+        self._stop.set()
+        self._thread.join()
 
     def _run(self) -> None:
         due_s, still = time.monotonic(), 0

@@ -12,6 +12,9 @@ from app.viewer.shapes import strip
 WORLD = "/world"
 """Root node of the scene, which the follow camera translates."""
 
+Position = tuple[float, float, float]
+"""Of a scene node [m]: x across the track, y along it, z up."""
+
 SQUARE_M, TICK_M = 0.5, 0.05
 LAMP = (-0.7, -0.5, 3.2)
 """Position of the lamp for robots on the start line [m]."""

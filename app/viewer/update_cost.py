@@ -3,8 +3,8 @@
 import asyncio
 import contextlib
 import statistics
-import threading
 import time
+from collections.abc import Callable
 
 from app.assembly import build_walkers
 from app.runs.config import LaneConfig, RaceConfig
@@ -12,8 +12,8 @@ from app.runs.racing import record_race
 from app.stage.race_show import RaceShow
 from app.stage.scene_spec import PAPERS_LANES, race_scene
 from app.stage.show import RunLabel
-from app.viewer.in_process import InProcessViser, in_process_viser
 from app.viewer.scene import StageScene
+from app.viewer.viser_internals.server import InProcessViser, in_process_viser
 
 _UPDATE_INTERVAL_S = 1 / 60
 _QUIET_S = 0.5
@@ -29,21 +29,50 @@ def measure_stage_update(updates: int = 200) -> tuple[float, float]:
         median time of the drawing thread from the stage's frame to viser's queue [ms], and median
         size of the frames that viser's reader receives [bytes].
     """
-    show = _walking_race()
-    with in_process_viser() as server, _Receiver(server) as receiver:
-        scene = StageScene(server)
-        scene.draw(show.frame(RunLabel(None, "Race")), now=0.0)
-        receiver.wait_until_quiet()
-        elapsed_ms = []
-        for number in range(1, updates + 1):
-            started_s = time.perf_counter()
-            show.seek(1.0 + 10.0 * number / updates)
-            scene.draw(show.frame(RunLabel(None, "Race")), now=number * _UPDATE_INTERVAL_S)
-            elapsed_ms.append(1000 * (time.perf_counter() - started_s))
-            time.sleep(_UPDATE_INTERVAL_S)
-        receiver.wait_until_quiet()
-        sizes = receiver.sizes[-updates:]
-    return statistics.median(elapsed_ms), statistics.median(sizes)
+    with in_process_viser() as server:
+        elapsed_ms, sizes = asyncio.run(_draw_and_receive(server, _walking_race(), updates))
+    return statistics.median(elapsed_ms), statistics.median(sizes[-updates:])
+
+
+async def _draw_and_receive(
+    server: InProcessViser, show: RaceShow, updates: int
+) -> tuple[list[float], list[int]]:
+    """Return the time of each update [ms], and the size of each received frame [bytes]."""
+    sizes: list[int] = []
+    receiving = asyncio.create_task(_receive(server, sizes.append))
+    elapsed_ms = await asyncio.to_thread(_draw, server, show, updates, sizes)
+    receiving.cancel()
+    await asyncio.gather(receiving, return_exceptions=True)
+    return elapsed_ms, sizes
+
+
+async def _receive(server: InProcessViser, on_size: Callable[[int], None]) -> None:
+    async with contextlib.aclosing(server.frames()) as frames:
+        async for frame in frames:
+            on_size(len(frame))
+
+
+def _draw(server: InProcessViser, show: RaceShow, updates: int, sizes: list[int]) -> list[float]:
+    scene = StageScene(server)
+    scene.draw(show.frame(RunLabel(None, "Race")), now=0.0)
+    _wait_until_quiet(sizes)
+    elapsed_ms = []
+    for number in range(1, updates + 1):
+        started_s = time.perf_counter()
+        show.seek(1.0 + 10.0 * number / updates)
+        scene.draw(show.frame(RunLabel(None, "Race")), now=number * _UPDATE_INTERVAL_S)
+        elapsed_ms.append(1000 * (time.perf_counter() - started_s))
+        time.sleep(_UPDATE_INTERVAL_S)
+    _wait_until_quiet(sizes)
+    return elapsed_ms
+
+
+def _wait_until_quiet(sizes: list[int]) -> None:
+    """Wait until no frame has arrived for `_QUIET_S`."""
+    before = -1
+    while before != len(sizes):
+        before = len(sizes)
+        time.sleep(_QUIET_S)
 
 
 def _walking_race() -> RaceShow:
@@ -55,39 +84,3 @@ def _walking_race() -> RaceShow:
     show = RaceShow(race_scene(config), config.steps, "free", lambda: recorded)
     show.advance(0.0, None, run_ended=True)
     return show
-
-
-class _Receiver:
-    """A reader of viser's stream that records the size of each frame."""
-
-    def __init__(self, server: InProcessViser) -> None:
-        self.sizes: list[int] = []
-        self._server = server
-        self._loop = asyncio.new_event_loop()
-        self._receiving = self._loop.create_task(self._receive())
-        self._thread = threading.Thread(target=self._run, daemon=True)
-
-    def __enter__(self) -> "_Receiver":
-        self._thread.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._loop.call_soon_threadsafe(self._receiving.cancel)
-        self._thread.join()
-
-    def wait_until_quiet(self) -> None:
-        """Wait until no frame has arrived for `_QUIET_S`."""
-        before = -1
-        while before != len(self.sizes):
-            before = len(self.sizes)
-            time.sleep(_QUIET_S)
-
-    def _run(self) -> None:
-        with contextlib.suppress(asyncio.CancelledError):
-            self._loop.run_until_complete(self._receiving)
-        self._loop.close()
-
-    async def _receive(self) -> None:
-        async with contextlib.aclosing(self._server.frames()) as frames:
-            async for frame in frames:
-                self.sizes.append(len(frame))

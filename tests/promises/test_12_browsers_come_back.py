@@ -15,7 +15,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.viewer import wire
+from app.viewer.viser_internals import stream
 from tests.browser.serving import Serving
 from tests.promises.length import at_length
 from tests.viewer.serving import PATIENCE_S, Viewer
@@ -64,7 +64,7 @@ class Events:
         self._connection.close()
 
 
-def node_names(frame: wire.Frame) -> set[str]:
+def node_names(frame: stream.Frame) -> set[str]:
     """Return the names of the scene's nodes that a frame creates."""
     return {str(m["name"]) for m in frame.messages if "props" in m}
 

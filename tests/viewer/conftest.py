@@ -1,15 +1,24 @@
-"""Fixtures: a real in-process viser server, and robots drawn on it."""
+"""Fixtures: a real in-process viser server, and robots drawn on it.
+
+Imported when used: where a new viser breaks an import of the app, `test_assumptions` still runs.
+"""
+
+from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import pytest
 
-from app.viewer.in_process import InProcessViser
-from tests.viewer.serving import Robots, start_viser
+if TYPE_CHECKING:
+    from app.viewer.viser_internals.server import InProcessViser
+    from tests.viewer.serving import Robots
 
 
 @pytest.fixture
 def viser_server() -> Iterator[InProcessViser]:
+    from tests.viewer.serving import start_viser
+
     server = start_viser()
     yield server
     server.stop()
@@ -17,4 +26,6 @@ def viser_server() -> Iterator[InProcessViser]:
 
 @pytest.fixture
 def robots(viser_server: InProcessViser) -> Robots:
+    from tests.viewer.serving import Robots
+
     return Robots(viser_server)

@@ -18,11 +18,11 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
 from app.server import GRACE_S
-from app.viewer import wire
 from app.viewer.hub import Hub
-from app.viewer.in_process import InProcessViser
-from app.viewer.protocol import websocket_options
 from app.viewer.service import viewer_routes
+from app.viewer.session import websocket_options
+from app.viewer.viser_internals import stream
+from app.viewer.viser_internals.server import InProcessViser
 
 T = TypeVar("T")
 
@@ -134,15 +134,15 @@ class Reader:
         self._thread.join()
         self._loop.close()
 
-    def frame(self) -> wire.Frame:
+    def frame(self) -> stream.Frame:
         """Return the next frame.
 
         Raises:
             ConnectionError: viser has stopped.
         """
-        return wire.parse(self._wait(self._next()))
+        return stream.parse(self._wait(self._next()))
 
-    def frames_until(self, is_last: Callable[[wire.Frame], object]) -> list[wire.Frame]:
+    def frames_until(self, is_last: Callable[[stream.Frame], object]) -> list[stream.Frame]:
         """The next frames, up to the first one that is the last."""
         frames = [self.frame()]
         while not is_last(frames[-1]):
@@ -159,7 +159,7 @@ class Reader:
 class Viewer:
     """A raw websocket client that decodes frames."""
 
-    def __init__(self, url: str, protocol: str = wire.SUBPROTOCOL, **options: Any) -> None:
+    def __init__(self, url: str, protocol: str = stream.SUBPROTOCOL, **options: Any) -> None:
         self.socket: ClientConnection = connect(
             url,
             subprotocols=[Subprotocol(protocol)],
@@ -175,15 +175,15 @@ class Viewer:
     def __exit__(self, *_: object) -> None:
         self.socket.close()
 
-    def frame(self) -> wire.Frame:
+    def frame(self) -> stream.Frame:
         """Return the next frame.
 
         Raises:
             websockets.exceptions.ConnectionClosed: The connection was closed.
         """
-        return wire.parse(self.socket.recv(PATIENCE_S, decode=False))
+        return stream.parse(self.socket.recv(PATIENCE_S, decode=False))
 
-    def frames_until(self, is_last: Callable[[wire.Frame], object]) -> list[wire.Frame]:
+    def frames_until(self, is_last: Callable[[stream.Frame], object]) -> list[stream.Frame]:
         """The next frames, up to the first one that is the last."""
         frames = [self.frame()]
         while not is_last(frames[-1]):
@@ -199,8 +199,9 @@ def serving(
 
     @asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncIterator[None]:
-        async with hub:
-            yield
+        hub.start()
+        yield
+        await hub.stop()
 
     app = Starlette(routes=[*viewer_routes(hub), *more_routes], lifespan=lifespan)
     # A client that was stopped in a closing handshake must not keep the server up.
@@ -222,10 +223,10 @@ def serving(
         assert not thread.is_alive(), "the server hangs at shutdown"
 
 
-def has_message(type_: str, **fields: object) -> Callable[[wire.Frame], bool]:
+def has_message(type_: str, **fields: object) -> Callable[[stream.Frame], bool]:
     """Return a predicate: whether a frame has a message of this type with these fields."""
 
-    def predicate(frame: wire.Frame) -> bool:
+    def predicate(frame: stream.Frame) -> bool:
         return any(
             message["type"] == type_ and fields.items() <= message.items()
             for message in frame.messages
@@ -234,7 +235,7 @@ def has_message(type_: str, **fields: object) -> Callable[[wire.Frame], bool]:
     return predicate
 
 
-def array(frame: wire.Frame, name: str, field: str) -> NDArray[np.float32] | None:
+def array(frame: stream.Frame, name: str, field: str) -> NDArray[np.float32] | None:
     """Return the newest value of a node's array property in a frame, None if there is none."""
     value = None
     for message in frame.messages:

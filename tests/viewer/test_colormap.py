@@ -4,10 +4,9 @@ import json
 import re
 
 import numpy as np
-import pytest
 
 from app import assets
-from app.viewer.colormap import VIRIDIS, batch_colors, rgb, value_colors
+from app.viewer.colormap import VIRIDIS, rgb, value_colors
 
 
 def test_page_and_stage_use_the_same_scale() -> None:
@@ -29,8 +28,3 @@ def test_values_map_from_the_low_to_the_high_end() -> None:
 
 def test_scale_without_extent_has_one_colour() -> None:
     assert np.ptp(value_colors(np.zeros((3, 5)), 0.0, 0.0), axis=(0, 1)).max() == 0
-
-
-@pytest.mark.parametrize(("dimmed", "expected"), [(1.0, 255), (0.5, 128)])
-def test_batch_colors_keeps_white_unless_dimmed(dimmed: float, expected: int) -> None:
-    assert batch_colors(np.full((1, 3), 255, np.uint8), dimmed).tolist() == [[expected] * 3]

@@ -10,9 +10,10 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, Response
 from starlette.routing import Route
 
-from app.viewer import follow, wire
 from app.viewer.hub import Hub
-from app.viewer.in_process import InProcessViser
+from app.viewer.track import Position
+from app.viewer.viser_internals import stream
+from app.viewer.viser_internals.server import InProcessViser
 from tests.viewer.serving import ServedHub, Upstream, serving, start_viser, wait_until
 
 DASHBOARD = """
@@ -27,7 +28,7 @@ DASHBOARD = """
 <iframe src="viewer/?view=1&theme=dark" width="480" height="270"></iframe>
 """
 
-POSITIONS: dict[str, follow.Position] = {"1": (1.0, 0.5, 0.0), "2": (2.0, 0.0, 0.0)}
+POSITIONS: dict[str, Position] = {"1": (1.0, 0.5, 0.0), "2": (2.0, 0.0, 0.0)}
 
 
 class Recording:
@@ -218,7 +219,7 @@ def test_page_of_another_version_reloads_once(
     page.on("load", lambda loaded: loads.append(loaded.url))
     attempts = socket_addresses(page)
     wait_until(lambda: served.hub.live)
-    monkeypatch.setattr(wire, "SUBPROTOCOL", "viser-v999")
+    monkeypatch.setattr(stream, "SUBPROTOCOL", "viser-v999")
 
     page.goto(served.page)
     while len(loads) < 2 or len(attempts) < 4:
@@ -227,9 +228,9 @@ def test_page_of_another_version_reloads_once(
     assert len(loads) == 2
 
 
-@pytest.mark.parametrize(("places", "share", "told"), [(0, None, "full"), (5, 0, "address full")])
+@pytest.mark.parametrize(("places", "share", "told"), [(0, 5, "full"), (5, 0, "address full")])
 def test_refusal_is_reported_to_the_dashboard(
-    page: Page, viser_server: InProcessViser, places: int, share: int | None, told: str
+    page: Page, viser_server: InProcessViser, places: int, share: int, told: str
 ) -> None:
     root = Route("/", lambda _: HTMLResponse(DASHBOARD))
     hub = Hub(viser_server.frames, max_viewers=places, max_per_address=share)

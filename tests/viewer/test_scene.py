@@ -12,12 +12,12 @@ from app.domain.robot import Robot, ring
 from app.runs.config import LaneConfig, RaceConfig, training_config
 from app.stage.scene_spec import idle_scene, race_scene, rest_pose, training_scene
 from app.stage.stage_frame import ActionValuesView, Ghost, LaneView, SceneSpec, StageFrame
-from app.viewer import wire
-from app.viewer.in_process import InProcessViser, in_process_viser
 from app.viewer.robot_mesh import RobotMesh
 from app.viewer.scene import StageScene
 from app.viewer.snapshot import Snapshot
 from app.viewer.update_cost import measure_stage_update
+from app.viewer.viser_internals import stream
+from app.viewer.viser_internals.server import InProcessViser, in_process_viser
 from tests.viewer.serving import Reader
 
 GAIT = "left-right-vertical"
@@ -45,7 +45,7 @@ def scene_nodes(server: InProcessViser) -> dict[str, dict[str, Any]]:
     return nodes
 
 
-def resolved(value: Any, frame: wire.Frame) -> Any:
+def resolved(value: Any, frame: stream.Frame) -> Any:
     """Return a property with an array reference resolved."""
     if isinstance(value, dict) and "__binary_index" in value:
         return np.frombuffer(frame.buffers[value["__binary_index"]], value["dtype"])

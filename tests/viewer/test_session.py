@@ -4,11 +4,12 @@ import asyncio
 from collections.abc import Awaitable, Callable
 from typing import Any
 
+import msgspec
 import pytest
 from starlette.websockets import WebSocket
 
-from app.viewer import wire
-from app.viewer.session import Counters, Session
+from app.viewer.session import Counters, Session, decode_view, valid_view
+from app.viewer.viser_internals import stream
 
 
 class FakeBrowser:
@@ -55,7 +56,7 @@ class FakeScene:
         self.frames = "A"
         self.catch_up_calls = 0
 
-    def catch_up(self, session: Session) -> tuple[wire.Frame, int] | None:
+    def catch_up(self, session: Session) -> tuple[stream.Frame, int] | None:
         self.catch_up_calls += 1
         missed = self.frames[session.version or 0 :]
         return (frame(missed), len(self.frames)) if missed else None
@@ -67,8 +68,8 @@ class FakeScene:
                 session.push(frame(letter), len(self.frames))
 
 
-def frame(text: str) -> wire.Frame:
-    return wire.Frame(text.encode(), (), (), 0.0)
+def frame(text: str) -> stream.Frame:
+    return stream.Frame(text.encode(), (), (), 0.0)
 
 
 def run_session(act: Callable[[Session, FakeBrowser, FakeScene], Awaitable[None]]) -> Counters:
@@ -179,3 +180,38 @@ def test_error_in_the_session_is_raised() -> None:
 
     with pytest.raises(ZeroDivisionError):
         run_session(act)
+
+
+def decode(message: object) -> str | None:
+    return decode_view(msgspec.msgpack.encode(message))
+
+
+@pytest.mark.parametrize("view", ["leader", "free", "1", "8"])
+def test_valid_view_is_decoded(view: str) -> None:
+    assert decode({"type": "FollowMessage", "view": view}) == view
+    assert valid_view(view) == view
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        {"type": "FollowMessage", "view": "9"},
+        {"type": "FollowMessage", "view": 1},
+        {"type": "FollowMessage", "view": None},
+        {"type": "FollowMessage", "view": ["leader"]},
+        {"type": "FollowMessage"},
+        {"type": "FollowMessage", "view": "leader", "name": "/world"},
+        {"type": "FollowMessage", "view": "leader" + " " * 100},
+        {"type": "RunJavascriptMessage", "view": "leader"},
+        {"view": "leader"},
+        "leader",
+        None,
+    ],
+)
+def test_other_messages_are_ignored(message: object) -> None:
+    assert decode(message) is None
+
+
+@pytest.mark.parametrize("data", [None, b"", b"\xc1", b"\x81", b"\xff" * 30, b"\0" * 100_000])
+def test_invalid_bytes_are_ignored(data: bytes | None) -> None:
+    assert decode_view(data) is None

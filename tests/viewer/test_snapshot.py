@@ -4,12 +4,12 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.viewer import wire
-from app.viewer.in_process import InProcessViser
 from app.viewer.snapshot import Snapshot
+from app.viewer.viser_internals import stream
+from app.viewer.viser_internals.server import InProcessViser
 from tests.viewer.serving import Reader, Robots, array, has_message
 
-Record = Callable[[], list[wire.Frame]]
+Record = Callable[[], list[stream.Frame]]
 
 
 @pytest.fixture
@@ -18,7 +18,7 @@ def record(viser_server: InProcessViser) -> Iterator[Record]:
     reader = Reader(viser_server)
     frames = reader.frames_until(has_message("ReplayDoneMessage"))
 
-    def so_far() -> list[wire.Frame]:
+    def so_far() -> list[stream.Frame]:
         viser_server.scene.set_up_direction("-y")
         mark = has_message("SetOrientationMessage", name="")
         frames.extend(reader.frames_until(mark))
@@ -28,16 +28,16 @@ def record(viser_server: InProcessViser) -> Iterator[Record]:
         yield so_far
 
 
-def catch_up_frame(frames: list[wire.Frame], since: int | None = None) -> wire.Frame:
+def catch_up_frame(frames: list[stream.Frame], since: int | None = None) -> stream.Frame:
     """Return the catch-up frame for a viewer that has the first `since` frames; None for none."""
     snapshot = Snapshot()
     for frame in frames:
         snapshot.apply(frame)
     # Encoded and decoded again, so that the bytes on the wire are tested.
-    return wire.parse(snapshot.pack(since).raw)
+    return stream.parse(snapshot.pack(since).raw)
 
 
-def message_types(frame: wire.Frame, name: str) -> list[str]:
+def message_types(frame: stream.Frame, name: str) -> list[str]:
     return [message["type"] for message in frame.messages if message.get("name") == name]
 
 
@@ -178,12 +178,12 @@ def test_catch_up_is_equivalent_to_all_frames(
     assert decoded_content(caught_up) == decoded_content(catch_up_frame(frames))
 
 
-def decoded_content(frame: wire.Frame) -> list[str]:
+def decoded_content(frame: stream.Frame) -> list[str]:
     """Return a frame's messages with their arrays, independent of order and indices."""
 
-    def content(message: wire.Message) -> str:
+    def content(message: stream.Message) -> str:
         buffers: list[memoryview] = []
-        rewired = wire.remap_buffers(message, frame.buffers, buffers)
+        rewired = stream.remap_buffers(message, frame.buffers, buffers)
         return f"{rewired} {[bytes(buffer) for buffer in buffers]}"
 
     return sorted(map(content, frame.messages))

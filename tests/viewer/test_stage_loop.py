@@ -13,9 +13,9 @@ from app.stage.stage import Stage
 from app.stage.stage_frame import StageFrame
 from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
-from app.viewer.in_process import in_process_viser
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop
+from app.viewer.viser_internals.server import in_process_viser
 from tests.stage.stage_parts import StageParts
 from tests.viewer.serving import wait_until
 
@@ -32,13 +32,12 @@ class FailingScene(StageScene):
         return super().draw(frame, now)
 
 
-def test_loop_draws_until_it_is_stopped() -> None:
+def test_loop_draws_within_its_block() -> None:
     stage, bus = Stage(MemoryStore(), Recordings(), EventBus()), EventBus()
     with in_process_viser() as server:
         scene = StageScene(server)
-        with StageLoop(stage, scene, bus) as loop:
+        with StageLoop(stage, scene, bus):
             wait_until(lambda: scene.follow_position("leader"))
-        loop.stop()
 
     assert "stage" not in {thread.name for thread in threading.enumerate()}
 
@@ -81,9 +80,3 @@ def test_moving_race_publishes_scenes() -> None:
     times = [scene["time_s"] for scene in scenes]
     assert times == sorted(times)
     assert len(set(times)) == 3
-
-
-def test_loop_can_be_stopped_without_a_start() -> None:
-    stage = Stage(MemoryStore(), Recordings(), EventBus())
-    with in_process_viser() as server:
-        StageLoop(stage, StageScene(server), EventBus()).stop()

@@ -1,4 +1,5 @@
-// Runs before viser's client on the page /viewer/, and makes it a part of the dashboard around it.
+// Patch of viser's client: runs before it on the page /viewer/, which the dashboard has in an iframe.
+// What it assumes of the client is listed and tested in app/viewer/viser_internals.
 //
 //   from the parent   {type: "hexapods:show", view?: "leader" | "1" … "8" | "free", theme?: "light" | "dark"}
 //   to the parent     {type: "hexapods:status", status: "connected" | "reconnecting" | "full" | "address full" |
@@ -11,20 +12,20 @@
   const query = new URLSearchParams(location.search);
   let view = query.get("view") ?? "leader";
   let socketWorker = null;
-  // The hub's reasons for letting nobody in, or out; viser's client goes on asking.
+  // Close reasons of the hub that refuse a viewer. viser's client tries again all the same.
   const REFUSALS = ["full", "address full", "place taken"];
 
   const tellParent = (message) => {
     if (parent !== window) parent.postMessage(message, location.origin);
   };
 
-  // ---- what the parent asks for
+  // ---- messages from the parent
   const setTheme = (theme) => {
     if (theme === "light" || theme === "dark") root.dataset.theme = theme;
   };
-  const setView = (wanted) => {
-    if (typeof wanted !== "string") return;
-    view = wanted;
+  const setView = (newView) => {
+    if (typeof newView !== "string") return;
+    view = newView;
     sendView();
   };
   addEventListener("message", ({ origin, source, data }) => {
@@ -36,7 +37,7 @@
   setTheme(query.get("theme"));
   if (query.has("playbackPath")) root.dataset.playback = "";
 
-  // ---- viser's socket lives in a worker, which sends for us what its client never says
+  // ---- viser's websocket lives in a worker, through which the view is sent to the hub
   const sendView = () =>
     socketWorker?.postMessage({ type: "send", message: { type: "FollowMessage", view } });
 
@@ -49,7 +50,7 @@
 
   const onSocket = ({ data }) => {
     if (data.type === "connected") {
-      // The address has the view of the first time; it may have changed since.
+      // A reconnection uses the first address, and the view may have changed since.
       sendView();
       tellParent({ type: "hexapods:status", status: "connected" });
     } else if (data.type === "closed") {
@@ -72,13 +73,13 @@
       if (message?.type !== "set_server") return super.postMessage(message, ...rest);
       socketWorker = this;
       this.addEventListener("message", onSocket);
-      // Whatever the page's query says: a stream from elsewhere could run scripts here.
+      // Ignore the query's `websocket`: a stream from elsewhere could run scripts here.
       return super.postMessage({ ...message, server: socketAddress() }, ...rest);
     }
   };
 
-  // ---- the page may not make code out of strings. viser's sorter of Gaussian splats would, as soon
-  // as it is loaded, and nothing on stage is a splat: it gets functions that do nothing
+  // ---- the Content-Security-Policy forbids code from strings. viser's sorter of Gaussian splats makes
+  // some when it loads; as the stage has no splats, it gets functions that do nothing
   window.Function = new Proxy(Function, {
     apply: () => () => () => {},
     construct: () => () => () => {},

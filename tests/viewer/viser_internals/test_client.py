@@ -1,17 +1,25 @@
-"""The viewer's page: patched client, caching, allow-listed query parameters."""
+"""The viewer's page: patched client, policy, caching, allow-listed query parameters, colours."""
 
 import gzip
+import re
 from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
+import numpy as np
 import pytest
 import viser
+import zstandard
 from starlette.applications import Starlette
 from starlette.testclient import TestClient
 
-from app.viewer.client_page import ViewerPage, patch_script, patch_style
+from app import assets
 from app.viewer.hub import Hub
 from app.viewer.service import viewer_routes
+from app.viewer.viser_internals.client import ViewerPage, batch_colors, content_policy
+
+PATCH = assets.static_dir() / "viewer"
+SCRIPT, STYLE = (PATCH / "patch.js").read_text("utf-8"), (PATCH / "patch.css").read_text("utf-8")
+DIGITS = "!#$%()*+,-./0123456789:;=?@ABCDEFGHIJKLMNOPQRSTUVWXYZ[\\]^_abcdefghijklmnopqrstuvwxyz{|}~"
 
 
 @pytest.fixture(scope="module")
@@ -30,17 +38,17 @@ def test_patch_precedes_visers_loader(client: TestClient) -> None:
     html = client.get("/viewer/").text
 
     patch_position, loader_position = (
-        html.index(f"<script>{patch_script()}</script>"),
+        html.index(f"<script>{SCRIPT}</script>"),
         html.index("<script data-p="),
     )
     assert html.index("<head>") < patch_position < loader_position
-    assert f"<style>{patch_style()}</style>" in html
+    assert f"<style>{STYLE}</style>" in html
     assert client.get("/viewer/").headers["content-type"] == "text/html; charset=utf-8"
 
 
 def test_patch_contains_no_closing_tags() -> None:
-    assert "</" not in patch_script()
-    assert "</" not in patch_style()
+    assert "</" not in SCRIPT
+    assert "</" not in STYLE
 
 
 @pytest.mark.parametrize("encoding", ["gzip, deflate, br", "identity"])
@@ -132,3 +140,76 @@ def test_unsupported_client_raises(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
 
     with pytest.raises(RuntimeError, match="another page"):
         ViewerPage()
+
+
+def in_base_88(data: bytes) -> str:
+    text = ""
+    for start in range(0, len(data), 4):
+        chunk = data[start : start + 4]
+        value = int.from_bytes(chunk, "big")
+        places = range(len(chunk), -1, -1)
+        text += "".join(DIGITS[value // 88**place % 88] for place in places)
+    return text
+
+
+def page_of(code: str, style: str = "", size: int | None = None) -> str:
+    """Return a page in viser's format."""
+    packed = in_base_88(zstandard.compress((style + code).encode()))
+    sizes = len(style.encode()), len(code.encode()) if size is None else size
+    attributes = f'data-p="{packed}" data-ss="{sizes[0]}" data-cs="{sizes[1]}"'
+    return f"<head><script>patch()</script><script {attributes}>load()</script></head>"
+
+
+def hashes(policy: str) -> list[str]:
+    return re.findall(r"'sha256-([\w+/=]+)'", policy)
+
+
+@pytest.mark.parametrize("tail", ["", "1", "12", "123", "1234"])
+def test_policy_has_a_hash_for_each_script_and_the_packed_one(tail: str) -> None:
+    policies = [content_policy(page_of(code)) for code in ("app()" + tail, "app() " + tail)]
+
+    one, other = map(hashes, policies)
+
+    assert one[:2] == other[:2]
+    assert len({*one, *other}) == 4
+
+
+def test_packed_style_is_not_part_of_the_hash() -> None:
+    assert content_policy(page_of("α()", "b { --β: 1 }")) == content_policy(page_of("α()"))
+
+
+def test_installed_client_has_three_scripts_and_all_are_hashed() -> None:
+    headers = ViewerPage().response({}).headers
+    policy = headers["content-security-policy"]
+
+    assert len(hashes(policy)) == 3
+    script_source = policy.partition("script-src")[2].partition(";")[0]
+    for word in ("'unsafe-inline'", "'unsafe-eval'", "'self'", "http"):
+        assert word not in script_source
+    not_changed = ViewerPage().response({"if-none-match": headers["etag"]})
+    assert not_changed.status_code == 304
+    assert not_changed.headers["content-security-policy"] == policy
+
+
+@pytest.mark.parametrize(
+    ("html", "what"),
+    [
+        ("<script>all of it</script>", "of 1 scripts 0 hold the client"),
+        (page_of("app()") + page_of("app()"), "of 4 scripts 2 hold"),
+        (page_of("app()", size=4), "does not unpack|unpacks to"),
+        (page_of("app()", size=6), "unpacks to 5 bytes, not 6"),
+        (page_of("app()", size=10**12), "would unpack to"),
+        (page_of("app()").replace('data-p="', 'data-p="€'), "does not unpack"),
+        (page_of("app()").replace('data-p="', 'data-p="\\x00'), "does not unpack"),
+        (page_of("app()").replace('data-p="', 'data-p="0'), "does not unpack"),
+        (page_of("app()").replace(" data-cs", " data-x data-cs"), "0 hold the client"),
+    ],
+)
+def test_client_in_another_packing_raises(html: str, what: str) -> None:
+    with pytest.raises(RuntimeError, match=what):
+        content_policy(html)
+
+
+@pytest.mark.parametrize(("dimmed", "expected"), [(1.0, 255), (0.5, 128)])
+def test_batch_colors_keeps_white_unless_dimmed(dimmed: float, expected: int) -> None:
+    assert batch_colors(np.full((1, 3), 255, np.uint8), dimmed).tolist() == [[expected] * 3]

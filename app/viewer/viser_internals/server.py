@@ -4,18 +4,6 @@ viser 1.1.1 listens on a TCP port without authentication, and one of the message
 there (`ShareUrlRequest`) starts a process that opens a public tunnel. So this server binds no
 socket: it keeps viser's message buffer, thread and encoder, and passes the encoded windows to the
 one reader in this process, the hub. No message reaches viser from outside.
-
-Internals of viser that this module relies on, all checked by `tests/viewer/test_in_process.py`:
-
-- `viser.ViserServer.__init__` makes its server by `viser._viser.infra.WebsockServer(...)`, which
-  starts a thread on `_background_worker(ready)`; that worker makes `_background_event_loop`,
-  `_stop_event` and `_broadcast_buffer`, listens, releases `ready`, and ends by `_stop_event`.
-- `viser.infra._infra._message_producer(websocket, buffer, client_id, backlog_done_message)` sends
-  the buffer's windows by `await websocket.send(bytes)`, first the backlog, then
-  `_backlog_done_message`, until the buffer is `done`.
-- `ViserServer._run_garbage_collector()` is what viser does before a client's backlog is sent.
-- Tunnels are opened and closed by `ViserServer.request_share_url` and `.disconnect_share_url` only.
-- `viser.infra.AsyncMessageBuffer(event_loop, persistent_messages=True)` is the broadcast's buffer.
 """
 
 import asyncio

@@ -1,4 +1,6 @@
-"""viser's wire format: one websocket frame carries a window of messages and their arrays.
+"""viser's stream: its wire format, and which messages make earlier ones redundant.
+
+One websocket frame carries a window of messages and their arrays.
 
 A frame is `u64 size of the msgpack | u64 size of its zstd | zstd(msgpack) | arrays`, little-endian,
 each array padded to 8 bytes. The msgpack is `{messages, timestampSec, binaryBufferLengths}`, and a
@@ -6,19 +8,40 @@ message names an array by its index in the frame: `{"__binary_index": 3, "dtype"
 """
 
 import struct
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 import viser
 import zstandard
+from viser import _messages
 
 SUBPROTOCOL = f"viser-v{viser.__version__}"
 """Websocket subprotocol of both ends. The format is versioned only by viser's own version."""
 
 Message = dict[str, Any]
 """One decoded message; its `type` is the name of viser's class."""
+
+Entity = tuple[str, str, str]
+"""What a message is about: kind (`scene`, `gui`, …), name or UUID, and owner."""
+
+Key = tuple[str, ...]
+
+REPLAY_DONE = _messages.ReplayDoneMessage.__name__
+"""Type of the message after the backlog, until which viser's client waits."""
+
+BLOCKED_TYPES = frozenset(
+    cls.__name__
+    for cls in (
+        # Runs as a script in every browser; nothing we draw needs it.
+        _messages.RunJavascriptMessage,
+        # Request a reply from the browser, which the hub would not relay.
+        _messages.GetRenderRequestMessage,
+        _messages.LocalStorageGetItemRequestMessage,
+    )
+)
+"""Message types that are not relayed to browsers."""
 
 _SIZES = struct.Struct("<QQ")
 _ALIGNMENT_BYTES = 8
@@ -43,9 +66,11 @@ class Frame:
     timestamp_s: float
     """When viser sent it, by viser's clock [s]; browsers schedule frames by the differences."""
 
-    def without_types(self, types: Collection[str]) -> "Frame":
-        """Return the frame without messages of these types; itself if it has none of them."""
-        remaining = tuple(message for message in self.messages if message["type"] not in types)
+    def without_blocked(self) -> "Frame":
+        """Return the frame without messages of `BLOCKED_TYPES`; itself if it has none of them."""
+        remaining = tuple(
+            message for message in self.messages if message["type"] not in BLOCKED_TYPES
+        )
         if len(remaining) == len(self.messages):
             return self
         return pack(remaining, self.buffers, self.timestamp_s)
@@ -114,6 +139,47 @@ def remap_buffers(value: Any, source: Sequence[memoryview], target: list[memoryv
     if isinstance(value, list):
         return [remap_buffers(item, source, target) for item in value]
     return value
+
+
+class Slot(NamedTuple):
+    """The place of a message in the state of the scene: a newer one with the same key replaces it.
+
+    Creating or removing an entity also replaces all that was sent about it before.
+    """
+
+    entity: Entity | None
+    """None if the message is about no entity."""
+    phase: str | None
+    """`create`, `update_dict`, `update_simple` or `remove`, if the entity has such a lifecycle."""
+    key: Key
+
+
+def slot_of(message: Message) -> Slot:
+    """Return the slot of a message, by the rule that viser's message classes declare."""
+    kind, phase, id_field = _LIFECYCLES.get(message["type"], (None, None, None))
+    entity: Entity | None = None
+    if kind is not None and id_field is not None:
+        entity = (kind, message[id_field], message.get("owner", ""))
+    elif "name" in message:
+        # A message on a scene node outside its lifecycle, such as whether it can be clicked.
+        entity = ("scene", message["name"], message.get("owner", ""))
+    subject = entity or (message["type"], str(message.get("uuid", "")), "")
+    if phase == "create":
+        return Slot(entity, phase, (*subject, phase))
+    if phase == "update_dict":
+        return Slot(entity, phase, (*subject, message["type"], *sorted(message["updates"])))
+    return Slot(entity, phase, (*subject, message["type"], str(message.get("bone_index", ""))))
+
+
+_LIFECYCLES = {
+    cls.__name__: (cls.entity_type, cls.lifecycle_phase, cls.entity_id_field)
+    for cls in _messages.Message.get_subclasses()
+}
+
+
+def position_message(node: str, position: tuple[float, float, float]) -> Message:
+    """Return the message that moves a scene node to a position [m]."""
+    return _messages.SetPositionMessage(node, position).as_serializable_dict()
 
 
 def _split_buffers(raw: bytes, start: int, lengths: Iterable[int]) -> tuple[memoryview, ...]:
