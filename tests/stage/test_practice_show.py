@@ -127,7 +127,7 @@ def test_playback_follows_a_change_of_pace(parts: StageParts) -> None:
         advance()
     parts.stage.show(run.id)
     parts.watch(1.0)
-    parts.store.update(run.id, changes=({"step": 200, "pace": 1.0},))
+    parts.publish(parts.store.update(run.id, changes=({"step": 200, "pace": 1.0},)))
 
     frame = parts.watch(0.5)[-1]
 

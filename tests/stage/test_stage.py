@@ -112,8 +112,7 @@ def test_deleted_run_is_removed_from_the_stage(parts: StageParts) -> None:
     run = parts.finished_race()
     parts.stage.show(run.id)
     parts.next_frame()
-    parts.store.delete(run.id)
-    parts.recordings.discard(run.id)
+    parts.delete(run)
 
     frame = parts.next_frame()
 
