@@ -63,7 +63,8 @@ async def get_events(
 ) -> AsyncIterator[ServerSentEvent]:
     """A `snapshot` first, then changes; with `run_id` those of one run only."""
     # Subscribed before anything is read: each change is in the snapshot, or comes after it.
-    subscription = services.bus.subscribe(run_id, _event_id(last_event_id))
+    run_ids = None if run_id is None else {run_id}
+    subscription = services.bus.subscribe(run_ids, _event_id(last_event_id))
     listener.close = subscription.close
     try:
         known_id = services.bus.last_id

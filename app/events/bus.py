@@ -40,26 +40,31 @@ class Event(NamedTuple):
     @property
     def key(self) -> Any:
         """Coalescing key: a new event replaces a pending one with the same key."""
+        if self.event == "run-deleted":
+            return ("run", self.run_id)
         return (self.event, self.run_id) if self.event in _STATE_EVENTS else self.id
 
 
 class Subscription:
     """Buffer of one subscriber: `drain()` it, or iterate: `async for event in subscription`.
 
-    A slow subscriber receives only the newest of each `run`, `scene`, `stage`, `summary` and
-    `viewers` event. It is dropped when it has `MAX_PENDING` pending events and another comes: it
-    receives those, and subscribes again, with the id of the last one or with a new snapshot.
+    A slow subscriber receives only the newest of each `scene`, `stage`, `summary` and `viewers`
+    event, and of `run` or `run-deleted` for each run. It is closed when it has `MAX_PENDING`
+    pending events and another comes; the client then reconnects with `Last-Event-ID`.
 
     Attributes:
-        since: id of an event after which it receives every event, state events coalesced.
-        dropped: whether it was dropped and has missed events.
+        since: id of an event after which it receives every event, but coalesced.
     """
 
     def __init__(
-        self, bus: "EventBus", run_id: str | None, names: Container[str] | None, since: int
+        self,
+        bus: "EventBus",
+        run_ids: Container[str | None] | None,
+        names: Container[str] | None,
+        since: int,
     ) -> None:
-        self.since, self.dropped = since, False
-        self._bus, self._run_id, self._names = bus, run_id, names
+        self.since = since
+        self._bus, self._run_ids, self._names = bus, run_ids, names
         self._pending: OrderedDict[Any, Event] = OrderedDict()
         self._lock = threading.Lock()
         self._closed = False
@@ -67,17 +72,17 @@ class Subscription:
 
     def push(self, event: Event) -> None:
         """Queue an event for the subscriber, coalescing by key; callable from any thread."""
-        if self._run_id is not None and event.run_id != self._run_id:
+        if self._run_ids is not None and event.run_id not in self._run_ids:
             return
         if self._names is not None and event.event not in self._names:
             return
         with self._lock:
             was_empty = not self._pending
             self._pending.pop(event.key, None)
-            self.dropped |= len(self._pending) >= MAX_PENDING
-            if not self.dropped:
+            self._closed |= len(self._pending) >= MAX_PENDING
+            if not self._closed:
                 self._pending[event.key] = event
-        if self.dropped:
+        if self._closed:
             self.close()
         elif was_empty:
             self._wake_reader()
@@ -154,14 +159,14 @@ class EventBus:
 
     def subscribe(
         self,
-        run_id: str | None = None,
+        run_ids: Container[str | None] | None = None,
         last_event_id: int | None = None,
         names: Container[str] | None = None,
     ) -> Subscription:
         """Create a subscription.
 
         Args:
-            run_id: only events about this run; None for all events.
+            run_ids: only events about these runs; None for all events.
             last_event_id: replay buffered events after this id first, except state events, which
                 a snapshot supersedes. An id in the future counts as None.
             names: only events of these names; None for all.
@@ -170,7 +175,7 @@ class EventBus:
             since = self._last_id
             if last_event_id is not None and last_event_id < since:
                 since = last_event_id
-            subscription = Subscription(self, run_id, names, since)
+            subscription = Subscription(self, run_ids, names, since)
             self._subscriptions.add(subscription)
             for missed in self._ring if since < self._last_id else ():
                 if missed.id > since:

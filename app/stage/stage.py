@@ -4,11 +4,11 @@ import json
 import math
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from app.domain.errors import InvalidInput
+from app.domain.errors import HexapodError, InvalidInput
 from app.events.bus import Event, EventBus
 from app.runs.clocks import Clock, check_clock
 from app.runs.config import RaceConfig, TrainingConfig
@@ -17,7 +17,6 @@ from app.stage.race_show import RaceShow
 from app.stage.scene_spec import idle_scene, race_scene, rest_pose, training_scene
 from app.stage.show import TIME_LAPSE, IdleShow, RunLabel, Show
 from app.stage.stage_frame import LaneView, StageFrame
-from app.storage.errors import Damaged, NotFound
 from app.storage.recordings import Recordings
 from app.storage.store import UNENDED, Run, RunStore
 
@@ -32,8 +31,8 @@ _RECENT_RACES = 20
 class Stage:
     """Holds the current show and its playlist, and executes playback commands. Thread-safe.
 
-    It reads a run from the store when that is put on the playlist; from then on the bus tells of
-    its changes.
+    Runs are read from the store when they are put on the playlist; from then on the bus tells of
+    their changes.
 
     Args:
         store: store of the runs.
@@ -55,25 +54,14 @@ class Stage:
         self._show: Show
         self._playlist: list[Run] = []
         """The run on stage, followed by those to be shown after it."""
-        self._run_events = bus.subscribe(names=_RUN_EVENTS)
-        self._is_outdated = False
-        """Whether the playlist has to be read from the store, since events were missed."""
+        self._changes = bus.subscribe(run_ids=())
+        """Events about the runs of the playlist."""
         self._replay, self._playing = False, True
         self._speed: float | None = None
         """Speed chosen by a user; None for the show's automatic speed."""
         self._idle_since_s: float | None = None
         self._last_frame_s = self._now()
         self._show_idle_scene()
-
-    def show(self, run_id: str) -> None:
-        """Show a run from its start and replace whatever is on stage.
-
-        Raises:
-            NotFound: if there is no such run.
-        """
-        with self._lock:
-            self._update_playlist()
-            self._play([self._store.get(run_id)])
 
     def offer(self, run_id: str) -> bool:
         """Show a run that was just submitted, unless a live run is on stage.
@@ -91,7 +79,7 @@ class Stage:
             run = self._store.get(run_id)
             if self._has_live_run():
                 return any(run_id == scheduled.id for scheduled in self._playlist)
-            self._play([*map(self._store.get, run.waiting_for), run])
+            self._play([*run.waiting_for, run_id])
             return True
 
     def set(
@@ -123,7 +111,7 @@ class Stage:
         with self._lock:
             self._update_playlist()
             if run_id is not None and run_id != self._run_id:
-                self._play([self._store.get(run_id)])
+                self._play([run_id])
             if clock is not None:
                 self._show.retime(clock)
                 self._clock = clock  # type: ignore[assignment]  # checked above
@@ -189,38 +177,18 @@ class Stage:
         return any(run.state in UNENDED for run in self._playlist)
 
     def _update_playlist(self) -> None:
-        """Apply what the bus told of the playlist's runs since the last call.
-
-        Called before the store is read, so that no older event is applied to what is read.
-        """
-        on_stage, events = self._run_id, self._run_events.drain()
-        if self._run_events.dropped:
-            self._run_events = self._bus.subscribe(names=_RUN_EVENTS)
-            self._is_outdated = True
-        if self._is_outdated:
-            self._playlist = self._stored_playlist()
-            self._is_outdated = False
-        else:
-            for event in events:
-                changed = [_changed(run, event) for run in self._playlist]
-                self._playlist = [run for run in changed if run is not None]
+        """Apply what the bus told of the playlist's runs since the last call."""
+        on_stage = self._run_id
+        for event in self._changes.drain():
+            changed = [_changed(run, event) for run in self._playlist]
+            self._playlist = [run for run in changed if run is not None]
         if self._run_id == on_stage:
             return
         if self._playlist:
-            self._play(self._playlist)
+            self._play([run.id for run in self._playlist])
         else:
             self._show_idle_scene()
             self._publish()
-
-    def _stored_playlist(self) -> list[Run]:
-        """Return the playlist with each run as stored now, without deleted or damaged ones."""
-        stored = []
-        for run in self._playlist:
-            try:
-                stored.append(self._store.get(run.id))
-            except (NotFound, Damaged):
-                continue
-        return stored
 
     def _advance_playlist(self, now: float) -> None:
         """After the end of a show start the next of the playlist, or later a replay."""
@@ -228,7 +196,7 @@ class Stage:
             self._idle_since_s = None
             return
         if len(self._playlist) > 1:
-            self._play(self._playlist[1:])
+            self._play([run.id for run in self._playlist[1:]])
             return
         if self._idle_since_s is None:
             self._idle_since_s = now
@@ -240,12 +208,20 @@ class Stage:
         finished = self._store.list(kind="race", state="finished", limit=_RECENT_RACES)
         for run in finished.runs:
             if self._recordings.race(run.id):
-                self._play([run], replay=True)
+                self._play([run.id], replay=True)
                 return
 
-    def _play(self, playlist: list[Run], replay: bool = False) -> None:
-        self._show = self._make_show(playlist[0])
-        self._playlist, self._replay = playlist, replay
+    def _play(self, run_ids: Sequence[str], replay: bool = False) -> None:
+        # Subscribed before the runs are read: each change is in what is read, or comes after it.
+        changes = self._bus.subscribe(run_ids, names=_RUN_EVENTS)
+        try:
+            playlist = [self._store.get(run_id) for run_id in run_ids]
+            self._show = self._make_show(playlist[0])
+        except HexapodError:
+            self._bus.remove(changes)
+            raise
+        self._bus.remove(self._changes)
+        self._changes, self._playlist, self._replay = changes, playlist, replay
         self._playing, self._speed, self._idle_since_s = True, None, None
         self._publish()
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.domain.errors import HexapodError
 from app.events.bus import MAX_PENDING, EventBus
 from app.events.run_view import run_view
 from app.settings import Settings
@@ -16,7 +17,7 @@ from app.storage.database.store import SqlStore
 from app.storage.recordings import Recordings
 from app.storage.store import LIVE, QUEUED, UNENDED, Run
 from tests.storage.queries import recorded_queries
-from tests.storage.stores import training
+from tests.storage.stores import experiment, training
 
 REST_QPOS = np.zeros(25, np.float32)
 
@@ -57,7 +58,7 @@ def follower(tmp_path: Path) -> Iterator[Follower]:
 
 def test_stage_reads_no_run_while_one_is_shown(follower: Follower) -> None:
     run = follower.running("a")
-    follower.stage.show(run.id)
+    follower.stage.set(run_id=run.id)
     with recorded_queries() as queries:
         for done in range(20):
             follower.publish(replace(run, done=done))
@@ -74,7 +75,7 @@ def test_stage_reads_no_run_while_one_is_shown(follower: Follower) -> None:
 
 def test_state_of_the_stage_follows_an_event_without_a_frame(follower: Follower) -> None:
     run = follower.running("a")
-    follower.stage.show(run.id)
+    follower.stage.set(run_id=run.id)
     assert follower.stage.state()["holder"] == "a"
     follower.end(run)
     assert follower.stage.state()["holder"] is None
@@ -85,37 +86,47 @@ def test_event_from_before_a_run_was_shown_does_not_undo_what_was_read(follower:
     run = follower.running("a")
     follower.publish(run)
     follower.store.change(run.id, UNENDED, "finished")
-    follower.stage.show(run.id)
+    follower.stage.set(run_id=run.id)
     assert not follower.stage.state()["live"]
 
 
 def test_run_that_became_unreadable_leaves_the_stage(follower: Follower) -> None:
     run = follower.running("a")
-    follower.stage.show(run.id)
+    follower.stage.set(run_id=run.id)
     follower.publish(replace(run, eta_s=float("nan")))
     assert follower.watch(1) is None
 
 
-def test_stage_reads_the_store_again_after_it_missed_events(follower: Follower) -> None:
-    ended, deleted = follower.running("a"), follower.running("b")
-    follower.stage.show(ended.id)
+def test_stage_that_is_not_drawn_for_long_misses_no_change(follower: Follower) -> None:
+    run = follower.running("a")
+    follower.stage.set(run_id=run.id)
     for number in range(MAX_PENDING + 1):
         follower.bus.publish("run-deleted", {"id": f"other {number}"}, f"other {number}")
-    follower.end(ended)
+        follower.bus.publish("evaluation", {"step": number}, run.id)
+        follower.bus.publish("run-deleted", {"id": run.id}, run.id)
+        follower.publish(run)
+    assert follower.stage.state()["live"]
+    follower.end(run)
     assert follower.watch(1) == "a"
     assert not follower.stage.state()["live"]
-
-    follower.stage.show(deleted.id)
-    follower.store.change(deleted.id, LIVE, "finished")
-    for number in range(MAX_PENDING + 1):
-        follower.bus.publish("run-deleted", {"id": f"other {number}"}, f"other {number}")
-    follower.store.delete(deleted.id)
-    follower.bus.publish("run-deleted", {"id": deleted.id}, deleted.id)
+    follower.bus.publish("run-deleted", {"id": run.id}, run.id)
     assert follower.watch(1) is None
 
 
+def test_refused_run_leaves_the_stage_to_follow_the_one_before(follower: Follower) -> None:
+    run = follower.running("a")
+    follower.stage.set(run_id=run.id)
+    follower.store.create(experiment("b"))
+    for run_id in ("b", "none"):
+        with pytest.raises(HexapodError):
+            follower.stage.set(run_id=run_id)
+    follower.end(run)
+    assert follower.watch(1) == "a"
+    assert not follower.stage.state()["live"]
+
+
 def test_stage_of_a_closed_bus_reads_no_store(follower: Follower) -> None:
-    follower.stage.show(follower.running("a").id)
+    follower.stage.set(run_id=follower.running("a").id)
     follower.bus.close()
     with recorded_queries() as queries:
         follower.watch()
