@@ -62,22 +62,28 @@ async def get_events(
     last_event_id: Annotated[str | None, Header()] = None,
 ) -> AsyncIterator[ServerSentEvent]:
     """A `snapshot` first, then changes; with `run_id` those of one run only."""
-    # Listening before looking: what happens in between comes twice rather than never.
-    subscription = services.bus.subscribe(run_id, _event_id(last_event_id))
+    # Subscribed before anything is read: each change is in the snapshot, or comes after it.
+    run_ids = None if run_id is None else {run_id}
+    subscription = services.bus.subscribe(run_ids, _event_id(last_event_id))
     listener.close = subscription.close
     try:
-        snapshot_id = str(services.bus.last_id)
-        # In a thread: it asks the database, for which the event loop must not wait.
-        data = json_text(await run_in_threadpool(_snapshot, services, role, run_id))
-        yield ServerSentEvent(event="snapshot", id=snapshot_id, raw_data=data, retry=RETRY_MS)
+        known_id = services.bus.last_id
+        # In a thread: the event loop must not wait for the database or the stage's lock.
+        text, listed = await run_in_threadpool(_snapshot, services, role, run_id)
+        # The id is one after which everything comes: a client that goes now misses nothing.
+        since = str(subscription.since)
+        yield ServerSentEvent(event="snapshot", id=since, raw_data=text, retry=RETRY_MS)
         async for event in subscription:
+            if event.event == "run-deleted" and event.id <= known_id and event.run_id in listed:
+                continue  # deleted before the snapshot, and imported again
             yield ServerSentEvent(event=event.event, id=str(event.id), raw_data=event.data)
     finally:
         # A client may leave before the first event.
         services.bus.remove(subscription)
 
 
-def _snapshot(services: Services, role: str, run_id: str | None) -> dict[str, Any]:
+def _snapshot(services: Services, role: str, run_id: str | None) -> tuple[str, set[str]]:
+    """The snapshot as JSON, and the ids of the runs in it."""
     store = services.store
     runs = store.list(limit=NEWEST_RUNS).items if run_id is None else [store.find(run_id)]
     shown: dict[str, Any] = {
@@ -90,7 +96,7 @@ def _snapshot(services: Services, role: str, run_id: str | None) -> dict[str, An
     }
     if run_id is not None:
         shown["evaluations"] = store.evaluations(run_id)
-    return shown
+    return json_text(shown), {run.id for run in runs}
 
 
 def _event_id(header: str | None) -> int | None:

@@ -9,7 +9,7 @@ from app.archive.archived_files import check_files, is_file_of, members_of
 from app.archive.archived_run import read_run_json, run_json
 from app.archive.archived_trials import TRIALS, read_trials_json, trials_json
 from app.domain.errors import DamagedFile
-from app.events.run_view import as_shown
+from app.events.damage import as_shown
 from app.experiments.config import ExperimentConfig
 from app.limits.memory_budget import MemoryBudget
 from app.storage.errors import Busy, Damaged

@@ -16,7 +16,8 @@ from app.cli.race import show_lanes
 from app.cli.server_client import call_server
 from app.cli.terminal import show_table
 from app.domain.errors import InvalidInput
-from app.events.run_view import as_shown, run_view
+from app.events.damage import as_shown
+from app.events.run_view import run_view
 from app.settings import Settings, read_settings
 from app.storage.errors import NotFound
 from app.storage.json_text import json_text

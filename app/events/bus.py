@@ -1,4 +1,4 @@
-"""Event bus: publish from any thread, subscribe on an asyncio loop (server-sent events).
+"""Event bus: publish and subscribe from any thread, or iterate on an asyncio loop.
 
 Slow subscribers are handled by coalescing: state events replace pending ones with the same key. A
 ring buffer replays the other events to subscribers that reconnect with `Last-Event-ID`.
@@ -9,7 +9,7 @@ import itertools
 import threading
 import time
 from collections import OrderedDict, deque
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Callable, Container, Mapping
 from typing import Any, NamedTuple
 
 from app.storage.json_text import json_text
@@ -17,7 +17,7 @@ from app.storage.json_text import json_text
 RING_EVENTS = 4096
 """Capacity of the replay buffer in events."""
 MAX_PENDING = 2048
-"""Pending events beyond which a slow subscription is closed."""
+"""Most pending events of a slow subscription."""
 _STATE_EVENTS = frozenset({"run", "scene", "stage", "summary", "viewers"})
 """Names of events that carry a full state: a newer one supersedes pending older ones."""
 
@@ -40,65 +40,84 @@ class Event(NamedTuple):
     @property
     def key(self) -> Any:
         """Coalescing key: a new event replaces a pending one with the same key."""
+        if self.event == "run-deleted":
+            return ("run", self.run_id)
         return (self.event, self.run_id) if self.event in _STATE_EVENTS else self.id
 
 
 class Subscription:
-    """One subscriber: `async for event in subscription`, on the loop that created it.
+    """Buffer of one subscriber: `drain()` it, or iterate: `async for event in subscription`.
 
-    A slow subscriber receives only the newest of each `run`, `scene`, `stage`, `summary` and
-    `viewers` event. With more than `MAX_PENDING` pending events it is closed; the client then
-    reconnects with `Last-Event-ID`.
+    A slow subscriber receives only the newest of each `scene`, `stage`, `summary` and `viewers`
+    event, and of `run` or `run-deleted` for each run. It is closed when it has `MAX_PENDING`
+    pending events and another comes; the client then reconnects with `Last-Event-ID`.
+
+    Attributes:
+        since: id of an event after which it receives every event, but coalesced.
     """
 
-    def __init__(self, bus: "EventBus", run_id: str | None) -> None:
-        self._bus, self._run_id = bus, run_id
-        self._loop = asyncio.get_running_loop()
+    def __init__(
+        self,
+        bus: "EventBus",
+        run_ids: Container[str | None] | None,
+        names: Container[str] | None,
+        since: int,
+    ) -> None:
+        self.since = since
+        self._bus, self._run_ids, self._names = bus, run_ids, names
         self._pending: OrderedDict[Any, Event] = OrderedDict()
         self._lock = threading.Lock()
-        self._wake = asyncio.Event()
         self._closed = False
+        self._wake: Callable[[], object] = lambda: None
 
     def push(self, event: Event) -> None:
         """Queue an event for the subscriber, coalescing by key; callable from any thread."""
-        if self._run_id is not None and event.run_id != self._run_id:
+        if self._run_ids is not None and event.run_id not in self._run_ids:
+            return
+        if self._names is not None and event.event not in self._names:
             return
         with self._lock:
             was_empty = not self._pending
             self._pending.pop(event.key, None)
-            self._pending[event.key] = event
-            if len(self._pending) > MAX_PENDING:
-                self._closed = True
-        if was_empty or self._closed:
-            self._wake_loop()
+            self._closed |= len(self._pending) >= MAX_PENDING
+            if not self._closed:
+                self._pending[event.key] = event
+        if self._closed:
+            self.close()
+        elif was_empty:
+            self._wake_reader()
 
     def close(self) -> None:
         """End the iteration after the pending events; callable from any thread."""
         self._closed = True
         self._bus.remove(self)
-        self._wake_loop()
+        self._wake_reader()
+
+    def drain(self) -> list[Event]:
+        """Remove and return the pending events; callable from any thread."""
+        with self._lock:
+            events = list(self._pending.values())
+            self._pending.clear()
+        return events
 
     async def __aiter__(self) -> AsyncIterator[Event]:
+        loop, ready = asyncio.get_running_loop(), asyncio.Event()
+        self._wake = lambda: loop.call_soon_threadsafe(ready.set)
+        ready.set()
         try:
             while True:
-                await self._wake.wait()
-                self._wake.clear()
-                for event in self._drain():
+                await ready.wait()
+                ready.clear()
+                for event in self.drain():
                     yield event
                 if self._closed:
                     return
         finally:
             self._bus.remove(self)
 
-    def _drain(self) -> list[Event]:
-        with self._lock:
-            events = list(self._pending.values())
-            self._pending.clear()
-        return events
-
-    def _wake_loop(self) -> None:
+    def _wake_reader(self) -> None:
         try:
-            self._loop.call_soon_threadsafe(self._wake.set)
+            self._wake()
         except RuntimeError:  # the loop is closed, and its subscribers with it
             self._bus.remove(self)
 
@@ -139,22 +158,28 @@ class EventBus:
                 subscription.push(published)
 
     def subscribe(
-        self, run_id: str | None = None, last_event_id: int | None = None
+        self,
+        run_ids: Container[str | None] | None = None,
+        last_event_id: int | None = None,
+        names: Container[str] | None = None,
     ) -> Subscription:
-        """Create a subscription to one run's events or to all; call on its asyncio loop.
+        """Create a subscription.
 
         Args:
-            run_id: only events about this run; None for all events.
+            run_ids: only events about these runs; None for all events.
             last_event_id: replay buffered events after this id first, except state events, which
                 a snapshot supersedes. An id in the future counts as None.
+            names: only events of these names; None for all.
         """
-        subscription = Subscription(self, run_id)
         with self._lock:
-            if last_event_id is not None and last_event_id <= self._last_id:
-                for missed in self._ring:
-                    if missed.id > last_event_id:
-                        subscription.push(missed)
+            since = self._last_id
+            if last_event_id is not None and last_event_id < since:
+                since = last_event_id
+            subscription = Subscription(self, run_ids, names, since)
             self._subscriptions.add(subscription)
+            for missed in self._ring if since < self._last_id else ():
+                if missed.id > since:
+                    subscription.push(missed)
         if self._closed:
             subscription.close()
         return subscription

@@ -1,60 +1,12 @@
 """Serialise runs to plain JSON types, as sent by the API and in `run` events."""
 
-from collections.abc import Mapping
 from datetime import UTC, datetime
 from typing import Any
 
-import msgspec
-
-from app.runs.clocks import CLOCKS
+from app.events.damage import as_shown
 from app.runs.config import RaceConfig, TrainingConfig
 from app.storage.configs import config_as_json
-from app.storage.json_text import is_finite
-from app.storage.store import PAUSED, RESUMABLE, AnyRun, DamagedRun, Kind, Run
-
-
-class _TrainingResult(msgspec.Struct):
-    """Fields of a training's result that clients rely on; further fields are ignored."""
-
-    distance_m: float | None
-    greedy_distance_m: float | None = None
-
-
-class _Figures(msgspec.Struct):
-    finished_distance_m: float
-    elapsed_s: float
-    crossed_s: float | None
-    rank: int
-
-
-class _LaneResult(msgspec.Struct):
-    agent: str
-    clocks: dict[str, _Figures]
-    steps: int
-    decision_s: float
-    simulated_transitions: int
-    total_distance_m: float | None
-    failure: str | None
-
-
-class _RaceResult(msgspec.Struct):
-    lanes: list[_LaneResult]
-
-
-class _Claim(msgspec.Struct):
-    verdict: str
-
-
-class _ExperimentResult(msgspec.Struct):
-    claims: list[_Claim]
-    files: list[str]
-
-
-_RESULTS: Mapping[Kind, Any] = {
-    "training": _TrainingResult,
-    "race": _RaceResult,
-    "experiment": _ExperimentResult,
-}
+from app.storage.store import PAUSED, RESUMABLE, AnyRun, DamagedRun, Run
 
 
 def run_view(run: AnyRun, queue_position: int | None = None) -> dict[str, Any]:
@@ -70,48 +22,6 @@ def run_view(run: AnyRun, queue_position: int | None = None) -> dict[str, Any]:
     if isinstance(checked, DamagedRun):
         return _damaged_view(checked)
     return _whole_view(checked, queue_position)
-
-
-def as_shown(run: AnyRun) -> AnyRun:
-    """Return the run, or a `DamagedRun` if clients could not use its JSON.
-
-    The store detects rows that it cannot decode; this detects non-finite numbers and results that
-    lack fields.
-    """
-    damage = None if isinstance(run, DamagedRun) else _damage(run)
-    if damage is None:
-        return run
-    fields = {name: getattr(run, name) for name in ("id", "kind", "name", "state", "created_at")}
-    return DamagedRun(**fields, damaged=damage)
-
-
-def _damage(run: Run) -> str | None:
-    """Return why clients could not use a run's JSON; None if they can."""
-    try:
-        return _non_finite_field(run) or _invalid_result(run)
-    except RecursionError:
-        return "its result is nested too deeply"
-
-
-def _non_finite_field(run: Run) -> str | None:
-    for name in ("eta_s", "greedy_distance_m", "changes", "result"):
-        if not is_finite(getattr(run, name)):
-            return f"its {name} has a number that is none"
-    return None
-
-
-def _invalid_result(run: Run) -> str | None:
-    if run.result is None:
-        return None
-    try:
-        result = msgspec.convert(run.result, _RESULTS[run.kind])
-    except msgspec.ValidationError as error:
-        return f"its result cannot be read ({error})"
-    if isinstance(result, _RaceResult) and any(
-        set(CLOCKS) - {*lane.clocks} for lane in result.lanes
-    ):
-        return "its result lacks a clock"
-    return None
 
 
 def _damaged_view(run: DamagedRun) -> dict[str, Any]:

@@ -5,7 +5,8 @@ import logging
 import threading
 import time
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from operator import itemgetter
 from typing import Any
@@ -37,9 +38,8 @@ from app.runs.results import race_result
 from app.storage.database.engine import retry_during_outage
 from app.storage.errors import OwnershipLost, StorageFailed
 from app.storage.recordings import Recordings
-from app.storage.store import CHECKPOINT, LIVE, SUMMARY, TABLE, Run, RunStore, State
+from app.storage.store import CHECKPOINT, LIVE, RUNNING, SUMMARY, TABLE, Run, RunStore, State
 
-EVENTS_PER_S = 10
 MAX_OUTAGE_S = 600.0
 """Longest database outage that a job waits out; after that its run becomes `interrupted`."""
 STALLED_S = 8.0
@@ -63,14 +63,16 @@ class Job:
         paused: whether `pause` was sent last.
         stopping: whether `stop` was called.
         shared: whether another job ran at the same time; a race's result reports it.
+        events_per_s: maximum rate of events that tell of nothing but progress.
         eta_window_s: length of the moving window from which the remaining time is estimated [s].
         process: the worker process.
-        last: the run as this job last wrote it, its final state included.
+        last: the run as it was published last, or more recent in its progress.
         ended: set when the run's final state is in the store.
         gone: set when the process has exited and all events of the run were published.
     """
 
     stop_grace_s = 20.0
+    events_per_s = 10
     eta_window_s = 5.0
 
     def __init__(
@@ -102,6 +104,8 @@ class Job:
             f"{run.kind} {run.id}", task, self._handle_with_retry, niceness
         )
         self.last = run
+        self._publish_lock = threading.RLock()
+        """Held from the change of a run that lives to its event, so that events are in order."""
         self._run, self._task, self._shutdown = run, task, shutdown
         self._started_s = time.monotonic()
         self._started_at = max(datetime.now(UTC), run.started_at or run.created_at)
@@ -156,6 +160,25 @@ class Job:
         self.process.send(Command("tune", token, changes, time.monotonic() + within_s))
         return acknowledged
 
+    def change_state(self, from_states: Collection[State], to_state: State) -> Run:
+        """Change the state in which the run lives in the store, and publish the run.
+
+        Raises:
+            NotFound: if there is no such run.
+            Conflict: if its state is not in `from_states`.
+        """
+        with self._publish_lock:
+            self._store.change(self.run_id, from_states, to_state)
+            return self.publish(state=to_state, eta_s=None)
+
+    def publish(self, **changed: Any) -> Run:
+        """Publish the run with these fields changed, which are stored already; return it."""
+        with self._publish_lock:
+            self.last = replace(self.last, **changed)
+            self._published_s = time.monotonic()
+            self._bus.publish("run", run_view(self.last), self.run_id)
+            return self.last
+
     @property
     def is_answering(self) -> bool:
         """Whether the process sent a heartbeat lately and is not stopped by a signal."""
@@ -186,11 +209,12 @@ class Job:
         # From the monotonic clock, which clock adjustments do not affect.
         ended_at = self._started_at + timedelta(seconds=time.monotonic() - self._started_s)
         run = self._store.change(
-            self.run_id, LIVE, state, error=error, result=result, ended_at=ended_at, eta_s=None
+            self.run_id, LIVE, state, error=error, result=result, ended_at=ended_at
         )
-        self.last = run
-        self.ended.set()
-        self._publish(run)
+        with self._publish_lock:
+            self.last = run
+            self.ended.set()
+            self.publish()
 
     def _finish_recording(self, state: State) -> None:
         try:
@@ -275,21 +299,30 @@ class Job:
             if isinstance(record, Reference):
                 greedy_distance_m = record.greedy_distance_m
                 self._store.update(self.run_id, greedy_distance_m=greedy_distance_m)
+                self.publish(greedy_distance_m=greedy_distance_m)
                 self._publish_event("reference", greedy_distance_m=greedy_distance_m)
         for row in rows:
             self._publish_event("evaluation", **row)
-        run = self._store.update_progress(self.run_id, batch.done, self._eta_s(batch.done))
-        if time.monotonic() - self._published_s >= 1 / EVENTS_PER_S:
-            self._publish(run)
+        self._handle_progress(batch.done)
+
+    def _handle_progress(self, done: int) -> None:
+        eta_s = self._eta_s(done)
+        self._store.update_progress(self.run_id, done, eta_s)
+        with self._publish_lock:
+            # The process may report its last steps after the run was paused.
+            eta_s = eta_s if self.last.state in RUNNING else None
+            self.last = replace(self.last, done=done, eta_s=eta_s)
+            if time.monotonic() - self._published_s >= 1 / self.events_per_s:
+                self.publish()
 
     def _handle_change(self, changed: Changed) -> None:
         change = {"step": changed.step, **changed.changes}
         # After a resume the stored changes may include later ones that are still to be replayed.
-        changes = sorted((*self._store.get(self.run_id).changes, change), key=itemgetter("step"))
-        run = self._store.update(self.run_id, changes=tuple(changes))
+        changes = tuple(sorted((*self.last.changes, change), key=itemgetter("step")))
+        self._store.update(self.run_id, changes=changes)
         self._progress.clear()
         self._publish_event("rates", **change)
-        self._publish(run)
+        self.publish(changes=changes)
         self._acknowledgements.pop(changed.token).set()
 
     def _handle_end(self, ended: Ended) -> None:
@@ -331,10 +364,6 @@ class Job:
     def _publish_event(self, event: str, **data: Any) -> None:
         self._bus.publish(event, {"run_id": self.run_id, **data}, self.run_id)
 
-    def _publish(self, run: Run) -> None:
-        self._published_s = time.monotonic()
-        self._bus.publish("run", run_view(run), self.run_id)
-
 
 def _trained_robots(task: RaceTask) -> list[Any]:
     """Return for each lane the robot its table was learned on, None if it is the race's own."""
@@ -343,32 +372,24 @@ def _trained_robots(task: RaceTask) -> list[Any]:
     return [None if robot == race_robot else robot for robot in table_robots]
 
 
-TRIAL_EVENTS_PER_S = 4
-
-
 class ExperimentJob(Job):
     """An experiment and the worker process that runs its trials."""
 
     # A stopped experiment still writes its report, whose figures take a while to draw.
     stop_grace_s = 90.0
+    events_per_s = 4
     eta_window_s = 60.0
 
     def _handle(self, message: Message) -> None:
         if isinstance(message, TrialsDone):
-            self._handle_trials(message)
+            self._store.append_trials(self.run_id, message.rows)
+            self._handle_progress(message.done)
         elif isinstance(message, Reported):
             self._store.put_artifact(self.run_id, message.name, message.data)
             if message.name == SUMMARY:
-                run = self._store.get(self.run_id)
-                self._publish_event("summary", done=run.done, total=run.total)
+                self._publish_event("summary", done=self.last.done, total=self.last.total)
         else:
             super()._handle(message)
-
-    def _handle_trials(self, trials: TrialsDone) -> None:
-        self._store.append_trials(self.run_id, trials.rows)
-        run = self._store.update_progress(self.run_id, trials.done, self._eta_s(trials.done))
-        if time.monotonic() - self._published_s >= 1 / TRIAL_EVENTS_PER_S:
-            self._publish(run)
 
     def _handle_end(self, ended: Ended) -> None:
         result: dict[str, Any] = {**(ended.result or {}), "shared_machine": self.shared}

@@ -185,10 +185,9 @@ class Jobs:
             job = self._live_job(run_id, RUNNING, "paused")
             if self._supervisor.paused >= MAX_PAUSED:
                 raise Conflict(f"{MAX_PAUSED} runs are paused; stop or resume one", "running")
-            run = self._change(run_id, RUNNING, "paused", eta_s=None)
+            run = self._change_state(job, RUNNING, "paused")
             job.pause()
             self._changed.notify_all()
-        self._publish(run)
         return run
 
     def resume(self, run_id: str) -> Run:
@@ -216,10 +215,9 @@ class Jobs:
     def _resume_paused(self, run: Run) -> Run:
         choices = " or ".join(sorted(PAUSED | RESUMABLE[run.kind]))
         job = self._live_job(run.id, PAUSED, "resumed", choices)
-        resumed = self._change(run.id, PAUSED, "running")
+        resumed = self._change_state(job, PAUSED, "running")
         job.resume()
         self._supervisor.mark_shared()
-        self._publish(resumed)
         return resumed
 
     def stop(self, run_id: str) -> Run:
@@ -326,14 +324,12 @@ class Jobs:
         if not job.gone.wait(_EXIT_S):
             raise Conflict(f"{run.kind} {run_id} is still ending; try again", run.state)
 
-    def _change(
-        self, run_id: str, from_states: frozenset[State], to_state: State, **fields: Any
-    ) -> Run:
+    def _change_state(self, job: Job, from_states: frozenset[State], to_state: State) -> Run:
         """Change a job's state in the store; after a failed write it is reconciled later."""
         try:
-            return self._store.change(run_id, from_states, to_state, **fields)
+            return job.change_state(from_states, to_state)
         except StorageFailed:
-            self._supervisor.reconcile_later(run_id)
+            self._supervisor.reconcile_later(job.run_id)
             raise
 
     def _live_job(

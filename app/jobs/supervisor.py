@@ -207,7 +207,7 @@ class Supervisor:
             return
         self._jobs[run_id] = job
         self.mark_shared()
-        self._publish(run)
+        job.publish()
 
     def _job(self, run: Run, task: Task) -> Job:
         kind = ExperimentJob if isinstance(task, ExperimentTask) else Job
@@ -223,7 +223,7 @@ class Supervisor:
             try:
                 if running_job is not None:
                     state: State = "paused" if running_job.paused else "running"
-                    self._publish(self._store.change(run_id, LIVE, state))
+                    running_job.change_state(LIVE, state)
                 self._to_reconcile.discard(run_id)
             except _STORE_UNAVAILABLE:
                 return

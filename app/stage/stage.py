@@ -1,13 +1,15 @@
 """The stage: chooses the run that all viewers are shown, and executes playback commands."""
 
+import json
 import math
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
-from app.domain.errors import InvalidInput
-from app.events.bus import EventBus
+from app.domain.errors import HexapodError, InvalidInput
+from app.events.bus import Event, EventBus
 from app.runs.clocks import Clock, check_clock
 from app.runs.config import RaceConfig, TrainingConfig
 from app.stage.practice_show import PracticeShow
@@ -15,7 +17,6 @@ from app.stage.race_show import RaceShow
 from app.stage.scene_spec import idle_scene, race_scene, rest_pose, training_scene
 from app.stage.show import TIME_LAPSE, IdleShow, RunLabel, Show
 from app.stage.stage_frame import LaneView, StageFrame
-from app.storage.errors import Damaged, NotFound
 from app.storage.recordings import Recordings
 from app.storage.store import UNENDED, Run, RunStore
 
@@ -23,17 +24,20 @@ REPLAY_AFTER_S = 20.0
 MIN_SPEED, MAX_SPEED = 0.25, 64.0
 _MAX_FRAME_S = 0.25
 """Longest time by which one frame advances playback: after a stall nothing is skipped."""
-_REFRESH_S = 0.1
+_RUN_EVENTS = frozenset({"run", "run-deleted"})
 _RECENT_RACES = 20
 
 
 class Stage:
     """Holds the current show and its playlist, and executes playback commands. Thread-safe.
 
+    Runs are read from the store when they are put on the playlist; from then on the bus tells of
+    their changes.
+
     Args:
         store: store of the runs.
         recordings: recordings of the runs.
-        bus: receives a `stage` event at each change.
+        bus: tells of changed and deleted runs; receives a `stage` event at each change.
         now: monotonic clock of playback [s].
     """
 
@@ -50,21 +54,14 @@ class Stage:
         self._show: Show
         self._playlist: list[Run] = []
         """The run on stage, followed by those to be shown after it."""
+        self._changes = bus.subscribe(run_ids=())
+        """Events about the runs of the playlist."""
         self._replay, self._playing = False, True
         self._speed: float | None = None
         """Speed chosen by a user; None for the show's automatic speed."""
         self._idle_since_s: float | None = None
-        self._last_frame_s = self._refreshed_s = self._now()
+        self._last_frame_s = self._now()
         self._show_idle_scene()
-
-    def show(self, run_id: str) -> None:
-        """Show a run from its start and replace whatever is on stage.
-
-        Raises:
-            NotFound: if there is no such run.
-        """
-        with self._lock:
-            self._play([self._store.get(run_id)])
 
     def offer(self, run_id: str) -> bool:
         """Show a run that was just submitted, unless a live run is on stage.
@@ -78,10 +75,11 @@ class Stage:
             NotFound: if there is no such run.
         """
         with self._lock:
+            self._update_playlist()
             run = self._store.get(run_id)
             if self._has_live_run():
                 return any(run_id == scheduled.id for scheduled in self._playlist)
-            self._play([*map(self._store.get, run.waiting_for), run])
+            self._play([*run.waiting_for, run_id])
             return True
 
     def set(
@@ -111,8 +109,9 @@ class Stage:
         if time_s is not None and not (math.isfinite(time_s) and time_s >= 0):
             raise InvalidInput(f"time_s must be at least 0 and finite, not {time_s}")
         with self._lock:
+            self._update_playlist()
             if run_id is not None and run_id != self._run_id:
-                self._play([self._store.get(run_id)])
+                self._play([run_id])
             if clock is not None:
                 self._show.retime(clock)
                 self._clock = clock  # type: ignore[assignment]  # checked above
@@ -130,6 +129,7 @@ class Stage:
     def state(self) -> dict[str, Any]:
         """Return the state of playback in plain types, as `GET /stage` responds."""
         with self._lock:
+            self._update_playlist()
             run = self._playlist[0] if self._playlist else None
             return {
                 "run_id": self._run_id,
@@ -151,7 +151,7 @@ class Stage:
             now = self._now() if now is None else now
             elapsed_s = min(max(now - self._last_frame_s, 0.0), _MAX_FRAME_S)
             self._last_frame_s = now
-            self._refresh_playlist(now)
+            self._update_playlist()
             ended = self._show.ended
             run_ended = not self._playlist or self._playlist[0].state not in UNENDED
             self._show.advance(elapsed_s if self._playing else 0.0, self._speed, run_ended)
@@ -174,27 +174,18 @@ class Stage:
         return RunLabel(self._run_id, name, self._playing, self._replay)
 
     def _has_live_run(self) -> bool:
-        return any(run.state in UNENDED for run in self._fresh_playlist())
+        return any(run.state in UNENDED for run in self._playlist)
 
-    def _fresh_playlist(self) -> list[Run]:
-        """Return the playlist with each run as stored now, without deleted or damaged ones."""
-        fresh = []
-        for run in self._playlist:
-            try:
-                fresh.append(self._store.get(run.id))
-            except (NotFound, Damaged):
-                continue
-        return fresh
-
-    def _refresh_playlist(self, now: float) -> None:
-        if now - self._refreshed_s < _REFRESH_S:
-            return
-        self._refreshed_s = now
-        on_stage, self._playlist = self._run_id, self._fresh_playlist()
+    def _update_playlist(self) -> None:
+        """Apply what the bus told of the playlist's runs since the last call."""
+        on_stage = self._run_id
+        for event in self._changes.drain():
+            changed = [_changed(run, event) for run in self._playlist]
+            self._playlist = [run for run in changed if run is not None]
         if self._run_id == on_stage:
             return
         if self._playlist:
-            self._play(self._playlist)
+            self._play([run.id for run in self._playlist])
         else:
             self._show_idle_scene()
             self._publish()
@@ -205,7 +196,7 @@ class Stage:
             self._idle_since_s = None
             return
         if len(self._playlist) > 1:
-            self._play(self._playlist[1:])
+            self._play([run.id for run in self._playlist[1:]])
             return
         if self._idle_since_s is None:
             self._idle_since_s = now
@@ -217,12 +208,20 @@ class Stage:
         finished = self._store.list(kind="race", state="finished", limit=_RECENT_RACES)
         for run in finished.runs:
             if self._recordings.race(run.id):
-                self._play([run], replay=True)
+                self._play([run.id], replay=True)
                 return
 
-    def _play(self, playlist: list[Run], replay: bool = False) -> None:
-        self._show = self._make_show(playlist[0])
-        self._playlist, self._replay = playlist, replay
+    def _play(self, run_ids: Sequence[str], replay: bool = False) -> None:
+        # Subscribed before the runs are read: each change is in what is read, or comes after it.
+        changes = self._bus.subscribe(run_ids, names=_RUN_EVENTS)
+        try:
+            playlist = [self._store.get(run_id) for run_id in run_ids]
+            self._show = self._make_show(playlist[0])
+        except HexapodError:
+            self._bus.remove(changes)
+            raise
+        self._bus.remove(self._changes)
+        self._changes, self._playlist, self._replay = changes, playlist, replay
         self._playing, self._speed, self._idle_since_s = True, None, None
         self._publish()
 
@@ -260,6 +259,16 @@ class Stage:
 
     def _publish(self) -> None:
         self._bus.publish("stage", self.state())
+
+
+def _changed(run: Run, event: Event) -> Run | None:
+    """Return a run as it is after an event; None if it was deleted or became unreadable."""
+    if event.run_id != run.id:
+        return run
+    view = json.loads(event.data)
+    if event.event == "run-deleted" or "damaged" in view:
+        return None
+    return replace(run, state=view["state"], changes=tuple(view.get("changes", ())))
 
 
 def _speed(speed: float | str) -> float | None:

@@ -110,12 +110,11 @@ class MemoryStore:
             self._runs[run_id] = replace(self._run(run_id), **fields)
             return self._runs[run_id]
 
-    def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> Run:
+    def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> None:
         with self._lock:
             run = self._run(run_id)
             left_s = eta_s if run.state in RUNNING else None
             self._runs[run_id] = replace(run, done=done, eta_s=left_s)
-            return self._runs[run_id]
 
     def delete(self, run_id: str) -> None:
         with self._lock:

@@ -257,11 +257,13 @@ class RunStore(Protocol):
             NotFound: if there is no such run.
         """
 
-    def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> Run:
+    def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> None:
         """Set the number of steps or trials done and the estimated time left [s].
 
+        Readers of this store see it at once; it is durable within a second.
+
         Raises:
-            NotFound: if there is no such run.
+            NotFound: if there is no such run; not at every call.
         """
 
     def delete(self, run_id: str) -> None:

@@ -70,7 +70,7 @@ def test_state_events_of_a_slow_subscriber_are_coalesced() -> None:
 def test_subscription_to_one_run_receives_only_its_events() -> None:
     async def run() -> None:
         bus = EventBus()
-        subscription = bus.subscribe("a")
+        subscription = bus.subscribe({"a"})
         bus.publish("run", {"n": 1}, "b")
         bus.publish("stage", {"n": 2})
         bus.publish("run", {"n": 3}, "a")
@@ -137,7 +137,9 @@ def test_subscription_of_a_closed_loop_is_removed() -> None:
     bus = EventBus()
 
     async def listen() -> None:
-        bus.subscribe()
+        events = aiter(bus.subscribe())
+        bus.publish("e", {})
+        await anext(events)
 
     asyncio.run(listen())
     bus.publish("e", {})
@@ -153,3 +155,40 @@ def test_nan_and_infinity_are_sent_as_null() -> None:
         return [event.data async for event in subscription]
 
     assert asyncio.run(listen()) == ['{"distance_m": null, "lanes": [null, 1.5]}']
+
+
+def test_events_can_be_drained_without_a_loop() -> None:
+    bus = EventBus()
+    subscription = bus.subscribe(names={"run", "run-deleted"})
+    bus.publish("run", {"n": 1}, "a")
+    bus.publish("evaluation", {"n": 2}, "a")
+    bus.publish("run", {"n": 3}, "a")
+    bus.publish("run-deleted", {"n": 4}, "b")
+    assert [json.loads(event.data)["n"] for event in subscription.drain()] == [3, 4]
+    assert subscription.drain() == []
+
+
+def test_full_subscription_grows_no_more_and_continues_after_its_last_event() -> None:
+    bus = EventBus()
+    stalled = bus.subscribe()
+    count = MAX_PENDING + 1000
+    for n in range(count):
+        bus.publish("evaluation", {"n": n})
+    received = stalled.drain()
+    assert len(received) == MAX_PENDING
+    received += bus.subscribe(last_event_id=received[-1].id).drain()
+    assert [json.loads(event.data)["n"] for event in received] == [*range(count)]
+
+
+def test_long_replay_is_continued_where_it_was_cut() -> None:
+    bus = EventBus()
+    first = bus.last_id
+    for n in range(RING_EVENTS):
+        bus.publish("evaluation", {"n": n})
+    received: list[Event] = []
+    while len(received) < RING_EVENTS:
+        since = received[-1].id if received else first
+        replay = bus.subscribe(last_event_id=since)
+        assert replay.since == since
+        received += replay.drain()
+    assert [json.loads(event.data)["n"] for event in received] == [*range(RING_EVENTS)]

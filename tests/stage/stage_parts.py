@@ -8,6 +8,7 @@ import numpy as np
 
 from app.assembly import build_learner, build_walkers
 from app.events.bus import EventBus
+from app.events.run_view import run_view
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
 from app.runs.racing import race
 from app.runs.recording import LaneRecording
@@ -52,7 +53,7 @@ class StageParts:
         return frames
 
     def next_frame(self) -> StageFrame:
-        """Return the frame 0.2 s later, after the stage has read the store again."""
+        """Return the frame 0.2 s later."""
         return self.watch(0.2)[-1]
 
     def create(self, config: TrainingConfig | RaceConfig, **fields: Any) -> Run:
@@ -60,13 +61,25 @@ class StageParts:
         self._run_count += 1
         kind = "race" if isinstance(config, RaceConfig) else "training"
         fields = {"name": f"{kind.title()} {self._run_count}", "total": config.steps, **fields}
+        if isinstance(config, RaceConfig):
+            fields["lane_training_ids"] = (None,) * len(config.lanes)
         run = Run(id=f"{kind}{self._run_count:03}", kind=kind, config=config, **fields)  # type: ignore[arg-type]
         self.store.create(run)
         return run
 
     def set_state(self, run: Run, state: Any) -> None:
-        """Change a run's state from any state."""
-        self.store.change(run.id, [self.store.get(run.id).state], state)
+        """Change a run's state from any state, and publish it."""
+        self.publish(self.store.change(run.id, [self.store.get(run.id).state], state))
+
+    def publish(self, run: Run) -> None:
+        """Publish a run that changed, as jobs do."""
+        self.bus.publish("run", run_view(run), run.id)
+
+    def delete(self, run: Run) -> None:
+        """Delete an ended run."""
+        self.store.delete(run.id)
+        self.recordings.discard(run.id)
+        self.bus.publish("run-deleted", {"id": run.id}, run.id)
 
     def finished_race(
         self, agents: tuple[str, ...] = ("greedy", "two-step"), steps: int = 12

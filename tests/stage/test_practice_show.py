@@ -13,7 +13,7 @@ def parts() -> StageParts:
 
 
 def test_time_lapse_accelerates_after_ten_slow_steps(parts: StageParts) -> None:
-    parts.stage.show(parts.finished_training(500).id)
+    parts.stage.set(run_id=parts.finished_training(500).id)
     frames = parts.watch_to_end()
     speeds = [frame.shown_speed for frame in frames]
     tenth = next(n for n, frame in enumerate(frames) if frame.lanes[0].step > 10)
@@ -27,7 +27,7 @@ def test_time_lapse_accelerates_after_ten_slow_steps(parts: StageParts) -> None:
 
 
 def test_long_training_skips_steps_whose_motion_is_not_recorded(parts: StageParts) -> None:
-    parts.stage.show(parts.finished_training(3000, evaluate_every=0).id)
+    parts.stage.set(run_id=parts.finished_training(3000, evaluate_every=0).id)
     frames = parts.watch_to_end()
     steps = [frame.lanes[0].step for frame in frames]
 
@@ -39,7 +39,7 @@ def test_long_training_skips_steps_whose_motion_is_not_recorded(parts: StagePart
 
 def test_each_evaluation_adds_a_ghost(parts: StageParts) -> None:
     run = parts.finished_training(200)
-    parts.stage.show(run.id)
+    parts.stage.set(run_id=run.id)
     frames = parts.watch_to_end()
     recording = parts.recordings.training(run.id)
     assert recording is not None
@@ -55,7 +55,7 @@ def test_each_evaluation_adds_a_ghost(parts: StageParts) -> None:
 
 
 def test_number_of_ghosts_is_limited_to_the_newest(parts: StageParts) -> None:
-    parts.stage.show(parts.finished_training(60, evaluate_every=3).id)
+    parts.stage.set(run_id=parts.finished_training(60, evaluate_every=3).id)
 
     ghosts = parts.watch_to_end()[-1].ghosts
 
@@ -68,7 +68,7 @@ def test_each_episode_is_drawn_from_the_start_line(parts: StageParts) -> None:
     recording = parts.recordings.training(run.id)
     assert recording is not None
     assert abs(recording.steps[-1].distance_m) > 0.1, "it has wandered off"
-    parts.stage.show(run.id)
+    parts.stage.set(run_id=run.id)
     parts.stage.set(playing=False)
 
     for episode in range(1, 20):
@@ -79,7 +79,7 @@ def test_each_episode_is_drawn_from_the_start_line(parts: StageParts) -> None:
 
 
 def test_poses_within_an_episode_are_continuous(parts: StageParts) -> None:
-    parts.stage.show(parts.finished_training(60).id)
+    parts.stage.set(run_id=parts.finished_training(60).id)
     parts.stage.set(speed=1)
     frames = parts.watch(10.0)
     poses = np.array([frame.lanes[0].qpos for frame in frames])
@@ -90,7 +90,7 @@ def test_poses_within_an_episode_are_continuous(parts: StageParts) -> None:
 
 def test_live_training_is_never_shown_beyond_its_newest_step(parts: StageParts) -> None:
     run, advance = parts.running_training(60)
-    parts.stage.show(run.id)
+    parts.stage.set(run_id=run.id)
     assert parts.next_frame().phase == "start-line"
     for _ in range(5):
         advance()
@@ -108,7 +108,7 @@ def test_live_training_is_never_shown_beyond_its_newest_step(parts: StageParts) 
 
 def test_training_at_a_numeric_pace_is_shown_live(parts: StageParts) -> None:
     run, advance = parts.running_training(400, pace=2)
-    parts.stage.show(run.id)
+    parts.stage.set(run_id=run.id)
     lag_steps = []
     for step in range(1, 60):
         advance()
@@ -125,9 +125,9 @@ def test_playback_follows_a_change_of_pace(parts: StageParts) -> None:
     run, advance = parts.running_training(400)
     for _ in range(200):
         advance()
-    parts.stage.show(run.id)
+    parts.stage.set(run_id=run.id)
     parts.watch(1.0)
-    parts.store.update(run.id, changes=({"step": 200, "pace": 1.0},))
+    parts.publish(parts.store.update(run.id, changes=({"step": 200, "pace": 1.0},)))
 
     frame = parts.watch(0.5)[-1]
 
@@ -136,14 +136,14 @@ def test_playback_follows_a_change_of_pace(parts: StageParts) -> None:
 
 
 def test_seek_into_a_gap_goes_to_the_next_recorded_step(parts: StageParts) -> None:
-    parts.stage.show(parts.finished_training(1000, evaluate_every=0).id)
+    parts.stage.set(run_id=parts.finished_training(1000, evaluate_every=0).id)
     parts.stage.set(playing=False, time_s=200 * 0.32)
 
     assert parts.next_frame().lanes[0].step == 501
 
 
 def test_colour_scale_only_grows(parts: StageParts) -> None:
-    parts.stage.show(parts.finished_training(200).id)
+    parts.stage.set(run_id=parts.finished_training(200).id)
     views = [frame.lanes[0].knowledge for frame in parts.watch_to_end()]
     highs = [view.high_m for view in views if view]
 

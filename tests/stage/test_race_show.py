@@ -21,7 +21,7 @@ def parts() -> StageParts:
 
 
 def show_to_end(parts: StageParts) -> list[StageFrame]:
-    parts.stage.show(parts.finished_race(LANES).id)
+    parts.stage.set(run_id=parts.finished_race(LANES).id)
     return parts.watch_to_end()
 
 
@@ -76,7 +76,7 @@ def test_thinking_lane_counts_its_simulated_transitions(parts: StageParts) -> No
 
 
 def test_change_of_clock_keeps_the_moment_of_the_leader(parts: StageParts) -> None:
-    parts.stage.show(parts.finished_race(LANES).id)
+    parts.stage.set(run_id=parts.finished_race(LANES).id)
     before = parts.watch(1.5)[-1]
     parts.stage.set(playing=False, clock="free")
     after = parts.next_frame()
@@ -93,7 +93,7 @@ def test_change_of_clock_keeps_the_moment_of_the_leader(parts: StageParts) -> No
 def test_change_of_clock_at_the_photo_finish_and_at_the_end(parts: StageParts) -> None:
     run = parts.finished_race(LANES)
     lanes = parts.recordings.race(run.id) or []
-    parts.stage.show(run.id)
+    parts.stage.set(run_id=run.id)
     while parts.next_frame().phase != "photo-finish":
         pass
     parts.stage.set(clock="free")
@@ -106,7 +106,7 @@ def test_change_of_clock_at_the_photo_finish_and_at_the_end(parts: StageParts) -
 
 
 def test_seek_to_the_duration_ends_the_race(parts: StageParts) -> None:
-    parts.stage.show(parts.finished_race(LANES).id)
+    parts.stage.set(run_id=parts.finished_race(LANES).id)
     duration = parts.next_frame().duration_s
     assert duration is not None
     parts.stage.set(time_s=duration)
@@ -115,7 +115,7 @@ def test_seek_to_the_duration_ends_the_race(parts: StageParts) -> None:
 
 
 def test_chosen_speed_applies_to_the_whole_race(parts: StageParts) -> None:
-    parts.stage.show(parts.finished_race(LANES).id)
+    parts.stage.set(run_id=parts.finished_race(LANES).id)
     parts.stage.set(speed=16)
     frames = parts.watch_to_end()
 
@@ -127,7 +127,7 @@ def test_chosen_speed_applies_to_the_whole_race(parts: StageParts) -> None:
 
 def test_playback_waits_for_a_lane_that_is_still_computed(parts: StageParts) -> None:
     run, advance = parts.running_race(("greedy", "two-step"))
-    parts.stage.show(run.id)
+    parts.stage.set(run_id=run.id)
     assert parts.next_frame().phase == "waiting"
     for _ in range(3):  # greedy has two steps, two-step one
         advance()
@@ -149,7 +149,7 @@ def test_playback_waits_for_a_lane_that_is_still_computed(parts: StageParts) -> 
 def test_robots_stand_on_the_start_line_before_anything_is_recorded(parts: StageParts) -> None:
     config = parts.finished_race().config
     assert isinstance(config, RaceConfig)
-    parts.stage.show(parts.create(config).id)
+    parts.stage.set(run_id=parts.create(config).id)
 
     frame = parts.next_frame()
 
@@ -160,7 +160,7 @@ def test_robots_stand_on_the_start_line_before_anything_is_recorded(parts: Stage
 
 def test_failed_race_is_shown_up_to_its_last_step(parts: StageParts) -> None:
     run, advance = parts.running_race()
-    parts.stage.show(run.id)
+    parts.stage.set(run_id=run.id)
     for _ in range(4):
         advance()
     parts.set_state(run, "failed")
@@ -173,7 +173,7 @@ def test_failed_race_is_shown_up_to_its_last_step(parts: StageParts) -> None:
 
 def test_lane_without_progress_is_marked_as_marching(parts: StageParts) -> None:
     """An untrained agent, whose action values are all equal, makes hardly any progress."""
-    parts.stage.show(parts.finished_race(LANES, steps=40).id)
+    parts.stage.set(run_id=parts.finished_race(LANES, steps=40).id)
     frames = parts.watch_to_end(400)
     greedy = [frame.lanes[1] for frame in frames]
     idle = [frame.lanes[0] for frame in frames]
@@ -187,7 +187,7 @@ def test_slowly_computed_race_is_played_without_stops(
     parts: StageParts,
 ) -> None:
     run, advance = parts.running_race(("greedy",), steps=40)
-    parts.stage.show(run.id)
+    parts.stage.set(run_id=run.id)
     frames = []
     for _ in range(30):
         advance()
@@ -203,7 +203,7 @@ def test_race_with_an_unreachable_stance_is_shown(parts: StageParts) -> None:
         gait="left-right-origin", robot=Robot(tibia_m=0.001), lanes=(LaneConfig(agent="greedy"),)
     )
     run = parts.create(config, state="failed")
-    parts.stage.show(run.id)
+    parts.stage.set(run_id=run.id)
 
     assert parts.next_frame().lanes[0].qpos.shape == (25,)
     assert parts.stage.state()["ended"]

@@ -91,7 +91,7 @@ def test_newest_finished_race_is_replayed_after_twenty_idle_seconds(
 ) -> None:
     parts.finished_race()
     newest = parts.finished_race()
-    parts.stage.show(parts.finished_training(5).id)
+    parts.stage.set(run_id=parts.finished_training(5).id)
     frames = parts.watch_to_end()
 
     assert not any(frame.replay for frame in frames)
@@ -110,10 +110,9 @@ def test_idle_stage_without_a_finished_race_does_not_change(parts: StageParts) -
 
 def test_deleted_run_is_removed_from_the_stage(parts: StageParts) -> None:
     run = parts.finished_race()
-    parts.stage.show(run.id)
+    parts.stage.set(run_id=run.id)
     parts.next_frame()
-    parts.store.delete(run.id)
-    parts.recordings.discard(run.id)
+    parts.delete(run)
 
     frame = parts.next_frame()
 
@@ -121,7 +120,7 @@ def test_deleted_run_is_removed_from_the_stage(parts: StageParts) -> None:
 
 
 def test_playback_can_be_paused_and_continued(parts: StageParts) -> None:
-    parts.stage.show(parts.finished_race().id)
+    parts.stage.set(run_id=parts.finished_race().id)
     parts.watch(1.0)
     parts.stage.set(playing=False)
     frames = parts.watch(1.0)
@@ -134,7 +133,7 @@ def test_playback_can_be_paused_and_continued(parts: StageParts) -> None:
 
 
 def test_play_after_the_end_restarts_the_show(parts: StageParts) -> None:
-    parts.stage.show(parts.finished_race().id)
+    parts.stage.set(run_id=parts.finished_race().id)
     parts.watch_to_end()
 
     parts.stage.set(playing=True)
@@ -143,7 +142,7 @@ def test_play_after_the_end_restarts_the_show(parts: StageParts) -> None:
 
 
 def test_stall_of_the_process_skips_no_motion(parts: StageParts) -> None:
-    parts.stage.show(parts.finished_race().id)
+    parts.stage.set(run_id=parts.finished_race().id)
     parts.next_frame()
     parts.now += 60
 
@@ -158,7 +157,7 @@ def test_invalid_speed_is_rejected(parts: StageParts, speed: float | str) -> Non
 
 def test_invalid_commands_are_rejected_and_change_nothing(parts: StageParts) -> None:
     run = parts.finished_race()
-    parts.stage.show(run.id)
+    parts.stage.set(run_id=run.id)
     before = parts.stage.state()
 
     with pytest.raises(InvalidInput, match="paper, wall, free"):
@@ -176,7 +175,7 @@ def test_changes_are_published_on_the_bus(parts: StageParts) -> None:
 
     async def next_stage_event() -> dict[str, object]:
         events = parts.bus.subscribe()
-        parts.stage.show(run.id)
+        parts.stage.set(run_id=run.id)
         async for event in events:
             if event.event == "stage":
                 state: dict[str, object] = json.loads(event.data)
@@ -188,7 +187,7 @@ def test_changes_are_published_on_the_bus(parts: StageParts) -> None:
 
 def test_scene_is_plain_json(parts: StageParts) -> None:
     for run in (parts.finished_race(("q-learning", "greedy")), parts.finished_training(30)):
-        parts.stage.show(run.id)
+        parts.stage.set(run_id=run.id)
         parts.watch(1.0)
         scene = json.loads(json.dumps(parts.stage.scene(), allow_nan=False))
 

@@ -59,7 +59,7 @@ def test_moving_race_publishes_scenes() -> None:
     parts = StageParts()
     run = parts.finished_race()
     stage = Stage(parts.store, parts.recordings, parts.bus)
-    stage.show(run.id)
+    stage.set(run_id=run.id)
 
     async def first_scenes() -> list[dict[str, Any]]:
         events, scenes = parts.bus.subscribe(), []

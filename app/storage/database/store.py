@@ -218,11 +218,15 @@ class SqlStore:
             _with_progress(row, {k: v for k, v in progress.items() if k not in fields})
         )
 
-    def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> Run:
+    def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> None:
+        statement = update(RUNS).where(RUNS.c.id == run_id).values(done=done, eta_s=eta_s)
+
+        def work(connection: Connection) -> None:
+            if not connection.execute(statement).rowcount:
+                fetch_run_row(connection, run_id)  # raises NotFound
+
         if self._progress.put(run_id, {"done": done, "eta_s": eta_s}):
-            statement = update(RUNS).where(RUNS.c.id == run_id).values(done=done, eta_s=eta_s)
-            self._database.write(lambda connection: connection.execute(statement))
-        return self.get(run_id)
+            self._database.write(work)
 
     def delete(self, run_id: str) -> None:
         def work(connection: Connection) -> Sequence[str]:

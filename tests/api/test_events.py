@@ -1,0 +1,174 @@
+"""The stream of server-sent events: its snapshot, beside what happens while that is read."""
+
+import asyncio
+import json
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+
+from app.api import events
+from app.api.deps import Listener, Services
+from app.events.run_view import run_view
+from app.server import create_app
+from app.settings import Settings
+from app.storage.database.opening import open_store
+from app.storage.json_text import json_text
+from app.storage.store import LIVE, QUEUED
+from tests.patience import LONG_S
+from tests.storage.stores import training
+
+
+class Told(NamedTuple):
+    """One server-sent event."""
+
+    event: str
+    id: int
+    data: Any
+
+
+class Stream:
+    """The stream of one client, on the loop of the test."""
+
+    def __init__(self, services: Services, last_event_id: int | None = None) -> None:
+        header = None if last_event_id is None else str(last_event_id)
+        self.events: Any = events.get_events(services, "operator", None, Listener(), header)
+
+    async def next(self) -> Told:
+        event = await asyncio.wait_for(anext(self.events), LONG_S)
+        return Told(event.event, int(event.id), json.loads(event.raw_data))
+
+    async def __aenter__(self) -> "Stream":
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.events.aclose()
+
+    async def next_of(self, name: str) -> Told:
+        while (event := await self.next()).event != name:
+            pass
+        return event
+
+
+@pytest.fixture
+def services(tmp_path: Path) -> Iterator[Services]:
+    settings = Settings(data=tmp_path)
+    with open_store(settings) as store:
+        made: Services = create_app(settings, store).state.services
+        yield made
+
+
+class Held:
+    """Holds the read of a snapshot, before or after it asks the database."""
+
+    def __init__(self, services: Services, monkeypatch: pytest.MonkeyPatch, moment: str) -> None:
+        self.reached, self.go_on = threading.Event(), threading.Event()
+        self.thread: threading.Thread | None = None
+        read = services.store.list
+
+        def held(*args: Any, **filters: Any) -> Any:
+            self.thread = threading.current_thread()
+            page = read(*args, **filters) if moment == "after" else None
+            self.reached.set()
+            assert self.go_on.wait(LONG_S)
+            return page or read(*args, **filters)
+
+        monkeypatch.setattr(services.store, "list", held)
+
+
+def change(services: Services, state: Any) -> None:
+    """Change the state of run `a`, and publish it, as jobs do."""
+    run = services.store.change("a", QUEUED | LIVE, state)
+    services.bus.publish("run", run_view(run), "a")
+
+
+@pytest.mark.parametrize("moment", ["before", "after"])
+def test_change_during_the_read_of_the_snapshot_is_neither_lost_nor_undone(
+    services: Services, monkeypatch: pytest.MonkeyPatch, moment: str
+) -> None:
+    services.store.create(training("a"))
+    held = Held(services, monkeypatch, moment)
+
+    async def test() -> None:
+        async with Stream(services) as stream:
+            first = asyncio.create_task(stream.next())
+            # The loop goes on meanwhile.
+            assert await asyncio.to_thread(held.reached.wait, LONG_S)
+            change(services, "running")
+            services.bus.publish("evaluation", {"run_id": "a", "step": 1}, "a")
+            change(services, "finished")
+            held.go_on.set()
+            snapshot = await first
+            assert snapshot.event == "snapshot"
+            shown = snapshot.data["runs"][0]["state"]
+            assert shown == ("queued" if moment == "after" else "finished")
+            told = [await stream.next(), await stream.next()]
+            assert [(t.event, t.data.get("state")) for t in told] == [
+                ("evaluation", None),
+                ("run", "finished"),
+            ]
+
+    asyncio.run(test())
+    assert held.thread is not threading.main_thread()
+
+
+def test_snapshot_is_read_and_encoded_beside_the_loop(
+    services: Services, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for number in range(200):
+        services.store.create(training(f"run{number:03}"))
+    monkeypatch.setattr(events, "NEWEST_RUNS", 200)
+    threads: list[threading.Thread] = []
+
+    def recorded(data: Any) -> str:
+        threads.append(threading.current_thread())
+        return json_text(data)
+
+    monkeypatch.setattr("app.api.events.json_text", recorded)
+
+    async def test() -> None:
+        async with Stream(services) as stream:
+            assert len((await stream.next()).data["runs"]) == 200
+
+    asyncio.run(test())
+    assert len(threads) == 1
+    assert threads[0] is not threading.main_thread()
+
+
+def test_client_that_leaves_after_the_snapshot_misses_nothing(services: Services) -> None:
+    """The snapshot's id is no later than the events that it was followed by."""
+    first = services.bus.last_id
+    for step in range(1, 4):
+        services.bus.publish("evaluation", {"run_id": "a", "step": step}, "a")
+
+    async def test() -> None:
+        last_id = first
+        for _ in range(3):
+            async with Stream(services, last_id) as left:
+                last_id = (await left.next()).id
+        async with Stream(services, last_id) as stream:
+            assert (await stream.next()).event == "snapshot"
+            assert [(await stream.next()).data["step"] for _ in range(3)] == [1, 2, 3]
+
+    asyncio.run(test())
+
+
+def test_replayed_deletion_does_not_take_away_a_run_that_was_imported_again(
+    services: Services,
+) -> None:
+    first = services.bus.last_id
+    services.bus.publish("run-deleted", {"id": "a"}, "a")
+    services.bus.publish("run-deleted", {"id": "b"}, "b")
+    services.store.create(training("a", state="finished"))
+
+    async def test() -> None:
+        async with Stream(services, first) as stream:
+            assert (await stream.next()).data["runs"][0]["id"] == "a"
+            assert (await stream.next_of("run-deleted")).data["id"] == "b"
+            services.store.delete("a")
+            services.bus.publish("run-deleted", {"id": "a"}, "a")
+            assert (await stream.next_of("run-deleted")).data["id"] == "a"
+
+    asyncio.run(test())
