@@ -53,7 +53,6 @@ from app.storage.address_file import write_address_file
 from app.storage.database.opening import open_store
 from app.storage.errors import OwnershipLost
 from app.storage.idempotency import Idempotency
-from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
 from app.storage.sessions import Sessions
 from app.storage.store import RunStore
@@ -73,14 +72,13 @@ _DESCRIPTION = (
 )
 
 
-def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
+def create_app(settings: Settings, store: RunStore) -> FastAPI:
     """The whole application; jobs, stage and hub begin and end with its lifespan.
 
     Args:
         settings: of the server.
-        store: where runs are kept; None keeps them for as long as the application lives.
+        store: store of the runs; stays open for as long as the application lives.
     """
-    store = MemoryStore() if store is None else store
     recordings, bus = Recordings(store), RunMetrics()
     show = Stage(store, recordings, bus)
     viewer = ViewerService(

@@ -45,14 +45,12 @@ class ArtifactFiles:
     """Folder with the artifact files of one database. Thread-safe."""
 
     def __init__(self, folder: Path, disk_space: DiskSpace) -> None:
-        """Use a folder, creating it if it does not exist.
+        """Use a folder.
 
         Args:
-            folder: for the artifact files alone.
+            folder: for the artifact files alone; must exist before the first write.
             disk_space: quota and free space to check before each write.
         """
-        folder.mkdir(parents=True, exist_ok=True)
-        sync_folder(folder.parent)
         self._folder, self._disk_space = folder, disk_space
         self._open: dict[str, SharedFile] = {}
         self._open_lock = threading.RLock()

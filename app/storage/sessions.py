@@ -41,26 +41,6 @@ class SessionRows(Protocol):
         """Delete the sessions with these hashed ids."""
 
 
-class MemorySessionRows:
-    """Implements `SessionRows` in memory; lost when the process ends."""
-
-    def __init__(self) -> None:
-        self._rows: dict[str, SessionRow] = {}
-
-    def load(self) -> Sequence[SessionRow]:
-        """Return all stored sessions, oldest first."""
-        return list(self._rows.values())
-
-    def add(self, row: SessionRow) -> None:
-        """Store a session."""
-        self._rows[row.id_sha256] = row
-
-    def remove(self, ids_sha256: Collection[str]) -> None:
-        """Delete the sessions with these hashed ids."""
-        for id_sha256 in ids_sha256:
-            self._rows.pop(id_sha256, None)
-
-
 class Sessions:
     """Opens, checks and closes the sessions of one access token. Thread-safe.
 

@@ -153,7 +153,7 @@ class Content:
 class RunStore(Protocol):
     """Interface of the run store: runs, curves, trials and artifacts. Thread-safe.
 
-    Implemented by `SqlStore` (SQLite, PostgreSQL) and `MemoryStore`.
+    Implemented by `SqlStore` for SQLite and PostgreSQL.
     """
 
     @property

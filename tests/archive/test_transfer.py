@@ -3,6 +3,7 @@
 import io
 import json
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,13 +18,12 @@ from app.domain.errors import InvalidInput
 from app.runs.recording import race_arrays
 from app.storage.database.store import SqlStore
 from app.storage.errors import Conflict, NotFound
-from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
 from app.storage.run_ids import RunIds
 from app.storage.store import CHECKPOINT, TABLE, Run, RunStore, State
 from app.storage.stored_recordings import PRACTICE, RACE
 from tests.storage.ended import ended_race, ended_training
-from tests.storage.stores import ODD, opened, training
+from tests.storage.stores import ODD, opened, temporary_store, training
 
 TRAINING, RACED = "00000000000t1", "00000000000r1"
 ONE, OTHER = "00000000000a1", "00000000000b1"
@@ -39,15 +39,16 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SqlStore]:
 
 
 def imported(data: bytes, store: RunStore | None = None) -> Run:
-    return import_run(store or MemoryStore(), data, RunIds(), tuple(OURS), "run.zip")
+    with temporary_store() if store is None else nullcontext(store) as target:
+        return import_run(target, data, RunIds(), tuple(OURS), "run.zip")
 
 
 def refusal(data: bytes) -> str:
-    store = MemoryStore()
-    with pytest.raises(InvalidInput) as error:
-        imported(data, store)
+    with temporary_store() as store:
+        with pytest.raises(InvalidInput) as error:
+            imported(data, store)
+        assert store.list().items == []
     assert "\n" not in str(error.value)
-    assert store.list().items == []
     return str(error.value)
 
 
@@ -91,8 +92,8 @@ def test_export_and_import_preserve_everything(
             assert len(practised.evaluations) == len(was.evaluations) == 24
 
 
-def test_import_does_not_replace_an_existing_run(source: SqlStore) -> None:
-    data, store = export_run(source, TRAINING), MemoryStore()
+def test_import_does_not_replace_an_existing_run(source: SqlStore, store: SqlStore) -> None:
+    data = export_run(source, TRAINING)
     first = imported(data, store)
     store.update(first.id, name="Mine")
     second = imported(data, store)
@@ -103,38 +104,39 @@ def test_import_does_not_replace_an_existing_run(source: SqlStore) -> None:
 
 
 def test_runs_can_be_exported_in_every_ended_state_only(source: SqlStore) -> None:
-    states = ("stopped", "failed", "interrupted")
-    for state in states:
-        store = MemoryStore()
-        store.create(training(ONE, state=state, error="It broke.", greedy_distance_m=0.5))
-        assert imported(export_run(store, ONE)) == store.get(ONE)
+    for state in ("stopped", "failed", "interrupted"):
+        with temporary_store() as store:
+            store.create(training(ONE, state=state, error="It broke.", greedy_distance_m=0.5))
+            assert imported(export_run(store, ONE)) == store.get(ONE)
     for state in ("queued", "running", "paused"):
-        store = MemoryStore()
-        store.create(training("a", state=state))
-        with pytest.raises(Conflict, match="stop it first"):
-            export_run(store, "a")
+        with temporary_store() as store:
+            store.create(training("a", state=state))
+            with pytest.raises(Conflict, match="stop it first"):
+                export_run(store, "a")
     with pytest.raises(NotFound):
         export_run(source, "none")
 
 
-def test_checkpoint_is_exported_with_an_interrupted_run_only(source: SqlStore) -> None:
-    store, target, saved = MemoryStore(), MemoryStore(), source.artifact(TRAINING, TABLE) or b""
-    config = source.get(TRAINING).config
+def test_checkpoint_is_exported_with_an_interrupted_run_only(
+    source: SqlStore, store: SqlStore, tmp_path: Path
+) -> None:
+    config, saved = source.get(TRAINING).config, source.artifact(TRAINING, TABLE) or b""
     states: dict[str, State] = {ONE: "interrupted", OTHER: "finished"}
     for run_id, state in states.items():
         store.create(training(run_id, state=state, config=config, done=120, total=120))
         store.put_artifact(run_id, CHECKPOINT, saved)
-        imported(export_run(store, run_id), target)
-    assert target.artifact(ONE, CHECKPOINT) == saved
-    # A finished training is not resumed, so that its checkpoint is not exported.
-    assert target.artifact(OTHER, CHECKPOINT) is None
+    with opened(tmp_path, None) as target:
+        for run_id in states:
+            imported(export_run(store, run_id), target)
+        assert target.artifact(ONE, CHECKPOINT) == saved
+        # A finished training is not resumed, so that its checkpoint is not exported.
+        assert target.artifact(OTHER, CHECKPOINT) is None
     data = export_run(store, ONE)
     assert "another step" in refusal(rewritten(data, _shorter))
     assert "is not a Q-table" in refusal(repacked(data, checkpoint_npz=b"milk"))
 
 
-def test_unusual_configs_are_imported_but_unregistered_agents_refused() -> None:
-    store = MemoryStore()
+def test_unusual_configs_are_imported_but_unregistered_agents_refused(store: SqlStore) -> None:
     store.create(training(ONE, state="finished", config=replace(ODD, agent="q-learning")))
     store.create(training(OTHER, state="finished", config=ODD))
     assert imported(export_run(store, ONE)) == store.get(ONE)
@@ -287,18 +289,16 @@ def test_invalid_recordings_are_refused(source: SqlStore) -> None:
     assert "compressed" in refusal(bomb)
 
 
-def test_future_and_malformed_ids_are_replaced(source: SqlStore) -> None:
+def test_future_and_malformed_ids_are_replaced(source: SqlStore, store: SqlStore) -> None:
     for run_id in ("zzzzzzzzz0000", "0", "training", "1zzzzzzzzzzzz"):
-        store, ids = MemoryStore(), RunIds()
-        data = rewritten(export_run(source, TRAINING), _set("id", run_id, "run"))
+        data, ids = rewritten(export_run(source, TRAINING), _set("id", run_id, "run")), RunIds()
         run = import_run(store, data, ids, tuple(OURS), "run.zip")
         assert run.id != run_id
         assert store.get(run.id) == replace(source.get(TRAINING), id=run.id)
         assert ids() > run.id
 
 
-def test_new_ids_ignore_existing_ids_in_the_far_future() -> None:
-    store = MemoryStore()
+def test_new_ids_ignore_existing_ids_in_the_far_future(store: SqlStore) -> None:
     believed = "1m7zzzzzz0000"  # of November 2026
     store.create(training("zzzzzzzzz0000", state="finished"), training(believed, state="finished"))
     first = RunIds.of(store)()

@@ -12,7 +12,6 @@ from app.archive import archive
 from app.archive.archived_trials import TRIALS
 from app.archive.transfer import export_run
 from app.storage.database.store import SqlStore
-from app.storage.memory_store import MemoryStore
 from app.storage.store import SUMMARY, State
 from tests.archive.test_transfer import Change, _set, imported, refusal, repacked, rewritten
 from tests.storage.ended import ended_experiment
@@ -49,25 +48,25 @@ def test_export_and_import_preserve_everything(source: SqlStore, tmp_path: Path)
         assert export_run(target, RUN_ID) == data
 
 
-def test_incomplete_experiments_are_imported_with_their_trials(source: SqlStore) -> None:
-    store = MemoryStore()
+def test_incomplete_experiments_are_imported_with_their_trials(
+    source: SqlStore, store: SqlStore, tmp_path: Path
+) -> None:
     config, rows = source.get(RUN_ID).config, source.trials(RUN_ID)[:2]
     states: dict[str, State] = {"0000000000001": "interrupted", "0000000000002": "stopped"}
     for run_id, state in {**states, "0000000000003": "failed"}.items():
         run = experiment(run_id, state=state, config=config, total=4, done=2, workers=2)
         store.create(run)
         store.append_trials(run_id, rows)
-        target = MemoryStore()
-        assert imported(export_run(store, run_id), target) == run
-        assert target.trials(run_id) == rows
+        with opened(tmp_path / run_id, None) as target:
+            assert imported(export_run(store, run_id), target) == run
+            assert target.trials(run_id) == rows
 
 
 def test_unregistered_agents_are_refused_without_importing_their_module(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, store: SqlStore
 ) -> None:
     (tmp_path / "evil.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')")
     monkeypatch.syspath_prepend(tmp_path)
-    store = MemoryStore()
     config = replace(SWEEP, agents=("q-learning", "evil:Agent"))
     store.create(experiment("a", state="failed", config=config))
     assert "q-learning, greedy, two-step" in refusal(export_run(store, "a"))

@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
+from typing import Any, TypeVar
 
 from app.domain.gait import GaitSpec
 from app.domain.robot import robot
@@ -15,6 +16,7 @@ from app.storage.database.store import SqlStore
 from app.storage.store import Run
 from tests.postgresql import PostgresServer
 
+StoreT = TypeVar("StoreT", bound=SqlStore)
 BACKENDS = ["sqlite", "postgresql"]
 PLAIN = TrainingConfig(gait="left-right-origin")
 ODD = TrainingConfig(
@@ -99,3 +101,15 @@ def opened(folder: Path, url: str | None) -> Iterator[SqlStore]:
     """Open the store of a server with this data folder and database URL."""
     with open_store(Settings(data=folder, database_url=url)) as store:
         yield store
+
+
+@contextmanager
+def temporary_store() -> Iterator[SqlStore]:
+    """Open an empty SQLite store in a temporary folder, which is deleted at the end."""
+    with TemporaryDirectory() as folder, opened(Path(folder), None) as store:
+        yield store
+
+
+def of_type(kind: type[StoreT], store: SqlStore) -> StoreT:
+    """Return a store of a subclass, for example one whose writes fail, on the same database."""
+    return kind(store._database, store._files)

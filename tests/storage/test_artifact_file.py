@@ -22,7 +22,9 @@ DATA = bytes(range(256)) * 1000
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    return tmp_path / "artifacts"
+    path = tmp_path / "artifacts"
+    path.mkdir()
+    return path
 
 
 @pytest.fixture

@@ -31,7 +31,7 @@ def store(tmp_path: Path) -> Iterator[SqlStore]:
 
 
 def test_start_is_refused_if_the_quota_leaves_too_little(store: SqlStore) -> None:
-    jobs = Jobs(store, Recordings(), EventBus())  # not opened, so that all runs stay queued
+    jobs = Jobs(store, Recordings(store), EventBus())  # not opened, so that all runs stay queued
     store.create(training("0old"))
     store.put_artifact("0old", TABLE, bytes(6 * MB))
     with pytest.raises(StorageFull, match="raise HEXAPODS_QUOTA_MB"):

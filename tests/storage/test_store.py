@@ -1,4 +1,4 @@
-"""Conformance tests of `RunStore`, for its implementations in memory, SQLite and PostgreSQL."""
+"""The run store, on SQLite and PostgreSQL."""
 
 import math
 import threading
@@ -11,7 +11,6 @@ from typing import Any
 import pytest
 
 from app.storage.errors import Conflict, NotFound
-from app.storage.memory_store import MemoryStore
 from app.storage.run_ids import RunIds
 from app.storage.store import LIVE, QUEUED, RUNNING, UNENDED, AnyRun, Run, RunStore, State
 from tests.storage.stores import (
@@ -28,11 +27,8 @@ from tests.storage.stores import (
 new_id = RunIds()
 
 
-@pytest.fixture(params=["memory", *BACKENDS])
+@pytest.fixture(params=BACKENDS)
 def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RunStore]:
-    if request.param == "memory":
-        yield MemoryStore()
-        return
     server = request.param == "postgresql" and request.getfixturevalue("postgresql")
     with database_url(request.param, server) as url, opened(tmp_path, url) as opened_store:
         yield opened_store

@@ -5,7 +5,10 @@ from collections.abc import Iterator
 import pytest
 
 from app.viewer.in_process import InProcessViser
+from tests.stage.conftest import parts
 from tests.viewer.serving import Robots, start_viser
+
+__all__ = ["parts"]
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 
 from app.settings import Settings
-from app.storage.artifacts import ArtifactFiles
+from app.storage.artifacts import ArtifactFiles, sync_folder
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
 from app.storage.database.folder_lock import lock_folder
 from app.storage.database.migration import migrate
@@ -46,6 +46,8 @@ def open_store(
             with _locked(ownership):
                 migrate(database)
                 folder = settings.data / ARTIFACTS_FOLDER / claim(database).database_id
+                folder.mkdir(parents=True, exist_ok=True)
+                sync_folder(folder.parent)
                 store = SqlStore(database, ArtifactFiles(folder, disk_space))
                 _recover(store)
                 with ownership.watched():
