@@ -51,11 +51,11 @@ from app.settings import Settings
 from app.stage.stage import Stage
 from app.storage.address_file import write_address_file
 from app.storage.database.opening import open_store
+from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost
 from app.storage.idempotency import Idempotency
 from app.storage.recordings import Recordings
 from app.storage.sessions import Sessions
-from app.storage.store import RunStore
 from app.viewer.protocol import websocket_options
 from app.viewer.service import ViewerService, viewer_routes
 from app.what_if.trial_pool import TrialPool

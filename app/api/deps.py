@@ -17,9 +17,10 @@ from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage.stage import Stage
+from app.storage.database.store import RunStore
 from app.storage.idempotency import Idempotency, Start
 from app.storage.recordings import Recordings
-from app.storage.store import Run, RunStore
+from app.storage.run import Run
 from app.what_if.what_if import WhatIf
 
 Film = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock], bytes]

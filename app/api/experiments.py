@@ -17,7 +17,7 @@ from app.storage.artifact_file import ArtifactFile
 from app.storage.configs import config_as_json
 from app.storage.errors import Conflict, NotFound
 from app.storage.json_text import finite
-from app.storage.store import REPORT, SUMMARY, UNENDED, Run
+from app.storage.run import REPORT, SUMMARY, UNENDED, Run
 from app.storage.stored_trials import trials_as_csv
 
 REPORT_POLICY = (

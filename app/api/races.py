@@ -18,7 +18,7 @@ from app.stage import recording_export
 from app.stage.timeline import timeline
 from app.storage.artifact_file import ArtifactFile, BytesFile
 from app.storage.errors import Conflict
-from app.storage.store import UNENDED, Run
+from app.storage.run import UNENDED, Run
 from app.storage.stored_recordings import RACE
 
 router = run_routes("race")

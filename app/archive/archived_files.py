@@ -22,7 +22,8 @@ from app.runs.recording import race_recording
 from app.runs.records import ActionValues
 from app.runs.stored_practice import practice_recording
 from app.storage.artifact_file import pieces
-from app.storage.store import CHECKPOINT, RESUMABLE, TABLE, Run, RunStore
+from app.storage.database.store import RunStore
+from app.storage.run import CHECKPOINT, RESUMABLE, TABLE, Run
 from app.storage.stored_recordings import PRACTICE, RACE, evaluations_file
 
 MAX_EVALUATION_FILES = 100

@@ -31,7 +31,7 @@ from app.runs.clocks import CLOCKS
 from app.runs.config import MAX_LANES, RaceConfig
 from app.storage.configs import CONFIGS, config_as_json, config_of
 from app.storage.errors import Conflict
-from app.storage.store import UNENDED, Config, Kind, Run
+from app.storage.run import UNENDED, Config, Kind, Run
 
 FORMAT = 1
 MAX_JSON_BYTES = 64_000_000

@@ -12,10 +12,11 @@ from app.domain.errors import DamagedFile
 from app.events.run_view import as_shown
 from app.experiments.config import ExperimentConfig
 from app.limits.memory_budget import MemoryBudget
+from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Damaged
 from app.storage.json_text import is_finite
+from app.storage.run import KINDS, Content, DamagedRun, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
-from app.storage.store import KINDS, Content, DamagedRun, IdempotencyKey, Run, RunStore
 
 RUN = "run.json"
 _ANYONE = "anyone"

@@ -4,7 +4,8 @@ import threading
 import time
 
 from app.events.run_view import as_shown
-from app.storage.store import DamagedRun, RunStore
+from app.storage.database.store import RunStore
+from app.storage.run import DamagedRun
 
 _PAGE_SIZE = 200
 _CACHE_S = 300.0

@@ -10,7 +10,7 @@ from app.runs.clocks import CLOCKS
 from app.runs.config import RaceConfig, TrainingConfig
 from app.storage.configs import config_as_json
 from app.storage.json_text import is_finite
-from app.storage.store import PAUSED, RESUMABLE, AnyRun, DamagedRun, Kind, Run
+from app.storage.run import PAUSED, RESUMABLE, AnyRun, DamagedRun, Kind, Run
 
 
 class _TrainingResult(msgspec.Struct):

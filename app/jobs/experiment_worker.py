@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from app.experiments.plan import Plan, Trial
 from app.experiments.trial import TrialResult
 from app.jobs.messages import Began, Command, Ended, ExperimentTask, Message, Reported, TrialsDone
-from app.storage.store import SUMMARY
+from app.storage.run import SUMMARY
 from app.storage.stored_trials import results_of
 
 if TYPE_CHECKING:

@@ -35,9 +35,10 @@ from app.runs.recording import LaneRecording
 from app.runs.records import Evaluated, Reference
 from app.runs.results import race_result
 from app.storage.database.engine import retry_during_outage
+from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost, StorageFailed
 from app.storage.recordings import Recordings
-from app.storage.store import CHECKPOINT, LIVE, SUMMARY, TABLE, Run, RunStore, State
+from app.storage.run import CHECKPOINT, LIVE, SUMMARY, TABLE, Run, State
 
 EVENTS_PER_S = 10
 MAX_OUTAGE_S = 600.0

@@ -22,10 +22,10 @@ from app.jobs.submissions import (
     queued_training,
 )
 from app.jobs.supervisor import STUCK_S, Supervisor
+from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, NotAnswering, StorageFailed
 from app.storage.recordings import Recordings
-from app.storage.run_ids import RunIds
-from app.storage.store import (
+from app.storage.run import (
     LIVE,
     PAUSED,
     RESUMABLE,
@@ -36,9 +36,9 @@ from app.storage.store import (
     Content,
     IdempotencyKey,
     Run,
-    RunStore,
     State,
 )
+from app.storage.run_ids import RunIds
 
 MAX_PAUSED = 16
 MAX_PENDING_CHANGES = 8

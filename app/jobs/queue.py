@@ -5,16 +5,9 @@ from datetime import UTC, datetime
 
 from app.domain.errors import HexapodError
 from app.jobs.submissions import QueuedRun
+from app.storage.database.store import RunStore
 from app.storage.errors import Busy, StorageFailed, StorageFull
-from app.storage.store import (
-    QUEUED,
-    RESUMABLE,
-    RUNNING,
-    IdempotencyKey,
-    Run,
-    RunStore,
-    State,
-)
+from app.storage.run import QUEUED, RESUMABLE, RUNNING, IdempotencyKey, Run, State
 
 MAX_QUEUED = 32
 RETRY_AFTER_S = 10

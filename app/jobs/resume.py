@@ -14,8 +14,9 @@ from app.jobs.messages import ExperimentTask, RaceTask, TrainingTask
 from app.jobs.submissions import QueuedRun, load_table, wall_s_of
 from app.runs.config import RaceConfig, TrainingConfig
 from app.runs.tables import Checkpoint, check_fits, from_bytes
+from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
-from app.storage.store import CHECKPOINT, RESUMABLE, UNENDED, Run, RunStore
+from app.storage.run import CHECKPOINT, RESUMABLE, UNENDED, Run
 
 
 def resumed_runs(run: Run, store: RunStore) -> list[QueuedRun]:

@@ -20,8 +20,9 @@ from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, WalkingProbl
 from app.runs.table_file import TableFile
 from app.runs.tables import Checkpoint, check_fits, from_bytes
 from app.storage.artifact_file import ArtifactFile, ReadableArtifact
+from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
-from app.storage.store import SUMMARY, TABLE, Run, RunStore
+from app.storage.run import SUMMARY, TABLE, Run
 
 T = TypeVar("T")
 

@@ -19,9 +19,10 @@ from app.jobs.messages import ExperimentTask, Task
 from app.jobs.queue import RunQueue
 from app.jobs.submissions import QueuedRun
 from app.jobs.worker_process import Exit
+from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound, OwnershipLost, StorageFailed, StorageFull
 from app.storage.recordings import Recordings
-from app.storage.store import LIVE, QUEUED, RUNNING, UNENDED, Run, RunStore, State
+from app.storage.run import LIVE, QUEUED, RUNNING, UNENDED, Run, State
 
 STUCK_S = 5.0
 """A run that is ready for longer while a core is free is reported by the health check."""

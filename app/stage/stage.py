@@ -15,9 +15,10 @@ from app.stage.race_show import RaceShow
 from app.stage.scene_spec import idle_scene, race_scene, rest_pose, training_scene
 from app.stage.show import TIME_LAPSE, IdleShow, RunLabel, Show
 from app.stage.stage_frame import LaneView, StageFrame
+from app.storage.database.store import RunStore
 from app.storage.errors import Damaged, NotFound
 from app.storage.recordings import Recordings
-from app.storage.store import UNENDED, Run, RunStore
+from app.storage.run import UNENDED, Run
 
 REPLAY_AFTER_S = 20.0
 MIN_SPEED, MAX_SPEED = 0.25, 64.0

@@ -1,7 +1,7 @@
 """Persistent storage of runs: rows in a database, artifact files beside it.
 
-`store` defines the interface `RunStore` and the dataclass `Run`; `errors` its exceptions.
-`database` implements it for SQLite and PostgreSQL.
+`database` is the store of runs, in SQLite or PostgreSQL; `run` defines what it stores, `errors` its
+exceptions.
 `artifacts` writes files atomically and verifies their SHA-256; `artifact_file` reads them in
 chunks; `disk_space` enforces the quota of the data folder.
 `recordings` and `stored_recordings` hold the recorded motion that the stage replays.

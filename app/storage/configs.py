@@ -6,7 +6,7 @@ from typing import Any
 from app.experiments import config as experiments
 from app.experiments.config import ExperimentConfig
 from app.runs.config import RaceConfig, TrainingConfig, as_json, config_from_json
-from app.storage.store import Config, Kind
+from app.storage.run import Config, Kind
 
 CONFIGS: Mapping[Kind, type[Config]] = {
     "training": TrainingConfig,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from app.runs.recording import LaneRecording, PracticeRecording
 from app.runs.records import Evaluated, LaneFailed, LaneStep, StepTaken
 from app.runs.stored_practice import rewound
-from app.storage.store import RunStore
+from app.storage.database.store import RunStore
 from app.storage.stored_recordings import StoredRecordings
 
 MAX_EVALUATION_MOTIONS = 1000

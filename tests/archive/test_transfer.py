@@ -16,11 +16,11 @@ from app.archive import archive
 from app.archive.transfer import RUN, export_run, import_run
 from app.domain.errors import InvalidInput
 from app.runs.recording import race_arrays
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
 from app.storage.recordings import Recordings
+from app.storage.run import CHECKPOINT, TABLE, Run, State
 from app.storage.run_ids import RunIds
-from app.storage.store import CHECKPOINT, TABLE, Run, RunStore, State
 from app.storage.stored_recordings import PRACTICE, RACE
 from tests.storage.ended import ended_race, ended_training
 from tests.storage.stores import ODD, opened, temporary_store, training
@@ -31,7 +31,7 @@ Change = Callable[[Any], object]
 
 
 @pytest.fixture(scope="module")
-def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SqlStore]:
+def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunStore]:
     with opened(tmp_path_factory.mktemp("source"), None) as store:
         ended_training(store, TRAINING, "ü 🕷 <b>it</b> [red]learned")
         ended_race(store, RACED, TRAINING)
@@ -68,7 +68,7 @@ def rewritten(data: bytes, change: Change) -> bytes:
 
 @pytest.mark.parametrize("run_id", [TRAINING, RACED])
 def test_export_and_import_preserve_everything(
-    source: SqlStore, run_id: str, tmp_path: Path
+    source: RunStore, run_id: str, tmp_path: Path
 ) -> None:
     data = export_run(source, run_id)
     with opened(tmp_path, None) as target:
@@ -92,7 +92,7 @@ def test_export_and_import_preserve_everything(
             assert len(practised.evaluations) == len(was.evaluations) == 24
 
 
-def test_import_does_not_replace_an_existing_run(source: SqlStore, store: SqlStore) -> None:
+def test_import_does_not_replace_an_existing_run(source: RunStore, store: RunStore) -> None:
     data = export_run(source, TRAINING)
     first = imported(data, store)
     store.update(first.id, name="Mine")
@@ -103,7 +103,7 @@ def test_import_does_not_replace_an_existing_run(source: SqlStore, store: SqlSto
     assert store.artifact(second.id, TABLE) == source.artifact(TRAINING, TABLE)
 
 
-def test_runs_can_be_exported_in_every_ended_state_only(source: SqlStore) -> None:
+def test_runs_can_be_exported_in_every_ended_state_only(source: RunStore) -> None:
     for state in ("stopped", "failed", "interrupted"):
         with temporary_store() as store:
             store.create(training(ONE, state=state, error="It broke.", greedy_distance_m=0.5))
@@ -118,7 +118,7 @@ def test_runs_can_be_exported_in_every_ended_state_only(source: SqlStore) -> Non
 
 
 def test_checkpoint_is_exported_with_an_interrupted_run_only(
-    source: SqlStore, store: SqlStore, tmp_path: Path
+    source: RunStore, store: RunStore, tmp_path: Path
 ) -> None:
     config, saved = source.get(TRAINING).config, source.artifact(TRAINING, TABLE) or b""
     states: dict[str, State] = {ONE: "interrupted", OTHER: "finished"}
@@ -136,7 +136,7 @@ def test_checkpoint_is_exported_with_an_interrupted_run_only(
     assert "is not a Q-table" in refusal(repacked(data, checkpoint_npz=b"milk"))
 
 
-def test_unusual_configs_are_imported_but_unregistered_agents_refused(store: SqlStore) -> None:
+def test_unusual_configs_are_imported_but_unregistered_agents_refused(store: RunStore) -> None:
     store.create(training(ONE, state="finished", config=replace(ODD, agent="q-learning")))
     store.create(training(OTHER, state="finished", config=ODD))
     assert imported(export_run(store, ONE)) == store.get(ONE)
@@ -205,7 +205,7 @@ def _shorter(content: Any) -> None:
     ],
 )
 def test_invalid_run_json_of_a_training_is_refused(
-    source: SqlStore, change: Change, names: str
+    source: RunStore, change: Change, names: str
 ) -> None:
     assert names in refusal(rewritten(export_run(source, TRAINING), change))
 
@@ -225,18 +225,18 @@ def test_invalid_run_json_of_a_training_is_refused(
         _set("divisions", 3, "run", "config"),
     ],
 )
-def test_invalid_run_json_of_a_race_is_refused(source: SqlStore, change: Change) -> None:
+def test_invalid_run_json_of_a_race_is_refused(source: RunStore, change: Change) -> None:
     refusal(rewritten(export_run(source, RACED), change))
 
 
-def test_malformed_json_is_refused(source: SqlStore) -> None:
+def test_malformed_json_is_refused(source: RunStore) -> None:
     data = export_run(source, RACED)
     for text in (b"", b"{", b"[]", b"null", b"[" * 100_000, b"\xff", b'{"format": 1e999}'):
         assert "run.json" in refusal(repacked(data, run_json=text))
     assert "run.json" in refusal(repacked(data, run_json=None))
 
 
-def test_files_of_another_run_are_refused(source: SqlStore) -> None:
+def test_files_of_another_run_are_refused(source: RunStore) -> None:
     race, practice = export_run(source, RACED), export_run(source, TRAINING)
     table = source.artifact(TRAINING, TABLE)
     raced = source.artifact(RACED, RACE)
@@ -249,7 +249,7 @@ def test_files_of_another_run_are_refused(source: SqlStore) -> None:
         assert "cannot be shown" in refusal(repacked(race, race_npz=junk))
 
 
-def _race_with(source: SqlStore, change: Change) -> bytes:
+def _race_with(source: RunStore, change: Change) -> bytes:
     with np.load(io.BytesIO(source.artifact(RACED, RACE) or b"")) as file:
         arrays = {name: file[name] for name in file.files}
     change(arrays)
@@ -258,7 +258,7 @@ def _race_with(source: SqlStore, change: Change) -> bytes:
     return repacked(export_run(source, RACED), race_npz=buffer.getvalue())
 
 
-def test_invalid_recordings_are_refused(source: SqlStore) -> None:
+def test_invalid_recordings_are_refused(source: RunStore) -> None:
     assert imported(_race_with(source, lambda arrays: None)).id == RACED
 
     def put(name: str, value: Callable[[Any], Any]) -> Change:
@@ -289,7 +289,7 @@ def test_invalid_recordings_are_refused(source: SqlStore) -> None:
     assert "compressed" in refusal(bomb)
 
 
-def test_future_and_malformed_ids_are_replaced(source: SqlStore, store: SqlStore) -> None:
+def test_future_and_malformed_ids_are_replaced(source: RunStore, store: RunStore) -> None:
     for run_id in ("zzzzzzzzz0000", "0", "training", "1zzzzzzzzzzzz"):
         data, ids = rewritten(export_run(source, TRAINING), _set("id", run_id, "run")), RunIds()
         run = import_run(store, data, ids, tuple(OURS), "run.zip")
@@ -298,7 +298,7 @@ def test_future_and_malformed_ids_are_replaced(source: SqlStore, store: SqlStore
         assert ids() > run.id
 
 
-def test_new_ids_ignore_existing_ids_in_the_far_future(store: SqlStore) -> None:
+def test_new_ids_ignore_existing_ids_in_the_far_future(store: RunStore) -> None:
     believed = "1m7zzzzzz0000"  # of November 2026
     store.create(training("zzzzzzzzz0000", state="finished"), training(believed, state="finished"))
     first = RunIds.of(store)()

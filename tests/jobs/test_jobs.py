@@ -16,10 +16,10 @@ from app.jobs.queue import MAX_QUEUED, RunQueue
 from app.jobs.resume import resumed_runs
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
 from app.runs.config import TrainingConfig, WalkingProblem
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, StorageFailed
 from app.storage.recordings import Recordings
-from app.storage.store import QUEUED, Run
+from app.storage.run import QUEUED, Run
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 from tests.storage.stores import of_type
 
@@ -41,7 +41,7 @@ def pid_of(jobs: Jobs, run: Run) -> int:
     return job.process.pid
 
 
-def test_runs_start_in_order_of_submission(jobs: Jobs, store: SqlStore) -> None:
+def test_runs_start_in_order_of_submission(jobs: Jobs, store: RunStore) -> None:
     runs = [jobs.train(training()) for _ in range(3)]
     last = wait_until_ended(store, runs[-1])
     starts = [store.get(run.id).started_at for run in runs]
@@ -51,7 +51,7 @@ def test_runs_start_in_order_of_submission(jobs: Jobs, store: SqlStore) -> None:
     assert last.state == "finished"
 
 
-def test_queue_is_bounded(jobs: Jobs, store: SqlStore) -> None:
+def test_queue_is_bounded(jobs: Jobs, store: RunStore) -> None:
     first = jobs.train(endless())
     wait_for_progress(store, first)
     for _ in range(MAX_QUEUED):
@@ -72,7 +72,7 @@ def test_queue_is_bounded(jobs: Jobs, store: SqlStore) -> None:
     jobs.stop(first.id)
 
 
-def test_paused_job_frees_its_core(jobs: Jobs, store: SqlStore) -> None:
+def test_paused_job_frees_its_core(jobs: Jobs, store: RunStore) -> None:
     first = jobs.train(endless())
     wait_for_progress(store, first)
     second = jobs.train(training())
@@ -87,7 +87,7 @@ def test_paused_job_frees_its_core(jobs: Jobs, store: SqlStore) -> None:
     assert jobs.stop(first.id).state == "stopped"
 
 
-def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: SqlStore) -> None:
+def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: RunStore) -> None:
     mujoco = WalkingProblem(gait="left-right-origin")
     start = TrainingStart(TrainingConfig(**vars(mujoco), steps=1_000_000, evaluate_every=0))
     run = jobs.train(start)
@@ -102,7 +102,7 @@ def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: SqlSto
     assert time.monotonic() - began < 10
 
 
-def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: SqlStore) -> None:
+def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: RunStore) -> None:
     """Its look-ahead baseline would take half a minute at eight divisions."""
     slow = WalkingProblem(gait="left-right-origin", divisions=8, grid_side_m=0.03)
     config = TrainingConfig(**vars(slow), steps=100, evaluate_every=1, steps_per_episode=1)
@@ -118,7 +118,7 @@ def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: SqlSto
     assert stopped.result["greedy_distance_m"] is None
 
 
-def test_starting_run_stops_at_once(jobs: Jobs, store: SqlStore) -> None:
+def test_starting_run_stops_at_once(jobs: Jobs, store: RunStore) -> None:
     run = jobs.train(endless())
     wait_until(lambda: store.get(run.id).state == "running")
     stopped = jobs.stop(run.id)
@@ -126,7 +126,7 @@ def test_starting_run_stops_at_once(jobs: Jobs, store: SqlStore) -> None:
     assert stopped.done <= 1
 
 
-def test_killed_process_fails_its_run_and_names_the_signal(jobs: Jobs, store: SqlStore) -> None:
+def test_killed_process_fails_its_run_and_names_the_signal(jobs: Jobs, store: RunStore) -> None:
     run = jobs.train(endless())
     wait_for_progress(store, run)
     began = time.monotonic()
@@ -138,7 +138,7 @@ def test_killed_process_fails_its_run_and_names_the_signal(jobs: Jobs, store: Sq
     assert wait_until_ended(store, jobs.train(training())).state == "finished", "others go on"
 
 
-def test_race_fails_if_its_training_fails(jobs: Jobs, store: SqlStore) -> None:
+def test_race_fails_if_its_training_fails(jobs: Jobs, store: RunStore) -> None:
     race = jobs.race(RaceStart(WALK, [LaneStart("q-learning", training=endless())], 50, 0))
     race_training = store.get(race.waiting_for[0])
     wait_for_progress(store, race_training)
@@ -149,7 +149,7 @@ def test_race_fails_if_its_training_fails(jobs: Jobs, store: SqlStore) -> None:
     assert "SIGSEGV" in (now.error or "")
 
 
-def test_one_of_many_concurrent_stops_succeeds(jobs: Jobs, store: SqlStore) -> None:
+def test_one_of_many_concurrent_stops_succeeds(jobs: Jobs, store: RunStore) -> None:
     run = jobs.train(endless())
     wait_for_progress(store, run)
     stopped, conflicts = [], []
@@ -168,7 +168,7 @@ def test_one_of_many_concurrent_stops_succeeds(jobs: Jobs, store: SqlStore) -> N
     assert (len(stopped), len(conflicts)) == (1, 15)
 
 
-def test_race_result_reports_a_shared_machine(store: SqlStore) -> None:
+def test_race_result_reports_a_shared_machine(store: RunStore) -> None:
     jobs = Jobs(store, Recordings(store), EventBus(), cores=2)
     jobs.open()
     try:
@@ -183,7 +183,7 @@ def test_race_result_reports_a_shared_machine(store: SqlStore) -> None:
         jobs.close()
 
 
-def test_close_leaves_no_process(store: SqlStore) -> None:
+def test_close_leaves_no_process(store: RunStore) -> None:
     jobs = Jobs(store, Recordings(store), EventBus(), cores=2)
     jobs.open()
     runs = [jobs.train(endless()) for _ in range(3)]
@@ -195,7 +195,7 @@ def test_close_leaves_no_process(store: SqlStore) -> None:
     assert [store.get(run.id).state for run in runs] == ["interrupted"] * 3
 
 
-def test_worker_process_has_lower_priority_than_the_server(store: SqlStore) -> None:
+def test_worker_process_has_lower_priority_than_the_server(store: RunStore) -> None:
     jobs = Jobs(store, Recordings(store), EventBus(), niceness=15)
     jobs.open()
     try:
@@ -211,7 +211,7 @@ def test_agent_that_does_not_learn_cannot_be_trained(jobs: Jobs) -> None:
         jobs.train(training(agent="greedy"))
 
 
-class FailingStore(SqlStore):
+class FailingStore(RunStore):
     """Fake store that raises `StorageFailed` on some writes."""
 
     failures = 0
@@ -230,7 +230,7 @@ class FailingStore(SqlStore):
         return super().change(*args, **fields)
 
 
-def test_submission_that_fails_halfway_leaves_no_run_queued(store: SqlStore) -> None:
+def test_submission_that_fails_halfway_leaves_no_run_queued(store: RunStore) -> None:
     """Two runs are resumed together; the store fails after the first was written."""
     store = of_type(FailingStore, store)
     ids = ["a", "b"]
@@ -248,7 +248,7 @@ def test_submission_that_fails_halfway_leaves_no_run_queued(store: SqlStore) -> 
     assert [store.get(run_id).state for run_id in ids] == ["interrupted", "interrupted"]
 
 
-def test_runs_survive_temporary_store_failures(store: SqlStore) -> None:
+def test_runs_survive_temporary_store_failures(store: RunStore) -> None:
     store = of_type(FailingStore, store)
     jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
     jobs.open()
@@ -266,7 +266,7 @@ def test_runs_survive_temporary_store_failures(store: SqlStore) -> None:
         jobs.close()
 
 
-class WorkerKillingStore(SqlStore):
+class WorkerKillingStore(RunStore):
     """Fake store that kills a run's process just before the run is written as `running`."""
 
     pid: int | None = None
@@ -279,7 +279,7 @@ class WorkerKillingStore(SqlStore):
         return super().change(run_id, *args, **fields)
 
 
-def test_run_whose_process_dies_during_resume_is_queued_again(store: SqlStore) -> None:
+def test_run_whose_process_dies_during_resume_is_queued_again(store: RunStore) -> None:
     store = of_type(WorkerKillingStore, store)
     jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
     jobs.open()

@@ -13,10 +13,10 @@ from app.jobs.jobs import Jobs
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
 from app.runs.tables import snapshot, to_bytes
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.errors import Conflict
 from app.storage.recordings import Recordings
-from app.storage.store import CHECKPOINT, TABLE, Run, RunStore
+from app.storage.run import CHECKPOINT, TABLE, Run
 from tests.jobs.test_jobs import WALK
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 from tests.storage.stores import training
@@ -26,7 +26,7 @@ SHORT = TrainingConfig(**vars(WALK), steps=60, evaluate_every=20)
 
 
 @pytest.fixture
-def open_jobs(store: SqlStore) -> Iterator[Callable[[], Jobs]]:
+def open_jobs(store: RunStore) -> Iterator[Callable[[], Jobs]]:
     """Return a function that opens the jobs of another server on the same store."""
     with ExitStack() as stack:
 
@@ -45,7 +45,7 @@ def create(store: RunStore, run: Run) -> Run:
 
 
 def test_training_resumes_from_its_checkpoint(
-    store: SqlStore, open_jobs: Callable[[], Jobs]
+    store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     first = open_jobs()
     run = first.train(TrainingStart(SLOW))
@@ -79,7 +79,7 @@ def test_training_resumes_from_its_checkpoint(
 
 
 def test_training_without_a_checkpoint_restarts_from_its_table(
-    store: SqlStore, open_jobs: Callable[[], Jobs]
+    store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     jobs = open_jobs()
     table = wait_until_ended(store, jobs.train(TrainingStart(SHORT)))
@@ -94,7 +94,7 @@ def test_training_without_a_checkpoint_restarts_from_its_table(
 
 
 def test_training_whose_table_was_deleted_cannot_resume(
-    store: SqlStore, open_jobs: Callable[[], Jobs]
+    store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     run = create(store, training("a", state="interrupted", continued_from="gone"))
     with pytest.raises(InvalidInput, match="gone"):
@@ -103,7 +103,7 @@ def test_training_whose_table_was_deleted_cannot_resume(
 
 
 def test_damaged_checkpoint_is_rejected_by_name(
-    store: SqlStore, open_jobs: Callable[[], Jobs]
+    store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     run = create(store, training("a", state="interrupted"))
     store.put_artifact(run.id, CHECKPOINT, b"nonsense")
@@ -116,7 +116,7 @@ def test_damaged_checkpoint_is_rejected_by_name(
     "meta", [{"changes": None}, {"step": 10**9}, {"step": "1"}, {"agent": "greedy"}, {"legs": 4}]
 )
 def test_checkpoint_that_does_not_fit_its_training_is_rejected(
-    meta: dict[str, object], store: SqlStore, open_jobs: Callable[[], Jobs]
+    meta: dict[str, object], store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     run = create(store, training("a", config=SHORT, total=60, state="interrupted"))
     good = snapshot(build_learner(SHORT), SHORT, changes=[])
@@ -129,7 +129,7 @@ def test_checkpoint_that_does_not_fit_its_training_is_rejected(
 
 
 def test_resumed_race_resumes_its_training_first(
-    store: SqlStore, open_jobs: Callable[[], Jobs]
+    store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     first = open_jobs()
     lanes = [LaneStart("q-learning", training=TrainingStart(SLOW)), LaneStart("greedy")]
@@ -150,7 +150,7 @@ def test_resumed_race_resumes_its_training_first(
     assert wait_until_ended(store, race).state == "stopped"
 
 
-def test_race_restarts_from_its_start(store: SqlStore, open_jobs: Callable[[], Jobs]) -> None:
+def test_race_restarts_from_its_start(store: RunStore, open_jobs: Callable[[], Jobs]) -> None:
     config = RaceConfig(**vars(WALK), lanes=(LaneConfig(agent="greedy"),), steps=5)
     run = Run(
         id="r",
@@ -168,7 +168,7 @@ def test_race_restarts_from_its_start(store: SqlStore, open_jobs: Callable[[], J
     assert wait_until_ended(store, run).state == "finished"
 
 
-def test_race_resumes_its_failed_training(store: SqlStore, open_jobs: Callable[[], Jobs]) -> None:
+def test_race_resumes_its_failed_training(store: RunStore, open_jobs: Callable[[], Jobs]) -> None:
     practice = TrainingConfig(gait="left-right-origin", simulator="kinematic", steps=20)
     store.create(training("t", state="failed", config=practice, total=20))
     config = RaceConfig(**vars(WALK), lanes=(LaneConfig(agent="q-learning"),))
@@ -181,7 +181,7 @@ def test_race_resumes_its_failed_training(store: SqlStore, open_jobs: Callable[[
 
 @pytest.mark.parametrize("state", ["stopped", None])
 def test_race_whose_training_is_lost_cannot_resume(
-    state: str | None, store: SqlStore, open_jobs: Callable[[], Jobs]
+    state: str | None, store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     if state is not None:
         store.create(training("t", state=state))
@@ -201,7 +201,7 @@ def test_race_whose_training_is_lost_cannot_resume(
 
 
 def test_run_queued_at_shutdown_can_be_queued_again(
-    store: SqlStore, open_jobs: Callable[[], Jobs]
+    store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     first = open_jobs()
     wait_for_progress(store, first.train(TrainingStart(SLOW)))

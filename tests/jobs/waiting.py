@@ -4,7 +4,8 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from app.storage.store import UNENDED, Run, RunStore
+from app.storage.database.store import RunStore
+from app.storage.run import UNENDED, Run
 from tests.patience import LONG_S, Patience
 
 

@@ -15,7 +15,7 @@ from app.jobs.submissions import load_table
 from app.runs.config import TrainingConfig
 from app.runs.tables import from_bytes, snapshot, to_bytes
 from app.runs.training import train
-from app.storage.store import TABLE
+from app.storage.run import TABLE
 from tests.storage.stores import opened, training
 
 DAMAGES = 1000

@@ -15,9 +15,9 @@ from app.runs.records import StepTaken
 from app.runs.training import train
 from app.stage.stage import Stage
 from app.stage.stage_frame import StageFrame
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
-from app.storage.store import Run
+from app.storage.run import Run
 
 AdvanceRun = Callable[[], bool]
 """Computes a run's next step; False at the end."""
@@ -29,7 +29,7 @@ GAIT = "left-right-origin"
 class StageParts:
     """A stage with its store, recordings and bus; runs advance by steps, playback by frames."""
 
-    def __init__(self, store: SqlStore) -> None:
+    def __init__(self, store: RunStore) -> None:
         self.now = 100.0
         self.store, self.recordings, self.bus = store, Recordings(store), EventBus()
         self.stage = Stage(self.store, self.recordings, self.bus, now=lambda: self.now)

@@ -8,7 +8,7 @@ import pytest
 
 from app.domain.errors import DamagedFile
 from app.storage.artifacts import ArtifactFiles, StoredFile
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.disk_space import MB, RESERVE_BYTES, DiskSpace
 from app.storage.errors import NotFound, StorageFailed, StorageFull
 from tests.storage.stores import opened, training
@@ -78,7 +78,7 @@ def test_artifact_of_a_deleted_run_is_not_stored(tmp_path: Path) -> None:
         folder = tmp_path / "slow"
         folder.mkdir()
         files = Slow(folder, DiskSpace(tmp_path))
-        store = SqlStore(opened_store._database, files)
+        store = RunStore(opened_store._database, files)
         store.create(training("a", state="finished"))
         with pytest.raises(NotFound, match="no run 'a'"):
             store.put_artifact("a", "q-table.npz", b"late")

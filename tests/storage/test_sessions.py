@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.sessions import MAX_SESSIONS, SESSION_S, Sessions
 from tests.storage.stores import BACKENDS, database_url, opened
 
@@ -14,13 +14,13 @@ TOKEN, OTHER = "a-token-for-tests", "another-token-for-tests"
 
 
 @pytest.fixture(params=BACKENDS)
-def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[SqlStore]:
+def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RunStore]:
     server = request.param == "postgresql" and request.getfixturevalue("postgresql")
     with database_url(request.param, server) as url, opened(tmp_path, url) as opened_store:
         yield opened_store
 
 
-def test_sessions_survive_a_restart_but_not_a_new_token(store: SqlStore) -> None:
+def test_sessions_survive_a_restart_but_not_a_new_token(store: RunStore) -> None:
     sessions = Sessions(store.sessions, TOKEN)
     first, second = sessions.open(), sessions.open()
     sessions.close(second)
@@ -36,7 +36,7 @@ def test_sessions_survive_a_restart_but_not_a_new_token(store: SqlStore) -> None
     assert not Sessions(store.sessions, TOKEN).is_open(first)
 
 
-def test_sessions_expire_and_are_deleted(store: SqlStore) -> None:
+def test_sessions_expire_and_are_deleted(store: RunStore) -> None:
     now, rows = [datetime(2026, 1, 1, tzinfo=UTC)], store.sessions
     sessions = Sessions(rows, TOKEN, lambda: now[0])
     opened_one = sessions.open()
@@ -51,7 +51,7 @@ def test_sessions_expire_and_are_deleted(store: SqlStore) -> None:
     assert rows.load() == []
 
 
-def test_oldest_session_is_closed_beyond_the_maximum(store: SqlStore) -> None:
+def test_oldest_session_is_closed_beyond_the_maximum(store: RunStore) -> None:
     rows = store.sessions
     sessions = Sessions(rows, TOKEN)
     first = sessions.open()

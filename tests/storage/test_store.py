@@ -10,9 +10,10 @@ from typing import Any
 
 import pytest
 
+from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
+from app.storage.run import LIVE, QUEUED, RUNNING, UNENDED, AnyRun, Run, State
 from app.storage.run_ids import RunIds
-from app.storage.store import LIVE, QUEUED, RUNNING, UNENDED, AnyRun, Run, RunStore, State
 from tests.storage.stores import (
     BACKENDS,
     ODD,

@@ -11,7 +11,7 @@ from app.storage.database.folder_lock import lock_folder
 from app.storage.database.migration import migrate
 from app.storage.database.ownership import Ownership, claim
 from app.storage.database.sqlite_file import check_file, create_file
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.disk_space import DiskSpace
 
 DATABASE_FILE = "hexapods.db"
@@ -22,7 +22,7 @@ _logger = logging.getLogger(__name__)
 @contextmanager
 def open_store(
     settings: Settings, on_lost: Callable[[], object] = lambda: None
-) -> Iterator[SqlStore]:
+) -> Iterator[RunStore]:
     """Open the store of a server exclusively, for as long as the context lasts.
 
     Runs that a crashed server left unended become `interrupted`; its orphaned files are deleted.
@@ -48,7 +48,7 @@ def open_store(
                 folder = settings.data / ARTIFACTS_FOLDER / claim(database).database_id
                 folder.mkdir(parents=True, exist_ok=True)
                 sync_folder(folder.parent)
-                store = SqlStore(database, ArtifactFiles(folder, disk_space))
+                store = RunStore(database, ArtifactFiles(folder, disk_space))
                 _recover(store)
                 with ownership.watched():
                     yield store
@@ -63,7 +63,7 @@ def _locked(ownership: Ownership) -> Iterator[None]:
         ownership.release()
 
 
-def _recover(store: SqlStore) -> None:
+def _recover(store: RunStore) -> None:
     """Clean up after a crash: delete orphaned files, mark unended runs as interrupted."""
     orphans, interrupted = store.delete_orphans(), store.interrupt_all()
     if orphans or interrupted:

@@ -16,12 +16,12 @@ from app.storage.database.migration import check_current
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
 from app.storage.database.schema import ABOUT, METADATA
 from app.storage.database.sqlite_file import check_file
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.disk_space import DiskSpace
 
 
 @contextmanager
-def open_read_only(settings: Settings) -> Iterator[SqlStore]:
+def open_read_only(settings: Settings) -> Iterator[RunStore]:
     """Open the store read-only; an empty one if no server has ever used this data folder.
 
     Raises:
@@ -35,7 +35,7 @@ def open_read_only(settings: Settings) -> Iterator[SqlStore]:
         if database_id is None:
             database = stack.enter_context(closing(Database(_empty_engine())))
         folder = settings.data / ARTIFACTS_FOLDER / (database_id or "none")
-        yield SqlStore(database, ArtifactFiles(folder, DiskSpace(settings.data)))
+        yield RunStore(database, ArtifactFiles(folder, DiskSpace(settings.data)))
 
 
 def _engine(settings: Settings) -> Engine:

@@ -13,7 +13,7 @@ from app.storage.configs import CONFIGS, config_as_json, config_of
 from app.storage.database.columns import decode_json
 from app.storage.database.queries import MAX_CELL_CHARS, public_id
 from app.storage.errors import Damaged
-from app.storage.store import KINDS, STATES, AnyRun, Config, DamagedRun, Run
+from app.storage.run import KINDS, STATES, AnyRun, Config, DamagedRun, Run
 
 MAX_ERROR_CHARS = 10_000
 """Maximum length of a run's error; exceptions of user-defined agents may be longer."""

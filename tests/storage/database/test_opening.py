@@ -15,7 +15,7 @@ from app.storage.database import engine
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
 from app.storage.database.opening import DATABASE_FILE, open_store
 from app.storage.errors import StorageFailed
-from app.storage.store import UNENDED, State
+from app.storage.run import UNENDED, State
 from tests.postgresql import PostgresServer
 from tests.storage.stores import BACKENDS, database_url, opened, training
 
