@@ -11,7 +11,7 @@ from app.api.auth import Role
 from app.api.problems import problem
 from app.limits.addresses import caller
 from app.limits.memory_budget import MemoryBudget, Refusal
-from app.storage.artifact_file import PIECE_BYTES
+from app.storage.artifact_file import CHUNK_BYTES
 
 ANSWERS_BYTES, ANSWERS_SHARE_BYTES = 64 << 20, 32 << 20
 BODIES_BYTES, BODIES_SHARE_BYTES = 128 << 20, 96 << 20
@@ -115,10 +115,10 @@ class _Answer:
         try:
             await self._begin()
             view = memoryview(body)
-            for offset in range(0, len(view), PIECE_BYTES):
-                is_last = offset + PIECE_BYTES >= len(view)
+            for offset in range(0, len(view), CHUNK_BYTES):
+                is_last = offset + CHUNK_BYTES >= len(view)
                 more = bool(message.get("more_body", False)) or not is_last
-                piece = bytes(view[offset : offset + PIECE_BYTES])
+                piece = bytes(view[offset : offset + CHUNK_BYTES])
                 await self._send({**message, "body": piece, "more_body": more})
         finally:
             if refusal is None:

@@ -16,7 +16,7 @@ from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage import recording_export
 from app.stage.timeline import timeline
-from app.storage.artifact_file import ArtifactFile, BytesFile
+from app.storage.artifact_file import ArtifactFile
 from app.storage.errors import Conflict
 from app.storage.run import UNENDED, Run
 from app.storage.stored_recordings import RACE
@@ -98,11 +98,9 @@ def _film(services: Services, run: Run, config: RaceConfig, clock: Clock) -> Art
             f"race {run.id} is {run.state}; its film can be had once it ended", run.state
         )
     name = f"film-{clock}.viser"
-    film = services.store.open_artifact(run.id, name)
-    if film is None:
+    while (film := services.store.open_artifact(run.id, name)) is None:
         made = services.film(config, lanes, run.name, clock)
         services.store.put_artifact(run.id, name, made)
-        film = BytesFile(made)
     return film
 
 

@@ -23,11 +23,11 @@ _ANYONE = "anyone"
 
 
 def export_run(store: RunStore, run_id: str) -> bytes:
-    """Export an ended run to an archive in memory; raises as `export_pieces`."""
-    return b"".join(export_pieces(store, run_id))
+    """Export an ended run to an archive in memory; raises as `export_chunks`."""
+    return b"".join(export_chunks(store, run_id))
 
 
-def export_pieces(
+def export_chunks(
     store: RunStore, run_id: str, budget: MemoryBudget | None = None
 ) -> Iterator[bytes]:
     """Export an ended run to an archive as a stream of chunks; its files are not held in memory.
