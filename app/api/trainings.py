@@ -15,11 +15,11 @@ from app.api.runs import RunPath, accepted, find, run_routes
 from app.api.schemas import ChangeBody, TrainingBody
 from app.archive import table_import
 from app.domain.errors import InvalidInput
-from app.jobs.submissions import open_table, read_rows
 from app.runs import tables
 from app.storage.artifact_file import closing_after
 from app.storage.errors import Conflict
 from app.storage.json_text import finite
+from app.storage.stored_tables import open_table, read_rows
 
 # Before the routes that all runs have: `import` is no run's id.
 router = run_routes("training")

@@ -31,7 +31,7 @@ from app.runs.clocks import CLOCKS
 from app.runs.config import MAX_LANES, RaceConfig
 from app.storage.configs import CONFIGS, config_as_json, config_of
 from app.storage.errors import Conflict
-from app.storage.run import UNENDED, Config, Kind, Run
+from app.storage.run import NOT_ENDED, Config, Kind, Run
 
 FORMAT = 1
 MAX_JSON_BYTES = 64_000_000
@@ -126,7 +126,7 @@ def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
         Conflict: if it has not ended.
         InvalidInput: if it is too long.
     """
-    if run.state in UNENDED:
+    if run.state in NOT_ENDED:
         raise Conflict(f"{run.kind} {run.id} is {run.state}; stop it first", run.state)
     own = {name: getattr(run, name) for name in _Shape.__struct_fields__}
     own["config"] = config_as_json(run.config)

@@ -20,7 +20,7 @@ RUNNING: frozenset[State] = frozenset({"running"})
 PAUSED: frozenset[State] = frozenset({"paused"})
 LIVE = RUNNING | PAUSED
 """States in which a job process works on the run."""
-UNENDED = QUEUED | LIVE
+NOT_ENDED = QUEUED | LIVE
 """States from which a run can still change by itself; only ended runs can be deleted."""
 INTERRUPTED: frozenset[State] = frozenset({"interrupted"})
 RESUMABLE: Mapping[Kind, frozenset[State]] = {

@@ -20,14 +20,14 @@ from app.jobs.submissions import ExperimentStart
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, StorageFull
 from app.storage.recordings import Recordings
-from app.storage.run import REPORT, SUMMARY, UNENDED, Run
+from app.storage.run import NOT_ENDED, REPORT, SUMMARY, Run
 from tests.jobs.experiments import stored_results, sweep, tried
 from tests.jobs.waiting import wait_until, wait_until_ended
 from tests.storage.stores import of_type
 
 
 def wait_for_more_trials(store: RunStore, run: Run, done: int) -> None:
-    wait_until(lambda: len(store.trials(run.id)) > done or store.get(run.id).state not in UNENDED)
+    wait_until(lambda: len(store.trials(run.id)) > done or store.get(run.id).state not in NOT_ENDED)
     assert store.get(run.id).state == "running"
 
 

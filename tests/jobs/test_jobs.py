@@ -13,8 +13,8 @@ from app.domain.errors import InvalidInput
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.queue import MAX_QUEUED, RunQueue
-from app.jobs.resume import resumed_runs
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
+from app.jobs.tasks import resumed_runs
 from app.runs.config import TrainingConfig, WalkingProblem
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, StorageFailed
@@ -239,10 +239,10 @@ def test_submission_that_fails_halfway_leaves_no_run_queued(store: RunStore) -> 
         store.create(Run(id=run_id, kind="training", name=run_id, config=config, total=10))
         store.change(run_id, QUEUED, "interrupted")
     queue = RunQueue(store, lambda run: None)
-    entries = [entry for run_id in ids for entry in resumed_runs(store.get(run_id), store)]
+    runs = [run for run_id in ids for run in resumed_runs(store.get(run_id), store)]
     store.fail_after = 1
     with pytest.raises(StorageFailed):
-        queue.add(entries, 1)
+        queue.add(runs, 1, resumed=True)
     assert [store.get(run_id).state for run_id in ids] == ["queued", "interrupted"]
     queue.reconcile()
     assert [store.get(run_id).state for run_id in ids] == ["interrupted", "interrupted"]

@@ -19,6 +19,7 @@ from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run
 from tests.jobs.test_jobs import WALK
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
+from tests.storage.ended import ended_training
 from tests.storage.stores import training
 
 SLOW = TrainingConfig(**vars(WALK), steps=100_000, pace=30, evaluate_every=20)
@@ -100,6 +101,20 @@ def test_training_whose_table_was_deleted_cannot_resume(
     with pytest.raises(InvalidInput, match="gone"):
         open_jobs().resume(run.id)
     assert store.get(run.id).state == "interrupted"
+
+
+def test_table_that_a_queued_run_needs_cannot_be_deleted(store: RunStore) -> None:
+    """A run's table is loaded when it starts, so it must still be there then."""
+    source = ended_training(store, "a")
+    assert isinstance(source.config, TrainingConfig)
+    jobs = Jobs(store, Recordings(store), EventBus())  # not opened, so that all runs stay queued
+    practice = jobs.train(TrainingStart(source.config, continue_from="a"))
+    race = jobs.race(RaceStart(WALK, [LaneStart("q-learning", training_id="a")], steps=5, seed=0))
+    for run in (practice, race):
+        with pytest.raises(Conflict, match=f"{run.kind} {run.id} waits, and needs its table"):
+            jobs.delete("a")
+        jobs.stop(run.id)
+    jobs.delete("a")
 
 
 def test_damaged_checkpoint_is_rejected_by_name(

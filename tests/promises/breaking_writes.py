@@ -30,7 +30,7 @@ from app.events.bus import EventBus
 from app.jobs.job import Job
 from app.jobs.jobs import Jobs
 from app.jobs.messages import Batch, Began, Checkpointed, Ended, Saved, TrainingTask
-from app.jobs.submissions import LaneStart, RaceStart, TrainingStart, load_table
+from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
 from app.runs.config import TrainingConfig, WalkingProblem
 from app.runs.records import Evaluated, StepTaken
 from app.runs.tables import snapshot, to_bytes
@@ -41,6 +41,7 @@ from app.storage.errors import Conflict, StorageFailed, StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import TABLE, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
+from app.storage.stored_tables import load_table
 from tests.storage.ended import GAIT, ended_experiment, ended_training
 from tests.storage.stores import opened, training
 

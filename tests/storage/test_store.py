@@ -12,7 +12,7 @@ import pytest
 
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
-from app.storage.run import LIVE, QUEUED, RUNNING, UNENDED, AnyRun, Run, State
+from app.storage.run import LIVE, NOT_ENDED, QUEUED, RUNNING, AnyRun, Run, State
 from app.storage.run_ids import RunIds
 from tests.storage.stores import (
     BACKENDS,
@@ -85,7 +85,7 @@ def test_unknown_run_raises_not_found(store: RunStore) -> None:
             lambda i: store.append_trials(i, []),
             lambda i: store.update(i, done=1),
             lambda i: store.update_progress(i, 1),
-            lambda i: store.change(i, UNENDED, "failed"),
+            lambda i: store.change(i, NOT_ENDED, "failed"),
             lambda i: store.artifact(i, "a"),
             lambda i: store.put_artifact(i, "a", b""),
             lambda i: store.append_evaluations(i, [{"step": 1, "distance_m": 0.0, "epsilon": 0}]),

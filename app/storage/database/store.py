@@ -44,8 +44,8 @@ from app.storage.errors import Conflict, Damaged, StorageFailed
 from app.storage.run import (
     KINDS,
     LIVE,
+    NOT_ENDED,
     RUNNING,
-    UNENDED,
     AnyRun,
     Content,
     DamagedRun,
@@ -307,7 +307,7 @@ class RunStore:
         def work(connection: Connection) -> Sequence[str]:
             row = fetch_run_row(connection, run_id, for_update=True)
             state = row["state"]
-            if state in UNENDED:
+            if state in NOT_ENDED:
                 raise Conflict(f"{row['kind']} {run_id} is {state}; stop it first", state)
             is_this_run = has_public_id(connection, run_id)
             files = select(ARTIFACTS.c.file).where(
@@ -436,7 +436,7 @@ class RunStore:
         ended_at = case((RUNS.c.started_at > now, RUNS.c.started_at), else_=now)
         statement = (
             update(RUNS)
-            .where(RUNS.c.state.in_(UNENDED))
+            .where(RUNS.c.state.in_(NOT_ENDED))
             .values(
                 state="interrupted",
                 error=_INTERRUPTED_ERROR,
