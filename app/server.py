@@ -42,11 +42,11 @@ from app.domain.errors import HexapodError
 from app.events import logs
 from app.events.run_metrics import RunMetrics
 from app.jobs.jobs import Jobs
-from app.limits.addresses import caller
+from app.limits.addresses import client_of
+from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
 from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
-from app.limits.places import Places
 from app.settings import Settings
 from app.stage.stage import Stage
 from app.storage.address_file import write_address_file
@@ -87,7 +87,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         allowed_origins=_further_origins(settings),
         max_viewers=settings.max_viewers,
         max_per_address=settings.viewers_per_address,
-        address_of=caller,
+        address_of=client_of,
     )
     jobs = Jobs(store, recordings, bus, on_queued=show.offer, niceness=settings.job_niceness)
     app = FastAPI(
@@ -111,7 +111,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         ready=lambda: _trouble(jobs, store),
         film=viewer.recorded_stream,
         what_if=WhatIf(TrialPool()),
-        listeners=Places(settings.max_viewers, settings.viewers_per_address),
+        listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
     app.state.metrics = metrics.registry_of(app.state.services)
     _add_routes(app, viewer)
@@ -145,7 +145,7 @@ def _add_routes(app: FastAPI, viewer: ViewerService) -> None:
 
 def _trouble(jobs: Jobs, store: RunStore) -> str | None:
     """Return why runs cannot be started, in a sentence; None if they can."""
-    if (trouble := jobs.trouble()) is not None:
+    if (trouble := jobs.health_problem()) is not None:
         return trouble
     try:
         store.check_disk_space()

@@ -11,8 +11,8 @@ from app.api.auth import Role
 from app.api.descriptions import VALID
 from app.events.run_metrics import RunMetrics
 from app.jobs.jobs import Jobs
+from app.limits.client_slots import ClientSlots
 from app.limits.memory_budget import MemoryBudget
-from app.limits.places import Places
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
@@ -61,7 +61,7 @@ class Services:
     ready: Callable[[], str | None]
     film: Film
     what_if: WhatIf
-    listeners: Places["Listener"]
+    listeners: ClientSlots["Listener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
 
 

@@ -14,10 +14,9 @@ from app.api.formats import attachment, chosen, file_response
 from app.api.runs import RunPath, accepted, find, run_routes
 from app.experiments.config import ExperimentConfig
 from app.storage.artifact_file import ArtifactFile
-from app.storage.configs import config_as_json
 from app.storage.errors import Conflict, NotFound
 from app.storage.json_text import finite
-from app.storage.run import NOT_ENDED, REPORT, SUMMARY, Run
+from app.storage.run import NOT_ENDED, REPORT, SUMMARY, Run, config_as_json
 from app.storage.stored_trials import trials_as_csv
 
 REPORT_POLICY = (

@@ -59,7 +59,9 @@ def import_training(
     if not asked.body:
         raise InvalidInput("send the .npz file of a Q-table as the request's body")
     jobs, agents = services.jobs, services.agents
-    run = asked.start(services, lambda key: table_import.adopt(jobs, asked.body, agents, name, key))
+    run = asked.start(
+        services, lambda key: table_import.import_table(jobs, asked.body, agents, name, key)
+    )
     location = request.url_for("get_training", run_id=run.id).path
     return JSONResponse(jobs.view(run), 201, {"Location": location})
 

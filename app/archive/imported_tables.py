@@ -25,19 +25,19 @@ class TableMeta(msgspec.Struct):
     changes: list[dict[str, Any]] = []
 
 
-def checked_table(data: bytes, said: str) -> tuple[Checkpoint, TableMeta, TrainingConfig]:
+def checked_table(data: bytes, label: str) -> tuple[Checkpoint, TableMeta, TrainingConfig]:
     """The table in a file, what it says of itself, and the training that it is of.
 
     Args:
         data: all of the file.
-        said: what to call it in messages.
+        label: what to call it in messages.
 
     Raises:
         DamagedFile: if it is no table, does not hold together, or has a number out of range.
         TableMismatch: if it was learned for another problem than it says.
     """
-    checkpoint = tables.from_bytes(data, said)
-    config = _training(checkpoint.meta.get("config"), said)
+    checkpoint = tables.from_bytes(data, label)
+    config = _training(checkpoint.meta.get("config"), label)
     try:
         tables.check_fits(checkpoint, config, config.observation)
         meta = msgspec.convert(checkpoint.meta, TableMeta)
@@ -50,9 +50,9 @@ def checked_table(data: bytes, said: str) -> tuple[Checkpoint, TableMeta, Traini
     except HexapodError:
         raise
     except KeyError as error:
-        raise DamagedFile(f"{said} does not say its {error}") from error
+        raise DamagedFile(f"{label} does not say its {error}") from error
     except Exception as error:  # NumPy does not say all that strange arrays make it raise
-        raise DamagedFile(f"{said} does not hold together: {error}") from error
+        raise DamagedFile(f"{label} does not hold together: {error}") from error
     return checkpoint, meta, config
 
 
@@ -69,17 +69,17 @@ def check_change(change: Mapping[str, Any]) -> None:
         CHANGEABLE[name].check(change[name])
 
 
-def _training(shown: Any, said: str) -> TrainingConfig:
+def _training(shown: Any, label: str) -> TrainingConfig:
     if not isinstance(shown, Mapping):
-        raise DamagedFile(f"{said} does not say what was trained")
+        raise DamagedFile(f"{label} does not say what was trained")
     try:
         config = config_from_json(shown)
     except HexapodError as error:
-        raise DamagedFile(f"{said} says of its training: {error}") from error
+        raise DamagedFile(f"{label} says of its training: {error}") from error
     except (KeyError, OverflowError, TypeError, ValueError, RecursionError) as error:
-        raise DamagedFile(f"{said} does not say what was trained ({error})") from error
+        raise DamagedFile(f"{label} does not say what was trained ({error})") from error
     if not isinstance(config, TrainingConfig):
-        raise DamagedFile(f"{said} is of a race; give that of a training")
+        raise DamagedFile(f"{label} is of a race; give that of a training")
     return config
 
 

@@ -12,7 +12,7 @@ from app.runs import tables
 from app.storage.run import IdempotencyKey, Run
 
 
-def adopt(
+def import_table(
     jobs: Jobs,
     data: bytes,
     agents: Collection[str],

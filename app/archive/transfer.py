@@ -67,7 +67,7 @@ class _BudgetedChunks:
 
     def __init__(self, chunks: Iterator[bytes], size: int, budget: MemoryBudget) -> None:
         self._chunks, self._size, self._budget = chunks, 0, budget
-        if budget.take(_ANYONE, size) is not None:
+        if budget.reserve(_ANYONE, size) is not None:
             raise Busy("as much is exported as the server can at once; try again in a moment", 5)
         self._size = size
 
@@ -80,7 +80,7 @@ class _BudgetedChunks:
     def __del__(self) -> None:
         # Not in a generator's `finally`, which does not run if the response was never started.
         if self._size:
-            self._budget.give_back(_ANYONE, self._size)
+            self._budget.release(_ANYONE, self._size)
 
 
 def import_run(

@@ -8,9 +8,8 @@ import msgspec
 
 from app.runs.clocks import CLOCKS
 from app.runs.config import RaceConfig, TrainingConfig
-from app.storage.configs import config_as_json
 from app.storage.json_text import is_finite
-from app.storage.run import PAUSED, RESUMABLE, AnyRun, DamagedRun, Kind, Run
+from app.storage.run import PAUSED, RESUMABLE, AnyRun, DamagedRun, Kind, Run, config_as_json
 
 
 class _TrainingResult(msgspec.Struct):

@@ -29,7 +29,7 @@ _SUMMARY_SHARE = 0.15
 def experiment(
     task: ExperimentTask, send: Callable[[Message], None], commands: "queue.SimpleQueue[Command]"
 ) -> None:
-    """Run an experiment to its end, or until a `stop` or `leave` command.
+    """Run an experiment to its end, or until a `stop` or `checkpoint_and_exit` command.
 
     Args:
         task: the experiment, with the trials that are done.
@@ -91,7 +91,7 @@ class _TrialControl:
         if command.verb in ("pause", "resume"):
             self.paused = command.verb == "pause"
         self.stopped |= command.verb == "stop"
-        self.exiting |= command.verb == "leave"
+        self.exiting |= command.verb == "checkpoint_and_exit"
 
 
 class _Progress:

@@ -138,7 +138,7 @@ class Job:
         Used when the server shuts down: the run is `interrupted` and can be resumed.
         """
         if self._has_begun and not self.is_race:
-            self.process.send(Command("leave"))
+            self.process.send(Command("checkpoint_and_exit"))
         else:
             self.process.kill()
 

@@ -101,7 +101,7 @@ class Jobs:
         """Whether queued runs will be started."""
         return self._supervisor.is_open
 
-    def trouble(self) -> str | None:
+    def health_problem(self) -> str | None:
         """Return a sentence on why queued runs are not started; None if they are (health check)."""
         if not self.is_open:
             return "The server is starting, or stopping."

@@ -21,12 +21,12 @@ from app.storage.stored_tables import load_table
 
 @dataclass(frozen=True)
 class TrainingStart:
-    """A training as it was asked for.
+    """Request to start a training.
 
     Attributes:
-        config: the training; its seed does not count if it continues another.
-        name: None lets one be found.
-        continue_from: the training whose table it goes on from.
+        config: the training; its seed is ignored if it continues another.
+        name: None for a generated name.
+        continue_from: id of the training whose table it continues from.
     """
 
     config: TrainingConfig
@@ -36,7 +36,7 @@ class TrainingStart:
 
 @dataclass(frozen=True)
 class LaneStart:
-    """A lane as it was asked for: with a training's table, with a training to come, or neither."""
+    """Request for a lane: with a training's table, with a training to run first, or neither."""
 
     agent: str
     training_id: str | None = None
@@ -45,7 +45,7 @@ class LaneStart:
 
 @dataclass(frozen=True)
 class RaceStart:
-    """A race as it was asked for."""
+    """Request to start a race."""
 
     walk: WalkingProblem
     lanes: Sequence[LaneStart]
@@ -113,7 +113,7 @@ def new_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> li
 
 
 def check_walk(walk: WalkingProblem) -> None:
-    """Make sure that the robot can walk so, and that a table of it would fit into memory.
+    """Check that the robot reaches its foot grid, and that a table of it would fit into memory.
 
     Raises:
         Unreachable: if a leg cannot reach a cell.
@@ -133,7 +133,7 @@ def check_walk(walk: WalkingProblem) -> None:
 def _lane_table(
     lane: LaneStart, number: int, walk: WalkingProblem, store: RunStore
 ) -> Checkpoint | None:
-    """The table that a lane brings along, None if it has none (yet)."""
+    """Return the table of a lane's training; None if it has none (yet)."""
     can_learn = learns(lane.agent)
     has_practice = lane.training_id is not None or lane.training is not None
     if has_practice and not can_learn:
@@ -169,12 +169,12 @@ MAX_SETTINGS = 2_000
 
 @dataclass(frozen=True)
 class ExperimentStart:
-    """An experiment as it was asked for.
+    """Request to start an experiment.
 
     Attributes:
         config: the experiment.
-        name: None lets one be found.
-        workers: how many trials at once; None is one for each core.
+        name: None for a generated name.
+        workers: trials at once; None is one per core.
     """
 
     config: ExperimentConfig
@@ -205,10 +205,10 @@ def new_experiment(start: ExperimentStart, new_id: Callable[[], str]) -> Run:
 
 
 def plan_of(config: ExperimentConfig) -> Plan:
-    """The settings of an experiment, all of which can be.
+    """Return the plan of an experiment, whose settings are all checked.
 
     Raises:
-        InvalidInput, UnknownName, Unreachable: if one cannot be, or they are too many.
+        InvalidInput, UnknownName, Unreachable: if a setting is invalid, or there are too many.
     """
     # Before it is laid out: a few long lists make a grid that fits into no memory.
     settings = _settings(config)
@@ -224,7 +224,7 @@ def plan_of(config: ExperimentConfig) -> Plan:
 
 
 def _settings(config: ExperimentConfig) -> int:
-    """How many combinations of values it has, those of agents that look ahead left out."""
+    """Return the number of combinations of values, without those of look-ahead agents."""
     lists = ("gaits", "observations", "robots", "agents", *GRID)
     return math.prod(len(getattr(config, name)) for name in lists)
 

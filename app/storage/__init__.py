@@ -6,6 +6,6 @@ exceptions.
 chunks; `disk_space` enforces the quota of the data folder.
 `recordings` and `stored_recordings` hold the recorded motion that the stage replays.
 `idempotency`, `sessions` and `run_ids`: idempotency keys, operators' sessions, sortable ids.
-`configs`, `stored_trials` and `json_text` convert configs, trials and numbers to JSON and back.
+`stored_tables` and `stored_trials` load tables, checkpoints and trials; `json_text` encodes JSON.
 `address_file` records where the server of a data folder listens.
 """

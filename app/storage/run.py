@@ -1,12 +1,13 @@
-"""A stored run: its fields, its states, the names of its artifacts."""
+"""A stored run: its fields, states and artifact names, and its config as JSON."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from typing import Any, Literal, NamedTuple, get_args
 
+from app.experiments import config as experiments
 from app.experiments.config import ExperimentConfig
-from app.runs.config import RaceConfig, TrainingConfig
+from app.runs.config import RaceConfig, TrainingConfig, as_json, config_from_json
 
 Kind = Literal["training", "race", "experiment"]
 State = Literal["queued", "running", "paused", "finished", "stopped", "failed", "interrupted"]
@@ -31,6 +32,12 @@ RESUMABLE: Mapping[Kind, frozenset[State]] = {
     "experiment": INTERRUPTED | {"stopped", "failed"},
 }
 """By kind, the states of an ended run from which it can be queued again."""
+CONFIGS: Mapping[Kind, type[Config]] = {
+    "training": TrainingConfig,
+    "race": RaceConfig,
+    "experiment": ExperimentConfig,
+}
+"""Config class by kind of run."""
 TABLE = "q-table.npz"
 """Artifact of a training: its learned Q-table."""
 CHECKPOINT = "checkpoint.npz"
@@ -146,3 +153,22 @@ class Content:
     evaluations: Sequence[Mapping[str, Any]] = ()
     trials: Sequence[Mapping[str, Any]] = ()
     artifacts: Mapping[str, bytes] = field(default_factory=dict)
+
+
+def config_as_json(config: Config) -> dict[str, Any]:
+    """Serialise a config to plain JSON types, as sent by the API and stored in the database."""
+    if isinstance(config, ExperimentConfig):
+        return experiments.as_json(config)
+    return as_json(config)
+
+
+def run_config_from_json(kind: str, fields: Mapping[str, Any]) -> Config:
+    """Parse a config that `config_as_json` wrote for a run of this kind.
+
+    Raises:
+        InvalidInput: if a value is out of range.
+        KeyError, TypeError, ValueError: if the structure is not that of `config_as_json`.
+    """
+    if kind == "experiment":
+        return experiments.from_json(fields)
+    return config_from_json(fields)

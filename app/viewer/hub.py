@@ -15,7 +15,7 @@ from typing import Self
 from starlette.types import Scope
 from starlette.websockets import WebSocket
 
-from app.limits.places import NoPlace, Places
+from app.limits.client_slots import ClientSlots, NoFreeSlot
 from app.viewer import follow, wire
 from app.viewer.session import Counters, Session
 from app.viewer.snapshot import BLOCKED_TYPES, Snapshot
@@ -59,7 +59,7 @@ class Hub:
                 viser stops; None while there is no viser.
             follow_position: Positions of the robots that can be followed; without it, none can.
             follow_frame: The scene node under which all is drawn.
-            max_viewers: Maximum number of viewers; `Places` decides who is refused or evicted.
+            max_viewers: Maximum number of viewers; `ClientSlots` decides who is refused or evicted.
             max_per_address: Maximum number of spectators per address; by default no limit.
             address_of: Returns the address of a connection; by default the client's host.
             allowed_origins: Origins accepted besides the one that a request's own Host names, for
@@ -72,7 +72,7 @@ class Hub:
         self._follow_position = follow_position
         self._follow_frame = follow_frame
         per_address = max_viewers + 1 if max_per_address is None else max_per_address
-        self._places = Places[Session](max_viewers, per_address)
+        self._slots = ClientSlots[Session](max_viewers, per_address)
         self._address_of = address_of or _client_host
         self._allowed_origins = frozenset(allowed_origins)
         self._on_viewers_changed = on_viewers_changed
@@ -136,8 +136,8 @@ class Hub:
         is_operator = websocket.scope.get("state", {}).get("role") == "operator"
         try:
             # Before the first await: otherwise concurrent connections would exceed the limit.
-            evicted = self._places.take(session, self._address_of(websocket.scope), is_operator)
-        except NoPlace as error:
+            evicted = self._slots.take(session, self._address_of(websocket.scope), is_operator)
+        except NoFreeSlot as error:
             await websocket.accept(subprotocol=wire.SUBPROTOCOL)
             await websocket.close(_TRY_AGAIN_LATER, error.reason)
             return
@@ -149,7 +149,7 @@ class Hub:
             await websocket.accept(subprotocol=wire.SUBPROTOCOL)
             await session.run(self._send_view)
         finally:
-            self._places.leave(session)
+            self._slots.leave(session)
             self._sessions.discard(session)
             self._publish_viewer_count()
 

@@ -23,7 +23,7 @@ import numpy as np
 from sqlalchemy import Connection, Engine, event, select
 
 from app.agents.registry import OURS
-from app.archive.table_import import adopt
+from app.archive import table_import
 from app.archive.transfer import export_run, import_run
 from app.assembly import build_learner, finish_training
 from app.events.bus import EventBus
@@ -120,7 +120,9 @@ def import_experiment(store: RunStore, folder: Path) -> None:
 
 
 def import_table(store: RunStore, folder: Path) -> None:
-    adopt(_jobs(store), (folder.parent / "table.npz").read_bytes(), tuple(OURS), "Moved", KEY)
+    table_import.import_table(
+        _jobs(store), (folder.parent / "table.npz").read_bytes(), tuple(OURS), "Moved", KEY
+    )
 
 
 def start(store: RunStore, folder: Path) -> None:
