@@ -43,20 +43,19 @@ from app.domain.errors import HexapodError
 from app.events import logs
 from app.events.run_metrics import RunMetrics
 from app.jobs.jobs import Jobs
+from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
 from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
-from app.limits.places import Places
 from app.settings import Settings
 from app.stage.stage import Stage
 from app.storage.address_file import write_address_file
 from app.storage.database.opening import open_store
+from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost
 from app.storage.idempotency import Idempotency
-from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
 from app.storage.sessions import Sessions
-from app.storage.store import RunStore
 from app.viewer.service import ViewerService, viewer_routes
 from app.viewer.session import websocket_options
 from app.what_if.trial_pool import TrialPool
@@ -73,14 +72,13 @@ _DESCRIPTION = (
 )
 
 
-def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
+def create_app(settings: Settings, store: RunStore) -> FastAPI:
     """The whole application; jobs, stage and hub begin and end with its lifespan.
 
     Args:
         settings: of the server.
-        store: where runs are kept; None keeps them for as long as the application lives.
+        store: store of the runs; stays open for as long as the application lives.
     """
-    store = MemoryStore() if store is None else store
     recordings, bus = Recordings(store), RunMetrics()
     show = Stage(store, recordings, bus)
     viewer = ViewerService(
@@ -111,7 +109,7 @@ def create_app(settings: Settings, store: RunStore | None = None) -> FastAPI:
         ready=lambda: _trouble(jobs, store),
         film=viewer.recorded_stream,
         what_if=WhatIf(TrialPool()),
-        listeners=Places(settings.max_viewers, settings.viewers_per_address),
+        listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
     app.state.metrics = metrics.registry_of(app.state.services)
     _add_routes(app, viewer, app.state.services.agents)
@@ -146,7 +144,7 @@ def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) ->
 
 def _trouble(jobs: Jobs, store: RunStore) -> str | None:
     """Return why runs cannot be started, in a sentence; None if they can."""
-    if (trouble := jobs.trouble()) is not None:
+    if (trouble := jobs.health_problem()) is not None:
         return trouble
     try:
         store.check_disk_space()

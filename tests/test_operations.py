@@ -9,7 +9,7 @@ from pathlib import Path
 from app.cli import COMMANDS
 from app.settings import PREFIX, Settings
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
-from app.storage.store import TABLE
+from app.storage.run import TABLE
 from tests.storage.stores import opened, training
 
 TEXT = (Path(__file__).parent.parent / "docs" / "operations.md").read_text("utf-8")

@@ -15,7 +15,7 @@ from app.domain.settings import Value
 from app.experiments.config import ExperimentName
 from app.runs.clocks import Clock
 from app.runs.config import SimulatorName
-from app.storage.store import State
+from app.storage.run import State
 
 Preset = Annotated[str, Field(json_schema_extra={"enum": list(PRESETS)})]
 Count = Annotated[int, Field(ge=0)]

@@ -13,7 +13,7 @@ from app.api.cookies import SessionCookie
 from app.api.problems import problem
 from app.api.rate_limit import too_many
 from app.domain.errors import HexapodError
-from app.limits.addresses import caller
+from app.limits.addresses import client_of
 from app.limits.connections import Connection
 from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
@@ -60,7 +60,7 @@ class TokenGuard:
             return
         headers = Headers(scope=scope)
         is_link = _offers_token(scope)
-        wait_s = self._guesses.wait_s(caller(scope)) if is_link or _bearer(headers) else 0.0
+        wait_s = self._guesses.wait_s(client_of(scope)) if is_link or _bearer(headers) else 0.0
         if wait_s > 0:
             # Also for the right one: whoever guesses must not learn that it was.
             await _too_many_guesses(scope, wait_s)(scope, receive, send)
@@ -73,7 +73,7 @@ class TokenGuard:
         if role == "spectator":
             cookie = self._cookie(scope, headers)
             if cookie.value:
-                wait_s = self._guesses.take(caller(scope))
+                wait_s = self._guesses.take(client_of(scope))
                 send = _forgetting(cookie, send)
             if wait_s > 0:
                 await _too_many_guesses(scope, wait_s)(scope, receive, send)
@@ -95,7 +95,7 @@ class TokenGuard:
         if token and _same(token, self._token):
             return "operator"
         if token:
-            self._guesses.take(caller(scope))
+            self._guesses.take(client_of(scope))
         session_id = self._cookie(scope, headers).value
         return "operator" if session_id and self._sessions.is_open(session_id) else "spectator"
 
@@ -121,7 +121,7 @@ class TokenGuard:
         if self._token is None or self._sessions is None:
             return response
         if not _same(given, self._token):
-            self._guesses.take(caller(scope))
+            self._guesses.take(client_of(scope))
             return _unauthorized("This is not the server's token; look at what its start printed.")
         try:
             session_id = await asyncio.to_thread(self._sessions.open)

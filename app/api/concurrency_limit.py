@@ -13,7 +13,7 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.auth import Role
-from app.limits.addresses import caller
+from app.limits.addresses import client_of
 
 TURNS: dict[Role, int] = {"operator": 16, "spectator": 2}
 """Python threads share one interpreter: each that computes delays all the others."""
@@ -21,7 +21,7 @@ _STREAM = "text/event-stream"
 T = TypeVar("T")
 
 
-class FairSemaphore:
+class RoundRobinSemaphore:
     """A semaphore whose waiters take turns by who they are, so that none wins by asking more.
 
     To be used on one event loop.
@@ -71,14 +71,14 @@ class ConcurrencyLimit:
     def __init__(self, app: ASGIApp) -> None:
         """Limit an app; inside of what finds out the role."""
         self._app = app
-        self._semaphores = {role: FairSemaphore(size) for role, size in TURNS.items()}
+        self._semaphores = {role: RoundRobinSemaphore(size) for role, size in TURNS.items()}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Wait for a turn, and pass on."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        turn = _Turn(self._semaphores[scope["state"]["role"]], caller(scope))
+        turn = _Turn(self._semaphores[scope["state"]["role"]], client_of(scope))
         await turn.take()
         try:
             await self._app(scope, turn.receiving(receive), turn.sending(send))
@@ -89,7 +89,7 @@ class ConcurrencyLimit:
 class _Turn:
     """The turn of one request."""
 
-    def __init__(self, semaphore: FairSemaphore, who: str) -> None:
+    def __init__(self, semaphore: RoundRobinSemaphore, who: str) -> None:
         self._semaphore, self._who = semaphore, who
         self._is_held = False
         self._given_up = asyncio.Event()

@@ -11,15 +11,16 @@ from app.api.auth import Role
 from app.api.descriptions import VALID
 from app.events.run_metrics import RunMetrics
 from app.jobs.jobs import Jobs
+from app.limits.client_slots import ClientSlots
 from app.limits.memory_budget import MemoryBudget
-from app.limits.places import Places
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage.stage import Stage
+from app.storage.database.store import RunStore
 from app.storage.idempotency import Idempotency, Start
 from app.storage.recordings import Recordings
-from app.storage.store import Run, RunStore
+from app.storage.run import Run
 from app.what_if.what_if import WhatIf
 
 Film = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock], bytes]
@@ -60,7 +61,7 @@ class Services:
     ready: Callable[[], str | None]
     film: Film
     what_if: WhatIf
-    listeners: Places["Listener"]
+    listeners: ClientSlots["Listener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
 
 

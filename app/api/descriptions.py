@@ -11,7 +11,7 @@ from app.domain.text import NAMES
 from app.experiments.config import EXPERIMENTS, MAX_SEEDS
 from app.runs.clocks import CLOCKS
 from app.runs.config import MAX_LANES, SIMULATORS, TrainingConfig
-from app.storage.store import STATES
+from app.storage.run import STATES
 
 MAX_PAGE = 100
 

@@ -10,8 +10,8 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 from app import __version__
 from app.api.deps import Listener, Services, ServicesDep, Who
 from app.api.descriptions import VALID
-from app.limits.addresses import caller
-from app.limits.places import NoPlace, Refusal
+from app.limits.addresses import client_of
+from app.limits.client_slots import NoFreeSlot, Refusal
 from app.storage.errors import Busy
 from app.storage.json_text import json_text
 
@@ -42,8 +42,8 @@ async def _place(request: Request, services: ServicesDep, role: Who) -> AsyncIte
     """
     listener = Listener()
     try:
-        loser = services.listeners.take(listener, caller(request.scope), role == "operator")
-    except NoPlace as error:
+        loser = services.listeners.take(listener, client_of(request.scope), role == "operator")
+    except NoFreeSlot as error:
         raise Busy(_REFUSALS[error.reason], RETRY_AFTER_S) from error
     if loser is not None:
         loser.close()

@@ -12,10 +12,9 @@ from app.api.formats import attachment, chosen, file_response
 from app.api.runs import RunPath, find, run_routes
 from app.experiments.config import ExperimentConfig
 from app.storage.artifact_file import ArtifactFile
-from app.storage.configs import config_as_json
 from app.storage.errors import Conflict, NotFound
 from app.storage.json_text import finite
-from app.storage.store import REPORT, SUMMARY, UNENDED, Run
+from app.storage.run import NOT_ENDED, REPORT, SUMMARY, Run, config_as_json
 from app.storage.stored_trials import trials_as_csv
 
 REPORT_POLICY = (
@@ -123,7 +122,7 @@ def _nothing_yet(run: Run) -> dict[str, Any]:
 
 
 def _reported(services: ServicesDep, run: Run, name: str) -> ArtifactFile:
-    if run.state in UNENDED or run.state == "interrupted":
+    if run.state in NOT_ENDED or run.state == "interrupted":
         raise Conflict(
             f"experiment {run.id} is {run.state}; its report can be had once it is finished or "
             "stopped",

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
-from app.storage.artifact_file import ArtifactFile, pieces
+from app.storage.artifact_file import ArtifactFile, chunks
 
 _TYPES = {
     "application/json": "json",
@@ -52,7 +52,7 @@ def file_response(
 ) -> Response:
     """A file that is sent piece by piece, as fast as the client takes it, and closed then."""
     told = {**(headers or {}), "Content-Length": str(file.size)}
-    return StreamingResponse(pieces(file), headers=told, media_type=media_type)
+    return StreamingResponse(chunks(file), headers=told, media_type=media_type)
 
 
 def _quality(parameters: Sequence[str]) -> float:

@@ -9,9 +9,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.auth import Role
 from app.api.problems import problem
-from app.limits.addresses import caller
+from app.limits.addresses import client_of
 from app.limits.memory_budget import MemoryBudget, Refusal
-from app.storage.artifact_file import PIECE_BYTES
+from app.storage.artifact_file import CHUNK_BYTES
 
 ANSWERS_BYTES, ANSWERS_SHARE_BYTES = 64 << 20, 32 << 20
 BODIES_BYTES, BODIES_SHARE_BYTES = 128 << 20, 96 << 20
@@ -36,8 +36,8 @@ class HeldBodies:
             await self._app(scope, receive, send)
             return
         role: Role = scope["state"]["role"]
-        body = _Body(receive, self._bodies[role], caller(scope))
-        answer = _Answer(send, self._answers[role], caller(scope), body)
+        body = _Body(receive, self._bodies[role], client_of(scope))
+        answer = _Answer(send, self._answers[role], client_of(scope), body)
         try:
             await self._app(scope, body.receive, answer.send)
         except Exception:
@@ -63,7 +63,7 @@ class _Body:
         self._received += len(message.get("body", b""))
         if self._received > _SMALL_BYTES:
             more = self._received - self._held
-            self.refusal = self._budget.take(self._client, more)
+            self.refusal = self._budget.reserve(self._client, more)
             if self.refusal is not None:
                 # For the app it is as if the sender had left; the answer is given outside.
                 return {"type": "http.disconnect"}
@@ -72,7 +72,7 @@ class _Body:
 
     def release(self) -> None:
         if self._held:
-            self._budget.give_back(self._client, self._held)
+            self._budget.release(self._client, self._held)
 
 
 class _Answer:
@@ -108,21 +108,21 @@ class _Answer:
             await self._begin()
             await self._send(message)
             return
-        refusal = self._budget.take(self._client, len(body))
+        refusal = self._budget.reserve(self._client, len(body))
         if refusal is not None and not self.is_begun:
             self.refusal = refusal
             return
         try:
             await self._begin()
             view = memoryview(body)
-            for offset in range(0, len(view), PIECE_BYTES):
-                is_last = offset + PIECE_BYTES >= len(view)
+            for offset in range(0, len(view), CHUNK_BYTES):
+                is_last = offset + CHUNK_BYTES >= len(view)
                 more = bool(message.get("more_body", False)) or not is_last
-                piece = bytes(view[offset : offset + PIECE_BYTES])
+                piece = bytes(view[offset : offset + CHUNK_BYTES])
                 await self._send({**message, "body": piece, "more_body": more})
         finally:
             if refusal is None:
-                self._budget.give_back(self._client, len(body))
+                self._budget.release(self._client, len(body))
 
 
 def _refused(refusal: Refusal) -> ASGIApp:

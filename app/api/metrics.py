@@ -23,7 +23,7 @@ from app import __version__
 from app.api.contract import TEXT, answers
 from app.api.deps import Services
 from app.events.damage import DamageCount
-from app.storage.store import STATES
+from app.storage.run import STATES
 
 router = APIRouter(tags=["health"])
 

@@ -15,9 +15,9 @@ from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage import recording_export
 from app.stage.timeline import timeline
-from app.storage.artifact_file import ArtifactFile, BytesFile
+from app.storage.artifact_file import ArtifactFile
 from app.storage.errors import Conflict
-from app.storage.store import UNENDED, Run
+from app.storage.run import NOT_ENDED, Run
 from app.storage.stored_recordings import RACE
 
 router = run_routes("race")
@@ -65,7 +65,7 @@ def get_timeline(
 
 def _arrays(services: Services, run: Run) -> ArtifactFile:
     """The recording as it is kept once the race ended: one that grows would be in memory twice."""
-    file = None if run.state in UNENDED else services.store.open_artifact(run.id, RACE)
+    file = None if run.state in NOT_ENDED else services.store.open_artifact(run.id, RACE)
     if file is None:
         raise Conflict(
             f"race {run.id} is {run.state}; its arrays can be had once it ended", run.state
@@ -76,16 +76,14 @@ def _arrays(services: Services, run: Run) -> ArtifactFile:
 def _film(services: Services, run: Run, config: RaceConfig, clock: Clock) -> ArtifactFile:
     """Made once: it takes seconds."""
     lanes = services.recordings.race(run.id)
-    if run.state in UNENDED or lanes is None:
+    if run.state in NOT_ENDED or lanes is None:
         raise Conflict(
             f"race {run.id} is {run.state}; its film can be had once it ended", run.state
         )
     name = f"film-{clock}.viser"
-    film = services.store.open_artifact(run.id, name)
-    if film is None:
+    while (film := services.store.open_artifact(run.id, name)) is None:
         made = services.film(config, lanes, run.name, clock)
         services.store.put_artifact(run.id, name, made)
-        film = BytesFile(made)
     return film
 
 

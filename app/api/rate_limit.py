@@ -8,7 +8,7 @@ from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.problems import problem
-from app.limits.addresses import caller
+from app.limits.addresses import client_of
 from app.limits.token_bucket import RateLimiter
 from app.settings import PREFIX, Settings
 
@@ -33,7 +33,7 @@ class RateLimit:
         if not _starts_work(scope):
             await self._app(scope, receive, send)
             return
-        wait_s = self._buckets.take(f"{scope['state']['role']} {caller(scope)}")
+        wait_s = self._buckets.take(f"{scope['state']['role']} {client_of(scope)}")
         if wait_s == 0:
             await self._app(scope, receive, send)
             return

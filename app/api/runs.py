@@ -20,7 +20,7 @@ from app.api.deps import Services, ServicesDep
 from app.api.descriptions import MAX_PAGE, VALID
 from app.jobs.jobs import Jobs
 from app.storage.errors import Damaged, NotFound
-from app.storage.store import AnyRun, DamagedRun, Kind, Run, State
+from app.storage.run import AnyRun, DamagedRun, Kind, Run, State
 
 RunPath = Annotated[str, Path(description="of the run")]
 

@@ -14,11 +14,11 @@ from app.api.formats import attachment, chosen
 from app.api.runs import RunPath, find, run_routes
 from app.archive import table_import
 from app.domain.errors import InvalidInput
-from app.jobs.submissions import open_table, read_rows
 from app.runs import tables
 from app.storage.artifact_file import closing_after
 from app.storage.errors import Conflict
 from app.storage.json_text import finite
+from app.storage.stored_tables import open_table, read_rows
 
 # Before the routes that all runs have: `import` is no run's id.
 router = run_routes("training")
@@ -42,7 +42,9 @@ def import_training(
     if not asked.body:
         raise InvalidInput("send the .npz file of a Q-table as the request's body")
     jobs, agents = services.jobs, services.agents
-    run = asked.start(services, lambda key: table_import.adopt(jobs, asked.body, agents, name, key))
+    run = asked.start(
+        services, lambda key: table_import.import_table(jobs, asked.body, agents, name, key)
+    )
     location = request.url_for("get_training", run_id=run.id).path
     return JSONResponse(jobs.view(run), 201, {"Location": location})
 

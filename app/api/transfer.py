@@ -9,7 +9,7 @@ from app.api.deps import ServicesDep, StartRequestDep
 from app.api.formats import attachment
 from app.api.runs import RunPath, find
 from app.archive import archive
-from app.archive.transfer import export_pieces, import_run
+from app.archive.transfer import export_chunks, import_run
 from app.domain.errors import InvalidInput
 from app.events.run_view import run_view
 
@@ -28,7 +28,7 @@ router = APIRouter()
 def export_training(services: ServicesDep, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "training", run_id)
-    data = export_pieces(services.store, run.id, services.exports)
+    data = export_chunks(services.store, run.id, services.exports)
     return attachment(data, archive.MEDIA_TYPE, f"training-{run.id}.zip")
 
 
@@ -42,7 +42,7 @@ def export_training(services: ServicesDep, run_id: RunPath) -> Response:
 def export_race(services: ServicesDep, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "race", run_id)
-    data = export_pieces(services.store, run.id, services.exports)
+    data = export_chunks(services.store, run.id, services.exports)
     return attachment(data, archive.MEDIA_TYPE, f"race-{run.id}.zip")
 
 
@@ -56,7 +56,7 @@ def export_race(services: ServicesDep, run_id: RunPath) -> Response:
 def export_experiment(services: ServicesDep, run_id: RunPath) -> Response:
     """A `.zip` that another server's import, or `hexapods import`, takes in."""
     run = find(services, "experiment", run_id)
-    data = export_pieces(services.store, run.id, services.exports)
+    data = export_chunks(services.store, run.id, services.exports)
     return attachment(data, archive.MEDIA_TYPE, f"experiment-{run.id}.zip")
 
 

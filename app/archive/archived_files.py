@@ -21,8 +21,9 @@ from app.runs.config import RaceConfig, TrainingConfig, WalkingProblem
 from app.runs.recording import race_recording
 from app.runs.records import ActionValues
 from app.runs.stored_practice import practice_recording
-from app.storage.artifact_file import pieces
-from app.storage.store import CHECKPOINT, RESUMABLE, TABLE, Run, RunStore
+from app.storage.artifact_file import chunks
+from app.storage.database.store import RunStore
+from app.storage.run import CHECKPOINT, RESUMABLE, TABLE, Run
 from app.storage.stored_recordings import PRACTICE, RACE, evaluations_file
 
 MAX_EVALUATION_FILES = 100
@@ -64,7 +65,7 @@ def _chunks_of(store: RunStore, run_id: str, name: str) -> Iterator[bytes]:
     file = store.open_artifact(run_id, name)
     if file is None:
         raise DamagedFile(f"{name} of run {run_id} is not there any more")
-    return pieces(file)
+    return chunks(file)
 
 
 def check_files(run: Run, files: Mapping[str, bytes], label: str) -> None:

@@ -29,9 +29,16 @@ from app.experiments.config import ExperimentConfig
 from app.jobs.submissions import MAX_WORKERS, check_walk, plan_of
 from app.runs.clocks import CLOCKS
 from app.runs.config import MAX_LANES, RaceConfig, TrainingConfig
-from app.storage.configs import CONFIGS, config_as_json, config_of
 from app.storage.errors import Conflict
-from app.storage.store import UNENDED, Config, Kind, Run
+from app.storage.run import (
+    CONFIGS,
+    NOT_ENDED,
+    Config,
+    Kind,
+    Run,
+    config_as_json,
+    run_config_from_json,
+)
 
 FORMAT = 1
 MAX_JSON_BYTES = 64_000_000
@@ -118,7 +125,7 @@ def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
         Conflict: if it has not ended.
         InvalidInput: if it is too long.
     """
-    if run.state in UNENDED:
+    if run.state in NOT_ENDED:
         raise Conflict(f"{run.kind} {run.id} is {run.state}; stop it first", run.state)
     own = {name: getattr(run, name) for name in _Shape.__struct_fields__}
     own["config"] = config_as_json(run.config)
@@ -130,13 +137,13 @@ def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
 
 
 def read_run_json(
-    data: bytes, said: str, agents: Collection[str]
+    data: bytes, label: str, agents: Collection[str]
 ) -> tuple[Run, list[dict[str, Any]]]:
     """The run and its curve.
 
     Args:
         data: what `run_json` wrote.
-        said: what to call the file in messages.
+        label: what to call the file in messages.
         agents: the names that are registered here.
 
     Raises:
@@ -149,7 +156,7 @@ def read_run_json(
         head = msgspec.json.decode(data, type=_Head)
         if head.format != FORMAT:
             raise DamagedFile(
-                f"{said} has format {head.format}, of version {head.version[:40]!r}; this version "
+                f"{label} has format {head.format}, of version {head.version[:40]!r}; this version "
                 f"({__version__}) reads {FORMAT}"
             )
         file = msgspec.json.decode(data, type=_File)
@@ -159,9 +166,9 @@ def read_run_json(
     except DamagedFile:
         raise
     except HexapodError as error:
-        raise InvalidInput(f"{said} cannot be taken in: {error}") from error
+        raise InvalidInput(f"{label} cannot be taken in: {error}") from error
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
-        raise DamagedFile(f"{said} does not hold a run as it should: {error}") from error
+        raise DamagedFile(f"{label} does not hold a run as it should: {error}") from error
     return run, curve
 
 
@@ -173,7 +180,7 @@ _RESULTS: Mapping[Kind, Any] = {
 
 
 def _run(shape: _Shape, agents: Collection[str]) -> Run:
-    config = config_of(shape.kind, _part(shape.config, dict[str, Any]))
+    config = run_config_from_json(shape.kind, _part(shape.config, dict[str, Any]))
     if not isinstance(config, CONFIGS[shape.kind]) or shape.done > shape.total:
         raise ValueError("its kind, its config and its progress do not fit together")
     # First of all: laying out an experiment imports its agents.

@@ -15,7 +15,7 @@ from app.domain.errors import DamagedFile
 from app.domain.text import is_formula
 from app.experiments.config import ExperimentConfig
 from app.jobs.submissions import plan_of
-from app.storage.store import SUMMARY, Run
+from app.storage.run import SUMMARY, Run
 
 TRIALS = "trials.json"
 _REPORT_FILE = re.compile(

@@ -29,13 +29,13 @@ class TableMeta(msgspec.Struct):
 
 
 def checked_table(
-    data: bytes, said: str, agents: Collection[str]
+    data: bytes, label: str, agents: Collection[str]
 ) -> tuple[Checkpoint, TableMeta, TrainingConfig]:
     """The table in a file, what it says of itself, and the training that it is of.
 
     Args:
         data: all of the file.
-        said: what to call it in messages.
+        label: what to call it in messages.
         agents: the names that are registered; no other agent is imported.
 
     Raises:
@@ -43,8 +43,8 @@ def checked_table(
         DamagedFile: if it is no table, does not hold together, or has a number out of range.
         TableMismatch: if it was learned for another problem than it says.
     """
-    checkpoint = tables.from_bytes(data, said)
-    config = _training(checkpoint.meta.get("config"), said)
+    checkpoint = tables.from_bytes(data, label)
+    config = _training(checkpoint.meta.get("config"), label)
     if config.agent not in agents:
         raise UnknownName("agent", config.agent, agents)
     try:
@@ -60,9 +60,9 @@ def checked_table(
     except HexapodError:
         raise
     except KeyError as error:
-        raise DamagedFile(f"{said} does not say its {error}") from error
+        raise DamagedFile(f"{label} does not say its {error}") from error
     except Exception as error:  # NumPy does not say all that strange arrays make it raise
-        raise DamagedFile(f"{said} does not hold together: {error}") from error
+        raise DamagedFile(f"{label} does not hold together: {error}") from error
     return checkpoint, meta, config
 
 
@@ -97,17 +97,17 @@ def check_change(change: Mapping[str, Any], agent: str) -> None:
         valid[name].check(change[name])
 
 
-def _training(shown: Any, said: str) -> TrainingConfig:
+def _training(shown: Any, label: str) -> TrainingConfig:
     if not isinstance(shown, Mapping):
-        raise DamagedFile(f"{said} does not say what was trained")
+        raise DamagedFile(f"{label} does not say what was trained")
     try:
         config = config_from_json(shown)
     except HexapodError as error:
-        raise DamagedFile(f"{said} says of its training: {error}") from error
+        raise DamagedFile(f"{label} says of its training: {error}") from error
     except (KeyError, OverflowError, TypeError, ValueError, RecursionError) as error:
-        raise DamagedFile(f"{said} does not say what was trained ({error})") from error
+        raise DamagedFile(f"{label} does not say what was trained ({error})") from error
     if not isinstance(config, TrainingConfig):
-        raise DamagedFile(f"{said} is of a race; give that of a training")
+        raise DamagedFile(f"{label} is of a race; give that of a training")
     return config
 
 

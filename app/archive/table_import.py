@@ -8,10 +8,10 @@ from app.domain.text import check_name
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import check_walk
 from app.runs import tables
-from app.storage.store import IdempotencyKey, Run
+from app.storage.run import IdempotencyKey, Run
 
 
-def adopt(
+def import_table(
     jobs: Jobs,
     data: bytes,
     agents: Collection[str],

@@ -12,21 +12,22 @@ from app.domain.errors import DamagedFile
 from app.events.damage import as_shown
 from app.experiments.config import ExperimentConfig
 from app.limits.memory_budget import MemoryBudget
+from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Damaged
 from app.storage.json_text import is_finite
+from app.storage.run import KINDS, Content, DamagedRun, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
-from app.storage.store import KINDS, Content, DamagedRun, IdempotencyKey, Run, RunStore
 
 RUN = "run.json"
 _ANYONE = "anyone"
 
 
 def export_run(store: RunStore, run_id: str) -> bytes:
-    """Export an ended run to an archive in memory; raises as `export_pieces`."""
-    return b"".join(export_pieces(store, run_id))
+    """Export an ended run to an archive in memory; raises as `export_chunks`."""
+    return b"".join(export_chunks(store, run_id))
 
 
-def export_pieces(
+def export_chunks(
     store: RunStore, run_id: str, budget: MemoryBudget | None = None
 ) -> Iterator[bytes]:
     """Export an ended run to an archive as a stream of chunks; its files are not held in memory.
@@ -66,7 +67,7 @@ class _BudgetedChunks:
 
     def __init__(self, chunks: Iterator[bytes], size: int, budget: MemoryBudget) -> None:
         self._chunks, self._size, self._budget = chunks, 0, budget
-        if budget.take(_ANYONE, size) is not None:
+        if budget.reserve(_ANYONE, size) is not None:
             raise Busy("as much is exported as the server can at once; try again in a moment", 5)
         self._size = size
 
@@ -79,7 +80,7 @@ class _BudgetedChunks:
     def __del__(self) -> None:
         # Not in a generator's `finally`, which does not run if the response was never started.
         if self._size:
-            self._budget.give_back(_ANYONE, self._size)
+            self._budget.release(_ANYONE, self._size)
 
 
 def import_run(

@@ -3,7 +3,6 @@
 import argparse
 import json
 
-from app.archive.transfer import export_run
 from app.cli.files import check_writable, write_whole
 from app.cli.options import CommandParser
 from app.cli.runs import add_data, found, looking
@@ -26,6 +25,9 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HexapodError: if there is no such run, it has not ended, or the file cannot be written.
     """
+    # Databases take a moment to import, which other commands need not.
+    from app.archive.transfer import export_run  # noqa: PLC0415
+
     check_writable(options.out)
     with looking(read_settings(data=options.data)) as store:
         exported = store.get(found(store, options.run_id).id)

@@ -49,7 +49,7 @@ def _read(path: str) -> bytes:
         raise InvalidInput(f"cannot read {path}: {error.strerror}") from error
 
 
-def _import(settings: Settings, data: bytes, said: str) -> dict[str, Any]:
+def _import(settings: Settings, data: bytes, label: str) -> dict[str, Any]:
     # Databases take a moment to import, which other commands need not.
     from app.archive.transfer import import_run  # noqa: PLC0415
     from app.events.run_view import run_view  # noqa: PLC0415
@@ -59,7 +59,7 @@ def _import(settings: Settings, data: bytes, said: str) -> dict[str, Any]:
 
     try:
         with open_store(settings) as store:
-            return run_view(import_run(store, data, RunIds.of(store), registered(), said))
+            return run_view(import_run(store, data, RunIds.of(store), registered(), label))
     except FolderInUse:
         answer: dict[str, Any] = call_server(settings, "POST", "api/v1/import", data)
         return answer

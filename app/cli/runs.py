@@ -9,6 +9,7 @@ import json
 import sys
 from contextlib import AbstractContextManager
 from datetime import datetime
+from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from app.cli.options import CommandParser, whole
@@ -21,7 +22,10 @@ from app.events.run_view import run_view
 from app.settings import Settings, read_settings
 from app.storage.errors import NotFound
 from app.storage.json_text import json_text
-from app.storage.store import KINDS, STATES, AnyRun, DamagedRun, Run, RunStore
+from app.storage.run import KINDS, STATES, AnyRun, DamagedRun, Run
+
+if TYPE_CHECKING:
+    from app.storage.database.store import RunStore
 
 _LIMIT = 50
 _HEAD = ("run", "kind", "state", "steps", "result", "began", "name")
@@ -50,7 +54,7 @@ def add_data(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", help="data folder (default: the user's, or HEXAPODS_DATA)")
 
 
-def found(store: RunStore, run_id: str) -> AnyRun:
+def found(store: "RunStore", run_id: str) -> AnyRun:
     """A run, or what can be read of it.
 
     Raises:
@@ -62,7 +66,7 @@ def found(store: RunStore, run_id: str) -> AnyRun:
         raise InvalidInput(f"{error}; `hexapods runs list` shows what there is") from error
 
 
-def looking(settings: Settings) -> AbstractContextManager[RunStore]:
+def looking(settings: Settings) -> "AbstractContextManager[RunStore]":
     """The store of a data folder, for who only reads."""
     # Databases take a moment to import, which other commands need not.
     from app.storage.database.read_only import open_read_only  # noqa: PLC0415

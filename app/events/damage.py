@@ -8,8 +8,9 @@ from typing import Any
 import msgspec
 
 from app.runs.clocks import CLOCKS
+from app.storage.database.store import RunStore
 from app.storage.json_text import is_finite
-from app.storage.store import AnyRun, DamagedRun, Kind, Run, RunStore
+from app.storage.run import AnyRun, DamagedRun, Kind, Run
 
 _PAGE_SIZE = 200
 _CACHE_S = 300.0

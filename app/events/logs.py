@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from typing import Any, TextIO
 
 from app.limits.log_limit import LimitedHandler
-from app.storage.store import KINDS
+from app.storage.run import KINDS
 
 _STANDARD_ATTRIBUTES = frozenset(vars(logging.makeLogRecord({}))) | {
     "message",

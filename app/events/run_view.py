@@ -5,8 +5,7 @@ from typing import Any
 
 from app.events.damage import as_shown
 from app.runs.config import RaceConfig, TrainingConfig
-from app.storage.configs import config_as_json
-from app.storage.store import PAUSED, RESUMABLE, AnyRun, DamagedRun, Run
+from app.storage.run import PAUSED, RESUMABLE, AnyRun, DamagedRun, Run, config_as_json
 
 
 def run_view(run: AnyRun, queue_position: int | None = None) -> dict[str, Any]:

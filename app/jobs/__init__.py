@@ -2,7 +2,8 @@
 
 In the server:
 - `jobs` is the facade: submit, pause, resume, stop, change and delete runs.
-- `submissions` validates requests and builds queued runs; `resume` does so for unfinished runs.
+- `submissions` validates requests and builds the runs to be queued; `tasks` derives from a stored
+  run what its process needs to start, or to resume.
 - `queue` orders them; `supervisor` starts them as cores free up, and shuts them down.
 - `worker_process` is the handle on a process; `job` writes its messages to store and bus.
 Between both: `messages` defines the commands and messages on the pipe.

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from app.experiments.plan import Plan, Trial
 from app.experiments.trial import TrialResult
 from app.jobs.messages import Began, Command, Ended, ExperimentTask, Message, Reported, TrialsDone
-from app.storage.store import SUMMARY
+from app.storage.run import SUMMARY
 from app.storage.stored_trials import results_of
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ _SUMMARY_SHARE = 0.15
 def experiment(
     task: ExperimentTask, send: Callable[[Message], None], commands: "queue.SimpleQueue[Command]"
 ) -> None:
-    """Run an experiment to its end, or until a `stop` or `leave` command.
+    """Run an experiment to its end, or until a `stop` or `checkpoint_and_exit` command.
 
     Args:
         task: the experiment, with the trials that are done.
@@ -91,7 +91,7 @@ class _TrialControl:
         if command.verb in ("pause", "resume"):
             self.paused = command.verb == "pause"
         self.stopped |= command.verb == "stop"
-        self.exiting |= command.verb == "leave"
+        self.exiting |= command.verb == "checkpoint_and_exit"
 
 
 class _Progress:

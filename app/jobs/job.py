@@ -36,9 +36,10 @@ from app.runs.recording import LaneRecording
 from app.runs.records import Evaluated, Reference
 from app.runs.results import race_result
 from app.storage.database.engine import retry_during_outage
+from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost, StorageFailed
 from app.storage.recordings import Recordings
-from app.storage.store import CHECKPOINT, LIVE, RUNNING, SUMMARY, TABLE, Run, RunStore, State
+from app.storage.run import CHECKPOINT, LIVE, RUNNING, SUMMARY, TABLE, Run, State
 
 MAX_OUTAGE_S = 600.0
 """Longest database outage that a job waits out; after that its run becomes `interrupted`."""
@@ -141,7 +142,7 @@ class Job:
         Used when the server shuts down: the run is `interrupted` and can be resumed.
         """
         if self._has_begun and not self.is_race:
-            self.process.send(Command("leave"))
+            self.process.send(Command("checkpoint_and_exit"))
         else:
             self.process.kill()
 

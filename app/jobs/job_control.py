@@ -26,7 +26,7 @@ class JobControl:
 
     Attributes:
         stopped: whether a `stop` command arrived: end with the results so far.
-        leaving: whether a `leave` command arrived: end with a checkpoint, to be resumed later.
+        exiting: whether `checkpoint_and_exit` arrived: end with a checkpoint, to be resumed later.
         changes: changes of rates and pace during the run, each with the number of steps done.
     """
 
@@ -39,7 +39,7 @@ class JobControl:
             send: sends a message to the server.
             commands: commands received from the server.
         """
-        self.stopped = self.leaving = False
+        self.stopped = self.exiting = False
         self.changes: list[dict[str, Any]] = []
         self.send = send
         self._commands = commands
@@ -66,7 +66,7 @@ class JobControl:
         self._pace, self._step_s = pace, step_s
         self._due_s = time.monotonic()
 
-    def keep_safe(self, save: Callable[[], Checkpointed]) -> None:
+    def checkpoint_regularly(self, save: Callable[[], Checkpointed]) -> None:
         """Send a checkpoint every few seconds of progress, and before a long wait.
 
         Args:
@@ -81,7 +81,7 @@ class JobControl:
             self.send(self._save())
             self._saved_s = time.monotonic()
 
-    def repeat(
+    def restore_changes(
         self,
         included: Iterable[Mapping[str, Any]],
         later: Iterable[Mapping[str, Any]],
@@ -123,7 +123,7 @@ class JobControl:
         self._records = []
         self._sent_s = time.monotonic()
 
-    def go_on(self, step: int, agent: object = None) -> bool:
+    def wait_for_turn(self, step: int, agent: object = None) -> bool:
         """Execute pending commands, and wait until the next step is due.
 
         Args:
@@ -145,10 +145,10 @@ class JobControl:
                 self._set_due()
                 return True
             self._execute(command, step, agent)
-            if self.stopped or self.leaving:
+            if self.stopped or self.exiting:
                 return False
 
-    def listen(self, step: int, agent: object) -> None:
+    def execute_pending(self, step: int, agent: object) -> None:
         """Execute pending commands during an evaluation, which has no pace.
 
         Args:
@@ -158,7 +158,7 @@ class JobControl:
         Raises:
             Stopped: if the job is to stop or to exit.
         """
-        while not (self.stopped or self.leaving):
+        while not (self.stopped or self.exiting):
             wait_s = None if self._paused else 0.0
             self._checkpoint_if_due(step, wait_s)
             try:
@@ -201,8 +201,8 @@ class JobControl:
     def _execute(self, command: Command, step: int, agent: object) -> None:
         if command.verb == "stop":
             self.stopped = True
-        elif command.verb == "leave":
-            self.leaving = True
+        elif command.verb == "checkpoint_and_exit":
+            self.exiting = True
         elif command.verb == "tune":
             self._tune(command, step, agent)
         else:

@@ -10,35 +10,34 @@ from app.events.bus import EventBus
 from app.events.run_view import run_view
 from app.jobs.job import Job
 from app.jobs.queue import RunQueue
-from app.jobs.resume import resumed_runs
 from app.jobs.submissions import (
     ExperimentStart,
-    QueuedRun,
     RaceStart,
     TrainingStart,
-    queued_experiment,
-    queued_race,
-    queued_training,
+    new_experiment,
+    new_race,
+    new_training,
 )
 from app.jobs.supervisor import STUCK_S, Supervisor
+from app.jobs.tasks import resumed_runs
 from app.runs.config import changeable_settings
+from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, NotAnswering, StorageFailed
 from app.storage.recordings import Recordings
-from app.storage.run_ids import RunIds
-from app.storage.store import (
+from app.storage.run import (
     LIVE,
+    NOT_ENDED,
     PAUSED,
     RESUMABLE,
     RUNNING,
     TABLE,
-    UNENDED,
     AnyRun,
     Content,
     IdempotencyKey,
     Run,
-    RunStore,
     State,
 )
+from app.storage.run_ids import RunIds
 
 MAX_PAUSED = 16
 MAX_PENDING_CHANGES = 8
@@ -102,7 +101,7 @@ class Jobs:
         """Whether queued runs will be started."""
         return self._supervisor.is_open
 
-    def trouble(self) -> str | None:
+    def health_problem(self) -> str | None:
         """Return a sentence on why queued runs are not started; None if they are (health check)."""
         if not self.is_open:
             return "The server is starting, or stopping."
@@ -134,7 +133,7 @@ class Jobs:
             InvalidInput, Conflict: if the request is invalid.
             Busy: if the queue is full.
         """
-        return self._enqueue([queued_training(start, self._store, self.new_id)], key)
+        return self._enqueue([new_training(start, self._store, self.new_id)], key)
 
     def race(self, start: RaceStart, key: IdempotencyKey | None = None) -> Run:
         """Queue a race, preceded by the trainings that are part of the request.
@@ -147,7 +146,7 @@ class Jobs:
             InvalidInput, Conflict: if the request is invalid.
             Busy: if the queue is full.
         """
-        return self._enqueue(queued_race(start, self._store, self.new_id), key)
+        return self._enqueue(new_race(start, self._store, self.new_id), key)
 
     def experiment(self, start: ExperimentStart, key: IdempotencyKey | None = None) -> Run:
         """Queue an experiment.
@@ -160,7 +159,7 @@ class Jobs:
             InvalidInput: if the request is invalid.
             Busy: if the queue is full.
         """
-        return self._enqueue([queued_experiment(start, self.new_id)], key)
+        return self._enqueue([new_experiment(start, self.new_id)], key)
 
     def keep(self, run: Run, table: bytes, key: IdempotencyKey | None = None) -> Run:
         """Store an imported training, which ended elsewhere, and publish it.
@@ -202,7 +201,7 @@ class Jobs:
         with self._changed:
             run = self._store.get(run_id)
             if run.state in RESUMABLE[run.kind]:
-                return self._enqueue(resumed_runs(run, self._store))
+                return self._enqueue(resumed_runs(run, self._store), resumed=True)
             try:
                 resumed = self._resume_paused(run)
             except Conflict as conflict:
@@ -288,20 +287,21 @@ class Jobs:
         """
         self._await_process(run_id)
         with self._changed:
-            race = self._queue.race_needing(run_id)
-            if race is not None:
+            needing = self._queue.run_needing(run_id)
+            if needing is not None:
                 state = self._store.find(run_id).state or "damaged"
-                raise Conflict(f"race {race.id} waits, and needs its table", state)
+                raise Conflict(f"{needing.kind} {needing.id} waits, and needs its table", state)
             self._store.delete(run_id)
         self._recordings.discard(run_id)
         self._bus.publish("run-deleted", {"id": run_id}, run_id)
 
-    def _enqueue(self, entries: list[QueuedRun], key: IdempotencyKey | None = None) -> Run:
+    def _enqueue(
+        self, runs: list[Run], key: IdempotencyKey | None = None, *, resumed: bool = False
+    ) -> Run:
         with self._changed:
             free = max(0, self.cores - self._supervisor.running)
-            self._queue.add(entries, free, key)
+            run = self._queue.add(runs, free, key, resumed=resumed)
             self._changed.notify_all()
-        run = entries[-1].run
         if self._on_queued is not None and run.kind != "experiment":
             try:
                 self._on_queued(run.id)
@@ -319,7 +319,7 @@ class Jobs:
             Conflict: if it does not exit in time.
         """
         job = self._supervisor.find(run_id)
-        if job is None or (run := self._store.get(run_id)).state in UNENDED:
+        if job is None or (run := self._store.get(run_id)).state in NOT_ENDED:
             return
         if not job.gone.wait(_EXIT_S):
             raise Conflict(f"{run.kind} {run_id} is still ending; try again", run.state)

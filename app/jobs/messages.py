@@ -18,13 +18,13 @@ from app.runs.tables import Checkpoint
 
 @dataclass(frozen=True)
 class TrainingTask:
-    """Train, from what a table holds if one is given.
+    """A training to run.
 
     Attributes:
         config: the training.
-        table: to begin with; it starts a training of its own.
-        checkpoint: where to go on with this same training.
-        changes: those that were made after the checkpoint, to be made again.
+        table: table that the training continues from; None starts from zero.
+        checkpoint: checkpoint of this same training, from which it resumes.
+        changes: changes of rates and pace made after the checkpoint, to be replayed.
     """
 
     config: TrainingConfig
@@ -35,7 +35,7 @@ class TrainingTask:
 
 @dataclass(frozen=True)
 class RaceTask:
-    """Race, each lane with its table if it has one."""
+    """A race to run, with a table or None for each lane."""
 
     config: RaceConfig
     tables: tuple[Checkpoint | None, ...]
@@ -43,13 +43,13 @@ class RaceTask:
 
 @dataclass(frozen=True)
 class ExperimentTask:
-    """Try what has not been tried yet, and report.
+    """An experiment whose remaining trials are to be run.
 
     Attributes:
         config: the experiment.
-        workers: how many trials at once; None is one for each core.
-        rows: the trials that are done, as the store has them.
-        wall_s: how long it ran before.
+        workers: trials at once; None is one per core.
+        rows: the trials that are done, as returned by `RunStore.trials`.
+        wall_s: for how long it ran before [s].
     """
 
     config: ExperimentConfig
@@ -62,31 +62,31 @@ Task = TrainingTask | RaceTask | ExperimentTask
 
 
 class Command(NamedTuple):
-    """Something to obey between two steps."""
+    """A command, executed between two steps."""
 
-    verb: Literal["pause", "resume", "stop", "tune", "leave"]
-    """`leave`: end with a checkpoint instead of a result."""
+    verb: Literal["pause", "resume", "stop", "tune", "checkpoint_and_exit"]
+    """`checkpoint_and_exit`: end with a checkpoint instead of a result."""
     token: int = 0
-    """By which the answer to `tune` is known."""
+    """Identifies the acknowledgement of a `tune`."""
     changes: Mapping[str, Any] = {}
     """For `tune`: values of settings by name."""
     expires_s: float = math.inf
-    """For `tune`: when it is too late, by the machine's monotonic clock."""
+    """For `tune`: deadline on the machine's monotonic clock [s]."""
 
 
-# Up.
+# To the server.
 
 
 class Heartbeat(NamedTuple):
-    """The process lives, whatever it is at."""
+    """The process is alive."""
 
 
 class Began(NamedTuple):
-    """All is built, and the robots stand at rest in these poses, one for each lane if any."""
+    """The task is built; these are the initial poses of the robots, one per lane, if any."""
 
     rest_qpos: tuple[NDArray[np.float32], ...]
     after_step: int = 0
-    """How many steps a training had done that goes on."""
+    """Steps that a resumed training had done."""
 
 
 class Batch(NamedTuple):
@@ -98,7 +98,7 @@ class Batch(NamedTuple):
 
 
 class Changed(NamedTuple):
-    """A `tune` was obeyed after this many steps."""
+    """Acknowledges a `tune`, executed after this many steps."""
 
     token: int
     step: int
@@ -106,20 +106,20 @@ class Changed(NamedTuple):
 
 
 class Checkpointed(NamedTuple):
-    """All that it takes to go on from here, as a file; what came before was sent before."""
+    """A checkpoint as a file; all records before it were sent before it."""
 
     data: bytes
     step: int
 
 
 class Saved(NamedTuple):
-    """The table as it is now, as a file."""
+    """The learned table, as a file."""
 
     table: bytes
 
 
 class TrialsDone(NamedTuple):
-    """Trials since the last of these, as the store takes them, and how many are done now."""
+    """New trials, as for `RunStore.append_trials`, and how many are done now."""
 
     rows: tuple[Mapping[str, Any], ...]
     done: int
@@ -133,14 +133,14 @@ class Reported(NamedTuple):
 
 
 class Ended(NamedTuple):
-    """The job is done, or was stopped; the result is a training's or an experiment's."""
+    """The job has ended; the result is that of a training or an experiment."""
 
     outcome: Literal["finished", "stopped"]
     result: dict[str, Any] | None
 
 
 class Failed(NamedTuple):
-    """The job cannot go on, for a reason that fits a sentence."""
+    """The job has failed; the reason is a sentence."""
 
     reason: str
 

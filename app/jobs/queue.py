@@ -4,17 +4,9 @@ from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 
 from app.domain.errors import HexapodError
-from app.jobs.submissions import QueuedRun
+from app.storage.database.store import RunStore
 from app.storage.errors import Busy, StorageFailed, StorageFull
-from app.storage.store import (
-    QUEUED,
-    RESUMABLE,
-    RUNNING,
-    IdempotencyKey,
-    Run,
-    RunStore,
-    State,
-)
+from app.storage.run import QUEUED, RESUMABLE, RUNNING, IdempotencyKey, Run, State
 
 MAX_QUEUED = 32
 RETRY_AFTER_S = 10
@@ -32,43 +24,54 @@ class RunQueue:
 
     def __init__(self, store: RunStore, publish: Callable[[Run], None]) -> None:
         self._store, self._publish = store, publish
-        self._entries: list[QueuedRun] = []
+        self._runs: dict[str, Run] = {}
+        """By id, in order; each as it was stored last."""
         self._unreconciled: set[str] = set()
         """Ids of runs that the store may have written although it raised an error."""
 
     def add(
-        self, entries: Sequence[QueuedRun], free: int, key: IdempotencyKey | None = None
-    ) -> None:
+        self,
+        runs: Sequence[Run],
+        free: int,
+        key: IdempotencyKey | None = None,
+        *,
+        resumed: bool = False,
+    ) -> Run:
         """Store runs and append them, all or none.
 
         Args:
-            entries: runs in order, dependencies first.
+            runs: in order, dependencies first.
             free: number of free cores; so many runs may exceed the limit.
             key: idempotency key of the request for the last of them.
+            resumed: whether the runs are in the store already, with the state in which they ended.
+
+        Returns:
+            the last of them, as stored.
 
         Raises:
             Busy: if the queue is full.
             StorageFull: if the disk has no space for another run.
         """
-        if len(self._entries) + len(entries) > MAX_QUEUED + free:
+        if len(self._runs) + len(runs) > MAX_QUEUED + free:
             raise Busy(
-                f"{len(self._entries)} runs are waiting, the most is {MAX_QUEUED}; wait for one "
+                f"{len(self._runs)} runs are waiting, the most is {MAX_QUEUED}; wait for one "
                 "to end, or stop one",
                 RETRY_AFTER_S,
             )
         self._store.check_disk_space()
-        new = [entry.run for entry in entries if not entry.goes_on]
         try:
-            self._store.create(*new, key=key)
-            for entry in (entry for entry in entries if entry.goes_on):
-                entry.run = self._requeue(entry.run)
+            if resumed:
+                runs = [self._requeue(run) for run in runs]
+            else:
+                self._store.create(*runs, key=key)
         except HexapodError:
             # Some may be stored as `queued` although they are not in the queue.
-            self._unreconciled |= {entry.run.id for entry in entries}
+            self._unreconciled |= {run.id for run in runs}
             raise
-        self._entries += entries
-        for entry in entries:
-            self._publish(entry.run)
+        self._runs |= {run.id: run for run in runs}
+        for run in runs:
+            self._publish(run)
+        return runs[-1]
 
     def _requeue(self, run: Run) -> Run:
         """Store a resumed run as queued and delete the evaluations that it will repeat."""
@@ -96,72 +99,74 @@ class RunQueue:
     @property
     def has_ready(self) -> bool:
         """Whether a run waits for nothing but a core; callable from any thread."""
-        return any(not entry.waits_for for entry in list(self._entries))
+        return any(not run.waiting_for for run in list(self._runs.values()))
 
-    def pop_ready(self) -> QueuedRun | None:
+    def pop_ready(self) -> Run | None:
         """Remove and return the first run that waits for nothing but a core, None if none does."""
-        ready = (entry for entry in self._entries if not entry.waits_for)
-        entry = next(ready, None)
-        if entry is not None:
-            self._entries.remove(entry)
-        return entry
+        ready = (run for run in self._runs.values() if not run.waiting_for)
+        run = next(ready, None)
+        return None if run is None else self._runs.pop(run.id)
 
-    def push_front(self, entry: QueuedRun) -> None:
+    def push_front(self, run: Run) -> None:
         """Insert a run that could not be started at the head of the queue."""
-        self._entries.insert(0, entry)
+        self._runs = {run.id: run, **self._runs}
 
     def publish_positions(self) -> None:
         """Publish all queued runs after their positions changed."""
-        for entry in self._entries:
-            self._publish(self._store.get(entry.run.id))
+        for run_id in self._runs:
+            self._publish(self._store.get(run_id))
 
     def position(self, run_id: str) -> int | None:
         """Return a run's position, 1 for the first, None if absent; callable from any thread."""
-        ids = [entry.run.id for entry in self._entries]
+        ids = list(self._runs)
         return ids.index(run_id) + 1 if run_id in ids else None
 
     def interrupt(self, reason: str) -> None:
         """Set all queued runs to `interrupted`, which can be resumed, and empty the queue."""
-        for entry in self._entries:
-            now = max(datetime.now(UTC), entry.run.created_at)
+        for run in self._runs.values():
+            now = max(datetime.now(UTC), run.created_at)
             changed = {"error": reason, "ended_at": now, "waiting_for": ()}
             # It is stored as `running` if its start failed halfway.
             states = QUEUED | RUNNING
-            self._publish(self._store.change(entry.run.id, states, "interrupted", **changed))
-        self._entries = []
+            self._publish(self._store.change(run.id, states, "interrupted", **changed))
+        self._runs = {}
 
-    def race_needing(self, training_id: str) -> Run | None:
-        """Return a queued race that needs the table of this training, None if there is none."""
-        runs = (entry.run for entry in self._entries)
-        return next((run for run in runs if training_id in run.lane_training_ids), None)
+    def run_needing(self, training_id: str) -> Run | None:
+        """Return a queued run that needs the table of this training, None if there is none."""
+        return next((run for run in self._runs.values() if training_id in _needed_by(run)), None)
 
     def stop(self, run: Run) -> Run:
         """Stop a queued run and the queued trainings that were created for it."""
         stopped = self._drop(run, "stopped", None)
-        for entry in [entry for entry in self._entries if entry.run.id in run.waiting_for]:
-            self._drop(entry.run, "stopped", f"Stopped together with race {run.id}.")
+        for training in [one for one in self._runs.values() if one.id in run.waiting_for]:
+            self._drop(training, "stopped", f"Stopped together with race {run.id}.")
         return stopped
 
-    def settle(self, run: Run) -> None:
+    def settle(self, ended: Run) -> None:
         """Resolve dependencies on an ended run: release its dependents, or end them as it ended."""
-        for entry in [entry for entry in self._entries if run.id in entry.waits_for]:
-            if run.state == "finished":
-                remaining = [i for i in entry.run.waiting_for if i in entry.waits_for - {run.id}]
-                updated = self._store.update(entry.run.id, waiting_for=tuple(remaining))
-                # After the write, so that a failed write is retried.
-                entry.waits_for.discard(run.id)
-                self._publish(updated)
-            elif run.state == "failed":
-                self._drop(entry.run, "failed", f"Its training {run.id} failed: {run.error}")
+        for run in [run for run in self._runs.values() if ended.id in run.waiting_for]:
+            if ended.state == "finished":
+                remaining = tuple(one for one in run.waiting_for if one != ended.id)
+                # If the write fails, the run still waits, so that it is retried.
+                self._runs[run.id] = self._store.update(run.id, waiting_for=remaining)
+                self._publish(self._runs[run.id])
+            elif ended.state == "failed":
+                self._drop(run, "failed", f"Its training {ended.id} failed: {ended.error}")
             else:
-                self._drop(entry.run, "stopped", f"Its training {run.id} was {run.state}.")
+                self._drop(run, "stopped", f"Its training {ended.id} was {ended.state}.")
 
     def _drop(self, run: Run, state: State, error: str | None) -> Run:
         now = datetime.now(UTC)
         run = self._store.change(run.id, QUEUED, state, error=error, ended_at=now)
         # After the write, so that the run stays queued if it fails.
-        self._entries = [entry for entry in self._entries if entry.run.id != run.id]
+        self._runs.pop(run.id, None)
         self._publish(run)
         self.publish_positions()
         self.settle(run)
         return run
+
+
+def _needed_by(run: Run) -> tuple[str | None, ...]:
+    """Return the trainings whose tables a queued run loads when it starts."""
+    # A training that has done steps starts from its own checkpoint.
+    return run.lane_training_ids if run.done else (*run.lane_training_ids, run.continued_from)

@@ -1,39 +1,32 @@
-"""From what a user asks for to runs that can be queued: everything is checked before any starts."""
+"""Validate what a user asks to start, and build the runs to be queued from it."""
 
-import io
-import json
 import math
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 from app.agents.q_table import MAX_VALUES
 from app.agents.registry import learns, needs_practice
-from app.domain.errors import DamagedFile, InvalidInput, TableMismatch
+from app.domain.errors import InvalidInput, TableMismatch
 from app.domain.kinematics import check_reach
 from app.domain.observation import Observation
 from app.experiments.config import GRID, ExperimentConfig
 from app.experiments.plan import Plan
-from app.jobs.messages import ExperimentTask, RaceTask, Task, TrainingTask
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, WalkingProblem
-from app.runs.table_file import TableFile
-from app.runs.tables import Checkpoint, check_fits, from_bytes
-from app.storage.artifact_file import ArtifactFile, ReadableArtifact
-from app.storage.errors import Conflict, NotFound
-from app.storage.store import SUMMARY, TABLE, Run, RunStore
-
-T = TypeVar("T")
+from app.runs.tables import Checkpoint, check_fits
+from app.storage.database.store import RunStore
+from app.storage.run import Run
+from app.storage.stored_tables import load_table
 
 
 @dataclass(frozen=True)
 class TrainingStart:
-    """A training as it was asked for.
+    """Request to start a training.
 
     Attributes:
-        config: the training; its seed does not count if it continues another.
-        name: None lets one be found.
-        continue_from: the training whose table it goes on from.
+        config: the training; its seed is ignored if it continues another.
+        name: None for a generated name.
+        continue_from: id of the training whose table it continues from.
     """
 
     config: TrainingConfig
@@ -43,7 +36,7 @@ class TrainingStart:
 
 @dataclass(frozen=True)
 class LaneStart:
-    """A lane as it was asked for: with a training's table, with a training to come, or neither."""
+    """Request for a lane: with a training's table, with a training to run first, or neither."""
 
     agent: str
     training_id: str | None = None
@@ -52,7 +45,7 @@ class LaneStart:
 
 @dataclass(frozen=True)
 class RaceStart:
-    """A race as it was asked for."""
+    """Request to start a race."""
 
     walk: WalkingProblem
     lanes: Sequence[LaneStart]
@@ -61,30 +54,13 @@ class RaceStart:
     name: str | None = None
 
 
-@dataclass
-class QueuedRun:
-    """A run that waits for its turn.
-
-    Attributes:
-        run: as it was stored.
-        make_task: makes the task for its process, when its turn comes.
-        waits_for: trainings that must finish before.
-        goes_on: whether it was interrupted, and so is in the store already.
-    """
-
-    run: Run
-    make_task: Callable[[], Task]
-    waits_for: set[str]
-    goes_on: bool = False
-
-
-def queued_training(start: TrainingStart, store: RunStore, new_id: Callable[[], str]) -> QueuedRun:
-    """A training, ready to be queued.
+def new_training(start: TrainingStart, store: RunStore, new_id: Callable[[], str]) -> Run:
+    """Return a training to be queued, as a run that is not stored yet.
 
     Raises:
         InvalidInput, TableMismatch, NotFound, Conflict: if it cannot be.
     """
-    config, table = start.config, None
+    config = start.config
     if not learns(config.agent):
         raise InvalidInput(f"{config.agent} does not learn, so it cannot be trained")
     check_walk(config)
@@ -94,7 +70,7 @@ def queued_training(start: TrainingStart, store: RunStore, new_id: Callable[[], 
         _check_agent(table, config.agent, start.continue_from)
         # Its learning generator goes on; evaluations take theirs from the seed that began it.
         config = replace(config, seed=table.meta["config"]["seed"])
-    run = Run(
+    return Run(
         id=new_id(),
         kind="training",
         name=start.name or f"{config.steps:,} steps, {config.resolved_gait.name}",
@@ -102,32 +78,29 @@ def queued_training(start: TrainingStart, store: RunStore, new_id: Callable[[], 
         continued_from=start.continue_from,
         total=config.steps,
     )
-    return QueuedRun(run, lambda: TrainingTask(config, table), set())
 
 
-def queued_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> list[QueuedRun]:
-    """A race, ready to be queued, after the trainings that it brings along.
+def new_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> list[Run]:
+    """Return a race to be queued, preceded by the trainings that are part of the request.
 
     Raises:
         InvalidInput, TableMismatch, NotFound, Conflict: if it cannot be.
     """
     check_walk(start.walk)
-    before: dict[int, QueuedRun] = {}
-    tables: list[Checkpoint | None] = []
+    trainings: dict[int, Run] = {}
     lanes: list[LaneConfig] = []
     observation: Observation
     for number, lane in enumerate(start.lanes):
         table = _lane_table(lane, number, start.walk, store)
-        tables.append(table)
         if lane.training is not None:
-            before[number] = queued_training(lane.training, store, new_id)
-            lanes.append(LaneConfig(agent=lane.agent, observation=lane.training.config.observation))
+            trainings[number] = new_training(lane.training, store, new_id)
+            observation = lane.training.config.observation
         else:
             observation = table.meta["observation"] if table else "measured"
-            lanes.append(LaneConfig(agent=lane.agent, observation=observation))
+        lanes.append(LaneConfig(agent=lane.agent, observation=observation))
     config = RaceConfig(**vars(start.walk), lanes=tuple(lanes), steps=start.steps, seed=start.seed)
-    ids = {number: entry.run.id for number, entry in before.items()}
-    run = Run(
+    ids = {number: training.id for number, training in trainings.items()}
+    race = Run(
         id=new_id(),
         kind="race",
         name=start.name or f"Race, {config.resolved_gait.name}",
@@ -136,16 +109,11 @@ def queued_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) ->
         waiting_for=tuple(ids.values()),
         total=config.steps * len(lanes),
     )
-
-    def make_task() -> RaceTask:
-        practised = {number: load_table(store, training) for number, training in ids.items()}
-        return RaceTask(config, tuple(practised.get(n, t) for n, t in enumerate(tables)))
-
-    return [*before.values(), QueuedRun(run, make_task, set(ids.values()))]
+    return [*trainings.values(), race]
 
 
 def check_walk(walk: WalkingProblem) -> None:
-    """Make sure that the robot can walk so, and that a table of it would fit into memory.
+    """Check that the robot reaches its foot grid, and that a table of it would fit into memory.
 
     Raises:
         Unreachable: if a leg cannot reach a cell.
@@ -162,70 +130,10 @@ def check_walk(walk: WalkingProblem) -> None:
         )
 
 
-def load_table(store: RunStore, training_id: str) -> Checkpoint:
-    """Load the table of a training.
-
-    Raises:
-        NotFound: if there is no such training.
-        Conflict: if it has no table, or none yet.
-        DamagedFile: if the table is damaged.
-    """
-    run = _training(store, training_id)
-    data = store.artifact(training_id, TABLE)
-    return from_bytes(_learned(run, data), _said(training_id))
-
-
-def open_table(store: RunStore, training_id: str) -> ArtifactFile:
-    """The file of what a training has learned, to be read piece by piece, and to be closed.
-
-    Raises:
-        NotFound, Conflict, DamagedFile: as `load_table`.
-    """
-    run = _training(store, training_id)
-    return _learned(run, store.open_artifact(training_id, TABLE))
-
-
-def read_rows(file: ArtifactFile, training_id: str) -> TableFile:
-    """The Q-table in such a file.
-
-    Raises:
-        TableMismatch: if its agent keeps none.
-        DamagedFile: if it is none.
-    """
-    readable = io.BufferedReader(ReadableArtifact(file))
-    return TableFile(file, readable, _said(training_id))
-
-
-def _learned(run: Run, table: T | None) -> T:
-    if run.state not in ("finished", "stopped"):
-        raise Conflict(
-            f"training {run.id} is {run.state}; choose one that is finished or stopped", run.state
-        )
-    if table is None:
-        raise Conflict(f"training {run.id} was {run.state} before it began", run.state)
-    return table
-
-
-def _said(training_id: str) -> str:
-    return f"the table of training {training_id}"
-
-
-def _training(store: RunStore, training_id: str) -> Run:
-    try:
-        run = store.get(training_id)
-    except NotFound as error:
-        raise InvalidInput(
-            f"there is no training {training_id!r}; GET /api/v1/trainings lists all"
-        ) from error
-    if run.kind != "training":
-        raise InvalidInput(f"{training_id!r} is a {run.kind}; name a training")
-    return run
-
-
 def _lane_table(
     lane: LaneStart, number: int, walk: WalkingProblem, store: RunStore
 ) -> Checkpoint | None:
-    """The table that a lane brings along, None if it has none (yet)."""
+    """Return the table of a lane's training; None if it has none (yet)."""
     can_learn = learns(lane.agent)
     has_practice = lane.training_id is not None or lane.training is not None
     if has_practice and not can_learn:
@@ -261,12 +169,12 @@ MAX_SETTINGS = 2_000
 
 @dataclass(frozen=True)
 class ExperimentStart:
-    """An experiment as it was asked for.
+    """Request to start an experiment.
 
     Attributes:
         config: the experiment.
-        name: None lets one be found.
-        workers: how many trials at once; None is one for each core.
+        name: None for a generated name.
+        workers: trials at once; None is one per core.
     """
 
     config: ExperimentConfig
@@ -274,8 +182,8 @@ class ExperimentStart:
     workers: int | None = None
 
 
-def queued_experiment(start: ExperimentStart, new_id: Callable[[], str]) -> QueuedRun:
-    """An experiment, ready to be queued.
+def new_experiment(start: ExperimentStart, new_id: Callable[[], str]) -> Run:
+    """Return an experiment to be queued, as a run that is not stored yet.
 
     Raises:
         InvalidInput, UnknownName, Unreachable: if it cannot be.
@@ -286,7 +194,7 @@ def queued_experiment(start: ExperimentStart, new_id: Callable[[], str]) -> Queu
     if workers is not None and workers > cores:
         raise InvalidInput(f"workers must be from 1 to {cores}, the cores of this machine")
     seeds = "1 seed" if config.seeds == 1 else f"{config.seeds:,} seeds"
-    run = Run(
+    return Run(
         id=new_id(),
         kind="experiment",
         name=start.name or f"{TITLES[config.experiment]}, {seeds}",
@@ -294,14 +202,13 @@ def queued_experiment(start: ExperimentStart, new_id: Callable[[], str]) -> Queu
         workers=workers,
         total=plan.total,
     )
-    return QueuedRun(run, lambda: ExperimentTask(config, workers), set())
 
 
 def plan_of(config: ExperimentConfig) -> Plan:
-    """The settings of an experiment, all of which can be.
+    """Return the plan of an experiment, whose settings are all checked.
 
     Raises:
-        InvalidInput, UnknownName, Unreachable: if one cannot be, or they are too many.
+        InvalidInput, UnknownName, Unreachable: if a setting is invalid, or there are too many.
     """
     # Before it is laid out: a few long lists make a grid that fits into no memory.
     settings = _settings(config)
@@ -316,22 +223,8 @@ def plan_of(config: ExperimentConfig) -> Plan:
     return plan
 
 
-def wall_s_of(store: RunStore, run_id: str) -> float:
-    """How long an experiment has run by its newest summary.
-
-    Raises:
-        DamagedFile: if that does not say.
-    """
-    summary = store.artifact(run_id, SUMMARY)
-    try:
-        cost = None if summary is None else json.loads(summary).get("cost")
-        return float(cost["wall_s"]) if cost else 0.0
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise DamagedFile(f"{SUMMARY} of run {run_id} is no summary ({error!r})") from error
-
-
 def _settings(config: ExperimentConfig) -> int:
-    """How many combinations of values it has, those of agents that look ahead left out."""
+    """Return the number of combinations of values, without those of look-ahead agents."""
     names = ("gaits", "observations", "robots", "agents", *GRID)
     lists = [*(getattr(config, name) for name in names), *config.settings.values()]
     return math.prod(map(len, lists))

@@ -15,13 +15,13 @@ from datetime import UTC, datetime
 from app.domain.errors import HexapodError
 from app.events.bus import EventBus
 from app.jobs.job import ExperimentJob, Job
-from app.jobs.messages import ExperimentTask, Task
 from app.jobs.queue import RunQueue
-from app.jobs.submissions import QueuedRun
+from app.jobs.tasks import task_for
 from app.jobs.worker_process import Exit
+from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound, OwnershipLost, StorageFailed, StorageFull
 from app.storage.recordings import Recordings
-from app.storage.store import LIVE, QUEUED, RUNNING, UNENDED, Run, RunStore, State
+from app.storage.run import LIVE, NOT_ENDED, QUEUED, RUNNING, Run, State
 
 STUCK_S = 5.0
 """A run that is ready for longer while a core is free is reported by the health check."""
@@ -161,21 +161,21 @@ class Supervisor:
     def _start_next(self) -> bool:
         """Start the first ready run if a core is free; False if none can be started now."""
         is_free = self.running < self.cores
-        entry = self._queue.pop_ready() if is_free else None
-        if entry is None:
+        run = self._queue.pop_ready() if is_free else None
+        if run is None:
             self._last_progress_s = time.monotonic()
             return False
         try:
-            self._start(entry)
+            self._start(run)
         except OwnershipLost:
-            _logger.exception("a run is not started", extra=_log_fields(entry.run.id))
+            _logger.exception("a run is not started", extra=_log_fields(run.id))
         except _STORE_UNAVAILABLE:
-            _logger.exception("a run cannot be started now", extra=_log_fields(entry.run.id))
-            self._queue.push_front(entry)
+            _logger.exception("a run cannot be started now", extra=_log_fields(run.id))
+            self._queue.push_front(run)
             return False
         except (Conflict, NotFound) as error:
-            _logger.warning("a run waits no more: %s", error, extra=_log_fields(entry.run.id))
-            self._settle(entry.run)
+            _logger.warning("a run waits no more: %s", error, extra=_log_fields(run.id))
+            self._settle(run)
         self._last_progress_s = time.monotonic()
         try:
             self._queue.publish_positions()
@@ -183,17 +183,17 @@ class Supervisor:
             _logger.warning("places in the queue cannot be told now", exc_info=True)
         return True
 
-    def _start(self, entry: QueuedRun) -> None:
+    def _start(self, run: Run) -> None:
         """Start a worker process for a run that was queued."""
         # The system clock may have been set back since the run was created.
-        run_id, now = entry.run.id, max(datetime.now(UTC), entry.run.created_at)
-        started_at = entry.run.started_at or now
+        run_id, now = run.id, max(datetime.now(UTC), run.created_at)
+        started_at = run.started_at or now
         # It is stored as `running` already if the reply to an earlier attempt was lost.
         run = self._store.change(
             run_id, QUEUED | RUNNING, "running", started_at=started_at, waiting_for=()
         )
         try:
-            job = self._job(run, entry.make_task())
+            job = self._job(run)
             job.process.start(lambda end: self._process_ended(job, end))
         except _STORE_UNAVAILABLE:
             raise
@@ -209,9 +209,9 @@ class Supervisor:
         self.mark_shared()
         job.publish()
 
-    def _job(self, run: Run, task: Task) -> Job:
-        kind = ExperimentJob if isinstance(task, ExperimentTask) else Job
-        services = self._store, self._recordings, self._bus
+    def _job(self, run: Run) -> Job:
+        kind = ExperimentJob if run.kind == "experiment" else Job
+        task, services = task_for(run, self._store), (self._store, self._recordings, self._bus)
         return kind(run, task, *services, shutdown=self._shutdown, niceness=self._niceness)
 
     def _check_jobs(self) -> None:
@@ -268,7 +268,7 @@ class Supervisor:
 
     def _settle(self, run: Run) -> bool:
         """Resolve the dependencies on an ended run; False if the store is unavailable."""
-        if run.state in UNENDED:
+        if run.state in NOT_ENDED:
             # Its row was deleted, or something else than its job changed its state.
             run = replace(run, state="stopped")
         try:

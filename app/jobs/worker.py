@@ -1,6 +1,6 @@
-"""A job, in its own process: builds what the task names, runs the loop, and reports.
+"""Entry point of a worker process: builds what its task names, runs the loop, sends messages.
 
-Ends when the job does or when the server does, however that ends.
+The process ends with its task, or with the server, however that ends.
 """
 
 import logging
@@ -47,12 +47,12 @@ _logger = logging.getLogger(__name__)
 
 
 def main(pipe: Connection, niceness: int) -> None:
-    """Work on the task that comes first through the pipe, and end the process."""
+    """Run the task that is the first item in the pipe, then end the process."""
     set_up_process(niceness)
     logs.install("warning")
     task: Task = pipe.recv()
     commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
-    threading.Thread(target=_listen, args=(pipe, commands), daemon=True).start()
+    threading.Thread(target=_receive_commands, args=(pipe, commands), daemon=True).start()
     send = _one_at_a_time(pipe)
     threading.Thread(target=_send_heartbeats, args=(send,), daemon=True).start()
     control = JobControl(send, commands)
@@ -83,19 +83,20 @@ def _train(task: TrainingTask, control: JobControl) -> None:
     if task.checkpoint is not None:
         restore(learner, task.checkpoint)
         made = task.checkpoint.meta["changes"]
-    control.repeat(made, task.changes, learner.step, walker.agent)
+    control.restore_changes(made, task.changes, learner.step, walker.agent)
     control.send(Began((rest_qpos,), learner.step))
-    control.keep_safe(lambda: Checkpointed(_saved(learner, task, control), learner.step))
+    control.checkpoint_regularly(lambda: Checkpointed(_saved(learner, task, control), learner.step))
     result = None
     with suppress(Stopped):
-        for record in train(_attentive(learner, control), config, record=True):
+        for record in train(_interruptible(learner, control), config, record=True):
             control.report(record, learner.step)
-            if isinstance(record, StepTaken) and not control.go_on(learner.step, walker.agent):
+            is_step = isinstance(record, StepTaken)
+            if is_step and not control.wait_for_turn(learner.step, walker.agent):
                 raise Stopped
         control.flush()
         result = finish_training(learner, config)
     control.flush()
-    if control.leaving and not control.stopped:
+    if control.exiting and not control.stopped:
         control.checkpoint()
         return
     if result is None:
@@ -109,20 +110,20 @@ def _saved(learner: Learner, task: TrainingTask, control: JobControl) -> bytes:
     return to_bytes(snapshot(learner, task.config, changes=control.changes))
 
 
-def _attentive(learner: Learner, control: JobControl) -> Learner:
-    """The same learner, whose evaluations obey between two steps as its practice does."""
+def _interruptible(learner: Learner, control: JobControl) -> Learner:
+    """Return the learner with evaluations that execute commands between two steps."""
     evaluator, baseline = learner.evaluator, learner.baseline
 
-    def listening(walker: Walker) -> Walker:
+    def interruptible(walker: Walker) -> Walker:
         # Once it was stopped, what is left is the last evaluation.
         if not control.stopped:
             walker.agent = InterruptibleAgent(
-                walker.agent, lambda: control.listen(learner.step, learner.walker.agent)
+                walker.agent, lambda: control.execute_pending(learner.step, learner.walker.agent)
             )
         return walker
 
-    learner.evaluator = lambda rng: listening(evaluator(rng))
-    learner.baseline = lambda: listening(baseline())
+    learner.evaluator = lambda rng: interruptible(evaluator(rng))
+    learner.baseline = lambda: interruptible(baseline())
     return learner
 
 
@@ -133,10 +134,10 @@ def _race(task: RaceTask, control: JobControl) -> None:
     for record in race(walkers, task.config.steps, time.perf_counter):
         done += isinstance(record, LaneStep)
         control.report(record, done)
-        if not control.go_on(done):
+        if not control.wait_for_turn(done):
             break
     control.flush()
-    if not control.leaving:
+    if not control.exiting:
         control.send(Ended("stopped" if control.stopped else "finished", None))
 
 
@@ -145,7 +146,7 @@ def _pose(walker: Walker) -> NDArray[np.float32]:
 
 
 def _one_at_a_time(pipe: Connection) -> Callable[[Message | Heartbeat], None]:
-    """Send from several threads; a pipe by itself would mix what they send."""
+    """Return a function that sends from any thread; a pipe itself is not thread-safe."""
     lock = threading.Lock()
 
     def send(message: Message | Heartbeat) -> None:
@@ -162,8 +163,8 @@ def _send_heartbeats(send: Callable[[Message | Heartbeat], None]) -> None:
             time.sleep(HEARTBEAT_EVERY_S)
 
 
-def _listen(pipe: Connection, commands: "queue.SimpleQueue[Command]") -> None:
-    """Take in commands until there is nobody to send any."""
+def _receive_commands(pipe: Connection, commands: "queue.SimpleQueue[Command]") -> None:
+    """Queue commands from the pipe; exit when the server closes it or dies."""
     try:
         while True:
             commands.put(pipe.recv())

@@ -3,7 +3,7 @@
 `connections` limits open connections in total and per address, and evicts to admit newcomers.
 `listener` applies that at `accept`; `http_protocol` adds timeouts against slow clients.
 `open_files` raises the limit of file descriptors and divides them.
-`places` limits concurrent streams and viewers; `memory_budget` bytes buffered for clients.
+`client_slots` limits concurrent streams and viewers; `memory_budget` bytes buffered for clients.
 `token_bucket` limits the rate of requests per client; `log_limit` that of log records.
 `addresses` groups client addresses, so that an IPv6 network counts as one client.
 """

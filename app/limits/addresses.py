@@ -21,6 +21,6 @@ def client_group(host: str) -> str:
     return host
 
 
-def caller(scope: Scope) -> str:
+def client_of(scope: Scope) -> str:
     """Return the client group of a request; behind a trusted proxy, of the forwarded address."""
     return client_group(scope["client"][0] if scope.get("client") else "")

@@ -30,7 +30,7 @@ class MemoryBudget:
         self._by_client: Counter[str] = Counter()
         self._lock = threading.Lock()
 
-    def take(self, client: str, size: int) -> Refusal | None:
+    def reserve(self, client: str, size: int) -> Refusal | None:
         """Reserve bytes for a client; return None, or which limit refuses them."""
         with self._lock:
             client_held = self._by_client[client]
@@ -42,7 +42,7 @@ class MemoryBudget:
             self._by_client[client] = client_held + size
             return None
 
-    def give_back(self, client: str, size: int) -> None:
+    def release(self, client: str, size: int) -> None:
         """Release reserved bytes."""
         with self._lock:
             self.held -= size

@@ -5,14 +5,14 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable
 
-MAX_CALLERS = 10_000
+MAX_CLIENTS = 10_000
 """Buckets kept at most."""
 
 
 class RateLimiter:
-    """A token bucket per caller. Thread-safe.
+    """A token bucket per client. Thread-safe.
 
-    Beyond `MAX_CALLERS` the least recently used buckets are dropped, which bounds memory.
+    Beyond `MAX_CLIENTS` the least recently used buckets are dropped, which bounds memory.
     """
 
     def __init__(self, size: int, per_s: float, now: Callable[[], float] = time.monotonic) -> None:
@@ -25,26 +25,26 @@ class RateLimiter:
         """
         self._size, self._per_s, self._now = size, per_s, now
         self._buckets: OrderedDict[str, tuple[float, float]] = OrderedDict()
-        """By caller: number of tokens, and when it was computed [s]."""
+        """By client: number of tokens, and when it was computed [s]."""
         self._lock = threading.Lock()
 
-    def wait_s(self, caller: str) -> float:
+    def wait_s(self, client: str) -> float:
         """Return the time until the bucket has a token [s]; 0 if it has one. Takes none."""
         with self._lock:
-            return max(0.0, (1 - self._tokens(caller)) / self._per_s)
+            return max(0.0, (1 - self._tokens(client)) / self._per_s)
 
-    def take(self, caller: str) -> float:
+    def take(self, client: str) -> float:
         """Take a token and return 0; if there is none, return the time until there is one [s]."""
         with self._lock:
-            tokens = self._tokens(caller)
+            tokens = self._tokens(client)
             if tokens < 1:
                 return (1 - tokens) / self._per_s
-            self._buckets[caller] = (tokens - 1, self._now())
-            self._buckets.move_to_end(caller)
-            if len(self._buckets) > MAX_CALLERS:
+            self._buckets[client] = (tokens - 1, self._now())
+            self._buckets.move_to_end(client)
+            if len(self._buckets) > MAX_CLIENTS:
                 self._buckets.popitem(last=False)
             return 0.0
 
-    def _tokens(self, caller: str) -> float:
-        tokens, since_s = self._buckets.get(caller, (float(self._size), 0.0))
+    def _tokens(self, client: str) -> float:
+        tokens, since_s = self._buckets.get(client, (float(self._size), 0.0))
         return min(self._size, tokens + max(0.0, self._now() - since_s) * self._per_s)

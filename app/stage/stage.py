@@ -17,8 +17,9 @@ from app.stage.race_show import RaceShow
 from app.stage.scene_spec import idle_scene, race_scene, rest_pose, training_scene
 from app.stage.show import TIME_LAPSE, IdleShow, RunLabel, Show
 from app.stage.stage_frame import LaneView, StageFrame
+from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
-from app.storage.store import UNENDED, Run, RunStore
+from app.storage.run import NOT_ENDED, Run
 
 REPLAY_AFTER_S = 20.0
 MIN_SPEED, MAX_SPEED = 0.25, 64.0
@@ -139,7 +140,7 @@ class Stage:
                 "speed": TIME_LAPSE if self._speed is None else self._speed,
                 "clock": self._clock,
                 "replay": self._replay,
-                "live": run is not None and run.state in UNENDED,
+                "live": run is not None and run.state in NOT_ENDED,
                 "ended": self._show.ended,
                 "next_run_id": self._playlist[1].id if len(self._playlist) > 1 else None,
                 "holder": self._playlist[-1].id if self._has_live_run() else None,
@@ -153,7 +154,7 @@ class Stage:
             self._last_frame_s = now
             self._update_playlist()
             ended = self._show.ended
-            run_ended = not self._playlist or self._playlist[0].state not in UNENDED
+            run_ended = not self._playlist or self._playlist[0].state not in NOT_ENDED
             self._show.advance(elapsed_s if self._playing else 0.0, self._speed, run_ended)
             self._advance_playlist(now)
             if self._show.ended != ended:
@@ -174,7 +175,7 @@ class Stage:
         return RunLabel(self._run_id, name, self._playing, self._replay)
 
     def _has_live_run(self) -> bool:
-        return any(run.state in UNENDED for run in self._playlist)
+        return any(run.state in NOT_ENDED for run in self._playlist)
 
     def _update_playlist(self) -> None:
         """Apply what the bus told of the playlist's runs since the last call."""

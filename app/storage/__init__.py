@@ -1,11 +1,11 @@
 """Persistent storage of runs: rows in a database, artifact files beside it.
 
-`store` defines the interface `RunStore` and the dataclass `Run`; `errors` its exceptions.
-`database` implements it for SQLite and PostgreSQL, `memory_store` in memory.
+`database` is the store of runs, in SQLite or PostgreSQL; `run` defines what it stores, `errors` its
+exceptions.
 `artifacts` writes files atomically and verifies their SHA-256; `artifact_file` reads them in
 chunks; `disk_space` enforces the quota of the data folder.
 `recordings` and `stored_recordings` hold the recorded motion that the stage replays.
 `idempotency`, `sessions` and `run_ids`: idempotency keys, operators' sessions, sortable ids.
-`configs`, `stored_trials` and `json_text` convert configs, trials and numbers to JSON and back.
+`stored_tables` and `stored_trials` load tables, checkpoints and trials; `json_text` encodes JSON.
 `address_file` records where the server of a data folder listens.
 """

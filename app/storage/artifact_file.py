@@ -6,44 +6,11 @@ Concurrent readers of one file share a file descriptor, which is closed with the
 import io
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from typing import BinaryIO, Protocol, TypeVar
+from typing import BinaryIO, TypeVar
 
 T = TypeVar("T")
-PIECE_BYTES = 32 << 10
+CHUNK_BYTES = 32 << 10
 """Chunk size: the bytes held in memory for each client while it receives them."""
-
-
-class ArtifactFile(Protocol):
-    """Interface of an open, immutable artifact file. Thread-safe."""
-
-    @property
-    def size(self) -> int:
-        """Length of the file [bytes]."""
-
-    def read_at(self, offset: int, length: int) -> bytes:
-        """Read `length` bytes from an offset on; fewer only at the end of the file."""
-
-    def close(self) -> None:
-        """Close the file; may be called repeatedly."""
-
-
-class BytesFile:
-    """Implements `ArtifactFile` for bytes in memory."""
-
-    def __init__(self, data: bytes) -> None:
-        self._data = data
-
-    @property
-    def size(self) -> int:
-        """Length of the file [bytes]."""
-        return len(self._data)
-
-    def read_at(self, offset: int, length: int) -> bytes:
-        """Read `length` bytes from an offset on; fewer only at the end of the file."""
-        return self._data[offset : offset + length]
-
-    def close(self) -> None:
-        """Do nothing."""
 
 
 class SharedFile:
@@ -63,7 +30,7 @@ class SharedFile:
         # Reentrant: the garbage collector may close a reader on a thread that is in `read_at`.
         self._lock = threading.RLock()
 
-    def reader(self, on_last_close: Callable[[], None]) -> "SharedReader | None":
+    def reader(self, on_last_close: Callable[[], None]) -> "ArtifactFile | None":
         """Return a further reader; None if the last one was closed, and the file with it.
 
         Args:
@@ -72,11 +39,11 @@ class SharedFile:
         with self._lock:
             return None if self._file.closed else self.first_reader(on_last_close)
 
-    def first_reader(self, on_last_close: Callable[[], None]) -> "SharedReader":
+    def first_reader(self, on_last_close: Callable[[], None]) -> "ArtifactFile":
         """Return the first reader of a file that was just opened; see `reader`."""
         with self._lock:
             self._readers += 1
-        return SharedReader(self, on_last_close)
+        return ArtifactFile(self, on_last_close)
 
     def read_at(self, offset: int, length: int) -> bytes:
         """Read `length` bytes from an offset on; fewer only at the end of the file."""
@@ -93,8 +60,8 @@ class SharedFile:
             return self._readers == 0
 
 
-class SharedReader:
-    """Implements `ArtifactFile` for one reader of a `SharedFile`."""
+class ArtifactFile:
+    """An open, immutable artifact file: one reader of a `SharedFile`. Thread-safe."""
 
     def __init__(self, shared: SharedFile, on_last_close: Callable[[], None]) -> None:
         self._shared: SharedFile | None = shared
@@ -123,10 +90,10 @@ class SharedReader:
         self.close()
 
 
-def pieces(file: ArtifactFile) -> Iterator[bytes]:
+def chunks(file: ArtifactFile) -> Iterator[bytes]:
     """Iterate over a file in chunks; it is closed at the end, or with the iterator."""
-    offsets = range(0, file.size, PIECE_BYTES)
-    return closing_after(file, (file.read_at(offset, PIECE_BYTES) for offset in offsets))
+    offsets = range(0, file.size, CHUNK_BYTES)
+    return closing_after(file, (file.read_at(offset, CHUNK_BYTES) for offset in offsets))
 
 
 def closing_after(file: ArtifactFile, parts: Iterable[T]) -> Iterator[T]:

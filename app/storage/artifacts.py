@@ -12,8 +12,8 @@ import re
 import secrets
 import sys
 import threading
-from collections.abc import Collection
-from contextlib import suppress
+from collections.abc import Collection, Iterator
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -45,14 +45,12 @@ class ArtifactFiles:
     """Folder with the artifact files of one database. Thread-safe."""
 
     def __init__(self, folder: Path, disk_space: DiskSpace) -> None:
-        """Use a folder, creating it if it does not exist.
+        """Use a folder.
 
         Args:
-            folder: for the artifact files alone.
+            folder: for the artifact files alone; must exist before the first write.
             disk_space: quota and free space to check before each write.
         """
-        folder.mkdir(parents=True, exist_ok=True)
-        sync_folder(folder.parent)
         self._folder, self._disk_space = folder, disk_space
         self._open: dict[str, SharedFile] = {}
         self._open_lock = threading.RLock()
@@ -94,28 +92,9 @@ class ArtifactFiles:
         self._disk_space.check(size)
 
     def read(self, stored: StoredFile, label: str) -> bytes:
-        """Read a file and verify its size and SHA-256.
-
-        Args:
-            stored: record of the file in the database.
-            label: name of the file for error messages.
-
-        Raises:
-            FileNotFoundError: if the file does not exist.
-            DamagedFile: if its content is not what was written.
-            StorageFailed: if it cannot be read.
-        """
-        if not _is_artifact_name(stored.file):
-            raise DamagedFile(f"{label} is damaged: the database names no file of ours")
-        try:
-            data = (self._folder / stored.file).read_bytes()
-        except FileNotFoundError:
-            raise
-        except OSError as error:
-            raise StorageFailed(f"{label} cannot be read ({error.strerror})") from error
-        if len(data) != stored.size or hashlib.sha256(data).hexdigest() != stored.sha256:
-            raise DamagedFile(f"{label} is damaged: it is not what was written")
-        return data
+        """Read a file and verify its size and SHA-256; arguments and errors as for `open`."""
+        with closing(self._reader(stored, label)) as reader:
+            return b"".join(_verified_chunks(reader, stored, label))
 
     def open(self, stored: StoredFile, label: str) -> ArtifactFile:
         """Open a file for reading in chunks, after verifying its size and SHA-256.
@@ -131,20 +110,18 @@ class ArtifactFiles:
         """
         reader = self._reader(stored, label)
         try:
-            digest = hashlib.sha256()
-            for offset in range(0, reader.size, _HASH_CHUNK_BYTES):
-                digest.update(reader.read_at(offset, _HASH_CHUNK_BYTES))
-        except OSError as error:
+            for _ in _verified_chunks(reader, stored, label):
+                pass
+        except BaseException:
             reader.close()
-            raise StorageFailed(f"{label} cannot be read ({error.strerror})") from error
-        if reader.size != stored.size or digest.hexdigest() != stored.sha256:
-            reader.close()
-            raise DamagedFile(f"{label} is damaged: it is not what was written")
+            raise
         return reader
 
     def _reader(self, stored: StoredFile, label: str) -> ArtifactFile:
         """Return a reader that shares one descriptor with all other readers of this file."""
         name = stored.file
+        if not _is_artifact_name(name):
+            raise DamagedFile(f"{label} is damaged: the database names no file of ours")
 
         def on_last_close() -> None:
             with self._open_lock:
@@ -185,6 +162,20 @@ class ArtifactFiles:
         orphans = set(existing) - set(referenced)
         self.remove(*orphans)
         return len(orphans)
+
+
+def _verified_chunks(file: ArtifactFile, stored: StoredFile, label: str) -> Iterator[bytes]:
+    """Iterate over a whole file; raise at the end if its size or SHA-256 is not as stored."""
+    digest = hashlib.sha256()
+    try:
+        for offset in range(0, file.size, _HASH_CHUNK_BYTES):
+            chunk = file.read_at(offset, _HASH_CHUNK_BYTES)
+            digest.update(chunk)
+            yield chunk
+    except OSError as error:
+        raise StorageFailed(f"{label} cannot be read ({error.strerror})") from error
+    if file.size != stored.size or digest.hexdigest() != stored.sha256:
+        raise DamagedFile(f"{label} is damaged: it is not what was written")
 
 
 def _is_artifact_name(name: object) -> bool:

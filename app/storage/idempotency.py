@@ -12,8 +12,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from app.domain.errors import InvalidInput
+from app.storage.database.store import RunStore
 from app.storage.errors import Gone, NotFound
-from app.storage.store import IdempotencyKey, Run, RunStore
+from app.storage.run import IdempotencyKey, Run
 
 Start = Callable[[IdempotencyKey | None], Run]
 """Creates a run, and passes the key to the store in the same call."""

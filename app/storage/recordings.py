@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from app.runs.recording import LaneRecording, PracticeRecording
 from app.runs.records import Evaluated, LaneFailed, LaneStep, StepTaken
 from app.runs.stored_practice import rewound
-from app.storage.store import RunStore
+from app.storage.database.store import RunStore
 from app.storage.stored_recordings import StoredRecordings
 
 MAX_EVALUATION_MOTIONS = 1000
@@ -23,27 +23,23 @@ class Recordings:
     Readers need no lock, since recorded steps and evaluations never change.
     """
 
-    def __init__(self, store: RunStore | None = None) -> None:
-        """Use the recordings of a store.
-
-        Args:
-            store: for persistent recordings; None keeps them in memory only.
-        """
+    def __init__(self, store: RunStore) -> None:
+        """Use the recordings of a store."""
         self._trainings: dict[str, PracticeRecording] = {}
         self._races: dict[str, list[LaneRecording]] = {}
         self._evaluation_counts: dict[str, int] = {}
-        self._stored = None if store is None else StoredRecordings(store)
+        self._stored = StoredRecordings(store)
         self._lock = threading.Lock()
 
     def training(self, run_id: str) -> PracticeRecording | None:
         """Return the recording of a training; None if it has not started or was not recorded."""
         growing = self._trainings.get(run_id)
-        return self._stored.training(run_id) if growing is None and self._stored else growing
+        return self._stored.training(run_id) if growing is None else growing
 
     def race(self, run_id: str) -> list[LaneRecording] | None:
         """Return the recordings of a race's lanes; None if it has not started or has none."""
         growing = self._races.get(run_id)
-        return self._stored.race(run_id) if growing is None and self._stored else growing
+        return self._stored.race(run_id) if growing is None else growing
 
     def begin_training(
         self, run_id: str, rest_qpos: NDArray[np.float32], after_step: int = 0
@@ -87,9 +83,9 @@ class Recordings:
             StorageFull, StorageFailed: if it cannot be stored.
         """
         training, race = self._trainings.get(run_id), self._races.get(run_id)
-        if self._stored is not None and training is not None:
+        if training is not None:
             self._stored.write_training(run_id, training)
-        if self._stored is not None and race is not None:
+        if race is not None:
             self._stored.write_race(run_id, race)
 
     def finish(self, run_id: str) -> None:
@@ -99,8 +95,6 @@ class Recordings:
             StorageFull, StorageFailed: if it cannot be stored; it stays in memory then.
         """
         self.save(run_id)
-        if self._stored is None:
-            return
         training, race = self._trainings.get(run_id), self._races.get(run_id)
         if training is not None:
             self._stored.cache_training(run_id, training)
@@ -111,8 +105,7 @@ class Recordings:
     def discard(self, run_id: str) -> None:
         """Drop a run's recording from memory, and from the cache of stored recordings."""
         self._drop(run_id)
-        if self._stored is not None:
-            self._stored.invalidate(run_id)
+        self._stored.invalidate(run_id)
 
     def _drop(self, run_id: str) -> None:
         with self._lock:

@@ -7,7 +7,7 @@ import secrets
 import threading
 import time
 
-from app.storage.store import RunStore
+from app.storage.database.store import RunStore
 
 _DIGITS = "0123456789abcdefghjkmnpqrstvwxyz"
 _TIME_DIGITS, _RANDOM_DIGITS = 9, 4

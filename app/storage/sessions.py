@@ -5,7 +5,12 @@ import secrets
 import threading
 from collections.abc import Callable, Collection, Sequence
 from datetime import UTC, datetime, timedelta
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
+
+from sqlalchemy import delete, insert, select
+
+from app.storage.database.engine import Database
+from app.storage.database.schema import SESSIONS
 
 SESSION_S = 30 * 24 * 3600
 """Lifetime of a session [s]."""
@@ -28,37 +33,28 @@ class SessionRow(NamedTuple):
     expires_at: datetime
 
 
-class SessionRows(Protocol):
-    """Interface of the persistent storage of sessions."""
+class SessionRows:
+    """Rows of the `sessions` table."""
+
+    def __init__(self, database: Database) -> None:
+        """Use the sessions of a database."""
+        self._database = database
 
     def load(self) -> Sequence[SessionRow]:
         """Return all stored sessions, oldest first."""
+        query = select(SESSIONS).order_by(SESSIONS.c.created_at)
+        rows = self._database.read(lambda connection: connection.execute(query).mappings().all())
+        return [SessionRow(**row) for row in rows]
 
     def add(self, row: SessionRow) -> None:
         """Store a session."""
+        statement = insert(SESSIONS).values(row._asdict())
+        self._database.write(lambda connection: connection.execute(statement))
 
     def remove(self, ids_sha256: Collection[str]) -> None:
         """Delete the sessions with these hashed ids."""
-
-
-class MemorySessionRows:
-    """Implements `SessionRows` in memory; lost when the process ends."""
-
-    def __init__(self) -> None:
-        self._rows: dict[str, SessionRow] = {}
-
-    def load(self) -> Sequence[SessionRow]:
-        """Return all stored sessions, oldest first."""
-        return list(self._rows.values())
-
-    def add(self, row: SessionRow) -> None:
-        """Store a session."""
-        self._rows[row.id_sha256] = row
-
-    def remove(self, ids_sha256: Collection[str]) -> None:
-        """Delete the sessions with these hashed ids."""
-        for id_sha256 in ids_sha256:
-            self._rows.pop(id_sha256, None)
+        statement = delete(SESSIONS).where(SESSIONS.c.id_sha256.in_(ids_sha256))
+        self._database.write(lambda connection: connection.execute(statement))
 
 
 class Sessions:

@@ -20,8 +20,8 @@ from app.runs.recording import (
 )
 from app.runs.stored_practice import evaluation_arrays, practice_arrays, practice_recording
 from app.storage.artifact_file import ReadableArtifact
+from app.storage.database.store import RunStore
 from app.storage.errors import NotFound
-from app.storage.store import RunStore
 
 RACE, PRACTICE = "race.npz", "practice.npz"
 EVALUATIONS_PER_FILE = 20

@@ -1,11 +1,14 @@
 """Convert stored trials of an experiment to `TrialResult` objects and to CSV."""
 
+import json
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from app.domain.errors import DamagedFile
 from app.experiments.config import ExperimentConfig
 from app.experiments.report.trials_csv import trials_csv
 from app.experiments.trial import TrialResult
+from app.storage.run import SUMMARY
 
 
 def results_of(
@@ -39,3 +42,16 @@ def trials_as_csv(config: ExperimentConfig, rows: Iterable[Mapping[str, Any]]) -
         rows: as returned by `RunStore.trials`.
     """
     return trials_csv(config, *results_of(rows))
+
+
+def wall_s_of(summary: bytes | None, run_id: str) -> float:
+    """Return how long an experiment has run by its newest summary [s]; 0 if it has none.
+
+    Raises:
+        DamagedFile: if the summary is damaged.
+    """
+    try:
+        cost = None if summary is None else json.loads(summary).get("cost")
+        return float(cost["wall_s"]) if cost else 0.0
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise DamagedFile(f"{SUMMARY} of run {run_id} is no summary ({error!r})") from error

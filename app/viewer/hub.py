@@ -14,8 +14,8 @@ from collections.abc import AsyncGenerator, Callable
 
 from starlette.websockets import WebSocket
 
-from app.limits.addresses import caller
-from app.limits.places import NoPlace, Places
+from app.limits.addresses import client_of
+from app.limits.client_slots import ClientSlots, NoFreeSlot
 from app.viewer.session import FREE, Counters, Session, valid_view
 from app.viewer.snapshot import Snapshot
 from app.viewer.track import WORLD, Position
@@ -60,7 +60,7 @@ class Hub:
             upstream: Opens viser's stream of encoded frames, which raises ConnectionError when
                 viser stops; None while there is no viser.
             follow_position: Positions of the robots that can be followed; without it, none can.
-            max_viewers: Maximum number of viewers; `Places` decides who is refused or evicted.
+            max_viewers: Maximum number of viewers; `ClientSlots` decides who is refused or evicted.
             max_per_address: Maximum number of spectators per address.
             on_viewers_changed: Called with the number of viewers when that changes.
         """
@@ -68,7 +68,7 @@ class Hub:
         """May be replaced; used at the next reconnection."""
         self.counters = Counters()
         self._follow_position = follow_position
-        self._places = Places[Session](max_viewers, max_per_address)
+        self._slots = ClientSlots[Session](max_viewers, max_per_address)
         self._on_viewers_changed = on_viewers_changed
         self._sessions: set[Session] = set()
         self._snapshot = Snapshot()
@@ -114,8 +114,8 @@ class Hub:
         is_operator = websocket.scope.get("state", {}).get("role") == "operator"
         try:
             # Before the first await: otherwise concurrent connections would exceed the limit.
-            evicted = self._places.take(session, caller(websocket.scope), is_operator)
-        except NoPlace as error:
+            evicted = self._slots.take(session, client_of(websocket.scope), is_operator)
+        except NoFreeSlot as error:
             await websocket.accept(subprotocol=stream.SUBPROTOCOL)
             await websocket.close(_TRY_AGAIN_LATER, error.reason)
             return
@@ -127,7 +127,7 @@ class Hub:
             await websocket.accept(subprotocol=stream.SUBPROTOCOL)
             await session.run(self._send_view)
         finally:
-            self._places.leave(session)
+            self._slots.leave(session)
             self._sessions.discard(session)
             self._publish_viewer_count()
 

@@ -1,6 +1,7 @@
 """The real app with its real jobs; a client that calls it as a browser on this machine would."""
 
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
 from tests.api.calls import ADDRESS, Api
+from tests.storage.stores import temporary_store
 
 
 @pytest.fixture(scope="package")
@@ -37,14 +39,13 @@ def trained(api: Api) -> dict[str, Any]:
 @pytest.fixture
 def serve(data: Path) -> Iterator[Callable[..., Api]]:
     """A server of a test's own, with settings of its own; without its lifespan, so no jobs run."""
-    clients: list[TestClient] = []
+    with ExitStack() as stack:
 
-    def make(**settings: Any) -> Api:
-        app = create_app(Settings(**{"data": data, "job_niceness": 0, **settings}))
-        client = TestClient(app, base_url=ADDRESS, follow_redirects=False)
-        clients.append(client)
-        return Api(client)
+        def make(**settings: Any) -> Api:
+            store = stack.enter_context(temporary_store())
+            app = create_app(Settings(**{"data": data, "job_niceness": 0, **settings}), store)
+            client = TestClient(app, base_url=ADDRESS, follow_redirects=False)
+            stack.callback(client.close)
+            return Api(client)
 
-    yield make
-    for client in clients:
-        client.close()
+        yield make

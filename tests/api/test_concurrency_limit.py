@@ -4,7 +4,7 @@ import asyncio
 
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api.concurrency_limit import TURNS, ConcurrencyLimit, FairSemaphore
+from app.api.concurrency_limit import TURNS, ConcurrencyLimit, RoundRobinSemaphore
 
 
 def scope(role: str, address: str) -> Scope:
@@ -21,7 +21,7 @@ async def ignore(message: Message) -> None:
 
 def test_the_semaphore_is_fair_by_who_waits() -> None:
     async def play() -> list[str]:
-        semaphore, order = FairSemaphore(1), []
+        semaphore, order = RoundRobinSemaphore(1), []
         await semaphore.acquire("first")
 
         async def take(who: str) -> None:

@@ -30,18 +30,20 @@ from app.server import create_app
 from app.settings import Settings
 from tests.api.calls import WALK, Api
 from tests.experiments.made import around, summary_of, walked
+from tests.storage.stores import temporary_store
 
 PAGES = {"/", "/docs", "/favicon.ico", "/openapi.json", "/static", "/viewer", "/viewer/"}
 """For browsers: they are no part of the API."""
 Serve = Callable[..., Api]
 
 
-@pytest.fixture(scope="module")
-def app(tmp_path_factory: pytest.TempPathFactory) -> FastAPI:
-    return create_app(Settings(data=tmp_path_factory.mktemp("none")))
+@pytest.fixture
+def app() -> Iterator[FastAPI]:
+    with temporary_store() as store:
+        yield create_app(Settings(data=Path("unused")), store)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def described(app: FastAPI) -> dict[str, Any]:
     return app.openapi()
 
@@ -96,8 +98,7 @@ def test_every_error_of_the_product_has_a_described_answer(described: dict[str, 
     assert all(issubclass(error, HexapodError) for error in STATUSES)
 
 
-def test_what_a_new_route_can_answer_follows_from_what_it_is(tmp_path: Path) -> None:
-    app = create_app(Settings(data=tmp_path))
+def test_what_a_new_route_can_answer_follows_from_what_it_is(app: FastAPI) -> None:
 
     @app.put("/api/v1/new/{thing}/part")
     def put_part(thing: str, body: dict[str, int]) -> None:

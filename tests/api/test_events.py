@@ -16,7 +16,7 @@ from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
 from app.storage.json_text import json_text
-from app.storage.store import LIVE, QUEUED
+from app.storage.run import LIVE, QUEUED
 from tests.patience import LONG_S
 from tests.storage.stores import training
 

@@ -3,6 +3,7 @@
 import io
 import json
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,15 +17,14 @@ from app.archive.transfer import RUN, export_run, import_run
 from app.domain.errors import InvalidInput
 from app.domain.settings import SettingValues
 from app.runs.recording import race_arrays
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
-from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
+from app.storage.run import CHECKPOINT, TABLE, Run, State
 from app.storage.run_ids import RunIds
-from app.storage.store import CHECKPOINT, TABLE, Run, RunStore, State
 from app.storage.stored_recordings import PRACTICE, RACE
 from tests.storage.ended import ended_race, ended_training
-from tests.storage.stores import ODD, opened, training
+from tests.storage.stores import ODD, opened, temporary_store, training
 
 TRAINING, RACED = "00000000000t1", "00000000000r1"
 ONE, OTHER = "00000000000a1", "00000000000b1"
@@ -32,7 +32,7 @@ Change = Callable[[Any], object]
 
 
 @pytest.fixture(scope="module")
-def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SqlStore]:
+def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunStore]:
     with opened(tmp_path_factory.mktemp("source"), None) as store:
         ended_training(store, TRAINING, "ü 🕷 <b>it</b> [red]learned")
         ended_race(store, RACED, TRAINING)
@@ -40,15 +40,16 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SqlStore]:
 
 
 def imported(data: bytes, store: RunStore | None = None) -> Run:
-    return import_run(store or MemoryStore(), data, RunIds(), tuple(OURS), "run.zip")
+    with temporary_store() if store is None else nullcontext(store) as target:
+        return import_run(target, data, RunIds(), tuple(OURS), "run.zip")
 
 
 def refusal(data: bytes) -> str:
-    store = MemoryStore()
-    with pytest.raises(InvalidInput) as error:
-        imported(data, store)
+    with temporary_store() as store:
+        with pytest.raises(InvalidInput) as error:
+            imported(data, store)
+        assert store.list().items == []
     assert "\n" not in str(error.value)
-    assert store.list().items == []
     return str(error.value)
 
 
@@ -68,7 +69,7 @@ def rewritten(data: bytes, change: Change) -> bytes:
 
 @pytest.mark.parametrize("run_id", [TRAINING, RACED])
 def test_export_and_import_preserve_everything(
-    source: SqlStore, run_id: str, tmp_path: Path
+    source: RunStore, run_id: str, tmp_path: Path
 ) -> None:
     data = export_run(source, run_id)
     with opened(tmp_path, None) as target:
@@ -92,8 +93,8 @@ def test_export_and_import_preserve_everything(
             assert len(practised.evaluations) == len(was.evaluations) == 24
 
 
-def test_import_does_not_replace_an_existing_run(source: SqlStore) -> None:
-    data, store = export_run(source, TRAINING), MemoryStore()
+def test_import_does_not_replace_an_existing_run(source: RunStore, store: RunStore) -> None:
+    data = export_run(source, TRAINING)
     first = imported(data, store)
     store.update(first.id, name="Mine")
     second = imported(data, store)
@@ -103,40 +104,41 @@ def test_import_does_not_replace_an_existing_run(source: SqlStore) -> None:
     assert store.artifact(second.id, TABLE) == source.artifact(TRAINING, TABLE)
 
 
-def test_runs_can_be_exported_in_every_ended_state_only(source: SqlStore) -> None:
-    states = ("stopped", "failed", "interrupted")
-    for state in states:
-        store = MemoryStore()
-        store.create(training(ONE, state=state, error="It broke.", greedy_distance_m=0.5))
-        assert imported(export_run(store, ONE)) == store.get(ONE)
+def test_runs_can_be_exported_in_every_ended_state_only(source: RunStore) -> None:
+    for state in ("stopped", "failed", "interrupted"):
+        with temporary_store() as store:
+            store.create(training(ONE, state=state, error="It broke.", greedy_distance_m=0.5))
+            assert imported(export_run(store, ONE)) == store.get(ONE)
     for state in ("queued", "running", "paused"):
-        store = MemoryStore()
-        store.create(training("a", state=state))
-        with pytest.raises(Conflict, match="stop it first"):
-            export_run(store, "a")
+        with temporary_store() as store:
+            store.create(training("a", state=state))
+            with pytest.raises(Conflict, match="stop it first"):
+                export_run(store, "a")
     with pytest.raises(NotFound):
         export_run(source, "none")
 
 
-def test_checkpoint_is_exported_with_an_interrupted_run_only(source: SqlStore) -> None:
-    store, target, saved = MemoryStore(), MemoryStore(), source.artifact(TRAINING, TABLE) or b""
-    config = source.get(TRAINING).config
+def test_checkpoint_is_exported_with_an_interrupted_run_only(
+    source: RunStore, store: RunStore, tmp_path: Path
+) -> None:
+    config, saved = source.get(TRAINING).config, source.artifact(TRAINING, TABLE) or b""
     states: dict[str, State] = {ONE: "interrupted", OTHER: "finished"}
     for run_id, state in states.items():
         store.create(training(run_id, state=state, config=config, done=120, total=120))
         store.put_artifact(run_id, CHECKPOINT, saved)
-        imported(export_run(store, run_id), target)
-    assert target.artifact(ONE, CHECKPOINT) == saved
-    # A finished training is not resumed, so that its checkpoint is not exported.
-    assert target.artifact(OTHER, CHECKPOINT) is None
+    with opened(tmp_path, None) as target:
+        for run_id in states:
+            imported(export_run(store, run_id), target)
+        assert target.artifact(ONE, CHECKPOINT) == saved
+        # A finished training is not resumed, so that its checkpoint is not exported.
+        assert target.artifact(OTHER, CHECKPOINT) is None
     data = export_run(store, ONE)
     assert "another step" in refusal(rewritten(data, _shorter))
     assert "is not a Q-table" in refusal(repacked(data, checkpoint_npz=b"milk"))
 
 
-def test_unusual_configs_are_imported_but_unregistered_agents_refused() -> None:
+def test_unusual_configs_are_imported_but_unregistered_agents_refused(store: RunStore) -> None:
     odd = replace(ODD, agent="q-learning", settings=SettingValues({"alpha": 0.5}))
-    store = MemoryStore()
     store.create(training(ONE, state="finished", config=odd))
     store.create(training(OTHER, state="finished", config=ODD))
     assert imported(export_run(store, ONE)) == store.get(ONE)
@@ -205,7 +207,7 @@ def _shorter(content: Any) -> None:
     ],
 )
 def test_invalid_run_json_of_a_training_is_refused(
-    source: SqlStore, change: Change, names: str
+    source: RunStore, change: Change, names: str
 ) -> None:
     assert names in refusal(rewritten(export_run(source, TRAINING), change))
 
@@ -225,18 +227,18 @@ def test_invalid_run_json_of_a_training_is_refused(
         _set("divisions", 3, "run", "config"),
     ],
 )
-def test_invalid_run_json_of_a_race_is_refused(source: SqlStore, change: Change) -> None:
+def test_invalid_run_json_of_a_race_is_refused(source: RunStore, change: Change) -> None:
     refusal(rewritten(export_run(source, RACED), change))
 
 
-def test_malformed_json_is_refused(source: SqlStore) -> None:
+def test_malformed_json_is_refused(source: RunStore) -> None:
     data = export_run(source, RACED)
     for text in (b"", b"{", b"[]", b"null", b"[" * 100_000, b"\xff", b'{"format": 1e999}'):
         assert "run.json" in refusal(repacked(data, run_json=text))
     assert "run.json" in refusal(repacked(data, run_json=None))
 
 
-def test_files_of_another_run_are_refused(source: SqlStore) -> None:
+def test_files_of_another_run_are_refused(source: RunStore) -> None:
     race, practice = export_run(source, RACED), export_run(source, TRAINING)
     table = source.artifact(TRAINING, TABLE)
     raced = source.artifact(RACED, RACE)
@@ -249,7 +251,7 @@ def test_files_of_another_run_are_refused(source: SqlStore) -> None:
         assert "cannot be shown" in refusal(repacked(race, race_npz=junk))
 
 
-def _race_with(source: SqlStore, change: Change) -> bytes:
+def _race_with(source: RunStore, change: Change) -> bytes:
     with np.load(io.BytesIO(source.artifact(RACED, RACE) or b"")) as file:
         arrays = {name: file[name] for name in file.files}
     change(arrays)
@@ -258,7 +260,7 @@ def _race_with(source: SqlStore, change: Change) -> bytes:
     return repacked(export_run(source, RACED), race_npz=buffer.getvalue())
 
 
-def test_invalid_recordings_are_refused(source: SqlStore) -> None:
+def test_invalid_recordings_are_refused(source: RunStore) -> None:
     assert imported(_race_with(source, lambda arrays: None)).id == RACED
 
     def put(name: str, value: Callable[[Any], Any]) -> Change:
@@ -289,18 +291,16 @@ def test_invalid_recordings_are_refused(source: SqlStore) -> None:
     assert "compressed" in refusal(bomb)
 
 
-def test_future_and_malformed_ids_are_replaced(source: SqlStore) -> None:
+def test_future_and_malformed_ids_are_replaced(source: RunStore, store: RunStore) -> None:
     for run_id in ("zzzzzzzzz0000", "0", "training", "1zzzzzzzzzzzz"):
-        store, ids = MemoryStore(), RunIds()
-        data = rewritten(export_run(source, TRAINING), _set("id", run_id, "run"))
+        data, ids = rewritten(export_run(source, TRAINING), _set("id", run_id, "run")), RunIds()
         run = import_run(store, data, ids, tuple(OURS), "run.zip")
         assert run.id != run_id
         assert store.get(run.id) == replace(source.get(TRAINING), id=run.id)
         assert ids() > run.id
 
 
-def test_new_ids_ignore_existing_ids_in_the_far_future() -> None:
-    store = MemoryStore()
+def test_new_ids_ignore_existing_ids_in_the_far_future(store: RunStore) -> None:
     believed = "1m7zzzzzz0000"  # of November 2026
     store.create(training("zzzzzzzzz0000", state="finished"), training(believed, state="finished"))
     first = RunIds.of(store)()

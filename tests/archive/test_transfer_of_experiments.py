@@ -11,9 +11,8 @@ import pytest
 from app.archive import archive
 from app.archive.archived_trials import TRIALS
 from app.archive.transfer import export_run
-from app.storage.database.store import SqlStore
-from app.storage.memory_store import MemoryStore
-from app.storage.store import SUMMARY, State
+from app.storage.database.store import RunStore
+from app.storage.run import SUMMARY, State
 from tests.archive.test_transfer import Change, _set, imported, refusal, repacked, rewritten
 from tests.storage.ended import ended_experiment
 from tests.storage.stores import SWEEP, experiment, opened
@@ -22,7 +21,7 @@ RUN_ID = "00000000000e1"
 
 
 @pytest.fixture(scope="module")
-def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SqlStore]:
+def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunStore]:
     with opened(tmp_path_factory.mktemp("source"), None) as store:
         ended_experiment(store, RUN_ID)
         yield store
@@ -39,7 +38,7 @@ def with_trials(data: bytes, change: Change) -> bytes:
     return repacked(data, trials_json=json.dumps(rows).encode())
 
 
-def test_export_and_import_preserve_everything(source: SqlStore, tmp_path: Path) -> None:
+def test_export_and_import_preserve_everything(source: RunStore, tmp_path: Path) -> None:
     data = export_run(source, RUN_ID)
     with opened(tmp_path, None) as target:
         assert imported(data, target) == source.get(RUN_ID)
@@ -49,25 +48,25 @@ def test_export_and_import_preserve_everything(source: SqlStore, tmp_path: Path)
         assert export_run(target, RUN_ID) == data
 
 
-def test_incomplete_experiments_are_imported_with_their_trials(source: SqlStore) -> None:
-    store = MemoryStore()
+def test_incomplete_experiments_are_imported_with_their_trials(
+    source: RunStore, store: RunStore, tmp_path: Path
+) -> None:
     config, rows = source.get(RUN_ID).config, source.trials(RUN_ID)[:2]
     states: dict[str, State] = {"0000000000001": "interrupted", "0000000000002": "stopped"}
     for run_id, state in {**states, "0000000000003": "failed"}.items():
         run = experiment(run_id, state=state, config=config, total=4, done=2, workers=2)
         store.create(run)
         store.append_trials(run_id, rows)
-        target = MemoryStore()
-        assert imported(export_run(store, run_id), target) == run
-        assert target.trials(run_id) == rows
+        with opened(tmp_path / run_id, None) as target:
+            assert imported(export_run(store, run_id), target) == run
+            assert target.trials(run_id) == rows
 
 
 def test_unregistered_agents_are_refused_without_importing_their_module(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, store: RunStore
 ) -> None:
     (tmp_path / "evil.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')")
     monkeypatch.syspath_prepend(tmp_path)
-    store = MemoryStore()
     config = replace(SWEEP, agents=("q-learning", "evil:Agent"))
     store.create(experiment("a", state="failed", config=config))
     assert "q-learning, sarsa-lambda, greedy, two-step" in refusal(export_run(store, "a"))
@@ -98,7 +97,7 @@ def test_unregistered_agents_are_refused_without_importing_their_module(
     ],
 )
 def test_invalid_run_json_of_an_experiment_is_refused(
-    source: SqlStore, change: Change, names: str
+    source: RunStore, change: Change, names: str
 ) -> None:
     assert names in refusal(rewritten(export_run(source, RUN_ID), change))
 
@@ -122,7 +121,7 @@ def _again(rows: Any) -> None:
         (_again, "twice"),
     ],
 )
-def test_invalid_trials_are_refused(source: SqlStore, change: Change, names: str) -> None:
+def test_invalid_trials_are_refused(source: RunStore, change: Change, names: str) -> None:
     assert names in refusal(with_trials(export_run(source, RUN_ID), change))
 
 
@@ -130,7 +129,7 @@ def summary_with(data: bytes, **fields: Any) -> bytes:
     return json.dumps({**json.loads(members(data)[SUMMARY]), **fields}).encode()
 
 
-def test_report_files_must_match_their_names(source: SqlStore) -> None:
+def test_report_files_must_match_their_names(source: RunStore) -> None:
     data = export_run(source, RUN_ID)
     for changed, names in (
         ({"summary_json": b"{}"}, "no summary"),

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from app.storage.database.store import SqlStore
-from app.storage.store import TABLE
+from app.storage.database.store import RunStore
+from app.storage.run import TABLE
 from tests.cli.running import ROOT, hexapods, output, refusal
 from tests.storage.ended import ended_experiment, ended_race, ended_training
 from tests.storage.stores import opened, training
@@ -30,7 +30,7 @@ def data(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def kept(data: Path) -> Iterator[SqlStore]:
+def kept(data: Path) -> Iterator[RunStore]:
     """The same, while a server has it."""
     with opened(data, None) as store:
         yield store
@@ -126,7 +126,7 @@ def test_what_cannot_be_moved_is_one_sentence(data: Path, tmp_path: Path) -> Non
         assert names in refusal("export", TRAINING, "--out", out, *here, folder=tmp_path)
 
 
-def test_looking_disturbs_no_server(kept: SqlStore, data: Path, tmp_path: Path) -> None:
+def test_looking_disturbs_no_server(kept: RunStore, data: Path, tmp_path: Path) -> None:
     here = ("--data", str(data))
     kept.create(training("zz", state="running"))
     listed = output("runs", "list", *here, "--state", "running", folder=tmp_path)
@@ -136,7 +136,7 @@ def test_looking_disturbs_no_server(kept: SqlStore, data: Path, tmp_path: Path) 
     assert kept.get("zz").state == "running"
 
 
-def test_nothing_is_changed_behind_a_server(kept: SqlStore, data: Path, tmp_path: Path) -> None:
+def test_nothing_is_changed_behind_a_server(kept: RunStore, data: Path, tmp_path: Path) -> None:
     here = ("--data", str(data))
     output("export", RACED, "--out", "x.zip", *here, folder=tmp_path)
     for command in (("runs", "delete", RACED), ("import", "x.zip")):

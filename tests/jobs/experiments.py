@@ -5,7 +5,7 @@ from typing import Any
 from app.experiments.config import ExperimentConfig, experiment_config
 from app.experiments.plan import Plan
 from app.experiments.trial import run_trial
-from app.storage.store import RunStore
+from app.storage.database.store import RunStore
 
 
 def sweep(seeds: int = 3, **more: Any) -> ExperimentConfig:

@@ -17,20 +17,21 @@ from app.experiments.config import ExperimentConfig, experiment_config
 from app.experiments.plan import Plan
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import ExperimentStart
+from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, StorageFull
-from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
-from app.storage.store import REPORT, SUMMARY, UNENDED, Run
+from app.storage.run import NOT_ENDED, REPORT, SUMMARY, Run
 from tests.jobs.experiments import stored_results, sweep, tried
 from tests.jobs.waiting import wait_until, wait_until_ended
+from tests.storage.stores import of_type
 
 
-def wait_for_more_trials(store: MemoryStore, run: Run, done: int) -> None:
-    wait_until(lambda: len(store.trials(run.id)) > done or store.get(run.id).state not in UNENDED)
+def wait_for_more_trials(store: RunStore, run: Run, done: int) -> None:
+    wait_until(lambda: len(store.trials(run.id)) > done or store.get(run.id).state not in NOT_ENDED)
     assert store.get(run.id).state == "running"
 
 
-def wait_until_settled(store: MemoryStore, run: Run) -> Sequence[Mapping[str, Any]]:
+def wait_until_settled(store: RunStore, run: Run) -> Sequence[Mapping[str, Any]]:
     """Wait until no more trials arrive at the server, and return them."""
     rows: Sequence[Mapping[str, Any]] | None = None
     while rows != store.trials(run.id):
@@ -51,7 +52,7 @@ def worker_pids() -> set[int]:
 
 @pytest.mark.timeout(300)
 def test_interrupted_experiment_resumes_without_repeating_trials(
-    jobs: Jobs, store: MemoryStore
+    jobs: Jobs, store: RunStore
 ) -> None:
     """Paused, stopped, killed and resumed, it gives the results of an uninterrupted run."""
     before = worker_pids()
@@ -103,7 +104,7 @@ def test_interrupted_experiment_resumes_without_repeating_trials(
     check_summary(store, run, config)
 
 
-def check_summary(store: MemoryStore, run: Run, config: ExperimentConfig) -> None:
+def check_summary(store: RunStore, run: Run, config: ExperimentConfig) -> None:
     summary = json.loads(store.artifact(run.id, SUMMARY) or b"")
     assert summary["trials"]["done"] == 41
     assert summary["config"]["seeds"] == config.seeds
@@ -118,7 +119,7 @@ def check_summary(store: MemoryStore, run: Run, config: ExperimentConfig) -> Non
     assert (store.artifact(run.id, REPORT) or b"").startswith(b"<!doctype html>")
 
 
-class FullStore(MemoryStore):
+class FullStore(RunStore):
     """Fake store without disk space for trials until `room` is set."""
 
     room = 0
@@ -130,9 +131,9 @@ class FullStore(MemoryStore):
         super().append_trials(run_id, rows)
 
 
-def test_full_disk_fails_the_run_which_resumes_once_there_is_space() -> None:
-    store = FullStore()
-    jobs = Jobs(store, Recordings(), EventBus(), cores=1)
+def test_full_disk_fails_the_run_which_resumes_once_there_is_space(store: RunStore) -> None:
+    store = of_type(FullStore, store)
+    jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
     jobs.open()
     try:
         run = jobs.experiment(ExperimentStart(sweep(), workers=1))
@@ -147,9 +148,7 @@ def test_full_disk_fails_the_run_which_resumes_once_there_is_space() -> None:
         jobs.close()
 
 
-def test_invalid_trials_are_set_aside_and_the_others_are_kept(
-    jobs: Jobs, store: MemoryStore
-) -> None:
+def test_invalid_trials_are_set_aside_and_the_others_are_kept(jobs: Jobs, store: RunStore) -> None:
     config = sweep(agents=("q-learning", "tests.own_agents:Clumsy"))
     run = wait_until_ended(store, jobs.experiment(ExperimentStart(config, name="Mine")))
     assert (run.name, run.state, run.done) == ("Mine", "finished", run.total)
@@ -160,7 +159,7 @@ def test_invalid_trials_are_set_aside_and_the_others_are_kept(
         assert row["result"] is not None or "I tripped" in row["set_aside"]
 
 
-def test_queued_or_starting_experiment_stops_at_once(jobs: Jobs, store: MemoryStore) -> None:
+def test_queued_or_starting_experiment_stops_at_once(jobs: Jobs, store: RunStore) -> None:
     config = sweep(seeds=100, steps=(2000,))
     first, second = (jobs.experiment(ExperimentStart(config)) for _ in range(2))
     assert jobs.stop(second.id).state == "stopped"

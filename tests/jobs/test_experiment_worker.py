@@ -28,11 +28,11 @@ def test_draining_lasts_until_the_next_wait(commands: "queue.SimpleQueue[Command
     assert not control.draining
 
 
-@pytest.mark.parametrize("verb", ["stop", "leave"])
+@pytest.mark.parametrize("verb", ["stop", "checkpoint_and_exit"])
 def test_stop_or_leave_overrides_pause(verb: str, commands: "queue.SimpleQueue[Command]") -> None:
     control = _TrialControl(commands)
     for command in (Command("pause"), Command("resume"), Command("pause"), Command(verb)):  # type: ignore[arg-type]
         commands.put(command)
     assert not control.wait()
     assert control.stopped == (verb == "stop")
-    assert control.exiting == (verb == "leave")
+    assert control.exiting == (verb == "checkpoint_and_exit")

@@ -46,7 +46,7 @@ def test_records_are_batched_and_none_is_lost(pipe: FakePipe) -> None:
     began = time.monotonic()
     for number in range(2000):
         pipe.control.report(record(number), number)
-        assert pipe.control.go_on(number)
+        assert pipe.control.wait_for_turn(number)
     pipe.control.flush()
     assert pipe.records == 2000
     assert len(pipe.sent) <= 2 + 30 * (time.monotonic() - began)
@@ -57,7 +57,7 @@ def test_paused_job_continues_on_resume(pipe: FakePipe) -> None:
     pipe.commands.put(Command("pause"))
     began = time.monotonic()
     run_later(lambda: pipe.commands.put(Command("resume")))
-    assert pipe.control.go_on(1)
+    assert pipe.control.wait_for_turn(1)
     assert time.monotonic() - began >= 0.09
     assert pipe.records == 1, "what there is was sent before"
 
@@ -65,7 +65,7 @@ def test_paused_job_continues_on_resume(pipe: FakePipe) -> None:
 def test_paused_job_can_be_stopped(pipe: FakePipe) -> None:
     pipe.commands.put(Command("pause"))
     run_later(lambda: pipe.commands.put(Command("stop")))
-    assert not pipe.control.go_on(1)
+    assert not pipe.control.wait_for_turn(1)
     assert pipe.control.stopped
 
 
@@ -73,12 +73,12 @@ def test_pace_is_kept_and_a_new_pace_ends_the_wait(pipe: FakePipe) -> None:
     pipe.control.keep_pace(2.0, step_s=0.1)
     began = time.monotonic()
     for number in range(5):
-        assert pipe.control.go_on(number)
+        assert pipe.control.wait_for_turn(number)
     assert time.monotonic() - began >= 4 * 0.05 - 0.01
     pipe.control.keep_pace(0.01, step_s=0.3)
-    assert pipe.control.go_on(5)
+    assert pipe.control.wait_for_turn(5)
     run_later(lambda: pipe.commands.put(Command("tune", 7, {"pace": "max"})))
-    assert pipe.control.go_on(6), "half a minute, were it not for the new pace"
+    assert pipe.control.wait_for_turn(6), "half a minute, were it not for the new pace"
     assert pipe.sent == [Changed(7, 6, {"pace": "max"})]
     assert time.monotonic() - began < 20
 
@@ -87,15 +87,15 @@ def test_tune_changes_rates_and_records_the_change(pipe: FakePipe) -> None:
     grid = FootGrid()
     agent = QLearning(generator(0), Problem(((1, 4), (2, 5), (3, 6)), grid.cells))
     pipe.commands.put(Command("tune", 1, {"alpha": 0.7, "epsilon": 0.25}))
-    assert pipe.control.go_on(12, agent)
+    assert pipe.control.wait_for_turn(12, agent)
     assert agent.epsilon == 0.25
     assert pipe.control.changes == [{"step": 12, "alpha": 0.7, "epsilon": 0.25}]
 
 
-def keep_safe(pipe: FakePipe) -> list[int]:
+def checkpoint_regularly(pipe: FakePipe) -> list[int]:
     """Turn checkpoints on; return a one-element list that holds the step they report."""
     step = [0]
-    pipe.control.keep_safe(lambda: Checkpointed(b"", step[0]))
+    pipe.control.checkpoint_regularly(lambda: Checkpointed(b"", step[0]))
     return step
 
 
@@ -104,12 +104,12 @@ def checkpoints(pipe: FakePipe) -> list[int]:
 
 
 def test_periodic_checkpoint_follows_the_records_it_includes(pipe: FakePipe) -> None:
-    step = keep_safe(pipe)
+    step = checkpoint_regularly(pipe)
     began = time.monotonic()
     while time.monotonic() - began < 2 * CHECKPOINT_EVERY_S + 0.5:
         step[0] += 1
         pipe.control.report(record(step[0]), step[0])
-        assert pipe.control.go_on(step[0])
+        assert pipe.control.wait_for_turn(step[0])
         time.sleep(0.01)
     assert 1 <= len(checkpoints(pipe)) <= (time.monotonic() - began) / CHECKPOINT_EVERY_S
     first = next(n for n, m in enumerate(pipe.sent) if isinstance(m, Checkpointed))
@@ -118,34 +118,34 @@ def test_periodic_checkpoint_follows_the_records_it_includes(pipe: FakePipe) -> 
 
 
 def test_pause_sends_one_checkpoint(pipe: FakePipe) -> None:
-    step = keep_safe(pipe)
+    step = checkpoint_regularly(pipe)
     for number in range(1, 3):
         step[0] = number
         pipe.commands.put(Command("pause"))
         pipe.commands.put(Command("pause"))
         run_later(lambda: pipe.commands.put(Command("resume")))
-        assert pipe.control.go_on(number)
+        assert pipe.control.wait_for_turn(number)
     assert checkpoints(pipe) == [1, 2]
 
 
 def test_leave_ends_the_loop_but_is_not_a_stop(pipe: FakePipe) -> None:
-    pipe.commands.put(Command("leave"))
-    assert not pipe.control.go_on(1)
-    assert pipe.control.leaving
+    pipe.commands.put(Command("checkpoint_and_exit"))
+    assert not pipe.control.wait_for_turn(1)
+    assert pipe.control.exiting
     assert not pipe.control.stopped
     with pytest.raises(Stopped):
-        pipe.control.listen(1, None)
+        pipe.control.execute_pending(1, None)
 
 
 def test_changes_are_replayed_after_the_same_steps(pipe: FakePipe) -> None:
     agent = QLearning(generator(0), Problem(((1, 4), (2, 5), (3, 6)), FootGrid().cells))
     included = [{"step": 2, "pace": "max"}]
     later_on = [{"step": 5, "epsilon": 0.5}, {"step": 7, "epsilon": 0.25}]
-    pipe.control.repeat(included, later_on, 5, agent)
+    pipe.control.restore_changes(included, later_on, 5, agent)
     assert agent.epsilon == 0.5, "it was made after this step, and after the checkpoint"
     epsilons = []
     for step in (6, 7, 8):
-        assert pipe.control.go_on(step, agent)
+        assert pipe.control.wait_for_turn(step, agent)
         epsilons.append(agent.epsilon)
     assert epsilons == [0.5, 0.25, 0.25]
     assert pipe.control.changes == [*included, *later_on]

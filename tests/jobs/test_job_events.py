@@ -16,9 +16,9 @@ from app.runs.config import TrainingConfig
 from app.settings import Settings
 from app.storage.database import progress
 from app.storage.database.opening import open_store
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
-from app.storage.store import QUEUED
+from app.storage.run import QUEUED
 from tests.jobs.waiting import wait_for_progress, wait_until
 from tests.patience import LONG_S
 from tests.storage.queries import recorded_queries
@@ -30,12 +30,12 @@ ENDLESS = TrainingConfig(
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> Iterator[SqlStore]:
+def store(tmp_path: Path) -> Iterator[RunStore]:
     with open_store(Settings(data=tmp_path)) as store:
         yield store
 
 
-def running_job(store: SqlStore, bus: EventBus) -> Job:
+def running_job(store: RunStore, bus: EventBus) -> Job:
     """Return a job whose process was never started; the test plays the process."""
     store.create(training("a"))
     run = store.change("a", QUEUED, "running")
@@ -44,7 +44,7 @@ def running_job(store: SqlStore, bus: EventBus) -> Job:
 
 
 def test_progress_is_written_once_in_an_interval_and_read_never(
-    store: SqlStore, monkeypatch: pytest.MonkeyPatch
+    store: RunStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(progress, "WRITE_EVERY_S", 60.0)
     bus = EventBus()
@@ -59,7 +59,7 @@ def test_progress_is_written_once_in_an_interval_and_read_never(
     assert json.loads(events.drain()[-1].data)["progress"]["done"] >= 1
 
 
-def test_late_progress_of_a_paused_run_has_no_estimate(store: SqlStore) -> None:
+def test_late_progress_of_a_paused_run_has_no_estimate(store: RunStore) -> None:
     bus = EventBus()
     job, events = running_job(store, bus), bus.subscribe()
     job._handle_with_retry(Batch((), 1))
@@ -71,7 +71,7 @@ def test_late_progress_of_a_paused_run_has_no_estimate(store: SqlStore) -> None:
 
 
 def test_progress_reported_while_a_run_is_paused_does_not_undo_the_pause(
-    store: SqlStore, monkeypatch: pytest.MonkeyPatch
+    store: RunStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The job's thread is held between the write of progress and its event."""
     bus, write = EventBus(), store.update_progress

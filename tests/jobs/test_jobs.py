@@ -13,14 +13,15 @@ from app.domain.errors import InvalidInput
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.queue import MAX_QUEUED, RunQueue
-from app.jobs.resume import resumed_runs
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
+from app.jobs.tasks import resumed_runs
 from app.runs.config import WalkingProblem, training_config
+from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, StorageFailed
-from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
-from app.storage.store import QUEUED, Run
+from app.storage.run import QUEUED, Run
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
+from tests.storage.stores import of_type
 
 WALK = WalkingProblem(gait="left-right-origin", simulator="kinematic")
 
@@ -40,7 +41,7 @@ def pid_of(jobs: Jobs, run: Run) -> int:
     return job.process.pid
 
 
-def test_runs_start_in_order_of_submission(jobs: Jobs, store: MemoryStore) -> None:
+def test_runs_start_in_order_of_submission(jobs: Jobs, store: RunStore) -> None:
     runs = [jobs.train(training()) for _ in range(3)]
     last = wait_until_ended(store, runs[-1])
     starts = [store.get(run.id).started_at for run in runs]
@@ -50,7 +51,7 @@ def test_runs_start_in_order_of_submission(jobs: Jobs, store: MemoryStore) -> No
     assert last.state == "finished"
 
 
-def test_queue_is_bounded(jobs: Jobs, store: MemoryStore) -> None:
+def test_queue_is_bounded(jobs: Jobs, store: RunStore) -> None:
     first = jobs.train(endless())
     wait_for_progress(store, first)
     for _ in range(MAX_QUEUED):
@@ -71,7 +72,7 @@ def test_queue_is_bounded(jobs: Jobs, store: MemoryStore) -> None:
     jobs.stop(first.id)
 
 
-def test_paused_job_frees_its_core(jobs: Jobs, store: MemoryStore) -> None:
+def test_paused_job_frees_its_core(jobs: Jobs, store: RunStore) -> None:
     first = jobs.train(endless())
     wait_for_progress(store, first)
     second = jobs.train(training())
@@ -86,7 +87,7 @@ def test_paused_job_frees_its_core(jobs: Jobs, store: MemoryStore) -> None:
     assert jobs.stop(first.id).state == "stopped"
 
 
-def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: MemoryStore) -> None:
+def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: RunStore) -> None:
     mujoco = WalkingProblem(gait="left-right-origin")
     start = TrainingStart(training_config(**vars(mujoco), steps=1_000_000, evaluate_every=0))
     run = jobs.train(start)
@@ -101,7 +102,7 @@ def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: Memory
     assert time.monotonic() - began < 10
 
 
-def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: MemoryStore) -> None:
+def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: RunStore) -> None:
     """Its look-ahead baseline would take half a minute at eight divisions."""
     slow = WalkingProblem(gait="left-right-origin", divisions=8, grid_side_m=0.03)
     config = training_config(**vars(slow), steps=100, evaluate_every=1, steps_per_episode=1)
@@ -117,7 +118,7 @@ def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: Memory
     assert stopped.result["greedy_distance_m"] is None
 
 
-def test_starting_run_stops_at_once(jobs: Jobs, store: MemoryStore) -> None:
+def test_starting_run_stops_at_once(jobs: Jobs, store: RunStore) -> None:
     run = jobs.train(endless())
     wait_until(lambda: store.get(run.id).state == "running")
     stopped = jobs.stop(run.id)
@@ -125,7 +126,7 @@ def test_starting_run_stops_at_once(jobs: Jobs, store: MemoryStore) -> None:
     assert stopped.done <= 1
 
 
-def test_killed_process_fails_its_run_and_names_the_signal(jobs: Jobs, store: MemoryStore) -> None:
+def test_killed_process_fails_its_run_and_names_the_signal(jobs: Jobs, store: RunStore) -> None:
     run = jobs.train(endless())
     wait_for_progress(store, run)
     began = time.monotonic()
@@ -137,7 +138,7 @@ def test_killed_process_fails_its_run_and_names_the_signal(jobs: Jobs, store: Me
     assert wait_until_ended(store, jobs.train(training())).state == "finished", "others go on"
 
 
-def test_race_fails_if_its_training_fails(jobs: Jobs, store: MemoryStore) -> None:
+def test_race_fails_if_its_training_fails(jobs: Jobs, store: RunStore) -> None:
     race = jobs.race(RaceStart(WALK, [LaneStart("q-learning", training=endless())], 50, 0))
     race_training = store.get(race.waiting_for[0])
     wait_for_progress(store, race_training)
@@ -148,7 +149,7 @@ def test_race_fails_if_its_training_fails(jobs: Jobs, store: MemoryStore) -> Non
     assert "SIGSEGV" in (now.error or "")
 
 
-def test_one_of_many_concurrent_stops_succeeds(jobs: Jobs, store: MemoryStore) -> None:
+def test_one_of_many_concurrent_stops_succeeds(jobs: Jobs, store: RunStore) -> None:
     run = jobs.train(endless())
     wait_for_progress(store, run)
     stopped, conflicts = [], []
@@ -167,8 +168,8 @@ def test_one_of_many_concurrent_stops_succeeds(jobs: Jobs, store: MemoryStore) -
     assert (len(stopped), len(conflicts)) == (1, 15)
 
 
-def test_race_result_reports_a_shared_machine(store: MemoryStore) -> None:
-    jobs = Jobs(store, Recordings(), EventBus(), cores=2)
+def test_race_result_reports_a_shared_machine(store: RunStore) -> None:
+    jobs = Jobs(store, Recordings(store), EventBus(), cores=2)
     jobs.open()
     try:
         alone = wait_until_ended(store, jobs.race(RaceStart(WALK, [LaneStart("greedy")], 5, 0)))
@@ -182,8 +183,8 @@ def test_race_result_reports_a_shared_machine(store: MemoryStore) -> None:
         jobs.close()
 
 
-def test_close_leaves_no_process(store: MemoryStore) -> None:
-    jobs = Jobs(store, Recordings(), EventBus(), cores=2)
+def test_close_leaves_no_process(store: RunStore) -> None:
+    jobs = Jobs(store, Recordings(store), EventBus(), cores=2)
     jobs.open()
     runs = [jobs.train(endless()) for _ in range(3)]
     for run in runs[:2]:
@@ -194,8 +195,8 @@ def test_close_leaves_no_process(store: MemoryStore) -> None:
     assert [store.get(run.id).state for run in runs] == ["interrupted"] * 3
 
 
-def test_worker_process_has_lower_priority_than_the_server(store: MemoryStore) -> None:
-    jobs = Jobs(store, Recordings(), EventBus(), niceness=15)
+def test_worker_process_has_lower_priority_than_the_server(store: RunStore) -> None:
+    jobs = Jobs(store, Recordings(store), EventBus(), niceness=15)
     jobs.open()
     try:
         run = jobs.train(endless())
@@ -210,7 +211,7 @@ def test_agent_that_does_not_learn_cannot_be_trained(jobs: Jobs) -> None:
         jobs.train(training(agent="greedy"))
 
 
-class FailingStore(MemoryStore):
+class FailingStore(RunStore):
     """Fake store that raises `StorageFailed` on some writes."""
 
     failures = 0
@@ -229,27 +230,27 @@ class FailingStore(MemoryStore):
         return super().change(*args, **fields)
 
 
-def test_submission_that_fails_halfway_leaves_no_run_queued() -> None:
+def test_submission_that_fails_halfway_leaves_no_run_queued(store: RunStore) -> None:
     """Two runs are resumed together; the store fails after the first was written."""
-    store = FailingStore()
+    store = of_type(FailingStore, store)
     ids = ["a", "b"]
     config = training_config(**vars(WALK), steps=10)
     for run_id in ids:
         store.create(Run(id=run_id, kind="training", name=run_id, config=config, total=10))
         store.change(run_id, QUEUED, "interrupted")
     queue = RunQueue(store, lambda run: None)
-    entries = [entry for run_id in ids for entry in resumed_runs(store.get(run_id), store)]
+    runs = [run for run_id in ids for run in resumed_runs(store.get(run_id), store)]
     store.fail_after = 1
     with pytest.raises(StorageFailed):
-        queue.add(entries, 1)
+        queue.add(runs, 1, resumed=True)
     assert [store.get(run_id).state for run_id in ids] == ["queued", "interrupted"]
     queue.reconcile()
     assert [store.get(run_id).state for run_id in ids] == ["interrupted", "interrupted"]
 
 
-def test_runs_survive_temporary_store_failures() -> None:
-    store = FailingStore()
-    jobs = Jobs(store, Recordings(), EventBus(), cores=1)
+def test_runs_survive_temporary_store_failures(store: RunStore) -> None:
+    store = of_type(FailingStore, store)
+    jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
     jobs.open()
     try:
         store.failures = 1
@@ -265,7 +266,7 @@ def test_runs_survive_temporary_store_failures() -> None:
         jobs.close()
 
 
-class WorkerKillingStore(MemoryStore):
+class WorkerKillingStore(RunStore):
     """Fake store that kills a run's process just before the run is written as `running`."""
 
     pid: int | None = None
@@ -278,9 +279,9 @@ class WorkerKillingStore(MemoryStore):
         return super().change(run_id, *args, **fields)
 
 
-def test_run_whose_process_dies_during_resume_is_queued_again() -> None:
-    store = WorkerKillingStore()
-    jobs = Jobs(store, Recordings(), EventBus(), cores=1)
+def test_run_whose_process_dies_during_resume_is_queued_again(store: RunStore) -> None:
+    store = of_type(WorkerKillingStore, store)
+    jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
     jobs.open()
     try:
         run = jobs.train(endless())

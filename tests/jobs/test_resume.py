@@ -11,14 +11,15 @@ from app.domain.errors import DamagedFile, InvalidInput
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
-from app.runs.config import LaneConfig, RaceConfig, training_config
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
 from app.runs.tables import snapshot, to_bytes
+from app.storage.database.store import RunStore
 from app.storage.errors import Conflict
-from app.storage.memory_store import MemoryStore
 from app.storage.recordings import Recordings
-from app.storage.store import CHECKPOINT, TABLE, Run, RunStore
+from app.storage.run import CHECKPOINT, TABLE, Run
 from tests.jobs.test_jobs import WALK
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
+from tests.storage.ended import ended_training
 from tests.storage.stores import training
 
 SLOW = training_config(**vars(WALK), steps=100_000, pace=30, evaluate_every=20)
@@ -26,7 +27,7 @@ SHORT = training_config(**vars(WALK), steps=60, evaluate_every=20)
 
 
 @pytest.fixture
-def open_jobs(store: MemoryStore) -> Iterator[Callable[[], Jobs]]:
+def open_jobs(store: RunStore) -> Iterator[Callable[[], Jobs]]:
     """Return a function that opens the jobs of another server on the same store."""
     with ExitStack() as stack:
 
@@ -45,7 +46,7 @@ def create(store: RunStore, run: Run) -> Run:
 
 
 def test_training_resumes_from_its_checkpoint(
-    store: MemoryStore, open_jobs: Callable[[], Jobs]
+    store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     first = open_jobs()
     run = first.train(TrainingStart(SLOW))
@@ -79,7 +80,7 @@ def test_training_resumes_from_its_checkpoint(
 
 
 def test_training_without_a_checkpoint_restarts_from_its_table(
-    store: MemoryStore, open_jobs: Callable[[], Jobs]
+    store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     jobs = open_jobs()
     table = wait_until_ended(store, jobs.train(TrainingStart(SHORT)))
@@ -94,7 +95,7 @@ def test_training_without_a_checkpoint_restarts_from_its_table(
 
 
 def test_training_whose_table_was_deleted_cannot_resume(
-    store: MemoryStore, open_jobs: Callable[[], Jobs]
+    store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     run = create(store, training("a", state="interrupted", continued_from="gone"))
     with pytest.raises(InvalidInput, match="gone"):
@@ -102,8 +103,22 @@ def test_training_whose_table_was_deleted_cannot_resume(
     assert store.get(run.id).state == "interrupted"
 
 
+def test_table_that_a_queued_run_needs_cannot_be_deleted(store: RunStore) -> None:
+    """A run's table is loaded when it starts, so it must still be there then."""
+    source = ended_training(store, "a")
+    assert isinstance(source.config, TrainingConfig)
+    jobs = Jobs(store, Recordings(store), EventBus())  # not opened, so that all runs stay queued
+    practice = jobs.train(TrainingStart(source.config, continue_from="a"))
+    race = jobs.race(RaceStart(WALK, [LaneStart("q-learning", training_id="a")], steps=5, seed=0))
+    for run in (practice, race):
+        with pytest.raises(Conflict, match=f"{run.kind} {run.id} waits, and needs its table"):
+            jobs.delete("a")
+        jobs.stop(run.id)
+    jobs.delete("a")
+
+
 def test_damaged_checkpoint_is_rejected_by_name(
-    store: MemoryStore, open_jobs: Callable[[], Jobs]
+    store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     run = create(store, training("a", state="interrupted"))
     store.put_artifact(run.id, CHECKPOINT, b"nonsense")
@@ -116,7 +131,7 @@ def test_damaged_checkpoint_is_rejected_by_name(
     "meta", [{"changes": None}, {"step": 10**9}, {"step": "1"}, {"agent": "greedy"}, {"legs": 4}]
 )
 def test_checkpoint_that_does_not_fit_its_training_is_rejected(
-    meta: dict[str, object], store: MemoryStore, open_jobs: Callable[[], Jobs]
+    meta: dict[str, object], store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     run = create(store, training("a", config=SHORT, total=60, state="interrupted"))
     good = snapshot(build_learner(SHORT), SHORT, changes=[])
@@ -129,7 +144,7 @@ def test_checkpoint_that_does_not_fit_its_training_is_rejected(
 
 
 def test_resumed_race_resumes_its_training_first(
-    store: MemoryStore, open_jobs: Callable[[], Jobs]
+    store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     first = open_jobs()
     lanes = [LaneStart("q-learning", training=TrainingStart(SLOW)), LaneStart("greedy")]
@@ -150,7 +165,7 @@ def test_resumed_race_resumes_its_training_first(
     assert wait_until_ended(store, race).state == "stopped"
 
 
-def test_race_restarts_from_its_start(store: MemoryStore, open_jobs: Callable[[], Jobs]) -> None:
+def test_race_restarts_from_its_start(store: RunStore, open_jobs: Callable[[], Jobs]) -> None:
     config = RaceConfig(**vars(WALK), lanes=(LaneConfig(agent="greedy"),), steps=5)
     run = Run(
         id="r",
@@ -168,9 +183,7 @@ def test_race_restarts_from_its_start(store: MemoryStore, open_jobs: Callable[[]
     assert wait_until_ended(store, run).state == "finished"
 
 
-def test_race_resumes_its_failed_training(
-    store: MemoryStore, open_jobs: Callable[[], Jobs]
-) -> None:
+def test_race_resumes_its_failed_training(store: RunStore, open_jobs: Callable[[], Jobs]) -> None:
     practice = training_config(gait="left-right-origin", simulator="kinematic", steps=20)
     store.create(training("t", state="failed", config=practice, total=20))
     config = RaceConfig(**vars(WALK), lanes=(LaneConfig(agent="q-learning"),))
@@ -183,7 +196,7 @@ def test_race_resumes_its_failed_training(
 
 @pytest.mark.parametrize("state", ["stopped", None])
 def test_race_whose_training_is_lost_cannot_resume(
-    state: str | None, store: MemoryStore, open_jobs: Callable[[], Jobs]
+    state: str | None, store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     if state is not None:
         store.create(training("t", state=state))
@@ -203,7 +216,7 @@ def test_race_whose_training_is_lost_cannot_resume(
 
 
 def test_run_queued_at_shutdown_can_be_queued_again(
-    store: MemoryStore, open_jobs: Callable[[], Jobs]
+    store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     first = open_jobs()
     wait_for_progress(store, first.train(TrainingStart(SLOW)))

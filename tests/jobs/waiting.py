@@ -4,7 +4,8 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from app.storage.store import UNENDED, Run, RunStore
+from app.storage.database.store import RunStore
+from app.storage.run import NOT_ENDED, Run
 from tests.patience import LONG_S, Patience
 
 
@@ -19,7 +20,7 @@ def wait_until(is_so: Callable[[], Any]) -> None:
 def wait_until_ended(store: RunStore, run: Run) -> Run:
     """Wait until a run has ended, and return it; fail if it makes no progress."""
     stall_check = Patience()
-    while (now := store.get(run.id)).state in UNENDED:
+    while (now := store.get(run.id)).state in NOT_ENDED:
         stall_check.check((now.state, now.done))
         time.sleep(0.005)
     return now

@@ -1,6 +1,6 @@
 """Token bucket: tokens are used up, and are refilled with time."""
 
-from app.limits.token_bucket import MAX_CALLERS, RateLimiter
+from app.limits.token_bucket import MAX_CLIENTS, RateLimiter
 
 
 def test_tokens_are_used_up_and_refilled_per_caller() -> None:
@@ -25,7 +25,7 @@ def test_wait_s_takes_no_token() -> None:
 def test_least_recently_used_buckets_are_dropped() -> None:
     buckets = RateLimiter(1, 1e-9, lambda: 0.0)
     buckets.take("first")
-    for number in range(MAX_CALLERS):
+    for number in range(MAX_CLIENTS):
         buckets.take(str(number))
     assert buckets.take("first") == 0
-    assert buckets.take(str(MAX_CALLERS - 1)) > 0
+    assert buckets.take(str(MAX_CLIENTS - 1)) > 0

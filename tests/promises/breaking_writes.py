@@ -23,24 +23,25 @@ import numpy as np
 from sqlalchemy import Connection, Engine, event, select
 
 from app.agents.registry import OURS
-from app.archive.table_import import adopt
+from app.archive import table_import
 from app.archive.transfer import export_run, import_run
 from app.assembly import build_learner, finish_training
 from app.events.bus import EventBus
 from app.jobs.job import Job
 from app.jobs.jobs import Jobs
 from app.jobs.messages import Batch, Began, Checkpointed, Ended, Saved, TrainingTask
-from app.jobs.submissions import LaneStart, RaceStart, TrainingStart, load_table
+from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
 from app.runs.config import WalkingProblem, training_config
 from app.runs.records import Evaluated, StepTaken
 from app.runs.tables import snapshot, to_bytes
 from app.runs.training import train
 from app.storage.database.schema import ARTIFACTS
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, StorageFailed, StorageFull
 from app.storage.recordings import Recordings
+from app.storage.run import TABLE, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
-from app.storage.store import TABLE, IdempotencyKey, Run
+from app.storage.stored_tables import load_table
 from tests.storage.ended import GAIT, ended_experiment, ended_training
 from tests.storage.stores import opened, training
 
@@ -108,21 +109,23 @@ class Breaker:
 # ---- operations
 
 
-def import_archive(store: SqlStore, folder: Path) -> None:
+def import_archive(store: RunStore, folder: Path) -> None:
     data = (folder.parent / "run.zip").read_bytes()
     import_run(store, data, RunIds.of(store), tuple(OURS), "run.zip", key=KEY)
 
 
-def import_experiment(store: SqlStore, folder: Path) -> None:
+def import_experiment(store: RunStore, folder: Path) -> None:
     data = (folder.parent / "experiment.zip").read_bytes()
     import_run(store, data, RunIds.of(store), tuple(OURS), "experiment.zip", key=KEY)
 
 
-def import_table(store: SqlStore, folder: Path) -> None:
-    adopt(_jobs(store), (folder.parent / "table.npz").read_bytes(), tuple(OURS), "Moved", KEY)
+def import_table(store: RunStore, folder: Path) -> None:
+    table_import.import_table(
+        _jobs(store), (folder.parent / "table.npz").read_bytes(), tuple(OURS), "Moved", KEY
+    )
 
 
-def start(store: SqlStore, folder: Path) -> None:
+def start(store: RunStore, folder: Path) -> None:
     walk = WalkingProblem(gait=GAIT, simulator="kinematic")
     lanes = [
         LaneStart("q-learning", training=TrainingStart(CONFIG, "Its practice")),
@@ -131,7 +134,7 @@ def start(store: SqlStore, folder: Path) -> None:
     _jobs(store).race(RaceStart(walk, lanes, 5, 0, "Started"), KEY)
 
 
-def finish(store: SqlStore, folder: Path) -> None:
+def finish(store: RunStore, folder: Path) -> None:
     """Feed a job the messages of its process: the last checkpoint, the table, the end."""
     run = store.get(LEARNING_ID)
     recordings = Recordings(store)
@@ -149,17 +152,17 @@ def finish(store: SqlStore, folder: Path) -> None:
     take(Ended("finished", finish_training(learner, CONFIG)))
 
 
-def delete(store: SqlStore, folder: Path) -> None:
+def delete(store: RunStore, folder: Path) -> None:
     store.delete(KEPT_ID)
 
 
-OPERATIONS: dict[str, Callable[[SqlStore, Path], None]] = {
+OPERATIONS: dict[str, Callable[[RunStore, Path], None]] = {
     one.__name__: one
     for one in (import_archive, import_experiment, import_table, start, finish, delete)
 }
 
 
-def _jobs(store: SqlStore) -> Jobs:
+def _jobs(store: RunStore) -> Jobs:
     return Jobs(store, Recordings(store), EventBus(), cores=1)
 
 
@@ -223,7 +226,7 @@ def _do(folder: Path, operation: str, how: str, at: int) -> dict[str, Any]:
         return {"writes": count, "refused": refused, "at_once": inspect_store(store, folder)}
 
 
-def inspect_store(store: SqlStore, folder: Path) -> dict[str, Any]:
+def inspect_store(store: RunStore, folder: Path) -> dict[str, Any]:
     """Return the contents of a store: its runs with their data, and inconsistencies of files."""
     runs = [_whole(store, run) for run in store.list().runs]
     referenced = store._database.read(lambda c: c.execute(select(ARTIFACTS.c.file)).scalars().all())
@@ -237,7 +240,7 @@ def inspect_store(store: SqlStore, folder: Path) -> dict[str, Any]:
     }
 
 
-def _whole(store: SqlStore, run: Run) -> dict[str, Any]:
+def _whole(store: RunStore, run: Run) -> dict[str, Any]:
     try:
         has_table = run.kind == "training" and load_table(store, run.id) is not None
     except Conflict:

@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.errors import StorageFull
-from app.storage.store import LIVE, TABLE
+from app.storage.run import LIVE, TABLE
 from tests.storage.stores import opened, training
 
 MB = 1_000_000
@@ -34,7 +34,7 @@ def main(folder: Path, how: str) -> None:
     sys.stdout.write(json.dumps(report))
 
 
-def while_full(store: SqlStore) -> dict[str, object]:
+def while_full(store: RunStore) -> dict[str, object]:
     messages = [refused(lambda: store.put_artifact("a", TABLE, bytes(2 * MB))) for _ in range(3)]
     began = time.monotonic()
     store.change("a", LIVE, "failed", error=messages[0])

@@ -4,11 +4,15 @@ import socket
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import NamedTuple
 
 import psutil
-from fastapi import FastAPI
 from fastapi.routing import iter_route_contexts
+
+from app.server import create_app
+from app.settings import Settings
+from tests.storage.stores import temporary_store
 
 _PATIENCE_S = 60.0
 
@@ -20,10 +24,12 @@ class Route(NamedTuple):
     path: str
 
 
-def every_route(app: FastAPI) -> list[Route]:
-    """Return all routes of the app; a folder of static files as the path of one file in it."""
+def every_route() -> list[Route]:
+    """Return all routes of the server; a folder of static files as the path of one file in it."""
+    with temporary_store() as store:
+        contexts = iter_route_contexts(create_app(Settings(data=Path("unused")), store).routes)
     routes: list[Route] = []
-    for context in iter_route_contexts(app.routes):
+    for context in contexts:
         path = context.path or "/"
         if path == "/static":
             routes += [Route(method, "/static/favicon.svg") for method in ("GET", "HEAD")]

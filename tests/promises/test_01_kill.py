@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from app.storage.database.opening import DATABASE_FILE
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.promises.processes import start_script
@@ -67,7 +67,7 @@ def write_until_killed(
     process.stdin.close()
 
 
-def check(store: SqlStore, acknowledged: dict[str, dict[str, int]]) -> None:
+def check(store: RunStore, acknowledged: dict[str, dict[str, int]]) -> None:
     for run_id, lines in acknowledged.items():
         run = store.get(run_id)
         # A write in progress at the kill may have been committed without its acknowledgement.
@@ -80,7 +80,7 @@ def check(store: SqlStore, acknowledged: dict[str, dict[str, int]]) -> None:
         assert data in ([None] if saved == 0 else []) + [checkpoint(saved), checkpoint(saved + 1)]
 
 
-def check_files(store: SqlStore, folder: Path) -> None:
+def check_files(store: RunStore, folder: Path) -> None:
     """Check that every run has its one file, and that there are no orphaned files."""
     runs = store.list(limit=1_000_000).items
     kept = sum(store.artifact(run.id, CHECKPOINT) is not None for run in runs)

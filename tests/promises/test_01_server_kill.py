@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from app.runs.tables import from_bytes
-from app.storage.store import CHECKPOINT
+from app.storage.run import CHECKPOINT
 from tests.promises.length import at_length
 from tests.served import BODY, Served
 from tests.storage.stores import opened

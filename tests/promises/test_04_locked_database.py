@@ -12,7 +12,7 @@ import pytest
 
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.errors import Conflict
-from app.storage.store import QUEUED
+from app.storage.run import QUEUED
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.promises.processes import start_script

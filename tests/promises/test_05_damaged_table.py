@@ -11,11 +11,11 @@ import pytest
 
 from app.assembly import build_learner
 from app.domain.errors import DamagedFile
-from app.jobs.submissions import load_table
 from app.runs.config import training_config
 from app.runs.tables import from_bytes, snapshot, to_bytes
 from app.runs.training import train
-from app.storage.store import TABLE
+from app.storage.run import TABLE
+from app.storage.stored_tables import load_table
 from tests.storage.stores import opened, training
 
 DAMAGES = 1000

@@ -15,7 +15,7 @@ from app.assembly import build_learner
 from app.runs.config import training_config
 from app.runs.tables import snapshot, to_bytes
 from app.runs.training import train
-from app.storage.store import CHECKPOINT
+from app.storage.run import CHECKPOINT
 from tests.promises.length import at_length
 from tests.served import Served
 from tests.storage.stores import opened, training

@@ -16,9 +16,9 @@ from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import TrainingStart
 from app.runs.config import training_config
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
-from app.storage.store import Run
+from app.storage.run import Run
 from tests.storage.stores import opened, training
 
 DAY = timedelta(days=1)
@@ -52,7 +52,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 @contextmanager
-def server(folder: Path) -> Iterator[tuple[SqlStore, Jobs]]:
+def server(folder: Path) -> Iterator[tuple[RunStore, Jobs]]:
     with opened(folder, None) as store:
         jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
         jobs.open()

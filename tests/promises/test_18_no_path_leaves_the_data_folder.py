@@ -10,8 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from app.server import create_app
-from app.settings import Settings
 from tests.browser.serving import Serving, serving
 from tests.promises.length import at_length
 from tests.promises.raw import every_route, send, status_of
@@ -54,8 +52,7 @@ def paths(templates: list[str]) -> list[str]:
 def test_no_path_reads_or_writes_outside_the_data_folder(tmp_path: Path) -> None:
     (tmp_path / "secret.txt").write_text(SECRET)
     data = tmp_path / "data"
-    app = create_app(Settings(data=data))
-    templates = sorted({route.path for route in every_route(app) if "{" in route.path})
+    templates = sorted({route.path for route in every_route() if "{" in route.path})
     attempts = paths(templates)[:: at_length(3, 1)]
     assert len(attempts) > at_length(1_500, 4_500)
     with serving(data) as server:

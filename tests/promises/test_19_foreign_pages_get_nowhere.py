@@ -4,8 +4,6 @@ websocket.
 In full, over raw sockets: 100 % refused.
 """
 
-from app.server import create_app
-from app.settings import Settings
 from tests.browser.serving import Serving
 from tests.promises.raw import every_route, request_lines, send, status_of
 
@@ -55,7 +53,7 @@ def test_foreign_headers_are_refused_on_every_route(quiet_server: Serving) -> No
     headers = [{"Host": host.format(port=port)} for host in FOREIGN_HOSTS]
     headers += [{"Origin": origin.format(port=port)} for origin in FOREIGN_ORIGINS]
     headers += FOREIGN_FETCHES
-    routes = every_route(create_app(Settings(data=quiet_server.data)))
+    routes = every_route()
     assert {"WS"} < {route.method for route in routes}
     accepted = []
     for route in routes:
@@ -86,7 +84,7 @@ def test_duplicate_hosts_or_origins_are_refused(quiet_server: Serving) -> None:
 def test_the_apps_own_page_is_accepted_on_every_route(quiet_server: Serving) -> None:
     port = quiet_server.port
     own = f"127.0.0.1:{port}"
-    for route in every_route(create_app(Settings(data=quiet_server.data))):
+    for route in every_route():
         if route.method in ("GET", "HEAD", "WS"):
             answer = send(port, *request_lines(route, own, Origin=f"http://{own}"))
             assert status_of(answer) not in (400, 401, 403), (route, answer[:200])

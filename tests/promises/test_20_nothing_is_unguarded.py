@@ -10,11 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from fastapi import FastAPI
 from playwright.sync_api import Page, Request, expect
 
-from app.server import create_app
-from app.settings import Settings
 from tests.api.calls import Api
 from tests.browser.dashboard import PATIENCE_MS, Dashboard
 from tests.browser.serving import Serving, serving
@@ -70,11 +67,6 @@ def state_of(server: Serving) -> Any:
     return state
 
 
-def routes(data: Path) -> list[Route]:
-    app: FastAPI = create_app(Settings(data=data))
-    return every_route(app)
-
-
 @pytest.fixture
 def guarded(tmp_path: Path) -> Any:
     with serving(tmp_path / "guarded", token=TOKEN, spectators="token") as server:
@@ -103,7 +95,7 @@ def finished_run(server: Serving) -> str:
 def test_each_route_has_its_role_and_spectators_change_nothing(public: Serving) -> None:
     run_id = finished_run(public)
     before = state_of(public)
-    for route in routes(public.data):
+    for route in every_route():
         status = status_for(public, route, run_id)
         if role_of(route) == "operator":
             assert status == 401, route
@@ -116,7 +108,7 @@ def test_each_route_has_its_role_and_spectators_change_nothing(public: Serving) 
 
 
 def test_without_the_token_a_guarded_server_refuses_reads(guarded: Serving) -> None:
-    for route in routes(guarded.data):
+    for route in every_route():
         status = status_for(guarded, route, "none")
         if role_of(route) == "anyone":
             assert status in (200, 503), route
@@ -125,7 +117,7 @@ def test_without_the_token_a_guarded_server_refuses_reads(guarded: Serving) -> N
 
 
 def test_operators_are_accepted_on_every_route(guarded: Serving) -> None:
-    for route in routes(guarded.data):
+    for route in every_route():
         assert status_for(guarded, route, "none", OPERATOR) not in (401, 403), route
 
 

@@ -17,8 +17,8 @@ from app.storage.database.engine import Database, postgresql_engine, sqlite_engi
 from app.storage.database.migration import migrate, newest_revision
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.database.schema import METADATA
-from app.storage.database.store import SqlStore
-from app.storage.store import TABLE
+from app.storage.database.store import RunStore
+from app.storage.run import TABLE
 from tests.postgresql import PostgresServer
 from tests.promises.released import sample
 from tests.storage.stores import BACKENDS, TRIALS, database_url, opened, training
@@ -56,7 +56,7 @@ def rows_in(table: str, database: Database) -> int:
     return found
 
 
-def check(store: SqlStore, revision: str) -> None:
+def check(store: RunStore, revision: str) -> None:
     runs = [*sample.RUNS, *([sample.EXPERIMENT] if revision >= "0002" else [])]
     assert [run.id for run in store.list().items] == [run.id for run in reversed(runs)]
     for run in runs:

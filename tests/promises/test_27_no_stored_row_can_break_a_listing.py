@@ -30,9 +30,9 @@ from app.runs.tables import from_bytes
 from app.storage.database.engine import Database, postgresql_engine
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.database.schema import METADATA
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.errors import Damaged
-from app.storage.store import TABLE, DamagedRun
+from app.storage.run import TABLE, DamagedRun
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import serving
 from tests.cli.running import hexapods, output
@@ -356,7 +356,7 @@ def test_no_row_can_break_a_listing_in_postgresql(
         assert [run.id for run in store.list().items] == ["b"]
 
 
-def check_refusal(store: SqlStore, run_id: str) -> None:
+def check_refusal(store: RunStore, run_id: str) -> None:
     run = store.find(run_id)
     if isinstance(run, DamagedRun):
         with pytest.raises(Damaged, match="delete it"):

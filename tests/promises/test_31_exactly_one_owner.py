@@ -19,7 +19,7 @@ from app.domain.errors import InvalidInput
 from app.settings import Settings
 from app.storage.database.folder_lock import LOCK_FILE
 from app.storage.database.opening import open_store
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
@@ -69,7 +69,7 @@ def test_the_first_of_two_servers_is_fenced(
 
 
 @contextmanager
-def second_store(data: Path, settings: Settings, url: str | None) -> Iterator[SqlStore]:
+def second_store(data: Path, settings: Settings, url: str | None) -> Iterator[RunStore]:
     """Open a second store; retries, since the first may reacquire its lock in between."""
     with ExitStack() as stack:
         while True:

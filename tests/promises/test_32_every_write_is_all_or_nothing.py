@@ -20,7 +20,7 @@ import pytest
 
 from app.archive.transfer import export_run
 from app.storage.disk_space import MB
-from app.storage.store import TABLE
+from app.storage.run import TABLE
 from tests.promises.breaking_writes import OPERATIONS
 from tests.promises.length import at_length
 from tests.promises.processes import start_script

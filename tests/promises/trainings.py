@@ -13,7 +13,7 @@ from app.runs.records import Evaluated, StepTaken
 from app.runs.tables import from_bytes, snapshot, to_bytes
 from app.runs.training import train
 from app.storage.database.opening import DATABASE_FILE
-from app.storage.store import CHECKPOINT
+from app.storage.run import CHECKPOINT
 
 
 def uninterrupted(

@@ -16,9 +16,9 @@ from app.runs.records import StepTaken
 from app.runs.training import train
 from app.stage.stage import Stage
 from app.stage.stage_frame import StageFrame
-from app.storage.memory_store import MemoryStore
+from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
-from app.storage.store import Run
+from app.storage.run import Run
 
 AdvanceRun = Callable[[], bool]
 """Computes a run's next step; False at the end."""
@@ -30,9 +30,9 @@ GAIT = "left-right-origin"
 class StageParts:
     """A stage with its store, recordings and bus; runs advance by steps, playback by frames."""
 
-    def __init__(self) -> None:
+    def __init__(self, store: RunStore) -> None:
         self.now = 100.0
-        self.store, self.recordings, self.bus = MemoryStore(), Recordings(), EventBus()
+        self.store, self.recordings, self.bus = store, Recordings(store), EventBus()
         self.stage = Stage(self.store, self.recordings, self.bus, now=lambda: self.now)
         self._run_count = 0
 
@@ -60,9 +60,13 @@ class StageParts:
         """Store a queued run without a recording."""
         self._run_count += 1
         kind = "race" if isinstance(config, RaceConfig) else "training"
-        fields = {"name": f"{kind.title()} {self._run_count}", "total": config.steps, **fields}
-        if isinstance(config, RaceConfig):
-            fields["lane_training_ids"] = (None,) * len(config.lanes)
+        lanes = config.lanes if isinstance(config, RaceConfig) else ()
+        fields = {
+            "name": f"{kind.title()} {self._run_count}",
+            "total": config.steps,
+            "lane_training_ids": tuple(None for _ in lanes),
+            **fields,
+        }
         run = Run(id=f"{kind}{self._run_count:03}", kind=kind, config=config, **fields)  # type: ignore[arg-type]
         self.store.create(run)
         return run

@@ -7,11 +7,6 @@ from app.stage.practice_show import SHOWN_GHOSTS
 from tests.stage.stage_parts import FRAME_S, StageParts
 
 
-@pytest.fixture
-def parts() -> StageParts:
-    return StageParts()
-
-
 def test_time_lapse_accelerates_after_ten_slow_steps(parts: StageParts) -> None:
     parts.stage.set(run_id=parts.finished_training(500).id)
     frames = parts.watch_to_end()

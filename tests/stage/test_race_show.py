@@ -15,11 +15,6 @@ from tests.stage.stage_parts import FRAME_S, StageParts
 LANES = ("q-learning", "greedy", "two-step")
 
 
-@pytest.fixture
-def parts() -> StageParts:
-    return StageParts()
-
-
 def show_to_end(parts: StageParts) -> list[StageFrame]:
     parts.stage.set(run_id=parts.finished_race(LANES).id)
     return parts.watch_to_end()

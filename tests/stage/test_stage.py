@@ -12,11 +12,6 @@ from app.storage.errors import NotFound
 from tests.stage.stage_parts import GAIT, StageParts
 
 
-@pytest.fixture
-def parts() -> StageParts:
-    return StageParts()
-
-
 def test_idle_stage_shows_the_three_agents_of_the_paper(parts: StageParts) -> None:
     frame = parts.next_frame()
 

@@ -13,9 +13,9 @@ from app.events.run_view import run_view
 from app.settings import Settings
 from app.stage.stage import Stage
 from app.storage.database.opening import open_store
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
-from app.storage.store import LIVE, QUEUED, UNENDED, Run
+from app.storage.run import LIVE, NOT_ENDED, QUEUED, Run
 from tests.storage.queries import recorded_queries
 from tests.storage.stores import experiment, training
 
@@ -25,7 +25,7 @@ REST_QPOS = np.zeros(25, np.float32)
 class Follower:
     """A stage on a database of its own, whose clock advances with each frame."""
 
-    def __init__(self, store: SqlStore) -> None:
+    def __init__(self, store: RunStore) -> None:
         self.store, self.bus, self.now = store, EventBus(), 0.0
         self.recordings = Recordings(store)
         self.stage = Stage(store, self.recordings, self.bus, now=lambda: self.now)
@@ -85,7 +85,7 @@ def test_state_of_the_stage_follows_an_event_without_a_frame(follower: Follower)
 def test_event_from_before_a_run_was_shown_does_not_undo_what_was_read(follower: Follower) -> None:
     run = follower.running("a")
     follower.publish(run)
-    follower.store.change(run.id, UNENDED, "finished")
+    follower.store.change(run.id, NOT_ENDED, "finished")
     follower.stage.set(run_id=run.id)
     assert not follower.stage.state()["live"]
 

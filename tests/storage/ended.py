@@ -15,8 +15,9 @@ from app.runs.records import Evaluated, StepTaken
 from app.runs.results import race_result
 from app.runs.tables import from_bytes, snapshot, to_bytes
 from app.runs.training import train
+from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
-from app.storage.store import SUMMARY, TABLE, Run, RunStore
+from app.storage.run import SUMMARY, TABLE, Run
 from app.storage.stored_trials import trials_as_csv
 from tests.jobs.experiments import sweep
 from tests.storage.stores import training

@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
+from typing import Any, TypeVar
 
 from app.domain.gait import GaitSpec
 from app.domain.robot import robot
@@ -12,10 +13,11 @@ from app.experiments.config import ExperimentConfig
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
 from app.settings import Settings
 from app.storage.database.opening import open_store
-from app.storage.database.store import SqlStore
-from app.storage.store import Run
+from app.storage.database.store import RunStore
+from app.storage.run import Run
 from tests.postgresql import PostgresServer
 
+StoreT = TypeVar("StoreT", bound=RunStore)
 BACKENDS = ["sqlite", "postgresql"]
 PLAIN = training_config(gait="left-right-origin")
 ODD = TrainingConfig(
@@ -97,7 +99,19 @@ def database_url(backend: str, server: PostgresServer) -> Iterator[str | None]:
 
 
 @contextmanager
-def opened(folder: Path, url: str | None) -> Iterator[SqlStore]:
+def opened(folder: Path, url: str | None) -> Iterator[RunStore]:
     """Open the store of a server with this data folder and database URL."""
     with open_store(Settings(data=folder, database_url=url)) as store:
         yield store
+
+
+@contextmanager
+def temporary_store() -> Iterator[RunStore]:
+    """Open an empty SQLite store in a temporary folder, which is deleted at the end."""
+    with TemporaryDirectory() as folder, opened(Path(folder), None) as store:
+        yield store
+
+
+def of_type(kind: type[StoreT], store: RunStore) -> StoreT:
+    """Return a store of a subclass, for example one whose writes fail, on the same database."""
+    return kind(store._database, store._files)

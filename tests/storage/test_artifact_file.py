@@ -8,11 +8,10 @@ import pytest
 
 from app.domain.errors import DamagedFile
 from app.storage.artifact_file import (
-    PIECE_BYTES,
-    BytesFile,
+    CHUNK_BYTES,
     ReadableArtifact,
+    chunks,
     closing_after,
-    pieces,
 )
 from app.storage.artifacts import ArtifactFiles, StoredFile
 from app.storage.disk_space import DiskSpace
@@ -22,7 +21,9 @@ DATA = bytes(range(256)) * 1000
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    return tmp_path / "artifacts"
+    path = tmp_path / "artifacts"
+    path.mkdir()
+    return path
 
 
 @pytest.fixture
@@ -37,16 +38,16 @@ def open_descriptors(folder: Path) -> int:
 
 def test_chunks_add_up_to_the_file(files: ArtifactFiles, folder: Path) -> None:
     stored = files.write(DATA)
-    parts = list(pieces(files.open(stored, "it")))
+    parts = list(chunks(files.open(stored, "it")))
 
     assert b"".join(parts) == DATA
-    assert max(map(len, parts)) == PIECE_BYTES
+    assert max(map(len, parts)) == CHUNK_BYTES
     assert open_descriptors(folder) == 0
 
 
 def test_concurrent_readers_share_one_descriptor(files: ArtifactFiles, folder: Path) -> None:
     stored = files.write(DATA)
-    readers = [pieces(files.open(stored, "it")) for _ in range(50)]
+    readers = [chunks(files.open(stored, "it")) for _ in range(50)]
     started = [next(reader) for reader in readers]
 
     assert open_descriptors(folder) == 1
@@ -60,7 +61,7 @@ def test_concurrent_readers_share_one_descriptor(files: ArtifactFiles, folder: P
 def test_garbage_collected_readers_close_the_file(files: ArtifactFiles, folder: Path) -> None:
     stored = files.write(DATA)
     never_started = closing_after(files.open(stored, "it"), [b""])
-    started = pieces(files.open(stored, "it"))
+    started = chunks(files.open(stored, "it"))
     next(started)
     assert open_descriptors(folder) == 1
 
@@ -71,7 +72,7 @@ def test_garbage_collected_readers_close_the_file(files: ArtifactFiles, folder: 
 
 def test_file_deleted_during_a_read_is_read_to_its_end(files: ArtifactFiles) -> None:
     stored = files.write(DATA)
-    reader = pieces(files.open(stored, "it"))
+    reader = chunks(files.open(stored, "it"))
     begin = next(reader)
     files.remove(stored.file)
 
@@ -102,8 +103,8 @@ def test_reading_a_closed_reader_raises(files: ArtifactFiles) -> None:
         reader.read_at(0, 1)
 
 
-def test_artifact_is_readable_as_a_binary_file() -> None:
-    file = io.BufferedReader(ReadableArtifact(BytesFile(DATA)))
+def test_artifact_is_readable_as_a_binary_file(files: ArtifactFiles) -> None:
+    file = io.BufferedReader(ReadableArtifact(files.open(files.write(DATA), "it")))
 
     assert file.read(5) == DATA[:5]
     file.seek(-3, io.SEEK_END)

@@ -8,7 +8,7 @@ import pytest
 
 from app.domain.errors import DamagedFile
 from app.storage.artifacts import ArtifactFiles, StoredFile
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.disk_space import MB, RESERVE_BYTES, DiskSpace
 from app.storage.errors import NotFound, StorageFailed, StorageFull
 from tests.storage.stores import opened, training
@@ -16,6 +16,7 @@ from tests.storage.stores import opened, training
 
 @pytest.fixture
 def files(tmp_path: Path) -> ArtifactFiles:
+    (tmp_path / "files").mkdir()
     return ArtifactFiles(tmp_path / "files", DiskSpace(tmp_path))
 
 
@@ -75,8 +76,9 @@ def test_artifact_of_a_deleted_run_is_not_stored(tmp_path: Path) -> None:
 
     with opened(tmp_path, None) as opened_store:
         folder = tmp_path / "slow"
+        folder.mkdir()
         files = Slow(folder, DiskSpace(tmp_path))
-        store = SqlStore(opened_store._database, files)
+        store = RunStore(opened_store._database, files)
         store.create(training("a", state="finished"))
         with pytest.raises(NotFound, match="no run 'a'"):
             store.put_artifact("a", "q-table.npz", b"late")
@@ -85,6 +87,7 @@ def test_artifact_of_a_deleted_run_is_not_stored(tmp_path: Path) -> None:
 
 def test_quota_is_enforced(tmp_path: Path) -> None:
     disk_space = DiskSpace(tmp_path, quota_mb=10)
+    (tmp_path / "files").mkdir()
     files = ArtifactFiles(tmp_path / "files", disk_space)
     kept = [files.write(bytes(3 * MB)) for _ in range(3)]
     with pytest.raises(StorageFull, match=r"10 MB.*3\.0 MB more.*HEXAPODS_QUOTA_MB"):

@@ -13,11 +13,11 @@ from app.jobs.submissions import TrainingStart
 from app.runs.config import training_config
 from app.settings import Settings
 from app.storage.database.opening import open_store
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.disk_space import MB, MIN_FREE_BYTES, START_BYTES, DiskSpace
 from app.storage.errors import StorageFull
 from app.storage.recordings import Recordings
-from app.storage.store import QUEUED, TABLE
+from app.storage.run import QUEUED, TABLE
 from tests.storage.stores import training
 
 QUOTA_MB = 12
@@ -25,13 +25,13 @@ START = TrainingStart(training_config(gait="left-right-origin", simulator="kinem
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> Iterator[SqlStore]:
+def store(tmp_path: Path) -> Iterator[RunStore]:
     with open_store(Settings(data=tmp_path, quota_mb=QUOTA_MB)) as opened_store:
         yield opened_store
 
 
-def test_start_is_refused_if_the_quota_leaves_too_little(store: SqlStore) -> None:
-    jobs = Jobs(store, Recordings(), EventBus())  # not opened, so that all runs stay queued
+def test_start_is_refused_if_the_quota_leaves_too_little(store: RunStore) -> None:
+    jobs = Jobs(store, Recordings(store), EventBus())  # not opened, so that all runs stay queued
     store.create(training("0old"))
     store.put_artifact("0old", TABLE, bytes(6 * MB))
     with pytest.raises(StorageFull, match="raise HEXAPODS_QUOTA_MB"):

@@ -10,10 +10,11 @@ import pytest
 
 from app.domain.errors import InvalidInput
 from app.storage.database import keys
+from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Gone
 from app.storage.idempotency import Idempotency
+from app.storage.run import KEY_LIFETIME, Content, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
-from app.storage.store import KEY_LIFETIME, Content, IdempotencyKey, Run, RunStore
 from tests.storage.stores import BACKENDS, database_url, opened, training
 
 new_id = RunIds()

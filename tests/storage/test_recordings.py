@@ -8,7 +8,7 @@ import pytest
 
 from app.runs.recording import LaneRecording, PracticeRecording
 from app.storage import stored_recordings
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.stored_recordings import CACHE_RECORDINGS
 from tests.runs.made_up import lane, step
@@ -17,7 +17,7 @@ from tests.storage.stores import opened, race, training
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> Iterator[SqlStore]:
+def store(tmp_path: Path) -> Iterator[RunStore]:
     with opened(tmp_path, None) as opened_store:
         yield opened_store
 
@@ -30,7 +30,7 @@ def record(recordings: Recordings, run_id: str, practised: PracticeRecording) ->
         recordings.add(run_id, evaluation)
 
 
-def test_training_recording_survives_a_restart(store: SqlStore) -> None:
+def test_training_recording_survives_a_restart(store: RunStore) -> None:
     store.create(training("a"))
     practised = practise(700)
     recordings = Recordings(store)
@@ -44,7 +44,7 @@ def test_training_recording_survives_a_restart(store: SqlStore) -> None:
         assert reader.training("a") is recording
 
 
-def test_race_recordings_survive_a_restart(store: SqlStore) -> None:
+def test_race_recordings_survive_a_restart(store: RunStore) -> None:
     store.create(race("a"))
     lanes = [lane(step(1, [0.1, 0.2])), LaneRecording("greedy", np.zeros(8, np.float32))]
     lanes[1].failure = "It fell."
@@ -61,7 +61,7 @@ def test_race_recordings_survive_a_restart(store: SqlStore) -> None:
     assert np.array_equal(stored[0].steps[0].motion.qpos, lanes[0].steps[0].motion.qpos)
 
 
-def test_resumed_training_continues_the_saved_recording(store: SqlStore) -> None:
+def test_resumed_training_continues_the_saved_recording(store: RunStore) -> None:
     store.create(training("a"))
     whole = practise(100)
     recordings = Recordings(store)
@@ -84,7 +84,7 @@ def test_resumed_training_continues_the_saved_recording(store: SqlStore) -> None
 
 
 def test_saving_again_writes_only_new_files(
-    store: SqlStore, monkeypatch: pytest.MonkeyPatch
+    store: RunStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     written: list[str] = []
     put_artifact = store.put_artifact
@@ -112,7 +112,7 @@ def test_saving_again_writes_only_new_files(
     assert [e.step for e in again.evaluations] == [10, 20, 30, 40, 50, 60]
 
 
-def test_cache_evicts_the_least_recently_used_recording(store: SqlStore) -> None:
+def test_cache_evicts_the_least_recently_used_recording(store: RunStore) -> None:
     recordings = Recordings(store)
     practised = practise(10)
     ids = [f"t{number}" for number in range(CACHE_RECORDINGS + 1)]
@@ -129,7 +129,7 @@ def test_cache_evicts_the_least_recently_used_recording(store: SqlStore) -> None
     assert recordings.training(ids[0]) is not oldest
 
 
-def test_deleted_run_has_no_recording(store: SqlStore) -> None:
+def test_deleted_run_has_no_recording(store: RunStore) -> None:
     store.create(training("a", state="finished"))
     recordings = Recordings(store)
     record(recordings, "a", practise(10))
@@ -139,7 +139,7 @@ def test_deleted_run_has_no_recording(store: SqlStore) -> None:
     assert recordings.training("a") is None
 
 
-def test_damaged_recording_is_returned_as_none(store: SqlStore, tmp_path: Path) -> None:
+def test_damaged_recording_is_returned_as_none(store: RunStore, tmp_path: Path) -> None:
     store.create(race("a"))
     recordings = Recordings(store)
     recordings.begin_race("a", [lane()])

@@ -6,21 +6,21 @@ from pathlib import Path
 
 import pytest
 
-from app.storage.database.store import SqlStore
-from app.storage.sessions import MAX_SESSIONS, SESSION_S, MemorySessionRows, Sessions
+from app.storage.database.store import RunStore
+from app.storage.sessions import MAX_SESSIONS, SESSION_S, Sessions
 from tests.storage.stores import BACKENDS, database_url, opened
 
 TOKEN, OTHER = "a-token-for-tests", "another-token-for-tests"
 
 
 @pytest.fixture(params=BACKENDS)
-def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[SqlStore]:
+def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RunStore]:
     server = request.param == "postgresql" and request.getfixturevalue("postgresql")
     with database_url(request.param, server) as url, opened(tmp_path, url) as opened_store:
         yield opened_store
 
 
-def test_sessions_survive_a_restart_but_not_a_new_token(store: SqlStore) -> None:
+def test_sessions_survive_a_restart_but_not_a_new_token(store: RunStore) -> None:
     sessions = Sessions(store.sessions, TOKEN)
     first, second = sessions.open(), sessions.open()
     sessions.close(second)
@@ -36,8 +36,8 @@ def test_sessions_survive_a_restart_but_not_a_new_token(store: SqlStore) -> None
     assert not Sessions(store.sessions, TOKEN).is_open(first)
 
 
-def test_sessions_expire_and_are_deleted() -> None:
-    now, rows = [datetime(2026, 1, 1, tzinfo=UTC)], MemorySessionRows()
+def test_sessions_expire_and_are_deleted(store: RunStore) -> None:
+    now, rows = [datetime(2026, 1, 1, tzinfo=UTC)], store.sessions
     sessions = Sessions(rows, TOKEN, lambda: now[0])
     opened_one = sessions.open()
     now[0] += timedelta(seconds=SESSION_S - 1)
@@ -51,8 +51,8 @@ def test_sessions_expire_and_are_deleted() -> None:
     assert rows.load() == []
 
 
-def test_oldest_session_is_closed_beyond_the_maximum() -> None:
-    rows = MemorySessionRows()
+def test_oldest_session_is_closed_beyond_the_maximum(store: RunStore) -> None:
+    rows = store.sessions
     sessions = Sessions(rows, TOKEN)
     first = sessions.open()
     others = [sessions.open() for _ in range(MAX_SESSIONS)]

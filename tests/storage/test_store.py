@@ -1,4 +1,4 @@
-"""Conformance tests of `RunStore`, for its implementations in memory, SQLite and PostgreSQL."""
+"""The run store, on SQLite and PostgreSQL."""
 
 import math
 import threading
@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
+from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
-from app.storage.memory_store import MemoryStore
+from app.storage.run import LIVE, NOT_ENDED, QUEUED, RUNNING, AnyRun, Run, State
 from app.storage.run_ids import RunIds
-from app.storage.store import LIVE, QUEUED, RUNNING, UNENDED, AnyRun, Run, RunStore, State
 from tests.storage.stores import (
     BACKENDS,
     ODD,
@@ -28,11 +28,8 @@ from tests.storage.stores import (
 new_id = RunIds()
 
 
-@pytest.fixture(params=["memory", *BACKENDS])
+@pytest.fixture(params=BACKENDS)
 def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RunStore]:
-    if request.param == "memory":
-        yield MemoryStore()
-        return
     server = request.param == "postgresql" and request.getfixturevalue("postgresql")
     with database_url(request.param, server) as url, opened(tmp_path, url) as opened_store:
         yield opened_store
@@ -88,7 +85,7 @@ def test_unknown_run_raises_not_found(store: RunStore) -> None:
             lambda i: store.append_trials(i, []),
             lambda i: store.update(i, done=1),
             lambda i: store.update_progress(i, 1),
-            lambda i: store.change(i, UNENDED, "failed"),
+            lambda i: store.change(i, NOT_ENDED, "failed"),
             lambda i: store.artifact(i, "a"),
             lambda i: store.put_artifact(i, "a", b""),
             lambda i: store.append_evaluations(i, [{"step": 1, "distance_m": 0.0, "epsilon": 0}]),

@@ -10,9 +10,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.stage.conftest import parts
+
 if TYPE_CHECKING:
     from app.viewer.viser_internals.server import InProcessViser
     from tests.viewer.serving import Robots
+
+__all__ = ["parts"]
 
 
 @pytest.fixture

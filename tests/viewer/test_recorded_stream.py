@@ -18,8 +18,7 @@ def decoded_header(data: bytes) -> dict[str, object]:
     return body
 
 
-def test_file_has_the_whole_race_and_visers_version() -> None:
-    parts = StageParts()
+def test_file_has_the_whole_race_and_visers_version(parts: StageParts) -> None:
     run = parts.finished_race(steps=6)
     assert isinstance(run.config, RaceConfig)
     lanes = parts.recordings.race(run.id) or []
@@ -36,8 +35,7 @@ def test_file_has_the_whole_race_and_visers_version() -> None:
     assert any(text.endswith("done") for text in texts)
 
 
-def test_long_race_is_played_faster() -> None:
-    parts = StageParts()
+def test_long_race_is_played_faster(parts: StageParts) -> None:
     run = parts.finished_race(("two-step",), steps=150)
     assert isinstance(run.config, RaceConfig)
 

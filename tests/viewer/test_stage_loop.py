@@ -11,8 +11,6 @@ import pytest
 from app.events.bus import EventBus
 from app.stage.stage import Stage
 from app.stage.stage_frame import StageFrame
-from app.storage.memory_store import MemoryStore
-from app.storage.recordings import Recordings
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop
 from app.viewer.viser_internals.server import in_process_viser
@@ -32,31 +30,28 @@ class FailingScene(StageScene):
         return super().draw(frame, now)
 
 
-def test_loop_draws_within_its_block() -> None:
-    stage, bus = Stage(MemoryStore(), Recordings(), EventBus()), EventBus()
+def test_loop_draws_within_its_block(parts: StageParts) -> None:
     with in_process_viser() as server:
         scene = StageScene(server)
-        with StageLoop(stage, scene, bus):
+        with StageLoop(parts.stage, scene, EventBus()):
             wait_until(lambda: scene.follow_position("leader"))
 
     assert "stage" not in {thread.name for thread in threading.enumerate()}
 
 
 def test_error_in_a_frame_is_logged_once_and_drawing_continues(
-    caplog: pytest.LogCaptureFixture,
+    caplog: pytest.LogCaptureFixture, parts: StageParts
 ) -> None:
-    stage, bus = Stage(MemoryStore(), Recordings(), EventBus()), EventBus()
     with in_process_viser() as server, caplog.at_level(logging.INFO):
         scene = FailingScene(server)
-        with StageLoop(stage, scene, bus):
+        with StageLoop(parts.stage, scene, EventBus()):
             wait_until(lambda: scene.follow_position("leader"))
 
     messages = [record.message for record in caplog.records if "stage" in record.name]
     assert messages == ["drawing the stage failed, going on", "drawing the stage works again"]
 
 
-def test_moving_race_publishes_scenes() -> None:
-    parts = StageParts()
+def test_moving_race_publishes_scenes(parts: StageParts) -> None:
     run = parts.finished_race()
     stage = Stage(parts.store, parts.recordings, parts.bus)
     stage.set(run_id=run.id)

@@ -7,7 +7,7 @@ from sqlalchemy import Connection, delete, insert, select
 from app.storage.database.engine import Database
 from app.storage.database.queries import fetch_rows
 from app.storage.database.schema import IDEMPOTENCY_KEYS
-from app.storage.store import KEY_LIFETIME, MAX_KEYS, IdempotencyKey, KeyRecord
+from app.storage.run import KEY_LIFETIME, MAX_KEYS, IdempotencyKey, KeyRecord
 
 _KEYS = IDEMPOTENCY_KEYS
 

@@ -5,13 +5,13 @@ from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 
 from app.settings import Settings
-from app.storage.artifacts import ArtifactFiles
+from app.storage.artifacts import ArtifactFiles, sync_folder
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
 from app.storage.database.folder_lock import lock_folder
 from app.storage.database.migration import migrate
 from app.storage.database.ownership import Ownership, claim
 from app.storage.database.sqlite_file import check_file, create_file
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.disk_space import DiskSpace
 
 DATABASE_FILE = "hexapods.db"
@@ -22,7 +22,7 @@ _logger = logging.getLogger(__name__)
 @contextmanager
 def open_store(
     settings: Settings, on_lost: Callable[[], object] = lambda: None
-) -> Iterator[SqlStore]:
+) -> Iterator[RunStore]:
     """Open the store of a server exclusively, for as long as the context lasts.
 
     Runs that a crashed server left unended become `interrupted`; its orphaned files are deleted.
@@ -46,7 +46,9 @@ def open_store(
             with _locked(ownership):
                 migrate(database)
                 folder = settings.data / ARTIFACTS_FOLDER / claim(database).database_id
-                store = SqlStore(database, ArtifactFiles(folder, disk_space))
+                folder.mkdir(parents=True, exist_ok=True)
+                sync_folder(folder.parent)
+                store = RunStore(database, ArtifactFiles(folder, disk_space))
                 _recover(store)
                 with ownership.watched():
                     yield store
@@ -61,7 +63,7 @@ def _locked(ownership: Ownership) -> Iterator[None]:
         ownership.release()
 
 
-def _recover(store: SqlStore) -> None:
+def _recover(store: RunStore) -> None:
     """Clean up after a crash: delete orphaned files, mark unended runs as interrupted."""
     orphans, interrupted = store.delete_orphans(), store.interrupt_all()
     if orphans or interrupted:

@@ -2,24 +2,22 @@
 
 import sqlite3
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from urllib.parse import quote
 
 from sqlalchemy import Connection, Engine, create_engine, event, select
-from sqlalchemy.pool import NullPool
+from sqlalchemy.pool import NullPool, StaticPool
 
 from app.settings import Settings
 from app.storage.artifacts import ArtifactFiles
 from app.storage.database.engine import BUSY_S, Database, decode_leniently, postgresql_engine
 from app.storage.database.migration import check_current
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
-from app.storage.database.schema import ABOUT
+from app.storage.database.schema import ABOUT, METADATA
 from app.storage.database.sqlite_file import check_file
-from app.storage.database.store import SqlStore
+from app.storage.database.store import RunStore
 from app.storage.disk_space import DiskSpace
-from app.storage.memory_store import MemoryStore
-from app.storage.store import RunStore
 
 
 @contextmanager
@@ -31,27 +29,30 @@ def open_read_only(settings: Settings) -> Iterator[RunStore]:
         DamagedFile: if the database is damaged.
         StorageFailed: if it cannot be read.
     """
-    engine = _engine(settings)
-    if engine is None:
-        yield MemoryStore()
-        return
-    with closing(Database(engine)) as database:
+    with ExitStack() as stack:
+        database = stack.enter_context(closing(Database(_engine(settings))))
         database_id = database.read(_id)
         if database_id is None:
-            yield MemoryStore()
-            return
-        folder = settings.data / ARTIFACTS_FOLDER / database_id
-        yield SqlStore(database, ArtifactFiles(folder, DiskSpace(settings.data)))
+            database = stack.enter_context(closing(Database(_empty_engine())))
+        folder = settings.data / ARTIFACTS_FOLDER / (database_id or "none")
+        yield RunStore(database, ArtifactFiles(folder, DiskSpace(settings.data)))
 
 
-def _engine(settings: Settings) -> Engine | None:
+def _engine(settings: Settings) -> Engine:
     if settings.database_url is not None:
         engine = postgresql_engine(settings.database_url)
         event.listen(engine, "connect", _set_read_only)
         return engine
     path = settings.data / DATABASE_FILE
     check_file(path, settings.data / ARTIFACTS_FOLDER)
-    return _sqlite_engine(path) if path.is_file() else None
+    return _sqlite_engine(path) if path.is_file() else _empty_engine()
+
+
+def _empty_engine() -> Engine:
+    """Create an engine for a database in memory, with tables but no rows."""
+    engine = create_engine("sqlite://", poolclass=StaticPool)
+    METADATA.create_all(engine)
+    return engine
 
 
 def _sqlite_engine(path: Path) -> Engine:

@@ -9,11 +9,20 @@ from typing import Any, TypeVar
 
 from app.domain.text import visible
 from app.runs.config import RaceConfig
-from app.storage.configs import CONFIGS, config_as_json, config_of
 from app.storage.database.columns import decode_json
 from app.storage.database.queries import MAX_CELL_CHARS, public_id
 from app.storage.errors import Damaged
-from app.storage.store import KINDS, STATES, AnyRun, Config, DamagedRun, Run
+from app.storage.run import (
+    CONFIGS,
+    KINDS,
+    STATES,
+    AnyRun,
+    Config,
+    DamagedRun,
+    Run,
+    config_as_json,
+    run_config_from_json,
+)
 
 MAX_ERROR_CHARS = 10_000
 """Maximum length of a run's error; exceptions of user-defined agents may be longer."""
@@ -95,7 +104,7 @@ def _decode_fields(row: Mapping[str, Any]) -> dict[str, Any]:
 @lru_cache(maxsize=512)
 def _config(kind: str, text: str) -> Config:
     """Parse a config, cached: parsing dominates a listing, and many runs have the same config."""
-    return config_of(kind, _json("config", text))
+    return run_config_from_json(kind, _json("config", text))
 
 
 def _check_scalars(row: Mapping[str, Any], values: Mapping[str, Any]) -> None:

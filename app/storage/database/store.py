@@ -1,4 +1,4 @@
-"""`RunStore` in a database: rows in SQLite or PostgreSQL, artifacts in files beside it."""
+"""The run store: rows in SQLite or PostgreSQL, artifacts in files beside it."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
@@ -38,15 +38,14 @@ from app.storage.database.queries import (
 )
 from app.storage.database.rows import decode_run, encode_fields, encode_run, try_decode_run
 from app.storage.database.schema import ARTIFACTS, RUNS
-from app.storage.database.sessions import SqlSessionRows
 from app.storage.database.trials import Trials
 from app.storage.disk_space import START_BYTES
 from app.storage.errors import Conflict, Damaged, StorageFailed
-from app.storage.store import (
+from app.storage.run import (
     KINDS,
     LIVE,
+    NOT_ENDED,
     RUNNING,
-    UNENDED,
     AnyRun,
     Content,
     DamagedRun,
@@ -57,29 +56,46 @@ from app.storage.store import (
     Run,
     State,
 )
+from app.storage.sessions import SessionRows
 
 T = TypeVar("T")
 _INTERRUPTED_ERROR = "The server ended before the run did."
 _FILE = (ARTIFACTS.c.file, ARTIFACTS.c.size, ARTIFACTS.c.sha256)
 
 
-class SqlStore:
-    """Implements `RunStore` in a database. Calls are durable on return, except `update_progress`.
+class RunStore:
+    """Stores runs, curves, trials and artifacts in a database. Thread-safe.
 
-    Every call may also raise `StorageFailed` if the database is unavailable, and every write
-    `StorageFull`; nothing has changed then.
+    Calls are durable on return, except `update_progress`. Every call may also raise
+    `StorageFailed` if the database is unavailable, and every write `StorageFull`; nothing has
+    changed then.
+
+    Attributes:
+        sessions: storage of operators' browser sessions, in the same database.
     """
 
     def __init__(self, database: Database, files: ArtifactFiles) -> None:
         self._database, self._files = database, files
         self._progress = ProgressCache()
         self._curves, self._trials, self._keys = Curves(database), Trials(database), Keys(database)
-        self.sessions = SqlSessionRows(database)
+        self.sessions = SessionRows(database)
 
     def check_disk_space(self) -> None:
+        """Check that there is disk space for one more run.
+
+        Raises:
+            StorageFull: if there is too little, or would be while the run runs.
+        """
         self._files.check_disk_space(START_BYTES)
 
     def create(self, *runs: Run, key: IdempotencyKey | None = None) -> None:
+        """Insert new runs, all or none, in one transaction.
+
+        Args:
+            runs: in order of insertion.
+            key: idempotency key of the request that starts the last of them, stored in the same
+                transaction.
+        """
         if not runs:
             return
         rows = [encode_run(run) for run in runs]
@@ -97,6 +113,20 @@ class SqlStore:
         new_id: Callable[[], str],
         key: IdempotencyKey | None = None,
     ) -> Run:
+        """Insert an ended run with its content (used by imports), atomically.
+
+        Args:
+            run: the run; keeps its id if that is free in this store.
+            content: its curve, trials and artifacts.
+            new_id: creates an id if the run's own is already in use.
+            key: idempotency key of the request, stored in the same transaction.
+
+        Returns:
+            the run as stored.
+
+        Raises:
+            StorageFull: if there is too little disk space; nothing is left behind then.
+        """
         stored: dict[str, StoredFile] = {}
         was_submitted = False
 
@@ -127,9 +157,16 @@ class SqlStore:
             raise
 
     def find_key(self, key: str) -> KeyRecord | None:
+        """Look up an idempotency key; None if it was not used within its lifetime."""
         return self._keys.find(key)
 
     def get(self, run_id: str) -> Run:
+        """Return the run with its newest progress.
+
+        Raises:
+            NotFound: if there is no such run.
+            Damaged: if it cannot be decoded.
+        """
         run = self.find(run_id)
         if isinstance(run, DamagedRun):
             raise Damaged(run.id, run.damaged)
@@ -138,6 +175,11 @@ class SqlStore:
     def find(self, run_id: str) -> AnyRun:
         # Read before the row: an entry is dropped only after its row was written, so that the
         # progress seen by a reader never decreases.
+        """Return the run with its newest progress, or a `DamagedRun` if it cannot be decoded.
+
+        Raises:
+            NotFound: if there is no such run.
+        """
         progress = self._progress.get(run_id)
         row = self._database.read(lambda connection: fetch_run_row(connection, run_id))
         return try_decode_run(_with_progress(row, progress))
@@ -149,6 +191,17 @@ class SqlStore:
         limit: int = 50,
         cursor: str | None = None,
     ) -> Page:
+        """Return one page of runs, newest first (keyset pagination by id).
+
+        A run that cannot be decoded is listed in its place as a `DamagedRun`; if its kind cannot
+        be decoded either, it is listed under every kind.
+
+        Args:
+            kind: only runs of this kind; None for all.
+            state: only runs in this state; None for all.
+            limit: items per page.
+            cursor: `Page.next_cursor` of the page before; None for the first page.
+        """
         newest_first = select_runs().order_by(RUNS.c.id.desc()).limit(limit + 1)
         if state is not None:
             newest_first = newest_first.where(RUNS.c.state == state)
@@ -172,6 +225,7 @@ class SqlStore:
         )
 
     def counts(self) -> Mapping[State, int]:
+        """Return the number of runs by state, for states that have any."""
         query = select(RUNS.c.state, func.count()).group_by(RUNS.c.state)
         rows = self._database.read(lambda connection: connection.execute(query).all())
         return {state: count for state, count in rows}  # noqa: C416 - as a dict of plain types
@@ -179,6 +233,14 @@ class SqlStore:
     def change(
         self, run_id: str, from_states: Collection[State], to_state: State, **fields: Any
     ) -> Run:
+        """Change the state and other fields if the state is in `from_states` (compare-and-set).
+
+        `eta_s` is reset to None unless it is among the fields.
+
+        Raises:
+            NotFound: if there is no such run.
+            Conflict: if its state is not in `from_states`.
+        """
         progress = self._progress.get(run_id)
         columns = encode_fields({**progress, "eta_s": None, "state": to_state, **fields})
         unchanged = update(RUNS).where(RUNS.c.id == run_id, RUNS.c.state.in_(from_states))
@@ -204,6 +266,11 @@ class SqlStore:
         return decode_run(_with_progress(row, {}))
 
     def update(self, run_id: str, **fields: Any) -> Run:
+        """Set fields other than the state.
+
+        Raises:
+            NotFound: if there is no such run.
+        """
         progress = self._progress.get(run_id)
         values = encode_fields(fields)
         statement = update(RUNS).where(RUNS.c.id == run_id).values(values).returning(*RAW_RUN)
@@ -219,6 +286,13 @@ class SqlStore:
         )
 
     def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> None:
+        """Set the number of steps or trials done and the estimated time left [s].
+
+        Readers of this store see it at once; it is durable within a second.
+
+        Raises:
+            NotFound: if there is no such run; not at every call.
+        """
         statement = update(RUNS).where(RUNS.c.id == run_id).values(done=done, eta_s=eta_s)
 
         def work(connection: Connection) -> None:
@@ -229,10 +303,17 @@ class SqlStore:
             self._database.write(work)
 
     def delete(self, run_id: str) -> None:
+        """Delete an ended run with its curve, trials and artifacts.
+
+        Raises:
+            NotFound: if there is no such run.
+            Conflict: if it has not ended.
+        """
+
         def work(connection: Connection) -> Sequence[str]:
             row = fetch_run_row(connection, run_id, for_update=True)
             state = row["state"]
-            if state in UNENDED:
+            if state in NOT_ENDED:
                 raise Conflict(f"{row['kind']} {run_id} is {state}; stop it first", state)
             is_this_run = has_public_id(connection, run_id)
             files = select(ARTIFACTS.c.file).where(
@@ -246,21 +327,57 @@ class SqlStore:
         self._progress.drop(run_id)
 
     def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
+        """Append rows to a training's curve, replacing its rows from the first new step on.
+
+        A training that resumes from a checkpoint repeats the evaluations after that checkpoint.
+
+        Args:
+            run_id: id of the training.
+            rows: `step`, `distance_m` [m] and `epsilon` (exploration rate) of each evaluation.
+
+        Raises:
+            NotFound: if there is no such run.
+        """
         self._curves.append(run_id, rows)
 
     def evaluations(self, run_id: str) -> Sequence[Mapping[str, Any]]:
+        """Return a training's curve so far, by step: `step`, `distance_m`, `epsilon`."""
         return self._curves.get(run_id)
 
     def delete_evaluations(self, run_id: str, after_step: int) -> None:
+        """Delete the rows of a training's curve after this step."""
         self._curves.delete_after(run_id, after_step)
 
     def append_trials(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
+        """Add trials of an experiment, replacing those with the same key (upsert).
+
+        Args:
+            run_id: id of the experiment.
+            rows: `key`, `result` (plain types, or None), `set_aside` (why there is no result, or
+                None) and `compute_s` [s].
+
+        Raises:
+            NotFound: if there is no such run.
+        """
         self._trials.append(run_id, rows)
 
     def trials(self, run_id: str) -> Sequence[Mapping[str, Any]]:
+        """Return the trials of an experiment so far, sorted by key.
+
+        Raises:
+            NotFound: if there is no such run.
+        """
         return self._trials.get(run_id)
 
     def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
+        """Store a file of the run and set fields of the run, atomically.
+
+        Replaces the file that had this name.
+
+        Raises:
+            NotFound: if there is no such run.
+            StorageFull: if there is too little disk space.
+        """
         self.get(run_id)
         columns = encode_fields(fields)
         stored = self._files.write(data)
@@ -289,9 +406,14 @@ class SqlStore:
         self._files.remove(*(name for name in former if name != stored.file))
 
     def artifact(self, run_id: str, name: str) -> bytes | None:
+        """Return the content of a file of the run; None if it has no file of this name."""
         return self._read_artifact(run_id, name, self._files.read)
 
     def open_artifact(self, run_id: str, name: str) -> ArtifactFile | None:
+        """Open a file of the run for reading in chunks; None if it has no file of this name.
+
+        The caller closes it.
+        """
         return self._read_artifact(run_id, name, self._files.open)
 
     def _read_artifact(
@@ -320,7 +442,7 @@ class SqlStore:
         ended_at = case((RUNS.c.started_at > now, RUNS.c.started_at), else_=now)
         statement = (
             update(RUNS)
-            .where(RUNS.c.state.in_(UNENDED))
+            .where(RUNS.c.state.in_(NOT_ENDED))
             .values(
                 state="interrupted",
                 error=_INTERRUPTED_ERROR,

@@ -3,8 +3,8 @@
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from app.storage.database.store import SqlStore
-from app.storage.store import TABLE, Run
+from app.storage.database.store import RunStore
+from app.storage.run import TABLE, Run
 from tests.storage.stores import ODD, TRIALS, experiment, race, training
 
 _T = datetime(2026, 2, 28, 23, 59, 59, 123456, tzinfo=UTC)
@@ -42,7 +42,7 @@ CURVE: list[dict[str, Any]] = [
 FILE = bytes(range(256)) * 4
 
 
-def put(store: SqlStore) -> None:
+def put(store: RunStore) -> None:
     """Fill an empty store."""
     store.create(*RUNS, EXPERIMENT)
     store.append_trials(EXPERIMENT.id, TRIALS)

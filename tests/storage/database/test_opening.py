@@ -15,7 +15,7 @@ from app.storage.database import engine
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
 from app.storage.database.opening import DATABASE_FILE, open_store
 from app.storage.errors import StorageFailed
-from app.storage.store import UNENDED, State
+from app.storage.run import NOT_ENDED, State
 from tests.postgresql import PostgresServer
 from tests.storage.stores import BACKENDS, database_url, opened, training
 
@@ -47,7 +47,7 @@ def test_unended_runs_of_a_crashed_server_become_interrupted(
         with opened(tmp_path, url) as store:
             for run in runs:
                 recovered = store.get(run.id)
-                if run.state in UNENDED:
+                if run.state in NOT_ENDED:
                     assert (recovered.state, recovered.eta_s) == ("interrupted", None)
                     assert recovered.error == "The server ended before the run did."
                     assert recovered.ended_at is not None
@@ -174,8 +174,8 @@ def test_database_locked_by_another_program_is_reported(
         other = sqlite3.connect(tmp_path / DATABASE_FILE, isolation_level=None)
         other.execute("BEGIN IMMEDIATE")
         with pytest.raises(StorageFailed, match="another program holds the database"):
-            store.change("a", UNENDED, "running")
+            store.change("a", NOT_ENDED, "running")
         assert store.get("a").state == "queued"
         other.execute("ROLLBACK")
         other.close()
-        assert store.change("a", UNENDED, "running").state == "running"
+        assert store.change("a", NOT_ENDED, "running").state == "running"

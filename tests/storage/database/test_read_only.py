@@ -11,7 +11,7 @@ from app.settings import Settings
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.database.read_only import open_read_only
 from app.storage.errors import NotFound, StorageFailed
-from app.storage.store import RUNNING, TABLE
+from app.storage.run import RUNNING, TABLE
 from tests.storage.stores import BACKENDS, database_url, opened, training
 
 

@@ -1,6 +1,6 @@
 """Concurrency limit for long-lived clients (streams, viewers), in total and per address.
 
-When all places are taken, a newcomer from an address with fewer places evicts the newest client
+When all slots are taken, a newcomer from an address with fewer slots evicts the newest client
 of the address with the most, so that many clients behind one address do not exclude others. An
 operator is always admitted: it evicts a spectator, or else the operator who came first.
 """
@@ -11,8 +11,8 @@ T = TypeVar("T")
 Refusal = Literal["full", "address full"]
 
 
-class NoPlace(Exception):
-    """No place is free; `reason` tells which limit was reached."""
+class NoFreeSlot(Exception):
+    """No slot is free; `reason` tells which limit was reached."""
 
     def __init__(self, reason: Refusal) -> None:
         super().__init__(reason)
@@ -24,17 +24,17 @@ class _Holder(NamedTuple):
     is_operator: bool
 
 
-class Places(Generic[T]):
-    """Table of the clients that hold a place. Not thread-safe: use on one event loop."""
+class ClientSlots(Generic[T]):
+    """Table of the clients that hold a slot. Not thread-safe: use on one event loop."""
 
-    def __init__(self, places: int, per_address: int) -> None:
-        """Create a table with all places free.
+    def __init__(self, slots: int, per_address: int) -> None:
+        """Create a table with all slots free.
 
         Args:
-            places: maximum of clients in total.
+            slots: maximum of clients in total.
             per_address: maximum of spectators of one address; operators are exempt.
         """
-        self._places, self._per_address = places, per_address
+        self._slots, self._per_address = slots, per_address
         self._holders: dict[T, _Holder] = {}
         """In order of arrival."""
 
@@ -45,29 +45,29 @@ class Places(Generic[T]):
         return holder in self._holders
 
     def take(self, holder: T, address: str, is_operator: bool) -> T | None:
-        """Give a client a place, evicting another if needed.
+        """Give a client a slot, evicting another if needed.
 
         Returns:
             the evicted client, which the caller must disconnect; None if there is none.
 
         Raises:
-            NoPlace: if the client is refused.
+            NoFreeSlot: if the client is refused.
         """
         counts = self._spectator_counts()
         same_address = counts.get(address, 0)
         if not is_operator and same_address >= self._per_address:
-            raise NoPlace("address full")
+            raise NoFreeSlot("address full")
         evicted = None
-        if len(self._holders) >= self._places:
+        if len(self._holders) >= self._slots:
             evicted = self._to_evict(counts, same_address, is_operator)
             if evicted is None:
-                raise NoPlace("full")
+                raise NoFreeSlot("full")
             del self._holders[evicted]
         self._holders[holder] = _Holder(address, is_operator)
         return evicted
 
     def leave(self, holder: T) -> None:
-        """Free a client's place; does nothing if it was evicted before."""
+        """Free a client's slot; does nothing if it was evicted before."""
         self._holders.pop(holder, None)
 
     def _spectator_counts(self) -> dict[str, int]:
@@ -81,7 +81,7 @@ class Places(Generic[T]):
         """Return the client to evict for a newcomer; None if the newcomer must be refused."""
         heaviest = max(counts, key=counts.__getitem__, default=None)
         if heaviest is None:
-            # All places are held by operators.
+            # All slots are held by operators.
             return next(iter(self._holders), None) if is_operator else None
         if not is_operator and counts[heaviest] <= same_address + 1:
             # Both addresses would have as many then, and evict each other in turns.

@@ -1,0 +1,99 @@
+"""Derive from a stored run what its process needs to start, whether it starts or resumes.
+
+A training starts from its newest checkpoint; without one from the table that it continues, if any.
+Changes of rates and pace made since are replayed after the same steps, so that a resumed training
+has the same result. A race is repeated from its start: it is short and deterministic. An experiment
+runs the trials that are not done yet.
+"""
+
+from dataclasses import replace
+
+from app.experiments.config import ExperimentConfig
+from app.jobs.messages import ExperimentTask, RaceTask, Task, TrainingTask
+from app.runs.config import RaceConfig, TrainingConfig
+from app.storage.database.store import RunStore
+from app.storage.errors import Conflict, NotFound
+from app.storage.run import NOT_ENDED, RESUMABLE, SUMMARY, Run
+from app.storage.stored_tables import load_checkpoint, load_table
+from app.storage.stored_trials import wall_s_of
+
+
+def task_for(run: Run, store: RunStore) -> Task:
+    """Return the task of a run, with the tables, the checkpoint or the trials that it needs.
+
+    Raises:
+        Conflict, InvalidInput: if a table or checkpoint that it needs is missing or damaged.
+    """
+    config = run.config
+    if isinstance(config, ExperimentConfig):
+        rows = tuple(store.trials(run.id))
+        wall_s = wall_s_of(store.artifact(run.id, SUMMARY), run.id)
+        return ExperimentTask(config, run.workers, rows, wall_s)
+    if isinstance(config, RaceConfig):
+        ids = run.lane_training_ids
+        return RaceTask(config, tuple(None if i is None else load_table(store, i) for i in ids))
+    return _training_task(run, config, store)
+
+
+def _training_task(run: Run, config: TrainingConfig, store: RunStore) -> TrainingTask:
+    checkpoint = load_checkpoint(store, run, config)
+    if checkpoint is None:
+        table = None if run.continued_from is None else load_table(store, run.continued_from)
+        return TrainingTask(config, table, changes=run.changes)
+    since = run.changes[len(checkpoint.meta["changes"]) :]
+    return TrainingTask(config, checkpoint=checkpoint, changes=since)
+
+
+def resumed_runs(run: Run, store: RunStore) -> list[Run]:
+    """Return an ended run as it is to be queued again, preceded by the trainings it depends on.
+
+    Raises:
+        Conflict: if its state does not allow it, or a training it needs was deleted.
+        InvalidInput: if a table or checkpoint it needs is missing or damaged.
+    """
+    if run.state not in RESUMABLE[run.kind]:
+        choices = " or ".join(sorted(RESUMABLE[run.kind]))
+        raise Conflict(
+            f"{run.kind} {run.id} is {run.state}; it can be resumed while it is {choices}",
+            run.state,
+        )
+    trainings: list[Run] = []
+    waiting_for, done = run.waiting_for, 0
+    if run.kind == "race":
+        trainings, waiting_for = _unended_trainings(run, store)
+    else:
+        # Refuses what could not start later.
+        task = task_for(run, store)
+        if isinstance(task, ExperimentTask):
+            done = len(task.rows)
+        elif isinstance(task, TrainingTask) and task.checkpoint is not None:
+            done = task.checkpoint.meta["step"]
+    queued = replace(
+        run,
+        state="queued",
+        done=done,
+        waiting_for=waiting_for,
+        error=None,
+        result=None,
+        ended_at=None,
+    )
+    return [*trainings, queued]
+
+
+def _unended_trainings(race: Run, store: RunStore) -> tuple[list[Run], tuple[str, ...]]:
+    """Return the trainings to resume before a race, and the ids of all that it has to wait for."""
+    resumed: list[Run] = []
+    waiting_for = []
+    for training_id in dict.fromkeys(filter(None, race.lane_training_ids)):
+        try:
+            training = store.get(training_id)
+        except NotFound as error:
+            reason = f"training {training_id}, whose table it needs, was deleted"
+            raise Conflict(f"race {race.id} cannot go on: {reason}", race.state) from error
+        if training.state in RESUMABLE[training.kind]:
+            resumed += resumed_runs(training, store)
+        elif training.state not in NOT_ENDED:
+            load_table(store, training_id)
+            continue
+        waiting_for.append(training_id)
+    return resumed, tuple(waiting_for)

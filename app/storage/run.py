@@ -1,0 +1,174 @@
+"""A stored run: its fields, states and artifact names, and its config as JSON."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta
+from typing import Any, Literal, NamedTuple, get_args
+
+from app.experiments import config as experiments
+from app.experiments.config import ExperimentConfig
+from app.runs.config import RaceConfig, TrainingConfig, as_json, config_from_json
+
+Kind = Literal["training", "race", "experiment"]
+State = Literal["queued", "running", "paused", "finished", "stopped", "failed", "interrupted"]
+
+Config = TrainingConfig | RaceConfig | ExperimentConfig
+
+KINDS: tuple[Kind, ...] = get_args(Kind)
+STATES: tuple[State, ...] = get_args(State)
+QUEUED: frozenset[State] = frozenset({"queued"})
+RUNNING: frozenset[State] = frozenset({"running"})
+PAUSED: frozenset[State] = frozenset({"paused"})
+LIVE = RUNNING | PAUSED
+"""States in which a job process works on the run."""
+NOT_ENDED = QUEUED | LIVE
+"""States from which a run can still change by itself; only ended runs can be deleted."""
+INTERRUPTED: frozenset[State] = frozenset({"interrupted"})
+RESUMABLE: Mapping[Kind, frozenset[State]] = {
+    # Resumes from its newest checkpoint: most failures are caused by the machine, not the run.
+    "training": INTERRUPTED | {"failed"},
+    "race": INTERRUPTED | {"failed"},
+    # Each trial is stored as it ends, so resuming repeats none, whatever ended the experiment.
+    "experiment": INTERRUPTED | {"stopped", "failed"},
+}
+"""By kind, the states of an ended run from which it can be queued again."""
+CONFIGS: Mapping[Kind, type[Config]] = {
+    "training": TrainingConfig,
+    "race": RaceConfig,
+    "experiment": ExperimentConfig,
+}
+"""Config class by kind of run."""
+TABLE = "q-table.npz"
+"""Artifact of a training: its learned Q-table."""
+CHECKPOINT = "checkpoint.npz"
+"""Artifact of a training: the checkpoint from which it resumes after an interruption."""
+SUMMARY = "summary.json"
+"""Artifact of an experiment: statistics and claims computed from its trials so far."""
+REPORT = "report.html"
+"""Artifact of an ended experiment: its report as one self-contained HTML file."""
+KEY_LIFETIME = timedelta(days=1)
+"""Lifetime of an idempotency key."""
+MAX_KEYS = 10_000
+"""Idempotency keys stored at most; the oldest are dropped first."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """A training, a race or an experiment: config, state, progress and result.
+
+    Attributes:
+        id: short and URL-safe; sorts by time of creation (see `run_ids`).
+        lane_training_ids: of a race, for each lane the training whose Q-table it uses, or None.
+        waiting_for: of a race, ids of the trainings that must end before it starts.
+        continued_from: of a training, id of the training whose Q-table it continued from.
+        done, total: steps summed over all lanes; of an experiment, trials.
+        workers: of an experiment, worker processes of its cluster; None is one per core.
+        eta_s: estimated time left [s]; None if there is no estimate, or the run is not running.
+        changes: learning rates and pace changed while the run ran, each with the number of steps
+            done before the change.
+        greedy_distance_m: of a training, distance of the greedy baseline [m], once measured.
+        error: one sentence for the user; None if there was none.
+        created_at, started_at, ended_at: in UTC.
+    """
+
+    id: str
+    kind: Kind
+    name: str
+    state: State = "queued"
+    config: Config
+    lane_training_ids: tuple[str | None, ...] = ()
+    waiting_for: tuple[str, ...] = ()
+    continued_from: str | None = None
+    workers: int | None = None
+    done: int = 0
+    total: int
+    eta_s: float | None = None
+    changes: tuple[Mapping[str, Any], ...] = ()
+    greedy_distance_m: float | None = None
+    result: dict[str, Any] | None = None
+    error: str | None = None
+    created_at: datetime = field(default_factory=lambda: datetime.now(UTC))
+    started_at: datetime | None = None
+    ended_at: datetime | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class DamagedRun:
+    """A stored run that cannot be decoded; fields that cannot be read are None.
+
+    Attributes:
+        id: the id by which it can be deleted.
+        kind: kind of the run; if None, it is listed under every kind.
+        damaged: what is wrong with it, in a sentence.
+    """
+
+    id: str
+    kind: Kind | None = None
+    name: str | None = None
+    state: State | None = None
+    created_at: datetime | None = None
+    damaged: str
+
+
+AnyRun = Run | DamagedRun
+
+
+class Page(NamedTuple):
+    """One page of a listing, newest run first."""
+
+    items: list[AnyRun]
+    next_cursor: str | None
+    """Cursor of the next page; None on the last page."""
+
+    @property
+    def runs(self) -> list[Run]:
+        """The items that could be decoded."""
+        return [run for run in self.items if isinstance(run, Run)]
+
+
+class IdempotencyKey(NamedTuple):
+    """Idempotency key of a start request, and the hexadecimal SHA-256 of that request."""
+
+    key: str
+    digest: str
+
+
+class KeyRecord(NamedTuple):
+    """A used idempotency key's record: digest of its request and id of the run it created."""
+
+    digest: str
+    run_id: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Content:
+    """Everything stored for a run besides its row.
+
+    Attributes:
+        evaluations: rows as for `RunStore.append_evaluations`.
+        trials: rows as for `RunStore.append_trials`.
+        artifacts: contents of files by name.
+    """
+
+    evaluations: Sequence[Mapping[str, Any]] = ()
+    trials: Sequence[Mapping[str, Any]] = ()
+    artifacts: Mapping[str, bytes] = field(default_factory=dict)
+
+
+def config_as_json(config: Config) -> dict[str, Any]:
+    """Serialise a config to plain JSON types, as sent by the API and stored in the database."""
+    if isinstance(config, ExperimentConfig):
+        return experiments.as_json(config)
+    return as_json(config)
+
+
+def run_config_from_json(kind: str, fields: Mapping[str, Any]) -> Config:
+    """Parse a config that `config_as_json` wrote for a run of this kind.
+
+    Raises:
+        InvalidInput: if a value is out of range.
+        KeyError, TypeError, ValueError: if the structure is not that of `config_as_json`.
+    """
+    if kind == "experiment":
+        return experiments.from_json(fields)
+    return config_from_json(fields)
