@@ -16,10 +16,11 @@ import msgspec
 from starlette.websockets import WebSocket, WebSocketDisconnect
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
+from app.runs.config import MAX_LANES
 from app.viewer.viser_internals import stream
 
 FREE = "free"
-VIEWS = frozenset({FREE, "leader", *(str(lane) for lane in range(1, 9))})
+VIEWS = frozenset({FREE, "leader", *map(str, range(1, MAX_LANES + 1))})
 """Valid views: the leader of the race, the robot on a lane from 1, or none."""
 
 _HIGH_WATER_BYTES = 8 * 1024

@@ -1,7 +1,7 @@
 // State of this page alone: the open view, the camera, the help dialog, the layout.
 import { signal } from "@preact/signals";
 
-/** What the camera follows: "leader", "free", or a lane from "1" to "8". */
+/** What the camera follows: "leader", "free", or the number of a lane, from "1". */
 export const view = signal("leader");
 export const helpIsOpen = signal(false);
 /** Whether single keys act; they can interfere with speech input. */

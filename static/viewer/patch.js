@@ -1,7 +1,7 @@
 // Patch of viser's client: runs before it on the page /viewer/, which the dashboard has in an iframe.
 // What it assumes of the client is listed and tested in app/viewer/viser_internals.
 //
-//   from the parent   {type: "hexapods:show", view?: "leader" | "1" … "8" | "free", theme?: "light" | "dark"}
+//   from the parent   {type: "hexapods:show", view?: "leader" | a lane from "1" | "free", theme?: "light" | "dark"}
 //   to the parent     {type: "hexapods:status", status: "connected" | "reconnecting" | "full" | "address full" |
 //                      "place taken"}
 //                     {type: "hexapods:key", key, code, shiftKey}

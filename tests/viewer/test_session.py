@@ -8,6 +8,7 @@ import msgspec
 import pytest
 from starlette.websockets import WebSocket
 
+from app.runs.config import MAX_LANES
 from app.viewer.session import Counters, Session, decode_view, valid_view
 from app.viewer.viser_internals import stream
 
@@ -186,7 +187,7 @@ def decode(message: object) -> str | None:
     return decode_view(msgspec.msgpack.encode(message))
 
 
-@pytest.mark.parametrize("view", ["leader", "free", "1", "8"])
+@pytest.mark.parametrize("view", ["leader", "free", "1", str(MAX_LANES)])
 def test_valid_view_is_decoded(view: str) -> None:
     assert decode({"type": "FollowMessage", "view": view}) == view
     assert valid_view(view) == view
@@ -195,7 +196,7 @@ def test_valid_view_is_decoded(view: str) -> None:
 @pytest.mark.parametrize(
     "message",
     [
-        {"type": "FollowMessage", "view": "9"},
+        {"type": "FollowMessage", "view": str(MAX_LANES + 1)},
         {"type": "FollowMessage", "view": 1},
         {"type": "FollowMessage", "view": None},
         {"type": "FollowMessage", "view": ["leader"]},
