@@ -54,6 +54,7 @@ def test_a_dead_job_is_detected_and_can_be_resumed(
         assert ended["result"]["q_table_sha256"] == uninterrupted
 
 
+@pytest.mark.alone
 def test_a_change_to_a_stopped_process_delays_no_other_request(
     launch: Callable[..., Served],
 ) -> None:
