@@ -43,7 +43,7 @@ test: $(DQN_STAMP) $(PAGE_STAMP) ## Run every check; this is the gate
 	$(BIN)/lint-imports --no-logo
 	@$(MAKE) --no-print-directory test-page
 	$(BIN)/python tests/install_browser.py
-	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal
+	$(BIN)/python -m pytest --numprocesses 2
 
 .PHONY: test-page
 test-page: $(PAGE_STAMP) ## Check the page's JavaScript: linter, types, unit tests

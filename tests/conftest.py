@@ -9,9 +9,10 @@ from collections.abc import Generator, Iterator
 import hypothesis
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
+from xdist.remote import Producer
 
+from tests.in_parallel import FileByFile, MachineLock
 from tests.install_browser import HOW_TO_GET_ONE, find_browser
-from tests.machine_lock import MachineLock
 from tests.postgresql import PostgresServer, postgres_server
 
 # One commit gives one verdict, and a busy machine is no failure.
@@ -33,7 +34,7 @@ _LOCK = pytest.StashKey[MachineLock]()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put browser tests last, and in both parts the tests marked `alone` last.
+    """Put browser tests last, and before them the tests marked `alone`.
 
     Playwright's synchronous interface keeps an event loop running in the main thread for as long
     as it is open, and in that time no other test can `asyncio.run` there.
@@ -59,6 +60,11 @@ def pytest_runtest_protocol(
         # Between two tests that run alone there is nothing to wait for.
         if not (is_alone(item) and is_alone(nextitem)):
             lock.release()
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> FileByFile:
+    """Keep the tests of a file in one process, and their order."""
+    return FileByFile(config, log)
 
 
 def pytest_configure(config: pytest.Config) -> None:
