@@ -49,6 +49,7 @@ def test_a_dead_job_is_detected_and_can_be_resumed(
         assert time.monotonic() - began < NOTICED_S
         assert dead["can_resume"]
         assert server.tell(run, "resume").status_code == 202
+        server.hurry(run["id"])
         ended = server.in_state(run, "failed", "finished")
         assert ended["state"] == "finished", ended
         assert ended["result"]["q_table_sha256"] == uninterrupted
