@@ -3,11 +3,11 @@
 Faces at sharp edges share no vertices, since viser's client smooths normals over shared ones.
 """
 
+from itertools import combinations
 from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from app.domain.types import FloatArray
@@ -53,8 +53,8 @@ def geom_shape(model: mujoco.MjModel, geom: int) -> Shape:
         return _capsule(size[0], size[1])
     if kind in (types.mjGEOM_SPHERE, types.mjGEOM_ELLIPSOID):
         radii = size if kind == types.mjGEOM_ELLIPSOID else np.full(3, size[0])
-        ball = trimesh.creation.icosphere(subdivisions=2)
-        return _smooth(ball.vertices * radii, ball.faces)
+        vertices, faces = _unit_sphere()
+        return _smooth(vertices * radii, faces)
     raise ValueError(f"geom {geom} is of type {kind}, which the stage cannot draw")
 
 
@@ -78,8 +78,9 @@ def cylinder(radius: float, half_height: float) -> Shape:
     rim = radius * np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
     up = np.array([0.0, 0.0, half_height])
     index, next_index = np.arange(_ROUND), (np.arange(_ROUND) + 1) % _ROUND
-    quads = [[index, next_index, _ROUND + next_index], [index, _ROUND + next_index, _ROUND + index]]
-    side = np.concatenate([np.stack(quad, axis=1) for quad in quads])
+    side = _triangles(
+        (index, next_index, _ROUND + next_index), (index, _ROUND + next_index, _ROUND + index)
+    )
     top, flipped = disc(radius), np.diag([1.0, -1.0, -1.0])
     wall = _smooth(np.concatenate([rim - up, rim + up]), side)
     return joined([wall, top.moved(np.eye(3), up), top.moved(flipped, -up)])
@@ -105,8 +106,8 @@ def strip(width: float, depth: float) -> Shape:
 def antenna(height: float) -> Shape:
     """Return a thin mast from z = 0 to a height [m], with a ball on its top."""
     mast = cylinder(0.003, height / 2).moved(np.eye(3), np.array([0, 0, height / 2]))
-    ball = trimesh.creation.icosphere(subdivisions=2, radius=0.016)
-    return joined([mast, _smooth(ball.vertices + np.array([0, 0, height]), ball.faces)])
+    vertices, faces = _unit_sphere()
+    return joined([mast, _smooth(0.016 * vertices + np.array([0, 0, height]), faces)])
 
 
 def flag(height: float) -> Shape:
@@ -119,9 +120,52 @@ def flag(height: float) -> Shape:
 
 
 def _capsule(radius: float, half_length: float) -> Shape:
-    mesh = trimesh.creation.capsule(radius=radius, height=2 * half_length, count=[_ROUND, 12])
-    centre = mesh.bounds.mean(axis=0)
-    return _smooth(mesh.vertices - centre, mesh.faces)
+    """Return a capsule around z, centred on the origin [m]: rings of vertices, and two poles."""
+    sides, quarter = 12, np.linspace(0, np.pi / 2, _ROUND // 2 + 1)
+    rise = np.concatenate([quarter[1:] - np.pi / 2, quarter[:-1]])
+    turn = 2 * np.pi * np.arange(sides) / sides
+    rings = np.empty((len(rise), sides, 3))
+    rings[..., 0] = radius * np.outer(np.cos(rise), np.cos(turn))
+    rings[..., 1] = radius * np.outer(np.cos(rise), np.sin(turn))
+    shift = np.repeat([-half_length, half_length], _ROUND // 2)
+    rings[..., 2] = (radius * np.sin(rise) + shift)[:, None]
+    poles = np.array([[0, 0, -1], [0, 0, 1]]) * (radius + half_length)
+    index = np.arange(rings.shape[0] * sides).reshape(-1, sides)
+    after = np.roll(index, -1, axis=1)
+    bottom, top = np.full(sides, index.size), np.full(sides, index.size + 1)
+    faces = _triangles(
+        (index[:-1], after[:-1], index[1:]),
+        (index[1:], after[:-1], after[1:]),
+        (bottom, after[0], index[0]),
+        (top, index[-1], after[-1]),
+    )
+    return _smooth(np.concatenate([rings.reshape(-1, 3), poles]), faces)
+
+
+def _unit_sphere() -> tuple[FloatArray, NDArray[np.integer[Any]]]:
+    """Return vertices (162, 3) and faces (320, 3) of an icosahedron that is subdivided twice."""
+    golden = (1 + 5**0.5) / 2
+    first = [[0, one, long] for one in (1, -1) for long in (golden, -golden)]
+    vertices = np.concatenate([np.roll(first, axis, axis=1) for axis in range(3)])
+    faces = np.array(list(combinations(range(len(vertices)), 3)))
+    # Neighbours are 2 apart.
+    edges = vertices[faces] - vertices[np.roll(faces, 1, axis=1)]
+    faces = faces[(np.linalg.norm(edges, axis=2) < 2.1).all(axis=1)]
+    inwards = np.linalg.det(vertices[faces]) < 0
+    faces[inwards] = faces[inwards, ::-1]
+    for _ in range(2):
+        sides = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)).reshape(-1, 2)
+        once, number = np.unique(sides, axis=0, return_inverse=True)
+        (a, b, c), (ab, bc, ca) = faces.T, len(vertices) + number.reshape(-1, 3).T
+        vertices = np.concatenate([vertices, vertices[once].mean(axis=1)])
+        faces = _triangles((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
+        vertices /= np.linalg.norm(vertices, axis=1, keepdims=True)
+    return vertices, faces
+
+
+def _triangles(*corners: tuple[NDArray[np.integer[Any]], ...]) -> NDArray[np.integer[Any]]:
+    """Stack triples of index arrays, each with the first, second and third corners, to (f, 3)."""
+    return np.concatenate([np.stack(three, axis=-1).reshape(-1, 3) for three in corners])
 
 
 def _smooth(vertices: FloatArray, faces: NDArray[np.integer[Any]]) -> Shape:

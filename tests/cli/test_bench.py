@@ -2,9 +2,12 @@
 
 from pathlib import Path
 
+import pytest
+
 from tests.cli.running import output
 
 
+@pytest.mark.alone
 def test_bench_measures_what_it_promises(tmp_path: Path) -> None:
     figures = output("bench", folder=tmp_path)
     assert set(figures) >= {

@@ -103,15 +103,19 @@ def checkpoints(pipe: FakePipe) -> list[int]:
     return [m.step for m in pipe.sent if isinstance(m, Checkpointed)]
 
 
-def test_periodic_checkpoint_follows_the_records_it_includes(pipe: FakePipe) -> None:
+def test_periodic_checkpoint_follows_the_records_it_includes(
+    pipe: FakePipe, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    every_s = CHECKPOINT_EVERY_S / 10
+    monkeypatch.setattr("app.jobs.job_control.CHECKPOINT_EVERY_S", every_s)
     step = checkpoint_regularly(pipe)
     began = time.monotonic()
-    while time.monotonic() - began < 2 * CHECKPOINT_EVERY_S + 0.5:
+    while time.monotonic() - began < 2 * every_s + 0.5:
         step[0] += 1
         pipe.control.report(record(step[0]), step[0])
         assert pipe.control.wait_for_turn(step[0])
         time.sleep(0.01)
-    assert 1 <= len(checkpoints(pipe)) <= (time.monotonic() - began) / CHECKPOINT_EVERY_S
+    assert 1 <= len(checkpoints(pipe)) <= (time.monotonic() - began) / every_s
     first = next(n for n, m in enumerate(pipe.sent) if isinstance(m, Checkpointed))
     reported = [r for m in pipe.sent[:first] if isinstance(m, Batch) for r in m.records]
     assert len(reported) == checkpoints(pipe)[0]

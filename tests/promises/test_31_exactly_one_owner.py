@@ -64,6 +64,7 @@ def test_the_first_of_two_servers_is_fenced(
             assert not left
             assert second.look(run)["state"] == "interrupted"
             assert second.tell(run, "resume").status_code == 202
+            second.hurry(str(run["id"]))
             ended = second.in_state(run, "finished", "failed")
             assert ended["result"] == alone["result"]
 

@@ -49,11 +49,13 @@ def test_a_dead_job_is_detected_and_can_be_resumed(
         assert time.monotonic() - began < NOTICED_S
         assert dead["can_resume"]
         assert server.tell(run, "resume").status_code == 202
+        server.hurry(run["id"])
         ended = server.in_state(run, "failed", "finished")
         assert ended["state"] == "finished", ended
         assert ended["result"]["q_table_sha256"] == uninterrupted
 
 
+@pytest.mark.alone
 def test_a_change_to_a_stopped_process_delays_no_other_request(
     launch: Callable[..., Served],
 ) -> None:
