@@ -107,7 +107,7 @@ def _config(run: Run) -> ExperimentConfig:
 
 def _nothing_yet(run: Run) -> dict[str, Any]:
     """A summary of no trials, without what nobody has computed yet."""
-    lists = ("settings", "pooled", "curves", "versus", "timed", "claims", "story")
+    lists = ("parameters", "settings", "pooled", "curves", "versus", "timed", "claims", "story")
     config = _config(run)
     return {
         "format": 1,

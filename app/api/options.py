@@ -218,7 +218,7 @@ def _experiments(agents: Collection[str]) -> list[dict[str, Any]]:
                 "title": TITLES[name],
                 "description": _EXPERIMENTS[name],
                 "fields": fields,
-                "grid": [field for field in (*GRID, *settings) if field in fields],
+                "grid": [field for field in (GRID[0], *settings, *GRID[1:]) if field in fields],
                 "defaults": defaults,
             }
         )

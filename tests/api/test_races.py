@@ -192,7 +192,8 @@ def test_options_are_all_that_can_be_asked_for(api: Api) -> None:
             body = {**WALK, "gait": gait["name"], "robot": robot["name"], "steps": 1}
             api.stop(api.start("/trainings", body))
     learns = {agent["name"]: agent["learns"] for agent in options["agents"]}
-    assert learns == {"q-learning": True, "greedy": False, "two-step": False}
+    learners = {"q-learning": True, "sarsa-lambda": True}
+    assert learns == {**learners, "greedy": False, "two-step": False}
     api.stop(api.start("/trainings", options["defaults"]["training"]))
     assert set(options["limits"]) <= set(options["help"])
 

@@ -140,7 +140,10 @@ def test_a_full_disk_ends_it_and_nothing_is_lost(tmp_path: Path) -> None:
         (("experiment", "table1", "--robot", "stiff,stiff"), "robots names something twice"),
         (("experiment", "table1", "--simulator", "matrix"), "mujoco, kinematic"),
         (("experiment", "table1", "--agent", "greedy"), "--agent is for figure4 and sweep"),
-        (("experiment", "figure4", "--agent", "skynet"), "q-learning, greedy, two-step"),
+        (
+            ("experiment", "figure4", "--agent", "skynet"),
+            "sarsa-lambda, greedy, two-step",
+        ),
         (("experiment", "table1", "--workers", "0"), "workers must be from 1 to 512"),
         (
             ("experiment", "table1", "--workers", "2", "--scheduler", "tcp://127.0.0.1:9"),

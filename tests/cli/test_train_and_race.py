@@ -104,7 +104,10 @@ def test_robots_and_gaits_of_ones_own(tmp_path: Path) -> None:
         ((*GAIT, "--robot", "missing.toml"), "missing.toml"),
         ((*GAIT, "--simulator", "matrix"), "mujoco, kinematic"),
         ((*GAIT, "--observation", "guessed"), "measured, commanded"),
-        ((*GAIT, "--agent", "skynet"), "q-learning, greedy, two-step, my.module:Agent"),
+        (
+            (*GAIT, "--agent", "skynet"),
+            "sarsa-lambda, greedy, two-step, my.module:Agent",
+        ),
         ((*GAIT, "--agent", "no_module:Agent"), "cannot import no_module"),
         ((*GAIT, "--from", "missing.npz"), "missing.npz"),
         ((*GAIT, "--out", "no/such/folder/q.npz"), "choose a folder that can be written"),

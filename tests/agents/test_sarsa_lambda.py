@@ -1,0 +1,124 @@
+"""Sarsa(λ): its update by hand, its limits, and that it goes on exactly where it was."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.agents.protocol import Problem, Tabular, Transition, Tunable
+from app.agents.sarsa_lambda import SarsaLambda
+from app.agents.tabular import TabularLearner
+from app.assembly import build_learner
+from app.domain.errors import InvalidInput
+from app.domain.observation import legal_actions
+from app.domain.types import Action, Cells
+from app.runs.config import training_config
+from app.runs.tables import from_bytes, restore, snapshot, to_bytes
+from app.runs.training import train
+
+PROBLEM = Problem(((1, 4), (2, 5), (3, 6)), np.zeros((5, 2)))
+A, B, C = (0, 0, 0), (1, 0, 0), (1, 2, 0)
+FIRST, SECOND, THIRD = Action(0, 1), Action(1, 2), Action(2, 3)
+
+
+def learner(**settings: Any) -> SarsaLambda:
+    return SarsaLambda(np.random.default_rng(0), PROBLEM, **settings)
+
+
+def step(before: Cells, action: Action, reward_m: float, after: Cells, then: Action) -> Transition:
+    return Transition(before, action, reward_m, after, legal_actions(after, 5), then)
+
+
+def value(agent: TabularLearner, observation: Cells, action: Action) -> float:
+    return float(agent.values(observation)[action])
+
+
+def test_a_reward_counts_for_the_steps_before_it_by_gamma_lambda() -> None:
+    agent = learner(alpha=0.5, gamma=0.9, trace_decay=0.8)
+    agent.learn(step(A, FIRST, 0.0, B, SECOND))
+    agent.learn(step(B, SECOND, 1.0, C, THIRD))
+
+    assert value(agent, B, SECOND) == pytest.approx(0.5)
+    assert value(agent, A, FIRST) == pytest.approx(0.5 * 0.9 * 0.8)
+
+
+def test_it_learns_from_the_action_that_it_takes_next_not_from_the_best() -> None:
+    agent = learner(alpha=1, gamma=0.5, trace_decay=0)
+    agent.learn(step(B, SECOND, 2.0, C, THIRD))
+    agent.learn(step(A, FIRST, 0.0, B, Action(2, 4)))
+    assert value(agent, A, FIRST) == 0
+    agent.learn(step(A, FIRST, 0.0, B, SECOND))
+    assert value(agent, A, FIRST) == pytest.approx(0.5 * 2)
+
+
+def test_a_trace_of_an_action_that_is_taken_again_is_replaced() -> None:
+    agent = learner(alpha=1, gamma=0, trace_decay=1)
+    agent.learn(step(A, FIRST, 1.0, A, FIRST))
+    agent.learn(step(A, FIRST, 3.0, B, SECOND))
+    assert value(agent, A, FIRST) == pytest.approx(3)
+
+
+def test_lambda_changes_while_it_learns() -> None:
+    agent = learner(alpha=0.5, gamma=0.9, trace_decay=0.8)
+    agent.learn(step(A, FIRST, 0.0, B, SECOND))
+    agent.tune(trace_decay=0.0, alpha=1.0)
+    agent.learn(step(B, SECOND, 1.0, C, THIRD))
+    agent.learn(step(C, THIRD, 1.0, A, Action(2, 4)))
+
+    assert value(agent, C, THIRD) == pytest.approx(1)
+    assert value(agent, B, SECOND) == pytest.approx(1)
+
+
+def test_a_training_goes_on_from_its_checkpoint_to_the_last_bit() -> None:
+    config = training_config(
+        "sarsa-lambda", gait="left-right-origin", simulator="kinematic", steps=120, seed=4
+    )
+    whole, cut = build_learner(config), build_learner(config)
+    for _ in train(whole, config):
+        pass
+    for _ in train(cut, config):
+        if cut.step == 47:
+            break
+    again = build_learner(config)
+    restore(again, from_bytes(to_bytes(snapshot(cut, config)), "checkpoint"))
+    for _ in train(again, config):
+        pass
+
+    ended, resumed = (snapshot(one, config) for one in (whole, again))
+    assert resumed.meta == ended.meta
+    assert set(resumed.arrays) == set(ended.arrays)
+    for name, array in ended.arrays.items():
+        np.testing.assert_array_equal(resumed.arrays[name], array, name)
+
+
+def test_it_walks_as_far_as_practice_allows() -> None:
+    config = training_config(
+        "sarsa-lambda", gait="left-right-origin", simulator="kinematic", steps=1000, seed=1
+    )
+    *_, last = train(build_learner(config), config)
+    assert last.distance_m > 0.3  # type: ignore[union-attr]  # of the last evaluation
+
+
+@pytest.mark.parametrize(
+    ("name", "array"),
+    [
+        ("trace_decay", np.array([1.5])),
+        ("traces", np.array([2.0])),
+        ("traces", np.array([np.nan])),
+        ("places", np.array([[125, 0]])),
+        ("places", np.array([[0, -1]])),
+        ("rates", np.array([0.0, 0.9, np.nan])),
+        ("learned", np.array([-1])),
+    ],
+)
+def test_a_state_that_it_could_not_go_on_from_is_refused(name: str, array: Any) -> None:
+    agent = learner()
+    agent.learn(step(A, FIRST, 0.0, B, SECOND))
+    SarsaLambda.check_state(agent.state())
+    with pytest.raises((InvalidInput, ValueError)):
+        SarsaLambda.check_state({**agent.state(), name: array})
+
+
+def test_it_has_what_learners_with_a_table_have() -> None:
+    assert isinstance(learner(), Tunable)
+    assert isinstance(learner(), Tabular)
