@@ -1,27 +1,25 @@
 """The stage: chooses the run that all viewers are shown, and executes playback commands."""
 
 import json
-import math
 import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 from app.domain.errors import HexapodError, InvalidInput
 from app.events.bus import Event, EventBus
-from app.runs.clocks import Clock, check_clock
+from app.runs.clocks import Clock
 from app.runs.config import RaceConfig, TrainingConfig
 from app.stage.practice_show import PracticeShow
 from app.stage.race_show import RaceShow
-from app.stage.scene_spec import idle_scene, race_scene, rest_pose, training_scene
+from app.stage.scene_spec import race_scene, training_scene
 from app.stage.show import TIME_LAPSE, IdleShow, RunLabel, Show
-from app.stage.stage_frame import LaneView, StageFrame
+from app.stage.stage_frame import StageFrame
 from app.storage.recordings import Recordings
 from app.storage.store import UNENDED, Run, RunStore
 
 REPLAY_AFTER_S = 20.0
-MIN_SPEED, MAX_SPEED = 0.25, 64.0
 _MAX_FRAME_S = 0.25
 """Longest time by which one frame advances playback: after a stall nothing is skipped."""
 _RUN_EVENTS = frozenset({"run", "run-deleted"})
@@ -87,36 +85,31 @@ class Stage:
         run_id: str | None = None,
         time_s: float | None = None,
         playing: bool | None = None,
-        speed: float | str | None = None,
-        clock: str | None = None,
+        speed: float | Literal["time-lapse"] | None = None,
+        clock: Clock | None = None,
     ) -> None:
-        """Execute playback commands; None leaves a setting unchanged.
+        """Execute playback commands, which the API has validated; None leaves a setting unchanged.
 
         Args:
-            run_id: show this run from its start.
+            run_id: show this run from its start, unless it is on stage.
             time_s: seek to this time [s].
             playing: play or pause. A show that has ended plays again from its start.
             speed: times real time, or `time-lapse` for the show's automatic speed.
-            clock: one of `app.runs.clocks.CLOCKS`.
+            clock: times a race; see `app.runs.clocks`.
 
         Raises:
             NotFound: if there is no such run.
-            InvalidInput: if the speed, time or clock is invalid, or the run is an experiment.
+            InvalidInput: if the run is an experiment.
         """
-        chosen_speed = None if speed is None else _speed(speed)
-        if clock is not None:
-            check_clock(clock)
-        if time_s is not None and not (math.isfinite(time_s) and time_s >= 0):
-            raise InvalidInput(f"time_s must be at least 0 and finite, not {time_s}")
         with self._lock:
             self._update_playlist()
             if run_id is not None and run_id != self._run_id:
                 self._play([run_id])
             if clock is not None:
                 self._show.retime(clock)
-                self._clock = clock  # type: ignore[assignment]  # checked above
+                self._clock = clock
             if speed is not None:
-                self._speed = chosen_speed
+                self._speed = None if isinstance(speed, str) else speed
             if playing and self._show.ended and time_s is None:
                 time_s = 0.0
             if playing is not None:
@@ -145,10 +138,10 @@ class Stage:
                 "holder": self._playlist[-1].id if self._has_live_run() else None,
             }
 
-    def frame(self, now: float | None = None) -> StageFrame:
-        """Advance playback to a time of the playback clock, by default now; return its frame."""
+    def frame(self) -> StageFrame:
+        """Advance playback to now, by the playback clock, and return its frame."""
         with self._lock:
-            now = self._now() if now is None else now
+            now = self._now()
             elapsed_s = min(max(now - self._last_frame_s, 0.0), _MAX_FRAME_S)
             self._last_frame_s = now
             self._update_playlist()
@@ -249,11 +242,7 @@ class Stage:
         return pace
 
     def _show_idle_scene(self) -> None:
-        """Show the idle stage: three robots on the start line."""
-        spec = idle_scene()
-        lanes = tuple(LaneView(rest_pose(spec), 0, 0, 0.0) for _ in spec.lane_specs)
-        still = StageFrame(spec, None, "start-line", "On the start line", lanes)
-        self._show, self._playlist = IdleShow(spec, still), []
+        self._show, self._playlist = IdleShow(), []
         self._replay, self._playing = False, True
         self._speed, self._idle_since_s = None, None
 
@@ -269,13 +258,3 @@ def _changed(run: Run, event: Event) -> Run | None:
     if event.event == "run-deleted" or "damaged" in view:
         return None
     return replace(run, state=view["state"], changes=tuple(view.get("changes", ())))
-
-
-def _speed(speed: float | str) -> float | None:
-    if speed == TIME_LAPSE:
-        return None
-    if isinstance(speed, bool | str) or not MIN_SPEED <= speed <= MAX_SPEED:
-        raise InvalidInput(
-            f"speed must be from {MIN_SPEED:g} to {MAX_SPEED:g}, or {TIME_LAPSE}, not {speed}"
-        )
-    return float(speed)
