@@ -67,7 +67,7 @@ class Stage:
         A race that waits for its own trainings is shown after them.
 
         Returns:
-            Whether the run is on stage or in the playlist; if not, `show` can still force it.
+            Whether the run is on stage or in the playlist; if not, `set` can still force it.
 
         Raises:
             NotFound: if there is no such run.
@@ -77,7 +77,7 @@ class Stage:
             run = self._store.get(run_id)
             if self._has_live_run():
                 return any(run_id == scheduled.id for scheduled in self._playlist)
-            self._play([*run.waiting_for, run_id])
+            self._load([*run.waiting_for, run_id])
             return True
 
     def set(
@@ -104,7 +104,7 @@ class Stage:
         with self._lock:
             self._update_playlist()
             if run_id is not None and run_id != self._run_id:
-                self._play([run_id])
+                self._load([run_id])
             if clock is not None:
                 self._show.retime(clock)
                 self._clock = clock
@@ -178,7 +178,7 @@ class Stage:
         if self._run_id == on_stage:
             return
         if self._playlist:
-            self._play([run.id for run in self._playlist])
+            self._play(self._playlist)
         else:
             self._show_idle_scene()
             self._publish()
@@ -189,7 +189,7 @@ class Stage:
             self._idle_since_s = None
             return
         if len(self._playlist) > 1:
-            self._play([run.id for run in self._playlist[1:]])
+            self._play(self._playlist[1:])
             return
         if self._idle_since_s is None:
             self._idle_since_s = now
@@ -201,20 +201,24 @@ class Stage:
         finished = self._store.list(kind="race", state="finished", limit=_RECENT_RACES)
         for run in finished.runs:
             if self._recordings.race(run.id):
-                self._play([run.id], replay=True)
+                self._load([run.id], replay=True)
                 return
 
-    def _play(self, run_ids: Sequence[str], replay: bool = False) -> None:
+    def _load(self, run_ids: Sequence[str], replay: bool = False) -> None:
+        """Read runs from the store and play them."""
         # Subscribed before the runs are read: each change is in what is read, or comes after it.
         changes = self._bus.subscribe(run_ids, names=_RUN_EVENTS)
         try:
-            playlist = [self._store.get(run_id) for run_id in run_ids]
-            self._show = self._make_show(playlist[0])
+            self._play([self._store.get(run_id) for run_id in run_ids], replay)
         except HexapodError:
             self._bus.remove(changes)
             raise
         self._bus.remove(self._changes)
-        self._changes, self._playlist, self._replay = changes, playlist, replay
+        self._changes = changes
+
+    def _play(self, playlist: list[Run], replay: bool = False) -> None:
+        self._show = self._make_show(playlist[0])
+        self._playlist, self._replay = playlist, replay
         self._playing, self._speed, self._idle_since_s = True, None, None
         self._publish()
 
