@@ -139,16 +139,16 @@ class EventBus:
         """Id of the newest event; before the first one, a lower number."""
         return self._last_id
 
-    def publish(self, event: str, data: Mapping[str, Any] | str, run_id: str | None = None) -> None:
+    def publish(self, event: str, data: Mapping[str, Any], run_id: str | None = None) -> None:
         """Send an event to all subscriptions, in the order of the calls; from any thread.
 
         Args:
             event: its name.
-            data: plain types, or their JSON. A NaN or an infinity is sent as null, so that one
-                run's number does not break every stream.
+            data: plain types. A NaN or an infinity is sent as null, so that one run's number
+                does not break every stream.
             run_id: the run that it is about, if any.
         """
-        text = data if isinstance(data, str) else json_text(data)
+        text = json_text(data)
         with self._lock:
             published = Event(next(self._ids), event, text, run_id)
             self._last_id = published.id

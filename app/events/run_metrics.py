@@ -43,14 +43,12 @@ class RunMetrics(EventBus):
             self._drop_old(now)
             return sum(steps for _, steps in self._recent_steps) / _WINDOW_S
 
-    def publish(self, event: str, data: Mapping[str, Any] | str, run_id: str | None = None) -> None:
+    def publish(self, event: str, data: Mapping[str, Any], run_id: str | None = None) -> None:
         """Publish an event, and update the metrics and the log."""
         super().publish(event, data, run_id)
-        if isinstance(data, str) or run_id is None:
-            return
-        if event == "run":
+        if event == "run" and "damaged" not in data:
             self._record(data)
-        elif event == "run-deleted":
+        elif event == "run-deleted" and run_id is not None:
             with self._metrics_lock:
                 self._last_published.pop(run_id, None)
             _logger.info("deleted", extra={"run_id": run_id})

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from app.domain.simulator import Motion
 from app.domain.types import FloatArray
+from app.runs.clocks import Clock
 from app.runs.recording import PracticeRecording, pose_at
 from app.runs.records import StepTaken
 from app.stage.race_lane import MARCHING_M, MARCHING_STEPS, ValueRange
@@ -115,7 +116,7 @@ class PracticeShow:
         self._done = self._skip_gap(min(max(time_s / self._step_s, low), high))
         self._played_s = bisect_left(self._step_numbers, self._done) * self._step_s
 
-    def retime(self, clock: str) -> None:
+    def retime(self, clock: Clock) -> None:
         """Do nothing: practice has no clocks."""
 
     def frame(self, run_label: RunLabel) -> StageFrame:

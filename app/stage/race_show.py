@@ -99,14 +99,14 @@ class RaceShow:
         self._freeze_left_s = 0.0
         self._time_s = min(max(time_s, 0.0), self._horizon_s)
 
-    def retime(self, clock: str) -> None:
+    def retime(self, clock: Clock) -> None:
         """Change the clock and keep the leading lane at the same moment of its walk."""
         self._update_lanes()
         ended, first = self.ended, self.first_finish_s
         at_finish = first is not None and self._time_s == first
         leader = max(self._lanes, key=lambda lane: lane.moment_at(self._time_s), default=None)
         moment = leader.moment_at(self._time_s) if leader else None
-        self.clock = clock  # type: ignore[assignment]  # checked by the stage
+        self.clock = clock
         for lane in self._lanes:
             lane.retime(self.clock)
         first = self.first_finish_s

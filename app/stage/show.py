@@ -1,9 +1,11 @@
 """Interface of playbacks on the stage (`Show`), and the playback of the idle stage."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
-from app.stage.stage_frame import SceneSpec, StageFrame
+from app.runs.clocks import Clock
+from app.stage.scene_spec import idle_scene, rest_pose
+from app.stage.stage_frame import LaneView, SceneSpec, StageFrame
 
 TIME_LAPSE = "time-lapse"
 
@@ -43,7 +45,7 @@ class Show(Protocol):
     def seek(self, time_s: float) -> None:
         """Set the playback position to a time [s], or to the nearest that is recorded."""
 
-    def retime(self, clock: str) -> None:
+    def retime(self, clock: Clock) -> None:
         """Change the clock and keep the corresponding playback position."""
 
     def frame(self, run_label: RunLabel) -> StageFrame:
@@ -51,18 +53,14 @@ class Show(Protocol):
 
 
 class IdleShow:
-    """Show of an idle stage: robots stand still on the start line.
-
-    Args:
-        spec: the scene.
-        still: the frame that is always shown.
-    """
+    """Show of an idle stage: robots stand still on the start line."""
 
     time_s = 0.0
     ended = True
 
-    def __init__(self, spec: SceneSpec, still: StageFrame) -> None:
-        self.spec, self._still = spec, still
+    def __init__(self) -> None:
+        self.spec = idle_scene()
+        self._lanes = tuple(LaneView(rest_pose(self.spec), 0, 0, 0.0) for _ in self.spec.lane_specs)
 
     def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
         """Do nothing: the show has no duration."""
@@ -70,9 +68,11 @@ class IdleShow:
     def seek(self, time_s: float) -> None:
         """Do nothing: the show has no duration."""
 
-    def retime(self, clock: str) -> None:
+    def retime(self, clock: Clock) -> None:
         """Do nothing: the show has no duration."""
 
     def frame(self, run_label: RunLabel) -> StageFrame:
-        """Return the constant frame."""
-        return replace(self._still, playing=run_label.playing)
+        """Return the frame, which is always the same but for `playing`."""
+        return StageFrame(
+            self.spec, None, "start-line", run_label.name, self._lanes, playing=run_label.playing
+        )

@@ -1,28 +1,26 @@
 """The stage: chooses the run that all viewers are shown, and executes playback commands."""
 
 import json
-import math
 import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 from app.domain.errors import HexapodError, InvalidInput
 from app.events.bus import Event, EventBus
-from app.runs.clocks import Clock, check_clock
+from app.runs.clocks import Clock
 from app.runs.config import RaceConfig, TrainingConfig
 from app.stage.practice_show import PracticeShow
 from app.stage.race_show import RaceShow
-from app.stage.scene_spec import idle_scene, race_scene, rest_pose, training_scene
+from app.stage.scene_spec import race_scene, training_scene
 from app.stage.show import TIME_LAPSE, IdleShow, RunLabel, Show
-from app.stage.stage_frame import LaneView, StageFrame
+from app.stage.stage_frame import StageFrame
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, Run
 
 REPLAY_AFTER_S = 20.0
-MIN_SPEED, MAX_SPEED = 0.25, 64.0
 _MAX_FRAME_S = 0.25
 """Longest time by which one frame advances playback: after a stall nothing is skipped."""
 _RUN_EVENTS = frozenset({"run", "run-deleted"})
@@ -70,7 +68,7 @@ class Stage:
         A race that waits for its own trainings is shown after them.
 
         Returns:
-            Whether the run is on stage or in the playlist; if not, `show` can still force it.
+            Whether the run is on stage or in the playlist; if not, `set` can still force it.
 
         Raises:
             NotFound: if there is no such run.
@@ -80,7 +78,7 @@ class Stage:
             run = self._store.get(run_id)
             if self._has_live_run():
                 return any(run_id == scheduled.id for scheduled in self._playlist)
-            self._play([*run.waiting_for, run_id])
+            self._load([*run.waiting_for, run_id])
             return True
 
     def set(
@@ -88,36 +86,31 @@ class Stage:
         run_id: str | None = None,
         time_s: float | None = None,
         playing: bool | None = None,
-        speed: float | str | None = None,
-        clock: str | None = None,
+        speed: float | Literal["time-lapse"] | None = None,
+        clock: Clock | None = None,
     ) -> None:
-        """Execute playback commands; None leaves a setting unchanged.
+        """Execute playback commands, which the API has validated; None leaves a setting unchanged.
 
         Args:
-            run_id: show this run from its start.
+            run_id: show this run from its start, unless it is on stage.
             time_s: seek to this time [s].
             playing: play or pause. A show that has ended plays again from its start.
             speed: times real time, or `time-lapse` for the show's automatic speed.
-            clock: one of `app.runs.clocks.CLOCKS`.
+            clock: times a race; see `app.runs.clocks`.
 
         Raises:
             NotFound: if there is no such run.
-            InvalidInput: if the speed, time or clock is invalid, or the run is an experiment.
+            InvalidInput: if the run is an experiment.
         """
-        chosen_speed = None if speed is None else _speed(speed)
-        if clock is not None:
-            check_clock(clock)
-        if time_s is not None and not (math.isfinite(time_s) and time_s >= 0):
-            raise InvalidInput(f"time_s must be at least 0 and finite, not {time_s}")
         with self._lock:
             self._update_playlist()
             if run_id is not None and run_id != self._run_id:
-                self._play([run_id])
+                self._load([run_id])
             if clock is not None:
                 self._show.retime(clock)
-                self._clock = clock  # type: ignore[assignment]  # checked above
+                self._clock = clock
             if speed is not None:
-                self._speed = chosen_speed
+                self._speed = None if isinstance(speed, str) else speed
             if playing and self._show.ended and time_s is None:
                 time_s = 0.0
             if playing is not None:
@@ -146,10 +139,10 @@ class Stage:
                 "holder": self._playlist[-1].id if self._has_live_run() else None,
             }
 
-    def frame(self, now: float | None = None) -> StageFrame:
-        """Advance playback to a time of the playback clock, by default now; return its frame."""
+    def frame(self) -> StageFrame:
+        """Advance playback to now, by the playback clock, and return its frame."""
         with self._lock:
-            now = self._now() if now is None else now
+            now = self._now()
             elapsed_s = min(max(now - self._last_frame_s, 0.0), _MAX_FRAME_S)
             self._last_frame_s = now
             self._update_playlist()
@@ -186,7 +179,7 @@ class Stage:
         if self._run_id == on_stage:
             return
         if self._playlist:
-            self._play([run.id for run in self._playlist])
+            self._play(self._playlist)
         else:
             self._show_idle_scene()
             self._publish()
@@ -197,7 +190,7 @@ class Stage:
             self._idle_since_s = None
             return
         if len(self._playlist) > 1:
-            self._play([run.id for run in self._playlist[1:]])
+            self._play(self._playlist[1:])
             return
         if self._idle_since_s is None:
             self._idle_since_s = now
@@ -209,20 +202,24 @@ class Stage:
         finished = self._store.list(kind="race", state="finished", limit=_RECENT_RACES)
         for run in finished.runs:
             if self._recordings.race(run.id):
-                self._play([run.id], replay=True)
+                self._load([run.id], replay=True)
                 return
 
-    def _play(self, run_ids: Sequence[str], replay: bool = False) -> None:
+    def _load(self, run_ids: Sequence[str], replay: bool = False) -> None:
+        """Read runs from the store and play them."""
         # Subscribed before the runs are read: each change is in what is read, or comes after it.
         changes = self._bus.subscribe(run_ids, names=_RUN_EVENTS)
         try:
-            playlist = [self._store.get(run_id) for run_id in run_ids]
-            self._show = self._make_show(playlist[0])
+            self._play([self._store.get(run_id) for run_id in run_ids], replay)
         except HexapodError:
             self._bus.remove(changes)
             raise
         self._bus.remove(self._changes)
-        self._changes, self._playlist, self._replay = changes, playlist, replay
+        self._changes = changes
+
+    def _play(self, playlist: list[Run], replay: bool = False) -> None:
+        self._show = self._make_show(playlist[0])
+        self._playlist, self._replay = playlist, replay
         self._playing, self._speed, self._idle_since_s = True, None, None
         self._publish()
 
@@ -250,11 +247,7 @@ class Stage:
         return pace
 
     def _show_idle_scene(self) -> None:
-        """Show the idle stage: three robots on the start line."""
-        spec = idle_scene()
-        lanes = tuple(LaneView(rest_pose(spec), 0, 0, 0.0) for _ in spec.lane_specs)
-        still = StageFrame(spec, None, "start-line", "On the start line", lanes)
-        self._show, self._playlist = IdleShow(spec, still), []
+        self._show, self._playlist = IdleShow(), []
         self._replay, self._playing = False, True
         self._speed, self._idle_since_s = None, None
 
@@ -270,13 +263,3 @@ def _changed(run: Run, event: Event) -> Run | None:
     if event.event == "run-deleted" or "damaged" in view:
         return None
     return replace(run, state=view["state"], changes=tuple(view.get("changes", ())))
-
-
-def _speed(speed: float | str) -> float | None:
-    if speed == TIME_LAPSE:
-        return None
-    if isinstance(speed, bool | str) or not MIN_SPEED <= speed <= MAX_SPEED:
-        raise InvalidInput(
-            f"speed must be from {MIN_SPEED:g} to {MAX_SPEED:g}, or {TIME_LAPSE}, not {speed}"
-        )
-    return float(speed)

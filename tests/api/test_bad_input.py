@@ -154,6 +154,8 @@ def test_of_the_stage(api: Api) -> None:
     refused(api.call("PUT", "/stage", json={"run_id": "none"}), 404, "none")
     for wrong, word in (
         ({"speed": 65}, "0.25 to 64"),
+        ({"speed": 0.2}, "0.25 to 64"),
+        ({"speed": True}, "time-lapse"),
         ({"speed": "fast"}, "time-lapse"),
         ({"time_s": -1}, "0 or more"),
         ({"clock": "sun"}, "paper, wall, free"),

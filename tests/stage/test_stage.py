@@ -5,7 +5,6 @@ import json
 
 import pytest
 
-from app.domain.errors import InvalidInput
 from app.runs.config import LaneConfig, RaceConfig
 from app.stage.stage import REPLAY_AFTER_S
 from app.storage.errors import NotFound
@@ -144,21 +143,10 @@ def test_stall_of_the_process_skips_no_motion(parts: StageParts) -> None:
     assert parts.next_frame().time_s < 2
 
 
-@pytest.mark.parametrize("speed", [0, 0.2, 65, -1, float("nan"), "fast", True])
-def test_invalid_speed_is_rejected(parts: StageParts, speed: float | str) -> None:
-    with pytest.raises(InvalidInput, match=r"0\.25 to 64, or time-lapse"):
-        parts.stage.set(speed=speed)
-
-
-def test_invalid_commands_are_rejected_and_change_nothing(parts: StageParts) -> None:
-    run = parts.finished_race()
-    parts.stage.set(run_id=run.id)
+def test_unknown_run_is_refused_and_changes_nothing(parts: StageParts) -> None:
+    parts.stage.set(run_id=parts.finished_race().id)
     before = parts.stage.state()
 
-    with pytest.raises(InvalidInput, match="paper, wall, free"):
-        parts.stage.set(clock="sun", playing=False)
-    with pytest.raises(InvalidInput, match="time_s"):
-        parts.stage.set(time_s=float("inf"), playing=False)
     with pytest.raises(NotFound):
         parts.stage.set(run_id="nobody", playing=False)
 

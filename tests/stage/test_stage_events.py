@@ -17,7 +17,7 @@ from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import LIVE, NOT_ENDED, QUEUED, Run
 from tests.storage.queries import recorded_queries
-from tests.storage.stores import experiment, training
+from tests.storage.stores import experiment, race, training
 
 REST_QPOS = np.zeros(25, np.float32)
 
@@ -111,6 +111,20 @@ def test_stage_that_is_not_drawn_for_long_misses_no_change(follower: Follower) -
     assert not follower.stage.state()["live"]
     follower.bus.publish("run-deleted", {"id": run.id}, run.id)
     assert follower.watch(1) is None
+
+
+def test_next_run_of_the_playlist_is_shown_without_a_read(follower: Follower) -> None:
+    first = follower.running("a")
+    follower.store.create(race("b", waiting_for=("a",)))
+    assert follower.stage.offer("b")
+    assert follower.stage.state()["next_run_id"] == "b"
+    follower.end(first)
+    with recorded_queries() as queries:
+        follower.bus.publish("run-deleted", {"id": "a"}, "a")
+        assert follower.stage.state()["run_id"] == "b"
+    assert queries == []
+    follower.bus.publish("run-deleted", {"id": "b"}, "b")
+    assert follower.stage.state()["run_id"] is None
 
 
 def test_refused_run_leaves_the_stage_to_follow_the_one_before(follower: Follower) -> None:

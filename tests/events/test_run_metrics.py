@@ -1,0 +1,27 @@
+"""Metrics of runs, derived from their events."""
+
+from dataclasses import replace
+
+from app.events.run_metrics import RunMetrics
+from app.events.run_view import run_view
+from tests.storage.stores import experiment, race, training
+
+
+def test_steps_are_counted_from_a_runs_first_event_on() -> None:
+    now = 0.0
+    metrics = RunMetrics(now=lambda: now)
+    for run in (training("a", done=100), race("b"), experiment("c")):
+        metrics.publish("run", run_view(run), run.id)
+        metrics.publish("run", run_view(replace(run, done=run.done + 20)), run.id)
+    assert metrics.steps == 40, "trials are no steps"
+    assert metrics.steps_per_s == 4
+    now = 10.0
+    assert metrics.steps_per_s == 0
+
+
+def test_damaged_run_can_be_published() -> None:
+    metrics = RunMetrics()
+    subscription = metrics.subscribe()
+    damaged = training("a", eta_s=float("nan"))
+    metrics.publish("run", run_view(damaged), damaged.id)
+    assert [event.run_id for event in subscription.drain()] == ["a"]
