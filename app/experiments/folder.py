@@ -7,7 +7,6 @@ partial last line, left by a killed process, is truncated on opening.
 import errno
 import json
 import os
-import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -19,6 +18,7 @@ from app.experiments.config import ExperimentConfig, as_json, from_json
 from app.experiments.engine import Outcome
 from app.experiments.progress import Progress
 from app.experiments.versions import difference, versions
+from app.files import lock_file
 
 FORMAT = 1
 TRIALS = "trials.jsonl"
@@ -171,7 +171,7 @@ def open_results(path: Path, config: ExperimentConfig) -> Iterator[ResultsFolder
     folder = ResultsFolder(path, config)
     with _opened(path) as file:
         try:
-            _lock(file)
+            lock_file(file)
         except OSError as error:
             raise InvalidInput(
                 f"another process is adding results to {path}; wait for it, or {_CHOOSE}"
@@ -195,18 +195,3 @@ def _opened(path: Path) -> IO[bytes]:
         raise InvalidInput(
             f"cannot keep results in {path} ({error.strerror}); {_CHOOSE}"
         ) from error
-
-
-if sys.platform == "win32":
-    import msvcrt
-
-    def _lock(file: IO[bytes]) -> None:
-        file.seek(2**40)  # a mandatory lock on a byte range, so beyond all data
-        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-        file.seek(0)
-
-else:
-    import fcntl
-
-    def _lock(file: IO[bytes]) -> None:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
