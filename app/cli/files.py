@@ -1,10 +1,10 @@
 """Files that users name: read with a clear error, written whole or not at all."""
 
-import os
 import tempfile
 from pathlib import Path
 
 from app.domain.errors import InvalidInput
+from app.files import write_atomically
 from app.runs.tables import Checkpoint, from_bytes
 
 
@@ -37,15 +37,8 @@ def check_writable(path: str) -> None:
 
 
 def write_whole(path: str, data: bytes) -> None:
-    """Write a file so that at any time it is the old one or the new one."""
-    target = Path(path).absolute()
-    descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+    """Write a file atomically; raise `InvalidInput` if it cannot be written."""
     try:
-        with os.fdopen(descriptor, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        Path(temporary).replace(target)
+        write_atomically(Path(path).absolute(), data)
     except OSError as error:
-        Path(temporary).unlink(missing_ok=True)
         raise InvalidInput(f"cannot write {path}: {error.strerror}") from error

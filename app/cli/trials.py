@@ -14,10 +14,9 @@ from app.cli.terminal import progress, show_table
 from app.domain.errors import InvalidInput
 from app.experiments.cluster import ClusterSpec
 from app.experiments.config import ExperimentConfig
-from app.experiments.engine import run_trials
 from app.experiments.folder import ResultsFolder, open_results
 from app.experiments.own_cluster import cores
-from app.experiments.plan import Plan, Trial
+from app.experiments.plan import Trial
 
 _INTERRUPTED = 130
 _RATE_WINDOW_S = 300.0  # trials of one experiment take from a second to half a minute
@@ -37,34 +36,27 @@ def run_experiment(
     Raises:
         HexapodError: if it cannot be run, or not to its end; what was done is kept.
     """
-    plan = Plan(config)
     path: Path = options.out or Path(f"{config.experiment}-results")
     say = _nothing if options.json else print
     with open_results(path, config) as folder:
-        undone = _undone(plan, folder, options.retry)
-        done = plan.total - len(undone)
+        total, undone = folder.plan.total, folder.remaining(options.retry)
+        done = total - len(undone)
         before = f"; {done:,} are there already" if done else ""
-        say(f"{plan.total:,} trials {_on(where)}, kept in {path}{before}")
+        say(f"{total:,} trials {_on(where)}, kept in {path}{before}")
         with _interruption() as interrupted:
-            _run(undone, plan, where, folder, lambda: not interrupted.is_set())
+            _run(undone, where, folder, lambda: not interrupted.is_set())
         if interrupted.is_set():
-            kept = len(folder.results) + len(folder.set_aside)
             say(
-                f"\nInterrupted: {kept:,} of {plan.total:,} trials are kept in {path}; the same "
+                f"\nInterrupted: {folder.done:,} of {total:,} trials are kept in {path}; the same "
                 "command goes on from there."
             )
             return _INTERRUPTED
-        summary = _report(plan, where, folder)
+        summary = _report(where, folder)
     if options.json:
         print(json.dumps(summary))
     else:
         _tell(summary, path)
     return 0
-
-
-def _undone(plan: Plan, folder: ResultsFolder, retry: bool) -> list[Trial]:
-    known = folder.results if retry else {**folder.results, **folder.set_aside}
-    return [trial for trial in plan.trials() if trial.key not in known]
 
 
 def _on(where: ClusterSpec) -> str:
@@ -76,35 +68,26 @@ def _on(where: ClusterSpec) -> str:
 
 def _run(
     undone: list[Trial],
-    plan: Plan,
     where: ClusterSpec,
     folder: ResultsFolder,
     go_on: Callable[[], bool],
 ) -> None:
-    running = closing(run_trials(undone, where, go_on))
+    running, total = closing(folder.run(undone, where, go_on)), folder.plan.total
     with progress("trials", _RATE_WINDOW_S) as bar, running as outcomes:
-        task = bar.add_task("trials", total=plan.total, completed=plan.total - len(undone))
-        for outcome in outcomes:
-            folder.add(outcome)
+        task = bar.add_task("trials", total=total, completed=total - len(undone))
+        for _ in outcomes:
             aside = f", {len(folder.set_aside)} set aside" if folder.set_aside else ""
             bar.update(task, advance=1, description=f"trials{aside}")
 
 
-def _report(plan: Plan, where: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
+def _report(where: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
     # SciPy and Matplotlib take a second to import, which other commands need not.
     from app.experiments.report.files import write_report  # noqa: PLC0415
     from app.experiments.summary import summarise  # noqa: PLC0415
 
-    keys = [trial.key for trial in plan.trials()]
-    results = {key: folder.results[key] for key in keys if key in folder.results}
-    aside = {key: folder.set_aside[key] for key in keys if key in folder.set_aside}
-    cost = {
-        "wall_s": folder.worked_s,
-        "compute_s": folder.compute_s,
-        "trials_per_s": len(folder.results) / folder.worked_s,
-        "workers": None if where.scheduler is not None else where.workers or cores(),
-    }
-    summary = summarise(plan.config, results, aside, cost)
+    results, set_aside = folder.planned()
+    workers = None if where.scheduler is not None else where.workers or cores()
+    summary = summarise(folder.plan.config, results, set_aside, folder.cost(workers))
     try:
         write_report(folder.path, summary, results)
     except OSError as error:

@@ -3,9 +3,9 @@
 import queue
 import time
 import uuid
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, islice
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from app.experiments.cluster import ClusterLost, ClusterSpec, connect
 from app.experiments.plan import Trial
@@ -38,6 +38,21 @@ class Outcome(NamedTuple):
     """The reason that there is no result, in a sentence."""
     compute_s: float
     """Time that a worker computed."""
+
+    def as_json(self) -> dict[str, Any]:
+        """Encode to plain JSON types, as stored in databases and results folders."""
+        result = None if self.result is None else self.result.as_json()
+        return {**self._asdict(), "result": result}
+
+    @classmethod
+    def from_json(cls, row: Mapping[str, Any]) -> "Outcome":
+        """Decode the output of `as_json`.
+
+        Raises:
+            KeyError, TypeError, ValueError: if it is malformed.
+        """
+        result = None if row["result"] is None else TrialResult.from_json(row["result"])
+        return cls(str(row["key"]), result, row["set_aside"], float(row["compute_s"]))
 
 
 def run_trials(

@@ -7,7 +7,6 @@ partial last line, left by a killed process, is truncated on opening.
 import errno
 import json
 import os
-import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -17,8 +16,9 @@ from typing import IO, Any
 from app.domain.errors import DamagedFile, HexapodError, InvalidInput
 from app.experiments.config import ExperimentConfig, as_json, from_json
 from app.experiments.engine import Outcome
-from app.experiments.trial import TrialResult
+from app.experiments.progress import Progress
 from app.experiments.versions import difference, versions
+from app.files import lock_file
 
 FORMAT = 1
 TRIALS = "trials.jsonl"
@@ -34,23 +34,18 @@ class NotKept(HexapodError):
     """A result cannot be written; those written before it are kept."""
 
 
-class ResultsFolder:
-    """Results of one experiment in a folder. Use `open_results` to open one.
+class ResultsFolder(Progress):
+    """Progress of an experiment in a folder. Use `open_results` to open one.
 
     Attributes:
         path: the folder.
-        results: results of completed trials, by trial key.
-        set_aside: reasons of the trials that were set aside, by trial key.
-        compute_s: total time that workers computed.
-        worked_s: wall time up to the newest result, without the time between sessions.
     """
 
-    def __init__(self, path: Path, file: IO[bytes]) -> None:
-        self.path, self._file = path, file
-        self.results: dict[str, TrialResult] = {}
-        self.set_aside: dict[str, str] = {}
-        self.compute_s, self.worked_s = 0.0, 0.0
-        self._began_s, self._synced_s = time.monotonic(), 0.0
+    def __init__(self, path: Path, config: ExperimentConfig) -> None:
+        super().__init__(config)
+        self.path = path
+        self._file: IO[bytes]
+        self._synced_s = 0.0
         self._end = 0
 
     def add(self, outcome: Outcome) -> None:
@@ -62,39 +57,32 @@ class ResultsFolder:
         Raises:
             NotKept: if it cannot be written.
         """
-        result = None if outcome.result is None else outcome.result.as_json()
-        self.worked_s = time.monotonic() - self._began_s
-        self._write(
-            {
-                "key": outcome.key,
-                "result": result,
-                "set_aside": outcome.set_aside,
-                "compute_s": round(outcome.compute_s, 6),
-                "worked_s": round(self.worked_s, 3),
-            }
-        )
-        self._take(outcome)
+        row = {**outcome.as_json(), "compute_s": round(outcome.compute_s, 6)}
+        self._write({**row, "worked_s": round(self.wall_s, 3)})
+        super().add(outcome)
 
-    def begin(self, config: ExperimentConfig) -> None:
-        """Read the existing results, or write the header of a new file.
+    def begin(self, file: IO[bytes]) -> None:
+        """Read the existing results in a file, or write the header of a new one.
 
         Raises:
             InvalidInput: if the file has the results of another experiment or version.
             DamagedFile: if the file was not written by `add`.
             NotKept: if the header cannot be written.
         """
-        lines = self._file.read().splitlines(keepends=True)
+        self._file = file
+        lines = file.read().splitlines(keepends=True)
         if lines and not lines[-1].endswith(b"\n"):
             lines.pop()  # a partial write: the process was killed while appending it
         self._end = sum(map(len, lines))
-        self._file.truncate(self._end)
+        file.truncate(self._end)
         if not lines:
-            self._write({"format": FORMAT, "versions": versions(), "config": as_json(config)})
+            self._write(
+                {"format": FORMAT, "versions": versions(), "config": as_json(self.plan.config)}
+            )
             return
-        self._check(self._head(lines[0]), config)
+        self._check(self._head(lines[0]))
         for number, line in enumerate(lines[1:], start=2):
             self._read(number, line)
-        self._began_s = time.monotonic() - self.worked_s
 
     def sync(self) -> None:
         """Flush the file to disk (`fsync`), so that the results survive a power failure."""
@@ -121,14 +109,6 @@ class ResultsFolder:
         if time.monotonic() - self._synced_s > _SYNC_S:
             self.sync()
 
-    def _take(self, outcome: Outcome) -> None:
-        self.compute_s += outcome.compute_s
-        if outcome.result is None:
-            self.set_aside[outcome.key] = str(outcome.set_aside)
-        else:
-            self.results[outcome.key] = outcome.result
-            self.set_aside.pop(outcome.key, None)
-
     def _head(self, line: bytes) -> dict[str, Any]:
         try:
             head = json.loads(line)
@@ -140,7 +120,7 @@ class ResultsFolder:
             f"{self.path / TRIALS} does not begin as results of an experiment do; {_CHOOSE}"
         )
 
-    def _check(self, head: Mapping[str, Any], config: ExperimentConfig) -> None:
+    def _check(self, head: Mapping[str, Any]) -> None:
         if head["format"] != FORMAT:
             raise InvalidInput(
                 f"{self.path} has results in format {head['format']}, and this version writes "
@@ -153,7 +133,7 @@ class ResultsFolder:
             there = as_json(from_json(head["config"]))
         except (HexapodError, KeyError, TypeError, ValueError) as error:
             raise DamagedFile(f"{self.path / TRIALS} has a damaged head ({error})") from error
-        here = as_json(config)
+        here = as_json(self.plan.config)
         # Each trial's seed depends on its number only, so that more seeds extend the results.
         names = [name for name in here if name != "seeds" and here[name] != there[name]]
         if names:
@@ -165,20 +145,14 @@ class ResultsFolder:
     def _read(self, number: int, line: bytes) -> None:
         try:
             entry = json.loads(line)
-            result = entry["result"]
-            outcome = Outcome(
-                str(entry["key"]),
-                None if result is None else TrialResult.from_json(result),
-                entry["set_aside"],
-                float(entry["compute_s"]),
-            )
-            self.worked_s = float(entry["worked_s"])
+            outcome = Outcome.from_json(entry)
+            self.wall_s = float(entry["worked_s"])
         except (KeyError, TypeError, ValueError) as error:
             raise DamagedFile(
                 f"{self.path / TRIALS} is damaged in line {number}; delete that line, and its "
                 "trial is run again"
             ) from error
-        self._take(outcome)
+        super().add(outcome)
 
 
 @contextmanager
@@ -193,15 +167,16 @@ def open_results(path: Path, config: ExperimentConfig) -> Iterator[ResultsFolder
         DamagedFile: if the results file cannot be read.
         NotKept: if the header of a new file cannot be written.
     """
+    # Before the folder is made, since it refuses an invalid config.
+    folder = ResultsFolder(path, config)
     with _opened(path) as file:
         try:
-            _lock(file)
+            lock_file(file)
         except OSError as error:
             raise InvalidInput(
                 f"another process is adding results to {path}; wait for it, or {_CHOOSE}"
             ) from error
-        folder = ResultsFolder(path, file)
-        folder.begin(config)
+        folder.begin(file)
         try:
             yield folder
         finally:
@@ -220,18 +195,3 @@ def _opened(path: Path) -> IO[bytes]:
         raise InvalidInput(
             f"cannot keep results in {path} ({error.strerror}); {_CHOOSE}"
         ) from error
-
-
-if sys.platform == "win32":
-    import msvcrt
-
-    def _lock(file: IO[bytes]) -> None:
-        file.seek(2**40)  # a mandatory lock on a byte range, so beyond all data
-        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-        file.seek(0)
-
-else:
-    import fcntl
-
-    def _lock(file: IO[bytes]) -> None:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

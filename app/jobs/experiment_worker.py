@@ -7,18 +7,17 @@ import os
 import queue
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from app.experiments.plan import Plan, Trial
+from app.experiments.cluster import ClusterSpec
+from app.experiments.engine import Outcome
+from app.experiments.progress import Progress
 from app.experiments.trial import TrialResult
 from app.jobs.messages import Began, Command, Ended, ExperimentTask, Message, Reported, TrialsDone
 from app.storage.run import SUMMARY
-from app.storage.stored_trials import results_of
-
-if TYPE_CHECKING:
-    from app.experiments.engine import Outcome
+from app.storage.stored_trials import outcomes_of
 
 BATCHES_PER_S = 5
 SUMMARY_EVERY_S = 2.0
@@ -40,12 +39,10 @@ def experiment(
         HexapodError: if it cannot continue.
     """
     send(Began((), len(task.rows)))
-    control, progress = _TrialControl(commands), _Progress(task, send)
+    control, progress = _TrialControl(commands), _SentProgress(task, send)
     progress.summarise()
     while control.wait():
-        for outcome in progress.run_remaining(control.may_continue):
-            progress.add(outcome)
-        progress.flush()
+        progress.run_remaining(control.may_continue)
         if not control.draining:
             break
         if control.paused:
@@ -94,63 +91,47 @@ class _TrialControl:
         self.exiting |= command.verb == "checkpoint_and_exit"
 
 
-class _Progress:
-    """Results of the trials so far, and which of them were sent to the server."""
+class _SentProgress(Progress):
+    """Progress of which every outcome, and summaries now and then, are sent to the server."""
 
     def __init__(self, task: ExperimentTask, send: Callable[[Message], None]) -> None:
-        self._task, self._send_now = task, send
-        self._send_lock = threading.Lock()
+        super().__init__(task.config)
+        for outcome in outcomes_of(task.rows):
+            super().add(outcome)
+        self.wall_s = task.wall_s
+        self._workers = task.workers or os.cpu_count() or 1
+        self._send_now, self._send_lock = send, threading.Lock()
         self._summary_executor = ThreadPoolExecutor(1, "summary")
         self._pending_summary: Future[None] | None = None
-        self._plan = Plan(task.config)
-        self._results, self._set_aside = results_of(task.rows)
-        self._compute_s = sum(row["compute_s"] for row in task.rows)
-        self._wall_s = task.wall_s
         self._pending: list[dict[str, Any]] = []
         self._sent_s = self._due_s = time.monotonic()
         self._summary: dict[str, Any] = {}
         self._is_stale = True
         self._files: list[str] = []
 
-    @property
-    def done(self) -> int:
-        """Number of trials done, those set aside included."""
-        return len(self._results) + len(self._set_aside)
-
-    def run_remaining(self, may_continue: Callable[[], bool]) -> "Iterator[Outcome]":
-        """Run the remaining trials on a cluster and yield their outcomes.
+    def run_remaining(self, may_continue: Callable[[], bool]) -> None:
+        """Run the remaining trials on a cluster.
 
         Args:
-            may_continue: polled between trials; False ends the iteration.
+            may_continue: polled between trials; False ends the run.
         """
-        # Imported here, since the server imports this module but needs no cluster.
-        from app.experiments.cluster import ClusterSpec  # noqa: PLC0415
-        from app.experiments.engine import run_trials  # noqa: PLC0415
-
         # It would log each start and end of a cluster, and the tasks that a pause drops.
         importlib.import_module("distributed")
         for name in ("distributed", "distributed.scheduler"):
             logging.getLogger(name).setLevel(logging.CRITICAL)
-        started_s, before_s = time.monotonic(), self._wall_s
 
         def send_and_check() -> bool:
-            self._wall_s = before_s + time.monotonic() - started_s
             self._send_due()
             return may_continue()
 
-        cluster = ClusterSpec(workers=self._workers)
-        yield from run_trials(list(self._remaining()), cluster, send_and_check)
-        self._wall_s = before_s + time.monotonic() - started_s
+        for _ in self.run(self.remaining(), ClusterSpec(workers=self._workers), send_and_check):
+            pass
+        self.flush()
 
-    def add(self, outcome: "Outcome") -> None:
+    def add(self, outcome: Outcome) -> None:
         """Add the outcome of a trial to the results and to the next batch."""
-        result = None if outcome.result is None else outcome.result.as_json()
-        row = {**outcome._asdict(), "result": result}
-        results, set_aside = results_of([row])
-        self._results |= results
-        self._set_aside |= set_aside
-        self._compute_s += outcome.compute_s
-        self._pending.append(row)
+        super().add(outcome)
+        self._pending.append(outcome.as_json())
         self._is_stale = True
 
     def flush(self) -> None:
@@ -171,7 +152,7 @@ class _Progress:
         """Start computing a summary in a thread, so that trials need not wait for it."""
         self.flush()
         self._is_stale = False
-        inputs = dict(self._results), dict(self._set_aside), self._cost()
+        inputs = *self.planned(), self.cost(self._workers)
         self._pending_summary = self._summary_executor.submit(self._compute_summary, *inputs)
 
     def _wait_for_summary(self) -> None:
@@ -185,7 +166,7 @@ class _Progress:
         from app.experiments.summary import summarise  # noqa: PLC0415 - it brings SciPy
 
         started_s = time.monotonic()
-        self._summary = summarise(self._task.config, results, set_aside, cost)
+        self._summary = summarise(self.plan.config, results, set_aside, cost)
         took_s = time.monotonic() - started_s
         self._due_s = started_s + max(SUMMARY_EVERY_S, took_s / _SUMMARY_SHARE)
         self._send_file(SUMMARY, json.dumps(self._summary, allow_nan=False).encode())
@@ -197,19 +178,15 @@ class _Progress:
         self.flush()
         self._is_stale = True
         self.summarise()
-        for name, data in report_files(self._summary, self._results):
+        for name, data in report_files(self._summary, self.results):
             self._send_file(name, data)
 
     def result(self) -> dict[str, Any]:
         """Return the run's result, short enough for lists of runs."""
         trials = {name: self._summary["trials"][name] for name in ("done", "total", "failed")}
-        trials["set_aside"] = len(self._set_aside)
+        trials["set_aside"] = len(self.set_aside)
         claims = [{n: claim[n] for n in ("id", "verdict")} for claim in self._summary["claims"]]
         return {"trials": trials, "claims": claims, "files": self._files}
-
-    def _remaining(self) -> Iterator[Trial]:
-        completed = self._results.keys() | self._set_aside.keys()
-        return (trial for trial in self._plan.trials() if trial.key not in completed)
 
     def _send_due(self) -> None:
         now_s = time.monotonic()
@@ -228,16 +205,3 @@ class _Progress:
     def _send(self, message: Message) -> None:
         with self._send_lock:
             self._send_now(message)
-
-    @property
-    def _workers(self) -> int:
-        return self._task.workers or os.cpu_count() or 1
-
-    def _cost(self) -> dict[str, Any]:
-        wall_s = self._wall_s
-        return {
-            "wall_s": round(wall_s, 3),
-            "compute_s": round(self._compute_s, 3),
-            "trials_per_s": round(self.done / wall_s, 3) if wall_s > 0 else None,
-            "workers": self._workers,
-        }

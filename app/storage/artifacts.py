@@ -1,6 +1,6 @@
 """Artifact files of runs: written atomically, immutable, verified by SHA-256 on every read.
 
-A file is written to a `.part` file, synced and renamed to a random name (atomic rename); the
+A file is written to a `.part` file, synced and renamed to a random name (see `app.files`); the
 database maps runs and artifact names to these files. Replacing an artifact therefore writes the
 new file before the old one is deleted, and a crash leaves at most orphaned files.
 """
@@ -10,7 +10,6 @@ import hashlib
 import os
 import re
 import secrets
-import sys
 import threading
 from collections.abc import Collection, Iterator
 from contextlib import closing, suppress
@@ -18,13 +17,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.domain.errors import DamagedFile
+from app.files import write_atomically
 from app.storage.artifact_file import ArtifactFile, SharedFile
 from app.storage.disk_space import DiskSpace
 from app.storage.errors import StorageFailed, StorageFull
 
 _DISK_FULL_ERRNOS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _HASH_CHUNK_BYTES = 1 << 20
-_ARTIFACT_NAME = re.compile(r"[0-9a-f]{32}(\.part)?")
+_ARTIFACT_NAME = re.compile(r"\.?[0-9a-f]{32}(\.part)?")
 
 
 class StoredFile(NamedTuple):
@@ -64,16 +64,10 @@ class ArtifactFiles:
         """
         self._disk_space.check(len(data))
         name = secrets.token_hex(16)
-        part = self._folder / f"{name}.part"
         try:
-            with part.open("xb") as file:
-                file.write(data)
-                file.flush()
-                os.fsync(file.fileno())
-            part.rename(self._folder / name)
-            sync_folder(self._folder)
+            write_atomically(self._folder / name, data)
         except OSError as error:
-            self.remove(name, part.name)
+            self.remove(name)
             if error.errno in _DISK_FULL_ERRNOS:
                 raise StorageFull(
                     "the disk of the data folder is full; delete runs, or make room there"
@@ -181,14 +175,3 @@ def _verified_chunks(file: ArtifactFile, stored: StoredFile, label: str) -> Iter
 def _is_artifact_name(name: object) -> bool:
     """Whether a name has the form that `write` creates, and so cannot escape the folder."""
     return isinstance(name, str) and _ARTIFACT_NAME.fullmatch(name) is not None
-
-
-def sync_folder(folder: Path) -> None:
-    """Sync a folder, so that renames in it are durable; does nothing on Windows."""
-    if sys.platform == "win32":
-        return
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)

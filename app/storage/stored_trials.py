@@ -1,37 +1,28 @@
-"""Convert stored trials of an experiment to `TrialResult` objects and to CSV."""
+"""Decode stored trials of an experiment, and encode them as CSV."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from app.domain.errors import DamagedFile
 from app.experiments.config import ExperimentConfig
+from app.experiments.engine import Outcome
+from app.experiments.progress import Progress
 from app.experiments.report.trials_csv import trials_csv
-from app.experiments.trial import TrialResult
 from app.storage.run import SUMMARY
 
 
-def results_of(
-    rows: Iterable[Mapping[str, Any]],
-) -> tuple[dict[str, TrialResult], dict[str, str]]:
-    """Split stored trials into results and set-aside trials.
+def outcomes_of(rows: Iterable[Mapping[str, Any]]) -> Iterator[Outcome]:
+    """Decode stored trials; one whose result is damaged is returned as set aside.
 
     Args:
         rows: as returned by `RunStore.trials`.
-
-    Returns:
-        results by trial key, and by key the reason why other trials have none.
     """
-    results, set_aside = {}, {}
     for row in rows:
-        if row["result"] is None:
-            set_aside[row["key"]] = row["set_aside"] or "it has no result"
-            continue
         try:
-            results[row["key"]] = TrialResult.from_json(row["result"])
+            yield Outcome.from_json(row)
         except (KeyError, TypeError, ValueError):
-            set_aside[row["key"]] = "its result is damaged"
-    return results, set_aside
+            yield Outcome.from_json({**row, "result": None, "set_aside": "its result is damaged"})
 
 
 def trials_as_csv(config: ExperimentConfig, rows: Iterable[Mapping[str, Any]]) -> bytes:
@@ -41,7 +32,10 @@ def trials_as_csv(config: ExperimentConfig, rows: Iterable[Mapping[str, Any]]) -
         config: of the experiment.
         rows: as returned by `RunStore.trials`.
     """
-    return trials_csv(config, *results_of(rows))
+    progress = Progress(config)
+    for outcome in outcomes_of(rows):
+        progress.add(outcome)
+    return trials_csv(config, progress.results, progress.set_aside)
 
 
 def wall_s_of(summary: bytes | None, run_id: str) -> float:

@@ -11,6 +11,7 @@ from app.experiments.report.figures import sheets
 from app.experiments.report.page import page
 from app.experiments.report.trials_csv import trials_csv
 from app.experiments.trial import TrialResult
+from app.files import write_atomically
 
 PAGE = "report.html"
 
@@ -39,9 +40,7 @@ def report_files(
 def write_report(
     folder: Path, summary: Mapping[str, Any], results: Mapping[str, TrialResult]
 ) -> Path:
-    """Write all files into a folder, replacing older ones, and return the page's path.
-
-    Each file is replaced atomically: it is written beside its target, then renamed over it.
+    """Write all files into a folder, each atomically, and return the page's path.
 
     Raises:
         OSError: if a file cannot be written.
@@ -49,7 +48,5 @@ def write_report(
     for name, content in report_files(summary, results):
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        partial = path.with_name(f".{path.name}.part")
-        partial.write_bytes(content)
-        partial.replace(path)
+        write_atomically(path, content)
     return folder / PAGE

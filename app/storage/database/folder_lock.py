@@ -1,12 +1,11 @@
 """File lock on a data folder, so that one server at a time uses it."""
 
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO
 
 from app.domain.errors import InvalidInput
+from app.files import lock_file
 
 LOCK_FILE = "server.lock"
 
@@ -25,24 +24,10 @@ def lock_folder(folder: Path) -> Iterator[None]:
     # The file is never deleted: another process may have opened it, and would lock a dead inode.
     with (folder / LOCK_FILE).open("ab") as file:
         try:
-            _lock(file)
+            lock_file(file)
         except OSError as error:
             raise FolderInUse(
                 f"another server uses the data folder {folder}; stop it, or choose another "
                 "folder with --data or HEXAPODS_DATA"
             ) from error
         yield
-
-
-if sys.platform == "win32":
-    import msvcrt
-
-    def _lock(file: IO[bytes]) -> None:
-        file.seek(0)
-        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-
-else:
-    import fcntl
-
-    def _lock(file: IO[bytes]) -> None:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

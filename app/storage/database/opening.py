@@ -4,8 +4,9 @@ import logging
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 
+from app.files import sync_folder
 from app.settings import Settings
-from app.storage.artifacts import ArtifactFiles, sync_folder
+from app.storage.artifacts import ArtifactFiles
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
 from app.storage.database.folder_lock import lock_folder
 from app.storage.database.migration import migrate

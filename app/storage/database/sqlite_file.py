@@ -11,7 +11,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from app.domain.errors import DamagedFile
-from app.storage.artifacts import sync_folder
+from app.files import sync_folder
 from app.storage.database.engine import Database, sqlite_engine
 from app.storage.database.migration import migrate
 

@@ -70,7 +70,7 @@ def test_orphaned_files_are_deleted_on_opening(
         (folder,) = (tmp_path / "artifacts").iterdir()
         assert len(list(folder.iterdir())) == 2
         (folder / ("0" * 32)).write_bytes(b"written, and then the server died")
-        (folder / f"{'1' * 32}.part").write_bytes(b"not even all of it")
+        (folder / f".{'1' * 32}.part").write_bytes(b"not even all of it")
         (folder / "notes.txt").write_text("someone's own")
         with opened(tmp_path, url) as store:
             assert store.artifact("a", "q-table.npz") == b"new"

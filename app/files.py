@@ -1,0 +1,66 @@
+"""Write files by atomic rename, and lock them between processes."""
+
+import os
+import sys
+from contextlib import suppress
+from pathlib import Path
+from typing import IO
+
+
+def write_atomically(path: Path, data: bytes) -> None:
+    """Write a file that is durable (fsync) on return; after a crash it is the old or the new one.
+
+    The data is written to `.{name}.part` beside the file, then renamed; a crash may leave that.
+
+    Raises:
+        OSError: if it cannot be written; no partial file is left.
+    """
+    part = path.with_name(f".{path.name}.part")
+    try:
+        with part.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        part.replace(path)
+        sync_folder(path.parent)
+    except OSError:
+        with suppress(OSError):
+            part.unlink()
+        raise
+
+
+def sync_folder(folder: Path) -> None:
+    """Sync a folder, so that renames in it are durable; does nothing on Windows."""
+    if sys.platform == "win32":
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def lock_file(file: IO[bytes]) -> None:
+        """Lock an open file exclusively, until it is closed.
+
+        Raises:
+            OSError: if another process has locked it.
+        """
+        position = file.tell()
+        file.seek(2**40)  # a mandatory lock on a byte range, so beyond all data
+        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        file.seek(position)
+
+else:
+    import fcntl
+
+    def lock_file(file: IO[bytes]) -> None:
+        """Lock an open file exclusively, until it is closed.
+
+        Raises:
+            OSError: if another process has locked it.
+        """
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
