@@ -30,13 +30,13 @@ from app.api import (
 )
 from app.api.agent_bodies import AgentBodies
 from app.api.auth import TokenGuard
-from app.api.body_limit import BodyLimit, SecurityHeaders
 from app.api.concurrency_limit import ConcurrencyLimit
 from app.api.deps import Services
 from app.api.disconnects import Disconnects
 from app.api.host_check import HostGuard
-from app.api.memory_limit import HeldBodies
+from app.api.memory_limit import BodyLimit, HeldBodies
 from app.api.rate_limit import RateLimit
+from app.api.security_headers import SecurityHeaders
 from app.api.starts import start_routes
 from app.api.wellformed import WellFormed
 from app.domain.errors import HexapodError

@@ -1,9 +1,10 @@
 """The REST interface: routes parse a request, call a service, and shape the answer.
 
-Routes: `trainings`, `races`, `experiments` (with `runs` in common), `stage`, `events`, `what_if`,
-`options`, `transfer` (export and import), `health`, `metrics`, `pages`, `docs`.
-Requests: `schemas`, `experiment_body`, `fields`, `descriptions`, `formats`. Answers: `answers`,
-`experiment_answers`, `problems` (RFC 9457). `contract` completes the API's description.
-Middleware: `auth` (roles), `cookies`, `host_check`, `wellformed`, `body_limit`, `memory_limit`,
-`concurrency_limit`, `rate_limit`, `disconnects`. `deps` hands the services to the routes.
+Routes: `starts` (whose bodies name agents), `trainings`, `races`, `experiments` (with `runs` in
+common), `stage`, `events`, `options`, `transfer` (export and import), `health`, `metrics`, `pages`,
+`docs`. Requests: `agent_bodies`, `schemas`, `experiment_body`, `fields`, `descriptions`, `formats`.
+Answers: `answers`, `experiment_answers`, `problems` (RFC 9457). `contract` completes the API's
+description. Middleware: `auth` (roles), `cookies`, `host_check`, `wellformed`, `security_headers`,
+`memory_limit`, `concurrency_limit`, `rate_limit`, `disconnects`. `deps` hands the services to the
+routes.
 """

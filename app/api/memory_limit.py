@@ -2,9 +2,11 @@
 
 An answer goes out in pieces, as fast as its client takes them; until then it counts. Where too much
 is held already, a request is refused with 429 or 503 rather than queued, since what waits is held
-as well. Streams that make their pieces one by one hold next to nothing, and always get in.
+as well. A body over its own limit is refused with 413. Streams that make their pieces one by one
+hold next to nothing, and always get in.
 """
 
+from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.auth import Role
@@ -13,11 +15,57 @@ from app.limits.addresses import client_of
 from app.limits.memory_budget import MemoryBudget, Refusal
 from app.storage.artifact_file import CHUNK_BYTES
 
+MAX_BODY_BYTES = 1 << 20
+MAX_FILE_BYTES = 64 << 20
+_TAKES_FILE = ("/api/v1/trainings/import", "/api/v1/import")
 ANSWERS_BYTES, ANSWERS_SHARE_BYTES = 64 << 20, 32 << 20
 BODIES_BYTES, BODIES_SHARE_BYTES = 128 << 20, 96 << 20
 _SMALL_BYTES = 64 << 10
 """Smaller ones are not counted: there are no more of them than connections."""
 _RETRY_AFTER_S = 5
+
+
+class BodyLimit:
+    """Refuses a body that is too large from its length, or else as soon as it goes over."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        """Limit what an app is sent."""
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Count what is received."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        limit = MAX_FILE_BYTES if scope["path"] in _TAKES_FILE else MAX_BODY_BYTES
+        refusal = problem(413, f"The request's body may have at most {limit:,} bytes here.")
+        length = Headers(scope=scope).get("content-length", "")
+        if length.isdigit() and int(length[:18]) > limit:
+            await refusal(scope, receive, send)
+            return
+        received, refused = 0, False
+
+        async def counted() -> Message:
+            nonlocal received, refused
+            message = await receive()
+            received += len(message.get("body", b""))
+            if received > limit:
+                refused = True
+                # For the app it is as if the sender had left; the answer is given below.
+                return {"type": "http.disconnect"}
+            return message
+
+        async def unless_refused(message: Message) -> None:
+            if not refused:
+                await send(message)
+
+        try:
+            await self._app(scope, counted, unless_refused)
+        except Exception:
+            if not refused:
+                raise
+        if refused:
+            await refusal(scope, receive, send)
 
 
 class HeldBodies:

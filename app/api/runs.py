@@ -75,14 +75,14 @@ def run_routes(kind: Kind) -> APIRouter:
         items = [services.jobs.view(run) for run in page.items]
         return JSONResponse({"items": items, "next_cursor": page.next_cursor})
 
-    @router.get("/{run_id}", summary=_phrase("{}", kind), name=f"get_{kind}", response_model=view)
+    @router.get("/{run_id}", summary=phrase("{}", kind), name=f"get_{kind}", response_model=view)
     def get_run(services: ServicesDep, run_id: RunPath) -> Response:
         return JSONResponse(services.jobs.view(find_any(services, kind, run_id)))
 
     @router.delete(
         "/{run_id}",
         status_code=204,
-        summary=_phrase("Delete {} that has ended", kind),
+        summary=phrase("Delete {} that has ended", kind),
         name=f"del_{kind}",
     )
     def delete_run(services: ServicesDep, run_id: RunPath) -> None:
@@ -95,7 +95,7 @@ def run_routes(kind: Kind) -> APIRouter:
             _command(kind, verb),
             methods=["POST"],
             status_code=202,
-            summary=_phrase(summary, kind),
+            summary=phrase(summary, kind),
             response_model=view,
             name=f"{verb}_{kind}",
         )
@@ -114,9 +114,10 @@ _VIEWS: Mapping[Kind, tuple[type[RunView], type[Page]]] = {
 }
 
 
-def _phrase(template: str, kind: Kind) -> str:
-    phrase = template.format(f"an {kind}" if kind[0] in "aeiou" else f"a {kind}")
-    return phrase[0].upper() + phrase[1:]
+def phrase(template: str, kind: Kind) -> str:
+    """Put a kind of run with its article into a sentence."""
+    said = template.format(f"an {kind}" if kind[0] in "aeiou" else f"a {kind}")
+    return said[0].upper() + said[1:]
 
 
 def _command(kind: Kind, verb: str) -> Callable[..., Any]:

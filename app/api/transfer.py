@@ -1,5 +1,7 @@
 """Runs as files: out of one server, and into another."""
 
+from collections.abc import Callable
+
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
@@ -7,57 +9,36 @@ from app.api.answers import ExperimentView, RaceView, TrainingView
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
 from app.api.deps import ServicesDep, StartRequestDep
 from app.api.formats import attachment
-from app.api.runs import RunPath, find
+from app.api.runs import RunPath, find, phrase
 from app.archive import archive
 from app.archive.transfer import export_chunks, import_run
 from app.domain.errors import InvalidInput
 from app.events.run_view import run_view
-
-_ARCHIVE = answers(200, {archive.MEDIA_TYPE: BINARY}, headers=ATTACHMENT)
+from app.storage.run import KINDS, Kind
 
 router = APIRouter()
 
 
-@router.get(
-    "/trainings/{run_id}/export",
-    tags=["trainings"],
-    summary="A training with all it has",
-    response_class=Response,
-    responses=_ARCHIVE,
-)
-def export_training(services: ServicesDep, run_id: RunPath) -> Response:
-    """A `.zip` that another server's import, or `hexapods import`, takes in."""
-    run = find(services, "training", run_id)
-    data = export_chunks(services.store, run.id, services.exports)
-    return attachment(data, archive.MEDIA_TYPE, f"training-{run.id}.zip")
+def _export(kind: Kind) -> Callable[..., Response]:
+    def export(services: ServicesDep, run_id: RunPath) -> Response:
+        """A `.zip` that another server's import, or `hexapods import`, takes in."""
+        run = find(services, kind, run_id)
+        data = export_chunks(services.store, run.id, services.exports)
+        return attachment(data, archive.MEDIA_TYPE, f"{kind}-{run.id}.zip")
+
+    return export
 
 
-@router.get(
-    "/races/{run_id}/export",
-    tags=["races"],
-    summary="A race with all it has",
-    response_class=Response,
-    responses=_ARCHIVE,
-)
-def export_race(services: ServicesDep, run_id: RunPath) -> Response:
-    """A `.zip` that another server's import, or `hexapods import`, takes in."""
-    run = find(services, "race", run_id)
-    data = export_chunks(services.store, run.id, services.exports)
-    return attachment(data, archive.MEDIA_TYPE, f"race-{run.id}.zip")
-
-
-@router.get(
-    "/experiments/{run_id}/export",
-    tags=["experiments"],
-    summary="An experiment with all it has",
-    response_class=Response,
-    responses=_ARCHIVE,
-)
-def export_experiment(services: ServicesDep, run_id: RunPath) -> Response:
-    """A `.zip` that another server's import, or `hexapods import`, takes in."""
-    run = find(services, "experiment", run_id)
-    data = export_chunks(services.store, run.id, services.exports)
-    return attachment(data, archive.MEDIA_TYPE, f"experiment-{run.id}.zip")
+for _kind in KINDS:
+    router.add_api_route(
+        f"/{_kind}s/{{run_id}}/export",
+        _export(_kind),
+        tags=[f"{_kind}s"],
+        summary=phrase("{} with all it has", _kind),
+        name=f"export_{_kind}",
+        response_class=Response,
+        responses=answers(200, {archive.MEDIA_TYPE: BINARY}, headers=ATTACHMENT),
+    )
 
 
 @router.post(

@@ -10,8 +10,8 @@ from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from app.api.auth import WRONG_TOKENS
-from app.api.body_limit import IMPORT_PATH, MAX_BODY_BYTES
 from app.api.cookies import NAME
+from app.api.memory_limit import MAX_BODY_BYTES
 from tests.api.calls import Api, refused
 
 TOKEN = "a-token-for-tests"
@@ -275,5 +275,7 @@ def test_bodies_are_capped(serve: Serve) -> None:
     exact = b" " * (MAX_BODY_BYTES - 2) + b"{}"
     json: Any = {"Content-Type": "application/json"}
     refused(api.call("POST", "/trainings", content=exact, headers=json), 422, "gait")
-    refused(api.client.post(IMPORT_PATH, content=large), 422, "The file")
-    refused(api.client.post(IMPORT_PATH, headers={"Content-Length": "99999999999"}), 413)
+    refused(api.client.post("/api/v1/trainings/import", content=large), 422, "The file")
+    refused(
+        api.client.post("/api/v1/trainings/import", headers={"Content-Length": "99999999999"}), 413
+    )

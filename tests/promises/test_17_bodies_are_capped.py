@@ -8,7 +8,7 @@ import http.client
 from collections.abc import Iterator
 from urllib.parse import urlsplit
 
-from app.api.body_limit import MAX_BODY_BYTES
+from app.api.memory_limit import MAX_BODY_BYTES
 from tests.browser.serving import Serving
 from tests.promises.raw import every_route, watched_memory
 
