@@ -13,6 +13,7 @@ from app.api.answers import OptionsView
 from app.api.deps import ServicesDep
 from app.api.descriptions import SETTINGS
 from app.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
+from app.domain.palette import lane_colors
 from app.domain.robot import PRESETS, Robot, as_mapping
 from app.domain.settings import DeclaredSetting, declare, declared_fields
 from app.domain.text import MAX_NAME
@@ -34,7 +35,6 @@ from app.runs.config import (
     TrainingConfig,
     as_json,
 )
-from app.stage.palette import lane_colors
 from app.what_if.what_if import MAX_STEPS as MAX_WHAT_IF_STEPS
 from app.what_if.what_if import SEEDS as WHAT_IF_SEEDS
 

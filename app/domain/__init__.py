@@ -6,5 +6,6 @@
   grid; `observation`: how the state is read, and the legal actions.
 - `feet`: foot offsets and the kinematic law of a step; `kinematics`: inverse and forward
   kinematics of the legs; `motion`: servo commands of a step.
+- `palette`: colours of agents.
 - `simulator`: the simulator protocol; `kinematic`: the simulator without slip.
 """

@@ -9,10 +9,10 @@ from app.domain.errors import Unreachable
 from app.domain.gait import Gait
 from app.domain.grid import FootGrid
 from app.domain.kinematic import KinematicSimulator
+from app.domain.palette import lane_colors
 from app.domain.robot import Robot
 from app.domain.types import FloatArray
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
-from app.stage.palette import lane_colors
 from app.stage.stage_frame import LaneSpec, SceneSpec
 
 AGENT_TITLES = {"q-learning": "Q-learning", "greedy": "Greedy", "two-step": "Two-step"}

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from typing import Any
 
+from app.domain.palette import lane_colors
 from app.runs.clocks import FINISH_LINE_M, Clock, Timetable, crossing_s
 from app.runs.recording import LaneRecording
 from app.runs.results import finish_s
-from app.stage.palette import lane_colors
 
 
 def timeline(

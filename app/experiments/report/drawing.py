@@ -11,20 +11,14 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from app.domain.palette import AGENT_COLORS, FURTHER_COLORS
+
 INK, MUTED, FAINT, PAPER = "#1f2329", "#646b75", "#dfe2e6", "#fffffe"
 """Colours of text, secondary text, grid lines and background.
 
 The page replaces them by its CSS variables, see `CSS_NAMES`.
 """
 CSS_NAMES: Mapping[str, str] = {INK: "ink", MUTED: "muted", FAINT: "line", PAPER: "paper"}
-
-AGENT_COLOURS: Mapping[str, str] = {
-    "q-learning": "#E69F00",
-    "greedy": "#56B4E9",
-    "two-step": "#009E73",
-}
-FURTHER_COLOURS = ("#CC79A7", "#D55E00", "#F0E442", "#0072B2")
-"""Okabe-Ito palette, which colour-blind readers can distinguish."""
 
 FORMATS = ("png", "svg", "pdf")
 _NO_METADATA: Mapping[str, Mapping[str, Any]] = {
@@ -80,12 +74,12 @@ def figure(width_in: float, height_in: float) -> Figure:
 
 
 def agent_colours(agents: Sequence[str]) -> dict[str, str]:
-    """Return a colour for each agent; users' own agents cycle through `FURTHER_COLOURS`."""
-    own = [agent for agent in agents if agent not in AGENT_COLOURS]
+    """Return a colour for each agent; users' own agents cycle through `FURTHER_COLORS`."""
+    own = [agent for agent in agents if agent not in AGENT_COLORS]
     further = {
-        agent: FURTHER_COLOURS[place % len(FURTHER_COLOURS)] for place, agent in enumerate(own)
+        agent: FURTHER_COLORS[place % len(FURTHER_COLORS)] for place, agent in enumerate(own)
     }
-    return {**AGENT_COLOURS, **further}
+    return {**AGENT_COLORS, **further}
 
 
 def render(fig: Figure, kind: str) -> bytes:

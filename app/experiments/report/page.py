@@ -11,6 +11,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
+from app.domain.palette import AGENT_COLORS
 from app.experiments.claims.cases import Case, cases_of
 from app.experiments.config import GRID, as_json, experiment_config
 from app.experiments.formatting import agent_name, counted, gait_name, listed
@@ -46,6 +47,7 @@ def page(summary: Mapping[str, Any]) -> str:
         "figures": [(heading, _inlined_figures(group)) for heading, group in panels(summary)],
         "cases": cases,
         "agents": _agent_colours(cases),
+        "colors": AGENT_COLORS,
         "units": tables.UNITS,
         "table1": _tables_of("table1", tables.table1, summary, cases),
         "plain_tables": _tables_of("figure4", tables.curves, summary, cases)

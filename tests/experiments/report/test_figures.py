@@ -7,11 +7,10 @@ from xml.etree import ElementTree
 
 import pytest
 
+from app.domain.palette import AGENT_COLORS, FURTHER_COLORS
 from app.experiments.report.drawing import (
-    AGENT_COLOURS,
     CSS_NAMES,
     FORMATS,
-    FURTHER_COLOURS,
     agent_colours,
     figure,
     inline_svg,
@@ -96,8 +95,8 @@ def test_names_are_escaped_in_figures() -> None:
 
 def test_the_papers_agents_have_fixed_colours() -> None:
     shade = agent_colours(["q-learning", "mine:One", "mine:Two"])
-    assert shade["q-learning"] == AGENT_COLOURS["q-learning"] == "#E69F00"
-    assert (shade["mine:One"], shade["mine:Two"]) == FURTHER_COLOURS[:2]
+    assert shade["q-learning"] == AGENT_COLORS["q-learning"] == "#E69F00"
+    assert (shade["mine:One"], shade["mine:Two"]) == FURTHER_COLORS[:2]
     assert shade["greedy"] == "#56B4E9"
 
 
