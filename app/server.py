@@ -49,12 +49,12 @@ from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
 from app.settings import Settings
 from app.stage.stage import Stage
-from app.storage.address_file import write_address_file
 from app.storage.database.opening import open_store
 from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost
 from app.storage.idempotency import Idempotency
 from app.storage.recordings import Recordings
+from app.storage.server_lock import write_address_file
 from app.storage.sessions import Sessions
 from app.viewer.service import ViewerService, viewer_routes
 from app.viewer.session import websocket_options

@@ -1,28 +1,18 @@
-"""The API's description as a page of its own: no scripts, nothing from elsewhere."""
+"""The API's description as an HTML page without scripts, rendered from `/openapi.json`."""
 
 import json
 from collections.abc import Iterator, Mapping
-from html import escape
+from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 from fastapi import APIRouter, Request
+from jinja2 import Environment, FileSystemLoader, select_autoescape
 from starlette.responses import HTMLResponse, Response
 
 router = APIRouter(include_in_schema=False)
 
 _VERBS = ("get", "post", "put", "patch", "delete")
-_STYLE = """
-:root { color-scheme: light dark; font: 16px/1.5 system-ui, sans-serif; }
-body { max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
-h2 { margin-top: 2.5rem; text-transform: capitalize; }
-summary { cursor: pointer; padding: .3rem 0; }
-code, pre { font: .9rem/1.5 ui-monospace, monospace; }
-pre { overflow-x: auto; padding: .75rem; border-radius: .5rem; background: #8881; }
-table { border-collapse: collapse; width: 100%; }
-th, td { text-align: left; vertical-align: top; padding: .25rem 1rem .25rem 0;
-  border-bottom: 1px solid #8884; }
-.verb { display: inline-block; min-width: 4.5rem; font-weight: 700; }
-"""
 
 
 @router.get("/docs")
@@ -38,50 +28,42 @@ def render(schema: Mapping[str, Any], base: str) -> str:
         schema: the OpenAPI document.
         base: address of the server, for examples.
     """
-    info = schema["info"]
-    groups: dict[str, list[str]] = {}
+    groups: dict[str, list[Mapping[str, Any]]] = {}
     for path, verbs in schema["paths"].items():
         for verb in (v for v in _VERBS if v in verbs):
-            operation = verbs[verb]
-            tag = (operation.get("tags") or ["other"])[0]
-            groups.setdefault(tag, []).append(_operation(verb, path, operation, schema, base))
-    sections = "".join(f"<h2>{escape(tag)}</h2>{''.join(ops)}" for tag, ops in groups.items())
-    return (
-        '<!doctype html><html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{escape(info['title'])}: REST</title><style>{_STYLE}</style></head><body>"
-        f"<h1>{escape(info['title'])} {escape(info['version'])}</h1>"
-        f"<p>{escape(info.get('description', ''))}</p>"
-        '<p>For programs: <a href="openapi.json">openapi.json</a>. '
-        '<a href="./">Back to the dashboard</a></p>'
-        f"{sections}</body></html>"
+            tag = (verbs[verb].get("tags") or ["other"])[0]
+            groups.setdefault(tag, []).append(_operation(verb, path, verbs[verb], schema, base))
+    return _environment().get_template("docs.html").render(info=schema["info"], groups=groups)
+
+
+@lru_cache(maxsize=1)
+def _environment() -> Environment:
+    return Environment(
+        loader=FileSystemLoader(Path(__file__).parent / "templates"),
+        autoescape=select_autoescape(),
+        trim_blocks=True,
     )
 
 
 def _operation(
     verb: str, path: str, operation: Mapping[str, Any], schema: Mapping[str, Any], base: str
-) -> str:
+) -> Mapping[str, Any]:
+    """Return the template's values for one operation."""
     rows = [(p["name"], p["in"], p["schema"], p) for p in operation.get("parameters", ())]
     content = operation.get("requestBody", {}).get("content", {})
     body = content.get("application/json", {}).get("schema", {})
     rows += [(name, "body", field, field) for name, field in _fields(body, schema)]
-    table = "".join(
-        f"<tr><td><code>{escape(name)}</code></td><td>{place}</td>"
-        f"<td>{escape(_type(kind, schema))}</td>"
-        f"<td>{escape(about.get('description', ''))}</td></tr>"
-        for name, place, kind, about in rows
-    )
-    fields = (
-        f"<table><tr><th>name</th><th>in</th><th>type</th><th></th></tr>{table}</table>"
-        if table
-        else ""
-    )
-    return (
-        f'<details><summary><span class="verb">{verb.upper()}</span> <code>{escape(path)}</code> '
-        f"{escape(operation.get('summary', ''))}</summary>"
-        f"<p>{escape(operation.get('description', ''))}</p>{fields}"
-        f"<pre>{escape(_example(verb, path, bool(body), base))}</pre></details>"
-    )
+    return {
+        "verb": verb.upper(),
+        "path": path,
+        "summary": operation.get("summary", ""),
+        "description": operation.get("description", ""),
+        "fields": [
+            (name, place, _type(kind, schema), about.get("description", ""))
+            for name, place, kind, about in rows
+        ],
+        "example": _example(verb, path, bool(body), base),
+    }
 
 
 def _example(verb: str, path: str, has_body: bool, base: str) -> str:

@@ -9,10 +9,9 @@ from pathlib import Path
 from app.cli.doctor import Trouble, can_listen
 from app.events.damage import damaged_runs
 from app.settings import PREFIX, Settings
-from app.storage.address_file import read_address_file
-from app.storage.database.folder_lock import LOCK_FILE, FolderInUse, lock_folder
 from app.storage.database.read_only import open_read_only
 from app.storage.disk_space import MB, DiskSpace
+from app.storage.server_lock import LOCK_FILE, FolderInUse, lock_folder, read_address_file
 
 WANTED_FREE_MB = 200
 _NEARLY_FULL = 0.9

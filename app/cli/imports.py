@@ -53,9 +53,9 @@ def _import(settings: Settings, data: bytes, label: str) -> dict[str, Any]:
     # Databases take a moment to import, which other commands need not.
     from app.archive.transfer import import_run  # noqa: PLC0415
     from app.events.run_view import run_view  # noqa: PLC0415
-    from app.storage.database.folder_lock import FolderInUse  # noqa: PLC0415
     from app.storage.database.opening import open_store  # noqa: PLC0415
     from app.storage.run_ids import RunIds  # noqa: PLC0415
+    from app.storage.server_lock import FolderInUse  # noqa: PLC0415
 
     try:
         with open_store(settings) as store:

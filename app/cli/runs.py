@@ -155,8 +155,8 @@ def _show(options: argparse.Namespace) -> int:
 
 
 def _delete(options: argparse.Namespace) -> int:
-    from app.storage.database.folder_lock import FolderInUse  # noqa: PLC0415
     from app.storage.database.opening import open_store  # noqa: PLC0415
+    from app.storage.server_lock import FolderInUse  # noqa: PLC0415
 
     settings = read_settings(data=options.data)
     # First, so that a wrong id is no reason to ask anyone for anything.

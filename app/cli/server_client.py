@@ -7,7 +7,7 @@ from typing import Any
 
 from app.domain.errors import InvalidInput
 from app.settings import PREFIX, Settings
-from app.storage.address_file import read_address_file
+from app.storage.server_lock import read_address_file
 
 _WAIT_S = 60.0
 

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from app.experiments.cluster import ClusterLost, ClusterSpec, connect
 from app.experiments.plan import Trial
 from app.experiments.trial import TrialResult
-from app.experiments.versions import versions
-from app.experiments.worker import Attempt, VersionMismatch, run_batch
+from app.experiments.worker import Attempt, VersionMismatch, run_batch, versions
 
 if TYPE_CHECKING:
     from distributed import Client, Future

@@ -17,7 +17,7 @@ from app.domain.errors import DamagedFile, HexapodError, InvalidInput
 from app.experiments.config import ExperimentConfig, as_json, from_json
 from app.experiments.engine import Outcome
 from app.experiments.progress import Progress
-from app.experiments.versions import difference, versions
+from app.experiments.worker import difference, versions
 from app.files import lock_file
 
 FORMAT = 1

@@ -1,12 +1,17 @@
-"""The task that runs on a worker of the cluster: a batch of trials."""
+"""The task that runs on a worker of the cluster: a batch of trials, by the same software.
 
+A trial's result depends on the versions of the software, so a worker with others is refused.
+"""
+
+import platform
 import time
 from collections.abc import Mapping, Sequence
+from importlib.metadata import version
 from typing import NamedTuple
 
+from app import __version__
 from app.domain.errors import HexapodError
 from app.experiments.trial import TrialConfig, TrialResult, run_trial
-from app.experiments.versions import difference, versions
 
 
 class VersionMismatch(HexapodError):
@@ -54,3 +59,29 @@ def _timed(config: TrialConfig) -> Attempt:
     except (Exception, SystemExit) as error:
         reason = f"something in it broke ({type(error).__name__}: {error})"
     return Attempt(result, reason, time.perf_counter() - began_s)
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of the product, Python, NumPy and MuJoCo in this process."""
+    return {
+        "racing-hexapods": __version__,
+        "python": platform.python_version(),
+        "numpy": version("numpy"),
+        "mujoco": version("mujoco-core"),
+    }
+
+
+def difference(here: Mapping[str, str], there: Mapping[str, str]) -> str | None:
+    """Describe how the versions of two processes differ; None if results are comparable.
+
+    Python's patch version is ignored.
+    """
+    names = [name for name in here if _comparable(here, name) != _comparable(there, name)]
+    if not names:
+        return None
+    return ", ".join(f"{name} {there.get(name, 'none')} instead of {here[name]}" for name in names)
+
+
+def _comparable(installed: Mapping[str, str], name: str) -> str | None:
+    value = installed.get(name)
+    return value.rpartition(".")[0] if name == "python" and value else value

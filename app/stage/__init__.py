@@ -4,5 +4,5 @@
 - `show` is the interface of playbacks; `race_show` plays a race, `practice_show` a training.
 - `race_lane` plays one lane of a race; `timeline` gives a race over time for the page's chart.
 - `stage_frame` is an immutable snapshot of one moment; `scene_spec` builds its constant part.
-- `palette` assigns colours to agents; `recording_export` streams a race's recording as JSON.
+- `recording_export` streams a race's recording as JSON.
 """

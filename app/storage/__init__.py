@@ -7,5 +7,5 @@ chunks; `disk_space` enforces the quota of the data folder.
 `recordings` and `stored_recordings` hold the recorded motion that the stage replays.
 `idempotency`, `sessions` and `run_ids`: idempotency keys, operators' sessions, sortable ids.
 `stored_tables` and `stored_trials` load tables, checkpoints and trials; `json_text` encodes JSON.
-`address_file` records where the server of a data folder listens.
+`server_lock` admits one server to a data folder, and records where it listens.
 """

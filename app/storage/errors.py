@@ -36,10 +36,6 @@ class Busy(HexapodError):
         self.retry_after_s = retry_after_s
 
 
-class JobFailed(HexapodError):
-    """A job's process ended without a result; the message says how."""
-
-
 class StorageFull(HexapodError):
     """The disk or the quota is full; what was stored before is unchanged."""
 

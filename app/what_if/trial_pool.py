@@ -4,12 +4,10 @@ import multiprocessing
 import os
 import queue
 import threading
-import time
 from collections.abc import Sequence
-from concurrent.futures import Future
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
-from multiprocessing.connection import Connection, wait
-from multiprocessing.context import SpawnProcess
 from typing import NamedTuple
 
 from app.domain.errors import HexapodError, InvalidInput
@@ -24,21 +22,10 @@ NICENESS = 10
 _CHUNK_SIZE = 3
 _CLOSE_S = 3.0
 
-_Reply = list[TrialResult] | str
-
 
 class _Request(NamedTuple):
     configs: Sequence[TrialConfig]
     future: "Future[list[TrialResult]]"
-
-
-class _Worker(NamedTuple):
-    process: SpawnProcess
-    pipe: Connection
-
-
-class _WorkerLost(Exception):
-    """Raised if a worker process exited or exceeded the timeout."""
 
 
 class TrialPool:
@@ -56,9 +43,9 @@ class TrialPool:
         """
         self._count, self._idle_s = count or os.cpu_count() or 1, idle_s
         self._requests: queue.SimpleQueue[_Request | None] = queue.SimpleQueue()
-        self._workers: list[_Worker] = []
-        # PR_SET_PDEATHSIG kills a child when the *thread* that started it ends, so one long-lived
-        # thread starts all of them.
+        self._executor: ProcessPoolExecutor | None = None
+        # PR_SET_PDEATHSIG kills a child when the *thread* that started it ends. The executor starts
+        # processes in the thread that submits, so one long-lived thread submits all trials.
         self._thread: threading.Thread | None = None
         self._lock = threading.Lock()
         self._closed = False
@@ -66,9 +53,9 @@ class TrialPool:
     @property
     def pids(self) -> list[int]:
         """Process ids of the running workers."""
-        return [
-            worker.process.pid for worker in list(self._workers) if worker.process.pid is not None
-        ]
+        executor = self._executor
+        # Private, since the executor offers no way to kill its processes before Python 3.14.
+        return [] if executor is None else list(executor._processes or ())  # noqa: SLF001
 
     def run(self, configs: Sequence[TrialConfig]) -> list[TrialResult]:
         """Run trials and wait for them; callable from any thread, requests are serialised.
@@ -99,9 +86,7 @@ class TrialPool:
             self._closed = True
             self._requests.put(None)
             thread = self._thread
-        for worker in list(self._workers):
-            with suppress(ValueError):  # it has exited, and its handle is closed
-                worker.process.kill()
+        self._kill_workers()
         if thread is not None:
             thread.join(_CLOSE_S)
 
@@ -119,88 +104,58 @@ class TrialPool:
                 request.future.set_result(self._run(request.configs))
             except HexapodError as error:
                 request.future.set_exception(error)
-            except (_WorkerLost, OSError) as error:
+            except (BrokenProcessPool, TimeoutError, OSError) as error:
                 self._stop_workers()
-                message = f"the processes that try it are gone ({error}); try again"
+                timed_out = isinstance(error, TimeoutError)
+                reason = f"it takes over {TIMEOUT_S:.0f} s" if timed_out else "one of them ended"
+                message = f"the processes that try it are gone ({reason}); try again"
                 request.future.set_exception(Busy(message, 1))
 
     def _run(self, configs: Sequence[TrialConfig]) -> list[TrialResult]:
-        while len(self._workers) < self._count:
-            self._workers.append(_start())
-        chunks = [configs[i : i + _CHUNK_SIZE] for i in range(0, len(configs), _CHUNK_SIZE)]
-        results: dict[int, list[TrialResult]] = {}
-        idle = [worker.pipe for worker in self._workers]
-        in_flight: dict[Connection, int] = {}
-        error: str | None = None
-        deadline = time.monotonic() + TIMEOUT_S
-        number = 0
-        while number < len(chunks) or in_flight:
-            # After the first error no more chunks are sent: all trials of a request share it.
-            while idle and number < len(chunks) and error is None:
-                idle[-1].send(chunks[number])
-                in_flight[idle.pop()] = number
-                number += 1
-            if not in_flight:
-                break
-            for pipe in _ready(in_flight, deadline):
-                reply = _receive(pipe)
-                if isinstance(reply, str):
-                    error = reply
-                else:
-                    results[in_flight[pipe]] = reply
-                del in_flight[pipe]
-                idle.append(pipe)
-        if error is not None:
-            raise InvalidInput(error)
-        return [result for number in sorted(results) for result in results[number]]
+        if self._executor is None:
+            self._executor = ProcessPoolExecutor(
+                self._count, multiprocessing.get_context("spawn"), initializer=_set_up_worker
+            )
+        results = []
+        for reply in self._executor.map(_run, configs, timeout=TIMEOUT_S, chunksize=_CHUNK_SIZE):
+            if isinstance(reply, str):
+                # All trials of a request share it; leaving the iteration cancels the others.
+                raise InvalidInput(reply)
+            results.append(reply)
+        return results
 
     def _stop_workers(self) -> None:
-        for worker in self._workers:
-            worker.process.kill()
-            worker.process.join()
-            worker.process.close()
-            worker.pipe.close()
-        self._workers.clear()
+        self._kill_workers()
+        if self._executor is not None:
+            self._executor.shutdown()
+            self._executor = None
+
+    def _kill_workers(self) -> None:
+        executor = self._executor
+        for process in list((executor._processes or {}).values()) if executor else ():  # noqa: SLF001
+            with suppress(ValueError):  # it has exited, and its handle is closed
+                process.kill()
 
 
-def _start() -> _Worker:
-    context = multiprocessing.get_context("spawn")
-    pipe, child_pipe = context.Pipe()
-    # A daemon, so that a program that never calls `close` can still exit.
-    process = context.Process(target=main, args=(child_pipe,), name="trials", daemon=True)
-    process.start()
-    child_pipe.close()
-    return _Worker(process, pipe)
-
-
-def _ready(in_flight: dict[Connection, int], deadline: float) -> list[Connection]:
-    readable = wait(list(in_flight), timeout=max(0.0, deadline - time.monotonic()))
-    if not readable:
-        raise _WorkerLost(f"it takes over {TIMEOUT_S:.0f} s")
-    return [pipe for pipe in in_flight if pipe in readable]
-
-
-def _receive(pipe: Connection) -> _Reply:
-    try:
-        reply: _Reply = pipe.recv()
-    except (EOFError, OSError) as error:
-        raise _WorkerLost("one of them ended") from error
-    return reply
-
-
-def main(pipe: Connection) -> None:
-    """Entry point of a worker process: run chunks of trials until the pipe is closed."""
+def _set_up_worker() -> None:
     set_up_process(NICENESS)
-    with suppress(EOFError, OSError):
-        while True:
-            pipe.send(_run_chunk(pipe.recv()))
-    os._exit(0)
+    threading.Thread(target=_exit_with_parent, daemon=True).start()
 
 
-def _run_chunk(configs: Sequence[TrialConfig]) -> _Reply:
+def _exit_with_parent() -> None:
+    """Exit after the server has; PR_SET_PDEATHSIG misses a server that died before its call."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+def _run(config: TrialConfig) -> TrialResult | str:
+    """Run a trial in a worker; return a sentence if it fails, since not all errors unpickle."""
     try:
-        return [run_trial(config) for config in configs]
+        return run_trial(config)
     except HexapodError as error:
         return str(error)
-    except Exception as error:  # an agent is anyone's code
+    # User-supplied agents are untrusted code: they may raise anything, and call `sys.exit`.
+    except (Exception, SystemExit) as error:
         return f"something in it broke ({type(error).__name__}: {error})"

@@ -8,7 +8,7 @@ from starlette.requests import Request
 
 from app.api.problems import _hexapod_error
 from app.domain.errors import DamagedFile, HexapodError, InvalidInput
-from app.storage.errors import Busy, Conflict, JobFailed, NotFound, StorageFailed, StorageFull
+from app.storage.errors import Busy, Conflict, NotFound, StorageFailed, StorageFull
 
 
 @pytest.mark.parametrize(
@@ -21,7 +21,7 @@ from app.storage.errors import Busy, Conflict, JobFailed, NotFound, StorageFaile
         (Busy("wait", 7), 429, {"retry-after": "7"}),
         (StorageFull("the disk is full; make room"), 507, {}),
         (StorageFailed("the database is held"), 503, {"retry-after": "10"}),
-        (JobFailed("killed"), 500, {}),
+        (HexapodError("killed"), 500, {}),
     ],
     ids=lambda value: type(value).__name__,
 )

@@ -7,9 +7,8 @@ from typing import Any
 
 import pytest
 
-from app.storage.address_file import write_address_file
-from app.storage.database.folder_lock import lock_folder
 from app.storage.database.opening import DATABASE_FILE
+from app.storage.server_lock import lock_folder, write_address_file
 from tests.cli.running import hexapods
 from tests.postgresql import PostgresServer
 from tests.storage.stores import database_url, opened

@@ -17,10 +17,10 @@ import pytest
 
 from app.domain.errors import InvalidInput
 from app.settings import Settings
-from app.storage.database.folder_lock import LOCK_FILE
 from app.storage.database.opening import open_store
 from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost
+from app.storage.server_lock import LOCK_FILE
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.served import BODY, LONG_S, NotStartedError, serving_from

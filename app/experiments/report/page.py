@@ -50,6 +50,7 @@ def page(summary: Mapping[str, Any]) -> str:
         "figures": [(heading, _inlined_figures(group)) for heading, group in panels(summary)],
         "cases": cases,
         "agents": _agent_colours(cases),
+        "colors": agent_colours([]),
         "units": tables.UNITS,
         "table1": _tables_of("table1", tables.table1, summary, cases),
         "plain_tables": _tables_of("figure4", tables.curves, summary, cases)

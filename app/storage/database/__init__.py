@@ -6,6 +6,6 @@ Start reading at `opening`, which opens the store of a server; `read_only` opens
 `queries` and `rows` read and decode rows of runs, tolerating damaged ones.
 `engine` runs transactions, retries them, and translates driver errors; `fair_semaphore` queues
 its threads in order.
-`ownership` (advisory lock, fencing token) and `folder_lock` (file lock) admit one server only;
-`sqlite_file` creates and checks the SQLite file.
+`ownership` (advisory lock, fencing token) admits one server only; `sqlite_file` creates and checks
+the SQLite file.
 """

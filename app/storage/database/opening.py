@@ -8,12 +8,12 @@ from app.files import sync_folder
 from app.settings import Settings
 from app.storage.artifacts import ArtifactFiles
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
-from app.storage.database.folder_lock import lock_folder
 from app.storage.database.migration import migrate
 from app.storage.database.ownership import Ownership, claim
 from app.storage.database.sqlite_file import check_file, create_file
 from app.storage.database.store import RunStore
 from app.storage.disk_space import DiskSpace
+from app.storage.server_lock import lock_folder
 
 DATABASE_FILE = "hexapods.db"
 ARTIFACTS_FOLDER = "artifacts"
