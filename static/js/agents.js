@@ -81,7 +81,7 @@ export function furtherSettings(agent) {
 export const ratesInWords = (agent, values) =>
   mainSettings(agent)
     .filter(({ name, live }) => live === name && values[name] !== undefined)
-    .map(({ name, setting }) => `${setting.symbol ?? setting.title} ${values[name]}`);
+    .map(({ name, setting }) => `${setting.symbol ?? setting.title}\u00a0${values[name]}`);
 
 /**
  * The value of an agent's live setting that no setting of its name begins: where its quantity begins.

@@ -109,9 +109,8 @@ const written = (value) => String(value ?? "");
 
 /** The form, and what is set for other learners of the race. @returns {Record<string, FormValue>} */
 const everyValue = () => {
-  const others = Object.keys(settingsOf(form.value.lanes));
-  const given = Object.entries(overrides.value).filter(([field]) => others.includes(field));
-  return { ...Object.fromEntries(given), ...form.value };
+  const own = settingsOf(form.value.lanes);
+  return { ...form.value, ...select(overrides.value, (field) => field in own && !(field in form.value)) };
 };
 
 const isChanged = computed(() => {

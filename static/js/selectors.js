@@ -71,14 +71,23 @@ const get = (id) => (isKnown(id) ? runs.value.get(id) ?? null : null);
 /** The run on stage. */
 export const shownRun = computed(() => get(stage.value?.run_id));
 
+/**
+ * Whether the stage will show a race next, or another training of the race before.
+ * @param {Run} race
+ */
+export const isToCome = (race) => {
+  const next = stage.value?.next_run_id;
+  return isKnown(next) && [race.id, ...trainingIds(race)].includes(next);
+};
+
 /** The race of the scoreboard and the race chart. @type {Signal<Run | null>} */
 export const raceInView = computed(() => {
   const shown = shownRun.value;
   if (shown?.kind === "race") return shown;
   const races = stageableRuns.value.filter((run) => run.kind === "race");
   if (shown?.kind === "training") {
-    const next = get(stage.value?.next_run_id);
-    return next ?? races.find((race) => isActive(race) && trainingIds(race).includes(shown.id)) ?? null;
+    const isItsRace = (/** @type {Run} */ race) => isActive(race) && trainingIds(race).includes(shown.id);
+    return races.find(isToCome) ?? races.find(isItsRace) ?? null;
   }
   return races.find((race) => race.state === "finished") ?? null;
 });

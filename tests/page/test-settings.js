@@ -76,7 +76,7 @@ test("a live setting that no setting begins has the value of the first of its sy
 });
 
 test("a run is described by its live settings", () => {
-  assert.deepEqual(ratesInWords("tracer", { alpha: 0.1, trace: 0.9, kind: "adding" }), ["α 0.1", "λ 0.9"]);
+  assert.deepEqual(ratesInWords("tracer", { alpha: 0.1, trace: 0.9, kind: "adding" }), ["α\u00a00.1", "λ\u00a00.9"]);
   assert.deepEqual(ratesInWords("removed", { alpha: 0.1 }), []);
 });
 

@@ -11,6 +11,7 @@ import {
   applyEvent, damagedRuns, evaluations, isDeleted, options, rates, requestRun, requestRuns, requestStage, role, runs,
   stage,
 } from "../../static/js/store.js";
+import { shownTime } from "../../static/js/timeline.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
@@ -124,6 +125,18 @@ test("a race that waits works on its training, which Stop asks of the race", () 
   assert.equal(liveTraining.value?.id, training.id);
   assert.equal(raceInView.value?.id, race.id);
   assert.equal(trainingInView.value?.id, training.id);
+});
+
+test("between two trainings of a race it is the race that is in view", () => {
+  const [first, second] = [makeRun({}), makeRun({})];
+  const race = raceOf(first, { config: { steps: 50, lanes: [first, second].map(({ id }) => ({ training_id: id })) } });
+  const next = { ...STAGE, run_id: first.id, next_run_id: second.id };
+  show({ runs: [first, second, race], stage: next });
+  assert.equal(raceInView.value?.id, race.id);
+  assert.equal(shownTime.value, null);
+  show({ runs: [first, second, race], stage: { ...next, next_run_id: race.id } });
+  assert.equal(raceInView.value?.id, race.id);
+  assert.equal(shownTime.value, null);
 });
 
 test("my run is off stage while another live run is shown", () => {
