@@ -43,13 +43,13 @@ function summaryOf(run) {
   const { robot, simulator, agent } = served().defaults.training;
   const name = presetOf(config.robot);
   // What is as by default is not named.
+  const learner = [undefined, agent].includes(config.agent) ? "" : agentOf(config.agent).title;
   const place = [
-    [undefined, agent].includes(config.agent) ? "" : agentOf(config.agent).title,
     name === robot ? "" : robotTitle(name ?? config.robot.name ?? "own robot"),
     config.simulator === simulator ? "" : simulatorTitle(config.simulator),
   ];
   const own = run.kind === "race" ? ofRace(config) : ofTraining(run);
-  return [...own, ...place].filter(Boolean).join(" · ");
+  return [learner, ...own, ...place].filter(Boolean).join(" · ");
 }
 
 const ofRace = ({ lanes, steps }) => [listed(lanes.map(({ agent }) => agentOf(agent).title)), count(steps, "step")];

@@ -24,7 +24,7 @@ export function SweepTable({ known }) {
   const sorted = order === "best" ? [...rows].sort(byDistance) : rows;
   const high = 1.03 * largest(rows.flatMap(({ points, line }) => [line ?? 0, ...points]), 1e-9);
   const agents = [...new Set(rows.map(({ setting }) => setting.agent))];
-  const color = agents.length === 1 ? agentOf(agents[0]).color : undefined;
+  const color = agents.length === 1 ? agentOf(agents[0]).color : "var(--dim)";
   return html`
     <section class="panel sweep-table" aria-labelledby="sweep-table">
       <div class="report-tools">
