@@ -1,16 +1,18 @@
 // The user's actions. Each keeps its own error, which is shown beside the control that caused it.
 import { computed, signal } from "@preact/signals";
 import * as api from "./api.js";
-import { form, link, mistakes, raceBody, setField, trainingBody } from "./form.js";
-import { count, whole } from "./format.js";
+import { agentOf, learns, settingsOf } from "./agents.js";
+import { chooseLearner, form, link, mistakes, raceBody, setField, setFields, trainingBody } from "./form.js";
+import { count, listed, whole } from "./format.js";
+import { limitsOf } from "./limits.js";
 import {
-  isActive, isOperator, isRaceRun, learns, liveTraining, markAsMine, matchingTable, myWork, presetOf, shownRun, work,
+  isActive, isOperator, isRaceRun, laneTables, liveTraining, markAsMine, myWork, presetOf, shownRun, work,
 } from "./selectors.js";
 import { forgetRun, options, rates, requestRun, requestStage, runs, scene, setEntry, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { DamagedRun, Rates, Run, Stage, Verb } from "./types.js" */
+/** @import { DamagedRun, Rates, Run, RunConfig, Stage, Verb } from "./types.js" */
 
 /** A button of the page. @typedef {{ label: string, run: () => unknown }} Action */
 
@@ -48,17 +50,33 @@ export const dismissProblem = (place) => setEntry(problems, place, null);
 
 // ---- starting
 
-const hasLearner = computed(() => form.value.lanes.some(learns));
+const racingLearners = computed(() => form.value.lanes.filter(learns));
+const hasLearner = computed(() => racingLearners.value.length > 0);
+
+/**
+ * What a race is without, if the chosen learner has no lane while others have: a sentence, and the action that
+ * gives it one.
+ * @type {Signal<{ words: string, action: Action | null } | null>}
+ */
+export const missingLane = computed(() => {
+  const { agent, lanes } = form.value;
+  if (!hasLearner.value || lanes.includes(agent)) return null;
+  const { title } = agentOf(agent);
+  const others = listed(racingLearners.value.map((name) => agentOf(name).title));
+  const isFull = lanes.length >= (limitsOf("lanes").maximum ?? Infinity);
+  const action = { label: `Add ${title}`, run: () => setField("lanes", [agent, ...lanes]) };
+  return { words: `${title} is not in the race; ${others} will learn and race.`, action: isFull ? null : action };
+});
 
 /** The action of the primary button. @type {Signal<Action>} */
 export const primaryAction = computed(() => {
   const { steps } = form.value;
   if (!hasLearner.value) return { label: "Race", run: () => startRace() };
-  const table = matchingTable.value;
-  if (isRaceRun.value && table) {
+  const tables = laneTables.value;
+  if (isRaceRun.value && tables) {
     return {
       label: `Practise ${whole(steps)} more, race again`,
-      run: () => startRace({ continueFrom: table.id }),
+      run: () => startRace({ continued: tables }),
     };
   }
   return { label: `Train ${count(steps, "step")}, then race`, run: () => startRace() };
@@ -71,8 +89,8 @@ export const secondaryActions = computed(() => {
   const actions = [];
   if (isRaceRun.value) actions.push({ label: "Start afresh", run: () => startRace() });
   else actions.push({ label: "Train only", run: () => startTraining() });
-  const table = matchingTable.value;
-  if (table) actions.push({ label: "Race only", run: () => startRace({ table: table.id }) });
+  const tables = laneTables.value;
+  if (tables) actions.push({ label: "Race only", run: () => startRace({ tables }) });
   return actions;
 });
 
@@ -92,19 +110,17 @@ const adopt = async (send) => {
   return run;
 };
 
-/** @param {Parameters<typeof raceBody>[2]} [how] */
-const startRace = (how) =>
-  attempt("start", () => adopt(() => api.startRace(raceBody(form.value, learns, how))));
+/** @param {Parameters<typeof raceBody>[0]} [how] */
+const startRace = (how) => attempt("start", () => adopt(() => api.startRace(raceBody(how))));
 
-const startTraining = () =>
-  attempt("start", () => adopt(() => api.startTraining(trainingBody(form.value))));
+const startTraining = () => attempt("start", () => adopt(() => api.startTraining(trainingBody())));
 
 /**
  * Continue the training of a table with the form's rates.
  * @param {Run} table
  */
 export const continueTraining = (table) =>
-  attempt("start", () => adopt(() => api.startTraining(trainingBody(form.value, table.id))));
+  attempt("start", () => adopt(() => api.startTraining(trainingBody(table.id))));
 
 // ---- running work
 
@@ -141,14 +157,14 @@ export function togglePause() {
   togglePlaying();
 }
 
-// ---- rates of a live training
+// ---- live settings of a training that runs
 
 const TUNE_MS = 120;
 /** Changes that are not yet sent. @type {Rates | null} */
 let unsent = null;
 
 /**
- * Change rates of the live training from its next step on; requests are sent at most every 120 ms.
+ * Change settings of the live training from its next step on; requests are sent at most every 120 ms.
  * @param {Rates} changes
  */
 export function tune(changes) {
@@ -206,20 +222,21 @@ export const deleteRun = (run) =>
   });
 
 /**
- * Copy the settings of a run into the form.
+ * Copy the settings of a run into the form, those of a race together with those of its training.
  * @param {Run} run
  */
 export function copySettings(run) {
-  const { robot, lanes, ...config } = run.config;
-  const known = Object.keys(form.value);
-  for (const [field, value] of Object.entries(config)) {
-    if (known.includes(field) && field !== "name") setField(field, value);
-  }
-  setField("robot", presetOf(robot) ?? robot ?? form.value.robot);
-  if (lanes) {
-    setField("race_steps", config.steps);
-    setField("lanes", lanes.map(({ agent }) => agent));
-  }
+  const { robot, agent, ...config } = run.kind === "race" ? configOfRace(run) : run.config;
+  if (agent && learns(agent)) chooseLearner(agent);
+  const known = Object.keys({ ...form.value, ...settingsOf([form.value.agent]) });
+  const taken = Object.entries(config).filter(([field]) => known.includes(field) && field !== "name");
+  setFields({ ...Object.fromEntries(taken), robot: presetOf(robot) ?? robot ?? form.value.robot });
+}
+
+/** @type {(race: Run) => Omit<Partial<RunConfig>, "lanes"> & { lanes: string[] }} */
+function configOfRace({ config: { lanes, steps, ...walk } }) {
+  const training = lanes.map((lane) => runs.value.get(lane.training_id ?? "")).find(Boolean);
+  return { ...training?.config, ...walk, race_steps: steps, lanes: lanes.map(({ agent }) => agent) };
 }
 
 /** @param {Run} run */

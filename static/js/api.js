@@ -1,6 +1,6 @@
 // Client of the REST API: one function per request; refusals become errors fit to be shown.
 
-/** @import { Curve, FormValues, Kind, Options, Page, Rates, Run, Stage, Summary, Timeline } from "./types.js" */
+/** @import { Curve, Kind, Options, Page, Rates, Run, Stage, Summary, Timeline } from "./types.js" */
 /** @import { Verb, WhatIfAnswer } from "./types.js" */
 
 const base = () => new URL("api/v1/", document.baseURI);
@@ -134,7 +134,7 @@ export const startExperiment = (body) => start("experiments", body);
 /** @type {(id: string, changes: Rates) => Promise<Run>} */
 export const tuneTraining = (id, changes) => call("PATCH", pathOf({ kind: "training", id }), changes);
 
-/** @type {(body: Partial<FormValues>) => Promise<WhatIfAnswer>} */
+/** @type {(body: Record<string, unknown>) => Promise<WhatIfAnswer>} */
 export const whatIf = (body) => call("POST", "what-if", body);
 
 /** @type {(run: RunKey, verb: Verb) => Promise<Run | null>} */

@@ -1,54 +1,92 @@
 // The form's values, their query string, and the request bodies that they make.
 import { computed, signal } from "@preact/signals";
+import { learners, learns, settingsOf } from "./agents.js";
+import { valueOf } from "./settings.js";
+import { options, served } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { FormValues, Options } from "./types.js" */
-
-/**
- * How a field is read from the query string; undefined for text that is no value of it.
- * @typedef {{ read: (text: string) => any, write: (value: any) => string }} FieldType
- */
-
-/** @type {FieldType} */
-const text = { read: (given) => given, write: (value) => value };
-/** @type {FieldType} */
-const number = {
-  read: (given) => (given.trim() === "" || !Number.isFinite(Number(given)) ? undefined : Number(given)),
-  write: String,
-};
-/** @type {FieldType} */
-const pace = { read: (given) => (given === "max" ? "max" : number.read(given)), write: String };
-/** @type {FieldType} */
-const names = { read: (given) => given.split(",").filter(Boolean), write: (list) => list.join(",") };
-
-/** Every field, in the order of the query string. @satisfies {Record<keyof FormValues, FieldType>} */
-const FIELD_TYPES = {
-  gait: text, steps: number, seed: number, observation: text,
-  alpha: number, gamma: number, epsilon_start: number, epsilon_end: number,
-  steps_per_episode: number, evaluate_every: number, pace,
-  robot: text, simulator: text, divisions: number, grid_side_m: number,
-  race_steps: number, lanes: names, name: text,
-};
-const FIELDS = /** @type {(keyof FormValues)[]} */ (Object.keys(FIELD_TYPES));
+/** @import { FormValue, FormValues, SettingValue } from "./types.js" */
 
 /** Empty until the server's options have come; no component shows the form before. */
 const UNKNOWN = /** @type {FormValues} */ ({});
-let defaults = UNKNOWN;
 
-/** @type {Signal<FormValues>} */
-export const form = signal(UNKNOWN);
-/** Field → why its text is not a valid number; any entry disables the start. @type {Signal<Record<string, string>>} */
+/** What a person or a link has set; all else is the server's default. @type {Signal<Record<string, FormValue>>} */
+export const overrides = signal({});
+/** Field → why its text is not valid; any entry disables the start. @type {Signal<Record<string, string>>} */
 export const mistakes = signal({});
 
 /**
- * Change one field, and the address with it.
- * @param {string} field
- * @param {unknown} value
+ * The defaults of the fields that do not depend on the learner.
+ * @returns {Record<string, FormValue>}
  */
-export const setField = (field, value) => {
-  form.value = { ...form.value, [field]: value };
+function commonDefaults() {
+  const { training, race } = served().defaults;
+  const own = settingsOf([training.agent]);
+  const common = Object.entries(training).filter(([field]) => field !== "agent" && !(field in own));
+  return { ...Object.fromEntries(common), race_steps: race.steps, name: "" };
+}
+
+/**
+ * The lanes of a race by default: those of the server, in which the learner's is the chosen one's.
+ * @param {string} agent
+ */
+function defaultLanes(agent) {
+  const { training, race } = served().defaults;
+  return race.lanes.map((lane) => (lane.agent === training.agent ? agent : lane.agent));
+}
+
+/**
+ * Values of an agent's settings: those that are given and of the right kind, else the agent's defaults.
+ * @param {string} agent
+ * @param {Record<string, FormValue>} given
+ * @returns {Record<string, SettingValue>}
+ */
+const settingValues = (agent, given) =>
+  Object.fromEntries(
+    Object.entries(settingsOf([agent])).map(([name, setting]) => {
+      const value = name in given ? valueOf(written(given[name]), setting) : undefined;
+      return [name, value === undefined ? setting.default : value];
+    }),
+  );
+
+/** @param {Record<string, FormValue>} given */
+function complete(given) {
+  const agent = String(given.agent ?? served().defaults.training.agent);
+  const defaults = { ...commonDefaults(), agent, lanes: defaultLanes(agent) };
+  const common = Object.entries(given).filter(([field]) => field in defaults);
+  return /** @type {FormValues} */ ({ ...defaults, ...Object.fromEntries(common), ...settingValues(agent, given) });
+}
+
+/** The form without the settings of the chosen learner. */
+const commonFields = () => {
+  const own = settingsOf([form.value.agent]);
+  return select(form.value, (field) => !(field in own));
+};
+
+/** The common fields, and the settings of the chosen learner. */
+export const form = computed(() => (options.value ? complete(overrides.value) : UNKNOWN));
+
+/**
+ * Change fields, and the address with them.
+ * @param {Record<string, FormValue>} changes
+ */
+export const setFields = (changes) => {
+  overrides.value = { ...overrides.value, ...changes };
   writeAddress();
 };
+
+/** @type {(field: string, value: FormValue) => void} */
+export const setField = (field, value) => setFields({ [field]: value });
+
+/**
+ * Choose the learner. It takes the lane of the one before it, unless it has its own.
+ * @param {string} agent
+ */
+export function chooseLearner(agent) {
+  const { lanes, agent: before } = form.value;
+  const isSet = "lanes" in overrides.value && !lanes.includes(agent);
+  setFields({ agent, ...(isSet ? { lanes: lanes.map((lane) => (lane === before ? agent : lane)) } : {}) });
+}
 
 /**
  * A record with a message for a field, or without one.
@@ -64,55 +102,59 @@ export function withMistake(messages, field, message) {
 /** @type {(field: string, message: string | null) => void} */
 export const setMistake = (field, message) => (mistakes.value = withMistake(mistakes.value, field, message));
 
-/** @type {(values: FormValues, field: keyof FormValues) => string} */
-const written = (values, field) => FIELD_TYPES[field].write(values[field]);
+// ---- the address
 
-const isChanged = computed(() => FIELDS.some((field) => written(form.value, field) !== written(defaults, field)));
+/** @param {FormValue} value */
+const written = (value) => String(value ?? "");
 
-/**
- * Reset the form to the server's defaults.
- * @param {Pick<Options, "defaults">} served
- */
-export function applyDefaults({ defaults: { training, race } }) {
-  const values = { ...training, race_steps: race.steps, lanes: race.lanes.map(({ agent }) => agent), name: "" };
-  const { agent: _, ...fields } = values;
-  defaults = fields;
-  form.value = defaults;
-}
+/** The form, and what is set for other learners of the race. @returns {Record<string, FormValue>} */
+const everyValue = () => {
+  const own = settingsOf(form.value.lanes);
+  return { ...form.value, ...select(overrides.value, (field) => field in own && !(field in form.value)) };
+};
 
-/**
- * The whole form as a query string; empty texts are left out.
- * @param {FormValues} values
- */
-export const toQuery = (values) =>
+const isChanged = computed(() => {
+  const defaults = complete({});
+  return Object.entries(everyValue()).some(([field, value]) => written(value) !== written(defaults[field]));
+});
+
+/** The whole form as a query string; empty texts are left out. */
+export const toQuery = () =>
   new URLSearchParams(
-    FIELDS.map((field) => [field, written(values, field)]).filter(([, value]) => value !== ""),
+    Object.entries(everyValue()).map(([field, value]) => [field, written(value)]).filter(([, value]) => value !== ""),
   );
 
 /**
- * The fields that a query string sets; unreadable values are skipped.
+ * The fields that a query string sets to something else than the default; unreadable values are skipped.
  * @param {URLSearchParams} query
- * @returns {Partial<FormValues>}
+ * @returns {Record<string, FormValue>}
  */
 export function fromQuery(query) {
-  /** @type {Record<string, unknown>} */
+  /** @type {Record<string, FormValue>} */
   const found = {};
-  for (const field of FIELDS) {
-    const given = query.get(field);
-    const value = given === null ? undefined : FIELD_TYPES[field].read(given);
-    if (value !== undefined) found[field] = value;
+  const agent = query.get("agent") ?? "";
+  if (learners.value.some(({ name }) => name === agent)) found.agent = agent;
+  const lanes = (query.get("lanes") ?? "").split(",").filter(Boolean);
+  if (lanes.length) found.lanes = lanes;
+  const defaults = complete(found);
+  const declared = { ...served().settings, ...settingsOf([defaults.agent, ...defaults.lanes]) };
+  for (const [field, text] of query) {
+    const isKnown = field in defaults || field in declared;
+    const value = field in declared ? valueOf(text, declared[field]) : text;
+    const isFound = field === "agent" || field === "lanes" || value === undefined;
+    if (isKnown && !isFound && value !== defaults[field]) found[field] = value;
   }
   return found;
 }
 
 /** Set the fields that the page's address contains. */
 export function readAddress() {
-  form.value = { ...form.value, ...fromQuery(new URLSearchParams(location.search)) };
+  overrides.value = fromQuery(new URLSearchParams(location.search));
 }
 
 /** Write the form to the page's address; an unchanged form keeps it clean. */
 export function writeAddress() {
-  const search = isChanged.value ? `?${toQuery(form.value)}` : "";
+  const search = isChanged.value ? `?${toQuery()}` : "";
   history.replaceState(history.state, "", `${location.pathname}${search}${location.hash}`);
 }
 
@@ -120,67 +162,71 @@ export function writeAddress() {
 export const link = () =>
   form.value === UNKNOWN
     ? location.href
-    : `${location.origin}${location.pathname}?${toQuery(form.value)}${location.hash}`;
+    : `${location.origin}${location.pathname}?${toQuery()}${location.hash}`;
 
-/** @param {FormValues} values */
-const walkBody = ({ gait, robot, simulator, divisions, grid_side_m, name }) => ({
-  gait, robot, simulator, divisions, grid_side_m, ...(name.trim() ? { name: name.trim() } : {}),
-});
+// ---- request bodies
 
-/**
- * @typedef {Omit<FormValues, "gait" | "seed" | "robot" | "simulator" | "divisions" | "grid_side_m" | "race_steps" |
- *   "lanes" | "name"> & { seed?: number, continue_from?: string }} PracticeBody
- */
+const WALK_FIELDS = ["gait", "robot", "simulator", "divisions", "grid_side_m"];
+const RACE_FIELDS = ["race_steps", "lanes"];
+/** Fields on which what is learned does not depend. */
+const SHOW_FIELDS = ["evaluate_every", "pace"];
 
-/**
- * A continued training has no seed of its own: it goes on with its generator.
- * @param {FormValues} values
- * @param {string | null} continueFrom
- * @returns {PracticeBody}
- */
-function practiceBody(values, continueFrom) {
-  const { steps, seed, observation, alpha, gamma } = values;
-  const { epsilon_start, epsilon_end, steps_per_episode, evaluate_every } = values;
-  return {
-    steps, observation, alpha, gamma, epsilon_start, epsilon_end, steps_per_episode,
-    evaluate_every, pace: values.pace, ...(continueFrom ? { continue_from: continueFrom } : { seed }),
-  };
+/** @type {<Value>(values: Record<string, Value>, isWanted: (field: string) => boolean) => Record<string, Value>} */
+const select = (values, isWanted) =>
+  Object.fromEntries(Object.entries(values).filter(([field]) => isWanted(field)));
+
+const walkFields = () => select(form.value, (field) => WALK_FIELDS.includes(field));
+
+const nameField = () => {
+  const name = form.value.name.trim();
+  return name ? { name } : {};
+};
+
+/** The practice of an agent: the fields that are common to all, and the agent's own. @param {string} agent */
+function practiceFields(agent) {
+  const elsewhere = ["agent", "name", "seed", ...WALK_FIELDS, ...RACE_FIELDS];
+  const common = select(commonFields(), (field) => !elsewhere.includes(field));
+  const own = Object.entries(settingValues(agent, overrides.value)).filter(([, value]) => value !== null);
+  return { ...common, ...Object.fromEntries(own) };
 }
+
+/**
+ * A training's seed; one that continues another goes on with its generator.
+ * @param {string | null | undefined} id of the training whose table it starts with
+ */
+const beginning = (id) => (id ? { continue_from: id } : { seed: form.value.seed });
 
 /**
  * Request body of a training.
- * @param {FormValues} values
  * @param {string | null} continueFrom id of the training whose table it starts with
+ * @returns {Record<string, unknown>}
  */
-export const trainingBody = (values, continueFrom = null) =>
-  ({ ...walkBody(values), ...practiceBody(values, continueFrom) });
+export const trainingBody = (continueFrom = null) => {
+  const { agent } = form.value;
+  return { agent, ...walkFields(), ...nameField(), ...practiceFields(agent), ...beginning(continueFrom) };
+};
 
-/**
- * Request body of a what-if: the settings of the practice, without seed, pace and simulator.
- * @param {FormValues} values
- */
-export function whatIfBody(values) {
-  const { gait, robot, divisions, grid_side_m, steps, observation, alpha, gamma } = values;
-  const { epsilon_start, epsilon_end, steps_per_episode } = values;
-  return {
-    gait, robot, divisions, grid_side_m, steps, observation, alpha, gamma, epsilon_start, epsilon_end,
-    steps_per_episode,
-  };
+/** Request body of a what-if: the settings of the practice, without seed, pace and simulator. */
+export function whatIfBody() {
+  const { agent } = form.value;
+  const body = { agent, ...walkFields(), ...practiceFields(agent) };
+  return select(body, (field) => field !== "simulator" && !SHOW_FIELDS.includes(field));
 }
+
+/** Agent → id of a training. @typedef {Record<string, string | undefined>} TrainingIds */
 
 /**
  * Request body of a race. Its learners practise first, continue from a table, or use it as it is.
- * @param {FormValues} values
- * @param {(agent: string) => boolean} learns
- * @param {{ continueFrom?: string | null, table?: string | null }} how ids of trainings
+ * @param {{ continued?: TrainingIds, tables?: TrainingIds }} how
  */
-export const raceBody = (values, learns, { continueFrom = null, table = null } = {}) => ({
-  ...walkBody(values),
-  steps: values.race_steps,
-  seed: values.seed,
-  lanes: values.lanes.map((agent) => {
+export const raceBody = ({ continued = {}, tables = {} } = {}) => ({
+  ...walkFields(),
+  ...nameField(),
+  steps: form.value.race_steps,
+  seed: form.value.seed,
+  lanes: form.value.lanes.map((agent) => {
     if (!learns(agent)) return { agent };
-    if (table) return { agent, training_id: table };
-    return { agent, training: practiceBody(values, continueFrom) };
+    if (tables[agent]) return { agent, training_id: tables[agent] };
+    return { agent, training: { ...practiceFields(agent), ...beginning(continued[agent]) } };
   }),
 });

@@ -1,8 +1,9 @@
 // Settings as the server declares them, and checks of numbers against their limits.
 import { whole } from "./format.js";
+import { kindOf, valueOf } from "./settings.js";
 import { options, served } from "./store.js";
 
-/** @import { Limits, SettingOption } from "./types.js" */
+/** @import { Limits, SettingOption, SettingValue } from "./types.js" */
 
 /** @type {(value: number) => string} */
 const shown = (value) => (Number.isInteger(value) ? whole(value) : String(value));
@@ -12,9 +13,6 @@ const shown = (value) => (Number.isInteger(value) ? whole(value) : String(value)
  * @type {(field: string) => SettingOption}
  */
 export const settingOf = (field) => served().settings[field];
-
-/** @param {string} field */
-export const isWhole = (field) => options.value?.settings[field]?.is_whole ?? false;
 
 /**
  * The limits of a field; none where the server states none.
@@ -73,4 +71,18 @@ export function parseNumbers(typed, limits, isInteger) {
   if (!found.every((one) => isWithin(one, limits))) return { mistake: `Each must be ${rangeOf(limits)}` };
   if (new Set(found).size < found.length) return { mistake: "Enter each number once" };
   return { value: found };
+}
+
+/**
+ * The values of a list with commas, or why it is none.
+ * @param {string} typed
+ * @param {SettingOption} setting
+ * @returns {{ value?: SettingValue[], mistake?: string }}
+ */
+export function parseValues(typed, setting) {
+  if (kindOf(setting) === "number") return parseNumbers(typed, setting, setting.is_whole);
+  const found = typed.split(",").map((part) => valueOf(part.trim(), setting));
+  if (found.includes(undefined)) return { mistake: `Each must be ${setting.valid}` };
+  if (new Set(found).size < found.length) return { mistake: "Enter each value once" };
+  return { value: /** @type {SettingValue[]} */ (found) };
 }

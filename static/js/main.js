@@ -9,7 +9,7 @@ import { announceExperiments } from "./experiments/announce.js";
 import { followAddress } from "./experiments/address.js";
 import { followExperiments } from "./experiments/selection.js";
 import { followSummary } from "./experiments/summaries.js";
-import { applyDefaults, readAddress, writeAddress } from "./form.js";
+import { readAddress, writeAddress } from "./form.js";
 import { html } from "./html.js";
 import { listenForKeys } from "./keys.js";
 import { announceOutcomes } from "./outcome.js";
@@ -24,10 +24,8 @@ const LONGEST_RETRY_MS = 8000;
 /** Ask for the options until they come; the forms work from then on. */
 async function loadOptions(attempt = 0) {
   try {
-    const served = await getOptions();
-    applyDefaults(served);
+    options.value = await getOptions();
     isLockedOut.value = false;
-    options.value = served;
   } catch (error) {
     isLockedOut.value = error instanceof RequestError && (error.status === 401 || error.status === 403);
     setTimeout(loadOptions, Math.min(FIRST_RETRY_MS * 2 ** attempt, LONGEST_RETRY_MS), attempt + 1);

@@ -1,10 +1,11 @@
 // Values derived from the store: rights, and the runs that the panels are about.
 import { computed, signal } from "@preact/signals";
+import { learns } from "./agents.js";
 import { form } from "./form.js";
 import { options, role, runs, scene, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { Agent, FormValues, RobotConfig, Run, State } from "./types.js" */
+/** @import { FormValues, RobotConfig, Run, State } from "./types.js" */
 
 /** @type {Set<State>} */
 const ACTIVE = new Set(["queued", "running", "paused"]);
@@ -51,16 +52,6 @@ function readOwnRuns() {
   }
 }
 
-/** For an agent that a run names and the server no longer has. */
-const REMOVED_AGENT = { description: "", color: "#888888", learns: false };
-
-/** @type {(name: string) => Agent} */
-export const agentOf = (name) =>
-  options.value?.agents.find((agent) => agent.name === name) ?? { name, title: name, ...REMOVED_AGENT };
-
-/** @param {string} name */
-export const learns = (name) => agentOf(name).learns;
-
 /** The clock under which the stage times the race. */
 export const clock = computed(() => stage.value?.clock ?? scene.value?.clock ?? "paper");
 
@@ -80,14 +71,23 @@ const get = (id) => (isKnown(id) ? runs.value.get(id) ?? null : null);
 /** The run on stage. */
 export const shownRun = computed(() => get(stage.value?.run_id));
 
+/**
+ * Whether the stage will show a race next, or another training of the race before.
+ * @param {Run} race
+ */
+export const isToCome = (race) => {
+  const next = stage.value?.next_run_id;
+  return isKnown(next) && [race.id, ...trainingIds(race)].includes(next);
+};
+
 /** The race of the scoreboard and the race chart. @type {Signal<Run | null>} */
 export const raceInView = computed(() => {
   const shown = shownRun.value;
   if (shown?.kind === "race") return shown;
   const races = stageableRuns.value.filter((run) => run.kind === "race");
   if (shown?.kind === "training") {
-    const next = get(stage.value?.next_run_id);
-    return next ?? races.find((race) => isActive(race) && trainingIds(race).includes(shown.id)) ?? null;
+    const isItsRace = (/** @type {Run} */ race) => isActive(race) && trainingIds(race).includes(shown.id);
+    return races.find(isToCome) ?? races.find(isItsRace) ?? null;
   }
   return races.find((race) => race.state === "finished") ?? null;
 });
@@ -146,8 +146,7 @@ export const offStage = computed(() => {
   return [requested.id, current.id, ...trainingIds(requested)].includes(onStage) ? null : current;
 });
 
-/** @satisfies {(keyof FormValues)[]} */
-const WALK_FIELDS = /** @type {const} */ (["divisions", "grid_side_m", "observation", "simulator"]);
+const WALK_FIELDS = ["divisions", "grid_side_m", "observation", "simulator"];
 
 /** @param {RobotConfig | undefined} robot */
 export const presetOf = (robot) => (typeof robot === "string" ? robot : robot?.preset);
@@ -163,18 +162,31 @@ const fits = (training, values) =>
   presetOf(training.config.robot) === values.robot &&
   WALK_FIELDS.every((field) => [undefined, values[field]].includes(training.config[field]));
 
-/** The newest training whose table fits the form, on stage or among this tab's runs. */
-export const matchingTable = computed(() => {
+/** The trainings whose tables fit the form: those on stage first, then this tab's. */
+const fittingTrainings = computed(() => {
   const known = [raceInView.value, shownRun.value, ...ownRuns.value.map(get)];
   const trainings = known.flatMap((run) => (run?.kind === "race" ? trainingIds(run).map(get) : [run]));
-  return trainings.find((run) => run && fits(run, form.value)) ?? null;
+  return trainings.filter(isKnown).filter((run) => fits(run, form.value));
 });
 
-/** Whether the race in view was run with that table, so that it can be run "again". */
+/** @param {string} agent */
+const tableOf = (agent) => fittingTrainings.value.find(({ config }) => config.agent === agent) ?? null;
+
+/** The newest training of the chosen learner whose table fits the form. */
+export const matchingTable = computed(() => tableOf(form.value.agent));
+
+/** Learner → id of its newest training that fits; null if a learner of the lanes has none. */
+export const laneTables = computed(() => {
+  const tables = form.value.lanes.filter(learns).map((agent) => [agent, tableOf(agent)?.id]);
+  const isComplete = tables.length > 0 && tables.every(([, id]) => id);
+  return isComplete ? /** @type {Record<string, string>} */ (Object.fromEntries(tables)) : null;
+});
+
+/** Whether the race in view was run with those tables, so that it can be run "again". */
 export const isRaceRun = computed(() => {
   const race = raceInView.value;
-  const table = matchingTable.value;
-  return race?.state === "finished" && table !== null && trainingIds(race).includes(table.id);
+  const ids = trainingIds(race);
+  return race?.state === "finished" && Object.values(laneTables.value ?? { none: "" }).every((id) => ids.includes(id));
 });
 
 /**

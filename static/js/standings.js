@@ -1,6 +1,7 @@
 // The standings of the race in view at the moment that is shown, and nothing later.
 import { computed } from "@preact/signals";
-import { agentOf, clock, isActive, raceInView } from "./selectors.js";
+import { agentOf } from "./agents.js";
+import { clock, isActive, raceInView } from "./selectors.js";
 import { distanceAt, shownTime, timeSpent, timeline } from "./timeline.js";
 import { scene } from "./store.js";
 

@@ -30,7 +30,7 @@ export const scene = signal(null);
 export const evaluations = signal({});
 /** Run id → greedy's distance on the same robot [m]. @type {Signal<Record<string, number>>} */
 export const references = signal({});
-/** Run id → the rates and pace that were changed while it ran. @type {Signal<Record<string, Rates>>} */
+/** Run id → the pace and the live settings that were changed while it ran. @type {Signal<Record<string, Rates>>} */
 export const rates = signal({});
 /** Run id → number of trials in that experiment's newest summary. @type {Signal<Record<string, number>>} */
 export const summarised = signal({});

@@ -1,7 +1,7 @@
 // The timeline of the race in view under the chosen clock. It grows while the race is simulated.
 import { computed, effect, signal } from "@preact/signals";
 import { getTimeline } from "./api.js";
-import { clock, raceInView } from "./selectors.js";
+import { clock, isToCome, raceInView } from "./selectors.js";
 import { connection, scene, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -25,7 +25,7 @@ export const shownTime = computed(() => {
   if (!race) return null;
   if (scene.value?.run_id === race.id && scene.value.kind === "race") return scene.value.time_s;
   // The stage still shows its training, or is about to begin.
-  if ([stage.value?.run_id, stage.value?.next_run_id].includes(race.id)) return null;
+  if (stage.value?.run_id === race.id || isToCome(race)) return null;
   return race.state === "finished" || race.state === "stopped" ? Infinity : null;
 });
 

@@ -13,6 +13,8 @@ export interface Limits {
   excludes_maximum: boolean;
 }
 
+export type SettingValue = string | number | boolean | null;
+
 /** A setting as the server declares it. */
 export interface SettingOption extends Limits {
   title: string;
@@ -21,7 +23,11 @@ export interface SettingOption extends Limits {
   help: string;
   /** The valid values in words. */
   valid: string;
+  is_number: boolean;
   is_whole: boolean;
+  /** The valid words, if only certain words are valid. */
+  choices: string[];
+  default: SettingValue;
   /** Whether it may change while a training runs. */
   is_live: boolean;
 }
@@ -46,6 +52,11 @@ export interface Agent extends Described {
   title: string;
   color: string;
   learns: boolean;
+  needs_practice: boolean;
+  /** By name, in the order of their declaration. */
+  settings: Record<string, SettingOption>;
+  /** Those that may change while it learns. */
+  live_settings: Record<string, SettingOption>;
 }
 
 export interface Robot extends Described {
@@ -71,7 +82,7 @@ export interface Options {
   clocks: Described[];
   experiments: ExperimentKind[];
   defaults: {
-    training: Omit<FormValues, "race_steps" | "lanes" | "name"> & { agent: string };
+    training: { agent: string; robot: string; simulator: string; [field: string]: FormValue };
     race: { steps: number; lanes: { agent: string }[] };
     what_if: { seeds: number };
   };
@@ -82,15 +93,16 @@ export interface Options {
 
 // ---- the forms
 
+export type FormValue = SettingValue | string[] | Exclude<RobotConfig, string>;
+
+/** The common fields, and the settings of the chosen learner. */
 export interface FormValues {
+  /** The learner. */
+  agent: string;
   gait: string;
   steps: number;
   seed: number;
   observation: string;
-  alpha: number;
-  gamma: number;
-  epsilon_start: number;
-  epsilon_end: number;
   steps_per_episode: number;
   evaluate_every: number;
   /** "max", or a multiple of real time. */
@@ -102,9 +114,10 @@ export interface FormValues {
   race_steps: number;
   lanes: string[];
   name: string;
+  [setting: string]: FormValue;
 }
 
-export type ExperimentValue = string | number | string[] | number[];
+export type ExperimentValue = string | number | SettingValue[];
 
 export interface ExperimentValues {
   name: string;
@@ -116,10 +129,6 @@ export interface ExperimentValues {
   simulator: string;
   agents: string[];
   steps: number[];
-  alpha: number[];
-  gamma: number[];
-  epsilon_start: number[];
-  epsilon_end: number[];
   steps_per_episode: number[];
   divisions: number[];
   grid_side_m: number[];
@@ -137,7 +146,7 @@ export interface LaneConfig {
 
 /** Trainings, races and experiments have different fields; those of all three stand here. */
 export interface RunConfig {
-  agent?: string;
+  agent: string;
   gait: string;
   robot: RobotConfig;
   simulator: string;
@@ -146,10 +155,6 @@ export interface RunConfig {
   grid_side_m: number;
   steps: number;
   seed: number;
-  alpha: number;
-  gamma: number;
-  epsilon_start: number;
-  epsilon_end: number;
   steps_per_episode: number;
   evaluate_every: number;
   pace: number | "max";
@@ -160,6 +165,8 @@ export interface RunConfig {
   gaits: string[];
   observations: string[];
   robots: Exclude<RobotConfig, string>[];
+  /** A setting of the training's agent. */
+  [setting: string]: any;
 }
 
 export interface ClockResult {
@@ -215,10 +222,12 @@ export interface DamagedRun {
   damaged: string;
 }
 
+/** The column of the exploration rate has the name of the live setting that replaces it. */
 export interface Evaluation {
   step: number;
   distance_m: number;
   epsilon: number;
+  [setting: string]: number;
 }
 
 export interface Page<Item> {
@@ -325,12 +334,8 @@ export interface Scene {
   knowledge: Knowledge | null;
 }
 
-export interface Rates {
-  alpha?: number;
-  gamma?: number;
-  epsilon?: number;
-  pace?: number | "max";
-}
+/** Values of the pace and of live settings by name. */
+export type Rates = Record<string, SettingValue>;
 
 // ---- GET /experiments/{id}/summary
 
@@ -381,4 +386,6 @@ export interface Summary {
   [part: string]: any;
   experiment: string;
   settings: Setting[];
+  /** Names of what is varied beside place and agent. */
+  parameters: string[];
 }

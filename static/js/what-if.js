@@ -22,7 +22,7 @@ export const error = signal(null);
 /** Whether a request is under way. */
 export const isComputing = signal(false);
 
-const settings = computed(() => JSON.stringify(whatIfBody(form.value)));
+const settings = computed(() => JSON.stringify(whatIfBody()));
 /** The most steps of practice that the server tries; null without a limit. */
 export const mostSteps = computed(() => limitsOf("what_if_steps").maximum);
 export const isTooLong = computed(() => mostSteps.value !== null && form.value.steps > mostSteps.value);

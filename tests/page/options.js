@@ -7,10 +7,28 @@ const described = (name, title = name) => ({ name, title, description: `About ${
 
 const SETTING = {
   title: "", symbol: null, unit: null, help: "", valid: "a number", minimum: null, maximum: null,
-  excludes_minimum: false, excludes_maximum: false, is_whole: false, is_live: false,
+  excludes_minimum: false, excludes_maximum: false, is_number: true, is_whole: false, choices: [], default: null,
+  is_live: false,
 };
 /** @type {(title: string, changes: object) => SettingOption} */
-const setting = (title, changes) => ({ ...SETTING, title, ...changes });
+export const setting = (title, changes) => ({ ...SETTING, title, ...changes });
+
+/** @type {(title: string, symbol: string, changes: object) => SettingOption} */
+const share = (title, symbol, changes) => setting(title, { symbol, minimum: 0, maximum: 1, ...changes });
+
+const ALPHA = share("Learning rate", "α", { default: 0.3, excludes_minimum: true, is_live: true });
+const LEARNER = {
+  alpha: ALPHA,
+  gamma: share("Discount", "γ", { default: 0.9, excludes_maximum: true, is_live: true }),
+  epsilon_start: share("Exploration, first episode", "ε", { default: 1 }),
+  epsilon_end: share("Exploration, last episode", "ε", { default: 0 }),
+};
+const EPSILON = share("Exploration now", "ε", { is_live: true });
+const TRACER = {
+  alpha: { ...ALPHA, default: 0.1 },
+  trace: share("Trace decay", "λ", { default: 0.9, is_live: true }),
+  kind: setting("Kind of trace", { default: "replacing", choices: ["replacing", "adding"], is_number: false }),
+};
 
 const TRAINING = {
   agent: "learner", gait: "tripod", steps: 500, seed: 0, observation: "measured", alpha: 0.3, gamma: 0.9,
@@ -18,13 +36,15 @@ const TRAINING = {
   divisions: 2, grid_side_m: 0.04,
 };
 
-const GRID = ["steps", "alpha"];
+const GRID = ["steps", "alpha", "gamma", "epsilon_start", "epsilon_end", "trace", "kind"];
 const EXPERIMENT = {
   name: "", seeds: 30, seed: 0, gaits: ["tripod", "wave"], observations: ["measured"], robots: ["stiff"],
   simulator: "mujoco", agents: ["learner"], steps: [500], alpha: [0.3], gamma: [0.9], epsilon_start: [1],
   epsilon_end: [0], steps_per_episode: [50], divisions: [2], grid_side_m: [0.04],
 };
 const COMMON = ["seeds", "seed", "gaits", "observations", "robots", "simulator"];
+
+const SEARCH = { learns: false, needs_practice: false, settings: {}, live_settings: {} };
 
 /** @type {Options} */
 export const OPTIONS = {
@@ -35,9 +55,16 @@ export const OPTIONS = {
   })),
   robots: [{ ...described("stiff", "Stiff"), robot: { preset: "stiff" } }],
   agents: [
-    { ...described("learner", "Learner"), color: "#111111", learns: true },
-    { ...described("greedy", "Greedy"), color: "#222222", learns: false },
-    { ...described("planner", "Planner"), color: "#333333", learns: false },
+    {
+      ...described("learner", "Learner"), color: "#111111", learns: true, needs_practice: true, settings: LEARNER,
+      live_settings: { alpha: LEARNER.alpha, gamma: LEARNER.gamma, epsilon: EPSILON },
+    },
+    {
+      ...described("tracer", "Tracer"), color: "#444444", learns: true, needs_practice: true, settings: TRACER,
+      live_settings: { alpha: TRACER.alpha, trace: TRACER.trace },
+    },
+    { ...described("greedy", "Greedy"), color: "#222222", ...SEARCH },
+    { ...described("planner", "Planner"), color: "#333333", ...SEARCH },
   ],
   simulators: [{ name: "mujoco", description: "" }, { name: "kinematic", description: "" }],
   observations: [{ name: "measured", description: "" }, { name: "commanded", description: "" }],
@@ -53,7 +80,10 @@ export const OPTIONS = {
   },
   settings: {
     steps: setting("Practice", { minimum: 1, maximum: 10_000_000, is_whole: true }),
-    alpha: setting("Learning rate", { minimum: 0, maximum: 1, excludes_minimum: true, is_live: true, symbol: "α" }),
+    ...Object.fromEntries(["seed", "steps_per_episode", "evaluate_every", "divisions", "grid_side_m", "race_steps"]
+      .map((name) => [name, setting(name, {})])),
+    pace: setting("Pace", { choices: ["max"], minimum: 0.01, maximum: 1000, default: "max" }),
+    ...TRACER, ...LEARNER,
   },
   limits: { seeds: [1, null], what_if_steps: [1, 2000] },
   help: { alpha: "Learning rate." },
@@ -69,7 +99,8 @@ let number = 0;
 export function makeRun(changes) {
   number += 1;
   return /** @type {Run} */ ({
-    id: `run-${number}`, kind: "training", name: null, state: "finished", config: { ...TRAINING, pace: "max" },
+    id: `run-${number}`, kind: "training", name: null, state: "finished",
+    config: /** @type {any} */ ({ ...TRAINING, pace: "max" }),
     progress: { done: 0, total: 500 }, can_resume: false,
     created_at: new Date(Date.UTC(2030, 0, 1) + 1000 * number).toISOString(),
     ...changes,

@@ -1,13 +1,13 @@
 // The form of experiments, its address, trial counts, units and places.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { gridFields } from "../../static/js/experiments/catalogue.js";
 import {
-  chooseExperiment, chosenExperiment, parse, readQuery, requestBody, setField, toQuery, trials, values,
+  agentSettings, chooseExperiment, chosenExperiment, parse, readQuery, requestBody, setField, takesField, toQuery,
+  trials, values,
 } from "../../static/js/experiments/form.js";
 import { paceOf } from "../../static/js/experiments/pace.js";
 import { gaitsOf, greedyTotals, placesOf } from "../../static/js/experiments/places.js";
-import { describeRun } from "../../static/js/experiments/titles.js";
+import { describeRun, fieldTitle, variedFields } from "../../static/js/experiments/titles.js";
 import { bare, factorOf, inUnit, shown, unit } from "../../static/js/experiments/units.js";
 import { options } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
@@ -81,7 +81,44 @@ test("trials are counted before they are started", () => {
   assert.equal(trials.value, 2 * (1 + 1 + 3 * 3));
 });
 
-test("the grid is the server's", () => assert.deepEqual(gridFields.value, ["steps", "alpha"]));
+test("the grid has the settings of the chosen agents", () => {
+  assert.deepEqual(Object.keys(agentSettings.value), []);
+  chooseExperiment("sweep");
+  assert.deepEqual(Object.keys(agentSettings.value), ["alpha", "gamma", "epsilon_start", "epsilon_end"]);
+  setField("trace", [0.1, 0.5]);
+  assert.ok(takesField("steps") && !takesField("trace"));
+  assert.deepEqual(requestBody(), { experiment: "sweep" });
+  setField("agents", ["tracer"]);
+  assert.deepEqual(requestBody(), { experiment: "sweep", agents: ["tracer"], trace: [0.1, 0.5] });
+  assert.deepEqual([values.value.alpha, values.value.kind], [[0.1], ["replacing"]]);
+  assert.equal(trials.value, 2 * (1 + 2 * 30));
+  const [sent, link] = [requestBody(), query()];
+  readQuery(new URLSearchParams());
+  readQuery(new URLSearchParams(link));
+  assert.deepEqual(requestBody(), sent);
+});
+
+test("agents with other defaults each keep their own, and count only the settings that they have", () => {
+  chooseExperiment("sweep");
+  setField("agents", ["learner", "tracer"]);
+  assert.deepEqual(values.value.alpha, []);
+  assert.equal(trials.value, 2 * (1 + 2 * 30));
+  setField("trace", [0.1, 0.5, 0.9]);
+  assert.equal(trials.value, 2 * (1 + 30 + 3 * 30));
+  setField("alpha", [0.2]);
+  assert.deepEqual(requestBody().alpha, [0.2]);
+  setField("alpha", []);
+  assert.ok(!("alpha" in requestBody()));
+});
+
+test("reports name settings as they are declared, and only those that differ", () => {
+  assert.deepEqual(["gait", "alpha", "epsilon_end", "unknown"].map(fieldTitle),
+    ["Gait", "α", "ε, last episode", "unknown"]);
+  const rows = [{ agent: "learner", alpha: 0.3, trace: null }, { agent: "tracer", alpha: 0.3, trace: 0.9 }];
+  assert.deepEqual(variedFields(rows, ["agent", "alpha", "trace"]), ["agent"]);
+  const more = [...rows, { ...rows[1], trace: 0.5 }];
+  assert.deepEqual(variedFields(more, ["agent", "alpha", "trace"]), ["agent", "trace"]);
+});
 
 test("progress is told with its pace", () => {
   const run = makeRun({ kind: "experiment", state: "running", progress: { done: 400, total: 1000 }, eta_s: 60 });

@@ -1,7 +1,7 @@
 // Settings as the server declares them, and typed numbers against their limits.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { isWhole, limitsOf, mistakeIn, parseNumbers, rangeOf, settingOf } from "../../static/js/limits.js";
+import { limitsOf, mistakeIn, parseNumbers, rangeOf, settingOf } from "../../static/js/limits.js";
 import { options } from "../../static/js/store.js";
 import { OPTIONS } from "./options.js";
 
@@ -24,8 +24,7 @@ test("limits are the server's, and none before it has answered", () => {
 
 test("declarations name settings and say which are whole numbers", () => {
   assert.equal(settingOf("alpha").title, "Learning rate");
-  assert.ok(isWhole("steps"));
-  assert.ok(!isWhole("alpha") && !isWhole("unknown"));
+  assert.ok(settingOf("steps").is_whole);
 });
 
 test("ranges in words", () => {

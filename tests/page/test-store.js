@@ -1,15 +1,17 @@
 // Server-sent events change the store, and the selectors follow.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { applyDefaults, form, setField } from "../../static/js/form.js";
+import { learns } from "../../static/js/agents.js";
+import { form, overrides, setField, setFields } from "../../static/js/form.js";
 import {
-  everyRun, hasTable, interruptedRun, isRaceRun, learns, liveTraining, markAsMine, matchingTable, myWork, offStage,
-  raceInView, simulatedPerDecision, trainingInView, work,
+  everyRun, hasTable, interruptedRun, isRaceRun, laneTables, liveTraining, markAsMine, matchingTable, myWork,
+  offStage, raceInView, simulatedPerDecision, trainingInView, work,
 } from "../../static/js/selectors.js";
 import {
   applyEvent, damagedRuns, evaluations, isDeleted, options, rates, requestRun, requestRuns, requestStage, role, runs,
   stage,
 } from "../../static/js/store.js";
+import { shownTime } from "../../static/js/timeline.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
@@ -26,7 +28,7 @@ const raceOf = (/** @type {{ id: string }} */ training, changes = {}) =>
 
 beforeEach(() => {
   options.value = OPTIONS;
-  applyDefaults(OPTIONS);
+  overrides.value = {};
   show({});
 });
 
@@ -125,6 +127,18 @@ test("a race that waits works on its training, which Stop asks of the race", () 
   assert.equal(trainingInView.value?.id, training.id);
 });
 
+test("between two trainings of a race it is the race that is in view", () => {
+  const [first, second] = [makeRun({}), makeRun({})];
+  const race = raceOf(first, { config: { steps: 50, lanes: [first, second].map(({ id }) => ({ training_id: id })) } });
+  const next = { ...STAGE, run_id: first.id, next_run_id: second.id };
+  show({ runs: [first, second, race], stage: next });
+  assert.equal(raceInView.value?.id, race.id);
+  assert.equal(shownTime.value, null);
+  show({ runs: [first, second, race], stage: { ...next, next_run_id: race.id } });
+  assert.equal(raceInView.value?.id, race.id);
+  assert.equal(shownTime.value, null);
+});
+
 test("my run is off stage while another live run is shown", () => {
   const [mine, other] = [makeRun({ state: "running" }), makeRun({ state: "running" })];
   show({ runs: [mine, other], stage: { ...STAGE, run_id: other.id } });
@@ -148,6 +162,24 @@ test("a table matches the form by gait, robot, grid, observation and simulator",
   setField("divisions", 3);
   assert.equal(matchingTable.value, null);
   assert.ok(!isRaceRun.value);
+});
+
+test("a table is of its learner, and each learner of a race needs one", () => {
+  const training = makeRun({});
+  show({ runs: [training], stage: { ...STAGE, run_id: training.id } });
+  assert.deepEqual(laneTables.value, { learner: training.id });
+  setFields({ agent: "tracer", lanes: ["learner", "tracer"] });
+  const tables = () => [matchingTable.value?.id, laneTables.value];
+  assert.deepEqual(tables(), [undefined, null]);
+  const other = makeRun({ config: { ...training.config, agent: "tracer" } });
+  const race = raceOf(training, {
+    config: { steps: 50, lanes: [training, other].map(({ id, config }) => ({ agent: config.agent, training_id: id })) },
+  });
+  show({ runs: [training, other, race], stage: { ...STAGE, run_id: race.id } });
+  assert.deepEqual(tables(), [other.id, { learner: training.id, tracer: other.id }]);
+  assert.ok(isRaceRun.value);
+  setField("lanes", ["greedy"]);
+  assert.equal(laneTables.value, null);
 });
 
 test("only trainings that ended have a table", () => {

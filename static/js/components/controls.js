@@ -1,14 +1,16 @@
 // The controls: settings, the primary button, the running work, and what failed.
 import { useState } from "preact/hooks";
 import {
-  canStart, pause, pending, primaryAction, resume, resumeRun, runPrimaryAction, secondaryActions, showOnStage, stop,
+  canStart, missingLane, pause, pending, primaryAction, resume, resumeRun, runPrimaryAction, secondaryActions,
+  showOnStage, stop,
 } from "../actions.js";
+import { agentOf, ratesInWords } from "../agents.js";
 import { form } from "../form.js";
 import { count, whole } from "../format.js";
 import { html } from "../html.js";
 import { isNarrow } from "../page.js";
 import { progress } from "../progress.js";
-import { agentOf, interruptedRun, isOperator, myWork, offStage, shownRun, work } from "../selectors.js";
+import { interruptedRun, isOperator, myWork, offStage, shownRun, work } from "../selectors.js";
 import { scene } from "../store.js";
 import { gaitTitle } from "../titles.js";
 import { Icon } from "./icon.js";
@@ -31,13 +33,14 @@ export function Controls() {
 /** The settings; on a phone one line until they are opened. */
 function FoldedSettings() {
   const [isOpen, setOpen] = useState(false);
-  const { gait, steps, alpha, gamma } = form.value;
+  const { gait, steps, agent } = form.value;
+  const about = [gaitTitle(gait), count(steps, "step"), agentOf(agent).title, ...ratesInWords(agent, form.value)];
   const onToggle = ({ target }) => isNarrow.value && setOpen(target.open);
   return html`
     <details class="folded" open=${isOpen || !isNarrow.value} onToggle=${onToggle}>
       <summary hidden=${!isNarrow.value}>
         <span>Settings</span>
-        <span class="dim">${gaitTitle(gait)}, ${count(steps, "step")}, α ${alpha}, γ ${gamma}</span>
+        <span class="dim">${about.join(", ")}</span>
       </summary>
       <${Settings} />
     </details>
@@ -54,6 +57,7 @@ function Actions() {
         ${!isBusy && html`<${Icon} name="play" />`}${label}
       </button>
       <${Problem} at="start" />
+      ${!isBusy && html`<${MissingLane} />`}
       ${!myWork.value && html`<${SecondaryActions} />`}
       <${Progress} />
       ${work.value && html`<${WorkActions} />`}
@@ -73,6 +77,16 @@ const busyLabel = () => {
   if (current.kind !== "training" && scene.value?.kind !== "training") return "Racing…";
   return requested.kind === "training" ? "Practising…" : "Practising, then racing…";
 };
+
+function MissingLane() {
+  const missing = missingLane.value;
+  return missing && html`
+    <p class="notice">
+      <span>${missing.words}</span>
+      ${missing.action && html`<button class="link" onClick=${missing.action.run}>${missing.action.label}</button>`}
+    </p>
+  `;
+}
 
 const SecondaryActions = () => html`
   <div class="row">

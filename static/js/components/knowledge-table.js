@@ -1,7 +1,8 @@
 // The learner's action values in its present state: one for each pair of legs and each place on the foot grid.
+import { agentOf } from "../agents.js";
 import { html } from "../html.js";
 import { count, millimetres } from "../format.js";
-import { agentOf, shownRun } from "../selectors.js";
+import { shownRun } from "../selectors.js";
 import { valueColours } from "../colormap.js";
 import { options, scene } from "../store.js";
 import { bestMove, placeName } from "../knowledge.js";

@@ -1,9 +1,9 @@
 // The learning curve: distance in an evaluation against steps of practice, with greedy's distance.
 import { useMemo } from "preact/hooks";
+import { agentOf } from "../agents.js";
 import { curve } from "../curves.js";
 import { metres, whole } from "../format.js";
 import { html } from "../html.js";
-import { agentOf } from "../selectors.js";
 import { served } from "../store.js";
 import { AsTable } from "./as-table.js";
 import { Empty } from "./empty.js";

@@ -1,13 +1,16 @@
-// Settings that are seldom changed: robot, simulator, grid, schedule, pace, lanes, name. Each with its help.
+// Settings that are seldom changed: robot, simulator, grid, pace, lanes, name, and the learner's others. Each with its
+// help.
 import { tune } from "../actions.js";
+import { agentOf, furtherSettings } from "../agents.js";
 import { form, setField } from "../form.js";
 import { html } from "../html.js";
 import { limitsOf, settingOf } from "../limits.js";
-import { agentOf } from "../selectors.js";
+import { fullTitle } from "../settings.js";
 import { options } from "../store.js";
 import { choicesOf, robotTitle, simulatorTitle } from "../titles.js";
 import { NumberField } from "./number-field.js";
 import { SelectField } from "./select-field.js";
+import { SettingField } from "./setting-control.js";
 import { Description, helpFor } from "./setting-help.js";
 
 /** Suggestions; a link may contain any other pace that the server accepts. */
@@ -25,7 +28,9 @@ export const MoreSettings = () => html`
       <${Pace} />
       <${Figure} field="divisions" />
       <${Figure} field="grid_side_m" step=${0.005} />
-      <${Figure} field="epsilon_end" step=${0.01} />
+      ${furtherSettings(form.value.agent).map(([name, setting]) => html`
+        <${SettingField} key=${name} name=${name} setting=${setting} />
+      `)}
       <${Figure} field="steps_per_episode" />
       <${Figure} field="evaluate_every" />
       <${Figure} field="race_steps" />
@@ -48,10 +53,9 @@ const Choice = ({ field, ...rest }) => html`
 `;
 
 function Figure({ field, step }) {
-  const { title, symbol, unit } = settingOf(field);
   return html`
     <div class="field">
-      <label for=${`field-${field}`}>${title}${symbol && ` ${symbol}`}${unit && ` (${unit})`}</label>
+      <label for=${`field-${field}`}>${fullTitle(settingOf(field))}</label>
       <${NumberField} field=${field} value=${form.value[field]} step=${step}
         onValue=${(value) => setField(field, value)} />
       <${Sentence} field=${field} />

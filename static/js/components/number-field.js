@@ -1,25 +1,29 @@
 // A number to type. It takes effect as soon as it is valid; until then the reason is shown.
-import { useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import { refusedFields } from "../actions.js";
 import { mistakes, setMistake } from "../form.js";
 import { html } from "../html.js";
-import { isWhole, limitsOf, mistakeIn } from "../limits.js";
+import { mistakeIn, settingOf } from "../limits.js";
 
 const SHOWN_DIGITS = 8;
-const shownAs = (value) => String(Number(value.toPrecision(SHOWN_DIGITS)));
+const shownAs = (value) => (value === null ? "" : String(Number(value.toPrecision(SHOWN_DIGITS))));
 
-/** `label` is for screen readers where no <label> names the field. */
-export function NumberField({ field, value, onValue, step = 1, label }) {
+/** `setting` is the field's declaration; `label` is for screen readers where no <label> names the field. */
+export function NumberField({ field, setting = settingOf(field), value, onValue, step = 1, label }) {
   const [draft, setDraft] = useState(null);
   const mistake = mistakes.value[field];
   const isRefused = refusedFields("start").includes(field);
+  // A field that is taken away must not hold the start back.
+  useEffect(() => () => setMistake(field, null), [field]);
 
   const onInput = ({ target }) => {
-    const typed = target.value.trim() === "" ? NaN : Number(target.value);
-    const found = mistakeIn(typed, limitsOf(field), isWhole(field));
+    const isNone = target.value.trim() === "";
+    const typed = isNone ? NaN : Number(target.value);
+    const isLeftOut = isNone && setting.default === null;
+    const found = isLeftOut ? null : mistakeIn(typed, setting, setting.is_whole);
     setDraft(target.value);
     setMistake(field, found);
-    if (!found) onValue(typed);
+    if (!found) onValue(isLeftOut ? null : typed);
   };
   const onBlur = () => {
     setDraft(null);

@@ -1,9 +1,10 @@
 // Distance against race time up to the moment that is shown. Flat parts are thinking.
 import uPlot from "uplot";
 import { useMemo } from "preact/hooks";
+import { agentOf } from "../agents.js";
 import { metres } from "../format.js";
 import { html } from "../html.js";
-import { agentOf, clock, raceInView } from "../selectors.js";
+import { clock, raceInView } from "../selectors.js";
 import { clipped, distanceAt, shownTime, timeline } from "../timeline.js";
 import { AsTable } from "./as-table.js";
 import { Empty } from "./empty.js";

@@ -1,10 +1,11 @@
 // A training or race in the list of runs.
 import { useState } from "preact/hooks";
 import { copySettings, deleteRun, isShown, pending, resumeRun, showOnStage } from "../actions.js";
+import { agentOf, ratesInWords } from "../agents.js";
 import { downloads } from "../api.js";
 import { ago, count, listed, metres, sentence, whole } from "../format.js";
 import { html } from "../html.js";
-import { agentOf, hasTable, isActive, isOperator, presetOf } from "../selectors.js";
+import { hasTable, isActive, isOperator, presetOf } from "../selectors.js";
 import { served } from "../store.js";
 import { gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
 import { Problem } from "./problem.js";
@@ -39,15 +40,16 @@ const gaitOf = ({ config: { gait } }) => (typeof gait === "string" ? gaitTitle(g
 
 function summaryOf(run) {
   const { config } = run;
-  const { robot, simulator } = served().defaults.training;
+  const { robot, simulator, agent } = served().defaults.training;
   const name = presetOf(config.robot);
   // What is as by default is not named.
+  const learner = [undefined, agent].includes(config.agent) ? "" : agentOf(config.agent).title;
   const place = [
     name === robot ? "" : robotTitle(name ?? config.robot.name ?? "own robot"),
     config.simulator === simulator ? "" : simulatorTitle(config.simulator),
   ];
   const own = run.kind === "race" ? ofRace(config) : ofTraining(run);
-  return [...own, ...place].filter(Boolean).join(" · ");
+  return [learner, ...own, ...place].filter(Boolean).join(" · ");
 }
 
 const ofRace = ({ lanes, steps }) => [listed(lanes.map(({ agent }) => agentOf(agent).title)), count(steps, "step")];
@@ -57,7 +59,7 @@ function ofTraining({ config, progress, state }) {
   return [
     state === "finished" ? total : `${whole(progress.done)} of ${total}`,
     config.continue_from ? "continues an earlier one" : `seed ${config.seed}`,
-    `α ${config.alpha}`, `γ ${config.gamma}`, observationTitle(config.observation),
+    ...ratesInWords(config.agent, config), observationTitle(config.observation),
   ];
 }
 

@@ -1,10 +1,11 @@
 // The scoreboard: ranks, distances, decision times and simulated transitions.
+import { agentOf, learns } from "../agents.js";
 import { form } from "../form.js";
 import { count, decision, duration, metres, whole } from "../format.js";
 import { html } from "../html.js";
 import { headline } from "../outcome.js";
 import { practisedSteps } from "../curves.js";
-import { agentOf, clock, isActive, learns, raceInView, simulatedPerDecision } from "../selectors.js";
+import { clock, isActive, raceInView, simulatedPerDecision } from "../selectors.js";
 import { isTimedOut, raceScene, standings } from "../standings.js";
 import { runs } from "../store.js";
 import { clockTitle } from "../titles.js";

@@ -1,7 +1,7 @@
 // A drawing of the robots on the start line, shown until the stage has a picture.
+import { agentOf } from "../agents.js";
 import { form } from "../form.js";
 import { html } from "../html.js";
-import { agentOf } from "../selectors.js";
 
 const LANES_X = [-150, 0, 150];
 const LEGS = ["M-16 0-44-14-56 18", "M-10 6-34 0-42 34", "M-6 8-16 12-20 42"];

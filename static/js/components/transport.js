@@ -1,9 +1,10 @@
 // Playback of the stage. The camera is this page's own; all else is shared by every page.
 import { setStage, skipToEnd, togglePlaying } from "../actions.js";
+import { agentOf } from "../agents.js";
 import { clockTime, sentence } from "../format.js";
 import { html } from "../html.js";
 import { isNarrow, view } from "../page.js";
-import { agentOf, clock, isActive, isOperator, shownRun } from "../selectors.js";
+import { clock, isActive, isOperator, shownRun } from "../selectors.js";
 import { options, scene, stage } from "../store.js";
 import { choicesOf, clockTitle } from "../titles.js";
 import { Icon } from "./icon.js";

@@ -1,12 +1,12 @@
 // What-if: distances of kinematic robots that practise with these settings, and with the defaults.
 import { useEffect, useState } from "preact/hooks";
 import { canStart, continueTraining } from "../actions.js";
+import { agentOf, learns } from "../agents.js";
 import { form } from "../form.js";
 import { count, metres, whole } from "../format.js";
 import { html } from "../html.js";
 import { isNarrow } from "../page.js";
-import { agentOf, isOperator, learns, matchingTable, work } from "../selectors.js";
-import { served } from "../store.js";
+import { isOperator, matchingTable, work } from "../selectors.js";
 import {
   answer, error, evaluateSettings, isComputing, isCurrent, isPanelOpen, isTooLong, mostSteps, seeds,
 } from "../what-if.js";
@@ -66,7 +66,7 @@ function Half({ title, half, known, far }) {
         <span>${title}</span><span class="num"><b>${walkers} of ${known.seeds}</b> walk · ${typically}</span>
       </p>
       <${DotStrip} label=${captionOf(title, half, known)} points=${half.distances_m} high=${far}
-        typical=${{ iqm: half.iqm_m }} marks=${marks} color=${agentOf(served().defaults.training.agent).color} />
+        typical=${{ iqm: half.iqm_m }} marks=${marks} color=${agentOf(form.value.agent).color} />
     </div>
   `;
 }

@@ -13,9 +13,6 @@ export const experiments = computed(() =>
   }),
 );
 
-/** Fields of the practice that a sweep takes lists of. @type {{ value: string[] }} */
-export const gridFields = computed(() => [...new Set(experiments.value.flatMap(({ grid }) => grid))]);
-
 /** The kind of a name, else the first. @type {(name: string) => ExperimentKind} */
 export const experimentOf = (name) =>
   experiments.value.find((one) => one.name === name) ?? experiments.value[0];

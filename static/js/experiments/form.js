@@ -1,11 +1,14 @@
 // The form of a new experiment. Only values that differ from the experiment's defaults are kept and sent.
 import { computed, signal } from "@preact/signals";
+import { settingsOf } from "../agents.js";
 import { withMistake } from "../form.js";
-import { countTrials } from "./trials.js";
+import { valueOf } from "../settings.js";
+import { options } from "../store.js";
 import { experimentOf, experiments } from "./catalogue.js";
+import { countTrials } from "./trials.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { ExperimentValue, ExperimentValues } from "../types.js" */
+/** @import { ExperimentValue, ExperimentValues, SettingOption, SettingValue } from "../types.js" */
 
 /** Empty: the first one that the server offers. */
 const chosenName = signal("");
@@ -16,13 +19,43 @@ export const mistakes = signal({});
 
 export const chosenExperiment = computed(() => experimentOf(chosenName.value));
 
+/** The settings of all agents by name. */
+const everySetting = computed(() => settingsOf((options.value?.agents ?? []).map(({ name }) => name)));
+
+const chosenAgents = computed(() => {
+  const kind = chosenExperiment.value;
+  const given = kind.fields.includes("agents") ? overrides.value.agents : null;
+  return /** @type {string[]} */ (given ?? kind.defaults.agents);
+});
+
+/** The settings of the chosen agents that the experiment varies, by name. */
+export const agentSettings = computed(() => {
+  const own = Object.entries(settingsOf(chosenAgents.value));
+  return Object.fromEntries(own.filter(([name]) => chosenExperiment.value.fields.includes(name)));
+});
+
 /** @param {string} field */
-export const takesField = (field) => field === "name" || chosenExperiment.value.fields.includes(field);
+export const takesField = (field) =>
+  field === "name" ||
+  (chosenExperiment.value.fields.includes(field) && (!(field in everySetting.value) || field in agentSettings.value));
+
+/** A setting's default for the chosen agents; empty if each has its own. @type {(name: string) => SettingValue[]} */
+function defaultOf(name) {
+  const own = chosenAgents.value.map((agent) => settingsOf([agent])[name]).filter(Boolean);
+  const found = [...new Set(own.map((setting) => setting.default))];
+  return found.length === 1 ? found : [];
+}
+
+/** The experiment's defaults, with those of the settings of its agents. */
+export const defaults = computed(() => {
+  const own = Object.keys(agentSettings.value).map((name) => [name, defaultOf(name)]);
+  return /** @type {ExperimentValues} */ ({ ...chosenExperiment.value.defaults, ...Object.fromEntries(own) });
+});
 
 /** The values that the experiment would be started with. */
 export const values = computed(() => {
   const own = Object.entries(overrides.value).filter(([field]) => takesField(field));
-  return /** @type {ExperimentValues} */ ({ ...chosenExperiment.value.defaults, ...Object.fromEntries(own) });
+  return /** @type {ExperimentValues} */ ({ ...defaults.value, ...Object.fromEntries(own) });
 });
 
 /** The number of trials that it would have. */
@@ -40,14 +73,14 @@ export function chooseExperiment(name) {
  */
 export function setField(field, value) {
   const { [field]: _, ...others } = overrides.value;
-  const isDefault = String(value) === String(chosenExperiment.value.defaults[field] ?? "");
+  const isDefault = String(value) === String(defaults.value[field] ?? "");
   overrides.value = isDefault ? others : { ...others, [field]: value };
 }
 
 /** @type {(field: string, message: string | null) => void} */
 export const setMistake = (field, message) => (mistakes.value = withMistake(mistakes.value, field, message));
 
-/** The request's body. */
+/** The request's body. @returns {Record<string, ExperimentValue>} */
 export function requestBody() {
   const own = Object.entries(overrides.value).filter(([field, value]) => takesField(field) && value !== "");
   return { experiment: chosenExperiment.value.name, ...Object.fromEntries(own) };
@@ -67,10 +100,10 @@ export function readQuery(query) {
   chosenName.value = query.get("experiment") ?? "";
   /** @type {Record<string, ExperimentValue>} */
   const found = {};
-  for (const { fields, defaults } of experiments.value) {
-    for (const field of ["name", ...fields]) {
+  for (const kind of experiments.value) {
+    for (const field of ["name", ...kind.fields]) {
       const given = query.get(field);
-      const value = given === null ? undefined : parse(given, defaults[field]);
+      const value = given === null ? undefined : parse(given, kind.defaults[field], everySetting.value[field]);
       if (value !== undefined) found[field] = value;
     }
   }
@@ -78,15 +111,19 @@ export function readQuery(query) {
 }
 
 /**
- * A text as a value of the type that the default has; undefined for text that is no such value.
+ * A text as a value of the type that the default has, or as a list of values of an agent's setting; undefined for
+ * text that is no such value.
  * @param {string} text
- * @param {ExperimentValue} standard
+ * @param {ExperimentValue | undefined} standard
+ * @param {SettingOption} [setting]
  * @returns {ExperimentValue | undefined}
  */
-export function parse(text, standard) {
+export function parse(text, standard, setting) {
   if (typeof standard === "string") return text;
   if (typeof standard === "number") return /^\d+$/.test(text) ? Number(text) : undefined;
   const parts = text.split(",").filter((part) => part.trim() !== "");
-  const list = typeof standard[0] === "number" ? parts.map(Number) : parts;
-  return list.length && !list.some(Number.isNaN) ? list : undefined;
+  const isNumeric = typeof standard?.[0] === "number";
+  const list = parts.map((part) => (setting ? valueOf(part.trim(), setting) : isNumeric ? Number(part) : part));
+  const isValid = list.length > 0 && !list.some((one) => one === undefined || Number.isNaN(one));
+  return isValid ? /** @type {SettingValue[]} */ (list) : undefined;
 }

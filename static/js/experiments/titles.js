@@ -1,6 +1,9 @@
 // Display names in experiments: fields, values of settings, runs.
-import { agentOf, presetOf } from "../selectors.js";
+import { agentOf } from "../agents.js";
+import { presetOf } from "../selectors.js";
 import { count } from "../format.js";
+import { shortTitle } from "../settings.js";
+import { options } from "../store.js";
 import { gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
 import { experimentOf } from "./catalogue.js";
 
@@ -10,14 +13,27 @@ import { experimentOf } from "./catalogue.js";
 export const agentTitle = (name) => agentOf(name).title;
 
 /** @type {Record<string, string>} */
-export const FIELD_TITLES = {
-  gait: "Gait", observation: "Observation", robot: "Robot", agent: "Agent", steps: "Steps of practice",
-  alpha: "α", gamma: "γ", epsilon_start: "ε, first episode", epsilon_end: "ε, last episode",
-  steps_per_episode: "Steps per episode", divisions: "Divisions", grid_side_m: "Grid side, m",
-};
+const PLACE_TITLES = { gait: "Gait", observation: "Observation", robot: "Robot", agent: "Agent" };
+
+/**
+ * The name of a field of settings; of a setting the short one that it declares.
+ * @param {string} field
+ */
+export function fieldTitle(field) {
+  const setting = options.value?.settings[field];
+  return PLACE_TITLES[field] ?? (setting ? shortTitle(setting) : field);
+}
+
+/**
+ * The fields in which settings differ; a setting that an agent does not have is null there.
+ * @param {Record<string, any>[]} settings
+ * @param {string[]} fields
+ */
+export const variedFields = (settings, fields) =>
+  fields.filter((field) => new Set(settings.map((one) => one[field]).filter((one) => one !== null)).size > 1);
 
 /** @type {Record<string, (name: string) => string>} */
-const TITLES_OF = { gait: gaitTitle, agent: agentTitle, observation: observationTitle, robot: robotTitle };
+const VALUE_TITLES = { gait: gaitTitle, agent: agentTitle, observation: observationTitle, robot: robotTitle };
 
 /**
  * A value of a setting's field in words.
@@ -26,7 +42,7 @@ const TITLES_OF = { gait: gaitTitle, agent: agentTitle, observation: observation
  */
 export function valueTitle(field, value) {
   if (value === null || value === undefined) return "–";
-  return (TITLES_OF[field] ?? String)(value);
+  return (VALUE_TITLES[field] ?? String)(value);
 }
 
 /** @param {Run} run */

@@ -1,11 +1,10 @@
 // All gaits together: how near learners come to greedy, how many walk, how often they beat it at time-out.
 import { useMemo } from "preact/hooks";
+import { agentOf } from "../../agents.js";
 import { percentage, whole } from "../../format.js";
 import { html } from "../../html.js";
-import { agentOf } from "../../selectors.js";
-import { gridFields } from "../../experiments/catalogue.js";
 import { greedyTotals, placeOf } from "../../experiments/places.js";
-import { agentTitle, FIELD_TITLES } from "../../experiments/titles.js";
+import { agentTitle, fieldTitle, variedFields } from "../../experiments/titles.js";
 import { largest } from "../../scale.js";
 import { observationTitle, robotTitle } from "../../titles.js";
 import { DotStrip } from "../dot-strip.js";
@@ -24,9 +23,10 @@ const VERDICTS = { yes: "more often than not", no: "less often than not", "not e
 
 export function AtAGlance({ known }) {
   const pooled = (known.pooled ?? []).filter(({ relative }) => relative);
-  const points = useMemo(() => pooled.map((one) => pointsOf(known.settings, one)), [known]);
+  const points = useMemo(() => pooled.map((one) => pointsOf(known, one)), [known]);
   if (!pooled.length || (pooled.length === 1 && pooled[0].gaits.length === 1)) return null;
   const high = 1.03 * largest(points.flat(), 1);
+  const varied = variedFields(pooled, ["agent", "observation", "robot", ...known.parameters]);
   const isRaced = pooled.some(({ relative_finished }) => relative_finished);
   return html`
     <section class="panel glance" aria-labelledby="glance">
@@ -41,7 +41,7 @@ export function AtAGlance({ known }) {
           </tr></thead>
           <tbody role="rowgroup">
             ${pooled.map((one, n) => html`
-              <${Row} key=${n} one=${one} all=${pooled} points=${points[n]} high=${high} isRaced=${isRaced} />
+              <${Row} key=${n} one=${one} varied=${varied} points=${points[n]} high=${high} isRaced=${isRaced} />
             `)}
           </tbody>
         </table>
@@ -50,13 +50,13 @@ export function AtAGlance({ known }) {
   `;
 }
 
-function Row({ one, all, points, high, isRaced }) {
+function Row({ one, varied, points, high, isRaced }) {
   const { iqm, low } = one.relative;
   const interval = low === null ? null : `${Math.round(100 * low)} – ${percentage(one.relative.high)}`;
   const label = `${points.length} seeds, typically ${percentage(iqm)} of greedy’s distance`;
   return html`
     <tr role="row">
-      <th role="rowheader" scope="row">${nameOf(one, all)}</th>
+      <th role="rowheader" scope="row">${nameOf(one, varied)}</th>
       <td role="cell" class="wide-cell">
         <${DotStrip} label=${label} points=${points} high=${high} typical=${one.relative} marks=${MARKS}
           color=${agentOf(one.agent).color} height=${44} />
@@ -76,26 +76,30 @@ function Row({ one, all, points, high, isRaced }) {
 const Beats = ({ beats }) =>
   beats ? html`${percentage(beats.share)}<br /><span class="dim">${VERDICTS[beats.verdict]}</span>` : "–";
 
+/** Fields that have words of their own in the name of a row. */
+const NAMED_APART = ["agent", "observation", "robot", "steps"];
+
 /** The fields in which a row differs from the others. */
-function nameOf(one, all) {
-  const differs = (field) => new Set(all.map((other) => other[field])).size > 1;
+function nameOf(one, varied) {
+  const differs = (field) => varied.includes(field);
   const agent = [
     differs("agent") && agentTitle(one.agent),
     one.blocks === 1 && differs("steps") && `${whole(one.steps)} steps`,
   ];
   const place = [observationTitle(one.observation), differs("robot") && robotTitle(one.robot).toLowerCase()];
-  const rates = gridFields.value.filter((field) => field !== "steps" && differs(field))
-    .map((field) => `${FIELD_TITLES[field]}\u00a0${one[field]}`);
-  if (rates.length && !differs("observation")) place.shift();
-  return [...agent, ...place, ...rates].filter(Boolean).join(", ");
+  const parameters = varied.filter((field) => !NAMED_APART.includes(field));
+  if (parameters.length && !differs("observation")) place.shift();
+  const own = parameters.filter((field) => one[field] !== null)
+    .map((field) => `${fieldTitle(field)}\u00a0${one[field]}`);
+  return [...agent, ...place, ...own].filter(Boolean).join(", ");
 }
 
 /** Every seed of the gaits that were pooled, as shares of greedy's distance. */
-function pointsOf(settings, one) {
+function pointsOf({ settings, parameters }, one) {
   const greedy = greedyTotals(settings);
   const isPooled = (setting) =>
     setting.role === "learner" && placeOf(setting) === placeOf(one) &&
-    ["agent", ...gridFields.value].every((field) => setting[field] === one[field]);
+    ["agent", ...parameters].every((field) => setting[field] === one[field]);
   return settings.filter(isPooled).flatMap((setting) => {
     const greedy_m = greedy(setting);
     return greedy_m ? (setting.total?.points_m ?? []).map((metres) => metres / greedy_m) : [];

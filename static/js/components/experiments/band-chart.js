@@ -1,8 +1,8 @@
 // Curves of interquartile means with their intervals, every seed behind them, and greedy's line.
+import { agentOf } from "../../agents.js";
 import { whole } from "../../format.js";
 import { html } from "../../html.js";
 import { thinned, ticks } from "../../scale.js";
-import { agentOf } from "../../selectors.js";
 import { shown } from "../../experiments/units.js";
 import { useWidth } from "../use-width.js";
 

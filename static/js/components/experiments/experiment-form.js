@@ -3,22 +3,21 @@ import { useState } from "preact/hooks";
 import { pending } from "../../actions.js";
 import { listed, sentence, whole } from "../../format.js";
 import { html } from "../../html.js";
-import { limitsOf } from "../../limits.js";
+import { limitsOf, settingOf } from "../../limits.js";
 import { isNarrow } from "../../page.js";
 import { options } from "../../store.js";
 import { choicesOf, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../../titles.js";
 import { canStart, start, startLabel } from "../../experiments/actions.js";
-import { chosenExperiment, chooseExperiment, setField, takesField, values } from "../../experiments/form.js";
+import {
+  agentSettings, chosenExperiment, chooseExperiment, setField, takesField, values,
+} from "../../experiments/form.js";
 import { experiments } from "../../experiments/catalogue.js";
-import { agentTitle, FIELD_TITLES } from "../../experiments/titles.js";
+import { agentTitle } from "../../experiments/titles.js";
 import { Icon } from "../icon.js";
 import { Problem } from "../problem.js";
 import { CheckList } from "./check-list.js";
 import { Help, help } from "./experiment-help.js";
-import { CountField, NumbersField } from "./typed-field.js";
-
-/** Fields of the grid that are tuned first; the others are further down. */
-const MAIN_GRID = ["steps", "alpha", "gamma", "divisions"];
+import { CountField, ValuesField } from "./typed-field.js";
 
 /** Folded on a phone once there is a report. */
 export function ExperimentForm({ isFirst }) {
@@ -36,8 +35,14 @@ export function ExperimentForm({ isFirst }) {
   `;
 }
 
-/** Fields of the grid that the chosen experiment takes. */
-const gridOf = (isMain) => chosenExperiment.value.grid.filter((field) => MAIN_GRID.includes(field) === isMain);
+/**
+ * Fields of the grid that the chosen experiment takes: first the practice and the settings of the chosen agents,
+ * the others further down.
+ */
+function gridOf(isMain) {
+  const main = ["steps", ...Object.keys(agentSettings.value)].filter(takesField);
+  return isMain ? main : chosenExperiment.value.grid.filter((field) => takesField(field) && !main.includes(field));
+}
 
 const Fields = () => html`
   <div class="experiment-fields">
@@ -79,11 +84,13 @@ const Cards = () => html`
   </fieldset>
 `;
 
-/** Fields that a sweep combines: one number each, or several with commas. */
+/** Fields that a sweep combines: one value each, or several with commas. */
 const Grid = ({ fields }) => fields.length > 0 && html`
   <fieldset class="grid-fields">
     <legend>Every combination of</legend>
-    ${fields.map((field) => html`<${NumbersField} key=${field} field=${field} label=${FIELD_TITLES[field]} />`)}
+    ${fields.map((field) => html`
+      <${ValuesField} key=${field} field=${field} setting=${agentSettings.value[field] ?? settingOf(field)} />
+    `)}
   </fieldset>
 `;
 

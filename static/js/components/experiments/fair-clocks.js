@@ -1,7 +1,7 @@
 // Races under the real clock: decisions cost the time measured on the machine, not the paper's price.
+import { agentOf } from "../../agents.js";
 import { decision, metres } from "../../format.js";
 import { html } from "../../html.js";
-import { agentOf } from "../../selectors.js";
 import { gaitTitle, observationTitle, robotTitle } from "../../titles.js";
 import { served } from "../../store.js";
 

@@ -1,8 +1,8 @@
 // Figure 4: distance against practice, one chart per gait, with every seed.
 import { useState } from "preact/hooks";
+import { agentOf } from "../../agents.js";
 import { count, percentage, sentence, whole } from "../../format.js";
 import { html } from "../../html.js";
-import { agentOf } from "../../selectors.js";
 import { placeOf, placesOf } from "../../experiments/places.js";
 import { factorOf, inUnit, shown, unit, UNIT_NAMES } from "../../experiments/units.js";
 import { largest } from "../../scale.js";

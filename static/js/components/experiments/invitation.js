@@ -1,6 +1,7 @@
 // Shown before the first experiment: what an experiment is for, with a sketch of its dots.
+import { agentOf } from "../../agents.js";
 import { html } from "../../html.js";
-import { agentOf, isOperator } from "../../selectors.js";
+import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
 import { StripKey } from "./strip-key.js";
 

@@ -1,11 +1,10 @@
 // The settings of a sweep with every seed: the fields that vary, distances, share that walks.
 import { useState } from "preact/hooks";
+import { agentOf } from "../../agents.js";
 import { count, percentage } from "../../format.js";
 import { html } from "../../html.js";
-import { agentOf } from "../../selectors.js";
 import { greedyTotals } from "../../experiments/places.js";
-import { gridFields } from "../../experiments/catalogue.js";
-import { FIELD_TITLES, valueTitle } from "../../experiments/titles.js";
+import { fieldTitle, valueTitle, variedFields } from "../../experiments/titles.js";
 import { bare, factorOf, inUnit, shown } from "../../experiments/units.js";
 import { largest } from "../../scale.js";
 import { DotStrip } from "../dot-strip.js";
@@ -21,10 +20,11 @@ export function SweepTable({ known }) {
   const [isWhole, setWhole] = useState(false);
   const greedy = greedyTotals(known.settings);
   const rows = shownSettings(known.settings).map((setting) => measured(setting, greedy(setting)));
-  const columns = variedFields(rows);
+  const columns = columnsOf(rows, known.parameters);
   const sorted = order === "best" ? [...rows].sort(byDistance) : rows;
   const high = 1.03 * largest(rows.flatMap(({ points, line }) => [line ?? 0, ...points]), 1e-9);
-  const color = rows[0] && agentOf(rows[0].setting.agent).color;
+  const agents = [...new Set(rows.map(({ setting }) => setting.agent))];
+  const color = agents.length === 1 ? agentOf(agents[0]).color : "var(--dim)";
   return html`
     <section class="panel sweep-table" aria-labelledby="sweep-table">
       <div class="report-tools">
@@ -55,10 +55,9 @@ export function SweepTable({ known }) {
 const byDistance = (a, b) => (b.typical?.iqm ?? -1) - (a.typical?.iqm ?? -1);
 
 /** The fields in which the settings differ; the gait where they do not. */
-function variedFields(rows) {
-  const valuesOf = (field) => new Set(rows.map(({ setting }) => setting[field]).filter((one) => one !== null));
-  const fields = ["gait", "observation", "robot", "agent", ...gridFields.value];
-  const varied = fields.filter((field) => valuesOf(field).size > 1);
+function columnsOf(rows, parameters) {
+  const fields = ["gait", "observation", "robot", "agent", ...parameters];
+  const varied = variedFields(rows.map(({ setting }) => setting), fields);
   return varied.length ? varied : ["gait"];
 }
 
@@ -84,7 +83,7 @@ function measured(setting, greedy_m) {
 const Head = ({ columns }) => html`
   <thead role="rowgroup">
     <tr role="row">
-      ${columns.map((field) => html`<th role="columnheader" scope="col">${FIELD_TITLES[field]}</th>`)}
+      ${columns.map((field) => html`<th role="columnheader" scope="col">${fieldTitle(field)}</th>`)}
       <th role="columnheader" scope="col" class="wide-cell">Total distance, 50 steps</th>
       <th role="columnheader" scope="col" title="Interquartile mean, with its 95 % interval">Typical</th>
       <th role="columnheader" scope="col" title="Get at least half as far as greedy">Walk</th>
@@ -98,7 +97,7 @@ function Row({ row: { setting, points, typical, line }, columns, high }) {
     <tr role="row">
       <th role="rowheader" scope="row">${valueTitle(first, setting[first])}</th>
       ${others.map((field) => html`
-        <td role="cell" data-label=${FIELD_TITLES[field]} class="num">${valueTitle(field, setting[field])}</td>
+        <td role="cell" data-label=${fieldTitle(field)} class="num">${valueTitle(field, setting[field])}</td>
       `)}
       <td role="cell" class="wide-cell">
         ${typical

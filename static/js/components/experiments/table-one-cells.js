@@ -1,7 +1,7 @@
 // Cells of Table 1: the seeds of this run as a strip, and the paper's value.
+import { agentOf } from "../../agents.js";
 import { count, percentage } from "../../format.js";
 import { html } from "../../html.js";
-import { agentOf } from "../../selectors.js";
 import { bare, inUnit, shown } from "../../experiments/units.js";
 import { largest } from "../../scale.js";
 import { DotStrip } from "../dot-strip.js";

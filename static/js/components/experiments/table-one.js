@@ -1,8 +1,8 @@
 // Table 1 in the paper's layout, with every seed of this run.
 import { useState } from "preact/hooks";
+import { agentOf } from "../../agents.js";
 import { html } from "../../html.js";
 import { whole } from "../../format.js";
-import { agentOf } from "../../selectors.js";
 import { gaitsOf, placesOf } from "../../experiments/places.js";
 import { factorOf, inUnit, unit } from "../../experiments/units.js";
 import { largest } from "../../scale.js";

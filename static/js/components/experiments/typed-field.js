@@ -1,13 +1,16 @@
-// Text fields of the experiment form: a whole number, or numbers with commas. A mistake disables the start.
+// Text fields of the experiment form: a whole number, or values with commas. A mistake disables the start.
 import { useState } from "preact/hooks";
 import { refusedFields } from "../../actions.js";
 import { html } from "../../html.js";
-import { isWhole, limitsOf, mistakeIn, parseNumbers } from "../../limits.js";
+import { limitsOf, mistakeIn, parseValues } from "../../limits.js";
+import { shortTitle } from "../../settings.js";
 import { helpFor } from "../setting-help.js";
 import { help } from "./experiment-help.js";
-import { mistakes, setField, setMistake, values } from "../../experiments/form.js";
+import { defaults, mistakes, setField, setMistake, values } from "../../experiments/form.js";
 
-function TypedField({ field, label, text, parse, inputmode = "decimal" }) {
+/** @import { SettingValue } from "../../types.js" */
+
+function TypedField({ field, label, text, parse, inputmode, placeholder = undefined }) {
   const [draft, setDraft] = useState(null);
   const mistake = mistakes.value[field];
   const isRefused = refusedFields("experiment").includes(field);
@@ -26,6 +29,7 @@ function TypedField({ field, label, text, parse, inputmode = "decimal" }) {
       <label for=${`experiment-${field}`}>${label}</label>
       <span class="number">
         <input type="text" inputmode=${inputmode} id=${`experiment-${field}`} value=${draft ?? text}
+          placeholder=${placeholder}
           aria-invalid=${mistake || isRefused ? "true" : undefined}
           aria-describedby=${mistake ? `wrong-${field}` : `about-${field}`} onInput=${onInput} onBlur=${onBlur} />
         ${mistake && html`<span class="mistake" role="alert" id=${`wrong-${field}`}>${mistake}</span>`}
@@ -46,9 +50,15 @@ export function CountField({ field, label }) {
   return html`<${TypedField} field=${field} label=${label} text=${text} parse=${parse} inputmode="numeric" />`;
 }
 
-/** One number, or several with commas between. */
-export function NumbersField({ field, label }) {
-  const parse = (typed) => parseNumbers(typed, limitsOf(field), isWhole(field));
-  const text = /** @type {number[]} */ (values.value[field]).join(", ");
-  return html`<${TypedField} field=${field} label=${label} text=${text} parse=${parse} />`;
+const joined = (list) => /** @type {SettingValue[]} */ (list).join(", ");
+
+/** One value of a setting, or several with commas between; none where each agent has its own default. */
+export function ValuesField({ field, setting }) {
+  const standard = defaults.value[field];
+  const isOwn = joined(standard) === "";
+  const parse = (typed) => (isOwn && typed.trim() === "" ? { value: standard } : parseValues(typed, setting));
+  return html`
+    <${TypedField} field=${field} label=${shortTitle(setting)} text=${joined(values.value[field])} parse=${parse}
+      inputmode=${setting.is_number ? "decimal" : "text"} placeholder=${isOwn ? "by default" : undefined} />
+  `;
 }

@@ -1,0 +1,142 @@
+"""Another learner than the default one: its settings, its training, its race and its sweep."""
+
+import re
+from typing import Any
+from urllib.parse import urlencode
+
+import pytest
+from playwright.sync_api import Locator, expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import Serving
+
+pytestmark = pytest.mark.timeout(300)
+
+SHORT = urlencode(
+    {"steps": 20, "evaluate_every": 0, "race_steps": 3, "simulator": "kinematic", "alpha": 0.5}
+)
+LONG = urlencode({"steps": 100_000, "pace": 8})
+SMALL_SWEEP = urlencode(
+    {
+        "experiment": "sweep",
+        "simulator": "kinematic",
+        "gaits": "left-right-origin",
+        "seeds": 2,
+        "steps": 50,
+    }
+)
+
+
+def learner(dashboard: Dashboard) -> Locator:
+    return dashboard.page.get_by_label("Learner", exact=True)
+
+
+def trace_decay(dashboard: Dashboard) -> Locator:
+    return dashboard.page.get_by_role("slider", name="Trace decay λ")
+
+
+def trainings(dashboard: Dashboard) -> list[dict[str, Any]]:
+    """Return the trainings of the server, the newest first."""
+    found: list[dict[str, Any]] = dashboard.get("/api/v1/trainings")["items"]
+    return found
+
+
+def changed(dashboard: Dashboard) -> dict[str, Any]:
+    """Return the values to which the settings of the only training were changed last."""
+    [training] = trainings(dashboard)
+    return {name: value for change in training["changes"] for name, value in change.items()}
+
+
+def test_settings_of_the_learner_act_on_its_training(dashboard: Dashboard, server: Serving) -> None:
+    page = dashboard.page
+    dashboard.open(f"{server.address}?{LONG}")
+    expect(trace_decay(dashboard)).to_have_count(0)
+    learner(dashboard).select_option("Sarsa(λ)")
+    expect(trace_decay(dashboard)).to_have_value("0.9")
+    expect(page.locator(".start-list li").first).to_contain_text("Sarsa(λ)")
+    trace_decay(dashboard).fill("0.5")
+    expect(page).to_have_url(re.compile(r"agent=sarsa-lambda.*trace_decay=0\.5"))
+
+    dashboard.button("Train only").click()
+    expect(page.get_by_role("slider", name="Exploration now ε")).to_be_visible()
+    [training] = trainings(dashboard)
+    assert training["config"]["agent"] == "sarsa-lambda"
+    assert training["config"]["trace_decay"] == 0.5
+    trace_decay(dashboard).fill("0.25")
+    dashboard.eventually(lambda: changed(dashboard).get("trace_decay") == 0.25, "the new λ")
+    page.get_by_role("slider", name="Exploration now ε").fill("0.4")
+    dashboard.eventually(lambda: changed(dashboard).get("epsilon") == 0.4, "the new ε")
+
+    learner(dashboard).select_option("Q-learning")
+    # The training that runs still has it, the form's learner does not.
+    trace_decay(dashboard).fill("0.75")
+    dashboard.eventually(lambda: changed(dashboard).get("trace_decay") == 0.75, "the newer λ")
+    dashboard.button("Stop").click()
+    expect(trace_decay(dashboard)).to_have_count(0)
+
+    page.get_by_role("link", name="Runs").click()
+    expect(page.locator(".run")).to_contain_text("Sarsa(λ)")
+    page.get_by_label("More for this training").click()
+    page.get_by_role("link", name="Use its settings").click()
+    page.get_by_role("link", name="Race", exact=True).click()
+    expect(learner(dashboard)).to_have_value("sarsa-lambda")
+    expect(trace_decay(dashboard)).to_have_value("0.5")
+
+
+def test_each_learner_of_a_race_has_its_own_settings(dashboard: Dashboard, server: Serving) -> None:
+    page = dashboard.page
+    dashboard.open(f"{server.address}?{SHORT}")
+    page.get_by_text("More settings").click()
+    page.get_by_role("checkbox", name="Two-step").uncheck()
+    learner(dashboard).select_option("Sarsa(λ)")
+    expect(page.get_by_role("checkbox", name="Sarsa(λ)")).to_be_checked()
+    expect(page.get_by_role("checkbox", name="Q-learning")).not_to_be_checked()
+    page.get_by_role("checkbox", name="Q-learning").check()
+    page.get_by_role("checkbox", name="Sarsa(λ)").uncheck()
+    expect(page.locator(".notice")).to_contain_text("Sarsa(λ) is not in the race; Q-learning will")
+    assert dashboard.violations() == []
+    dashboard.button("Add Sarsa(λ)").click()
+    expect(page.locator(".notice")).to_have_count(0)
+    expect(page.get_by_role("checkbox", name="Sarsa(λ)")).to_be_checked()
+
+    dashboard.primary.click()
+    dashboard.eventually(dashboard.has_figures, "the scoreboard fills")
+    configs = {one["config"]["agent"]: one["config"] for one in trainings(dashboard)}
+    assert set(configs) == {"q-learning", "sarsa-lambda"}
+    assert [config["alpha"] for config in configs.values()] == [0.5, 0.5]
+    assert configs["sarsa-lambda"]["trace_decay"] == 0.9
+    assert "trace_decay" not in configs["q-learning"]
+
+    expect(dashboard.primary).to_have_text("Practise 20 more, race again")
+    dashboard.primary.click()
+    dashboard.eventually(lambda: len(trainings(dashboard)) == 4, "the trainings that continue")
+    first, second, *before = trainings(dashboard)
+    continued = {one["config"]["agent"]: one["config"]["continue_from"] for one in (first, second)}
+    assert continued == {one["config"]["agent"]: one["id"] for one in before}
+
+
+def test_a_sweep_varies_the_settings_of_its_agents(dashboard: Dashboard, server: Serving) -> None:
+    page = dashboard.page
+    page.goto(f"{server.address}#experiments?{SMALL_SWEEP}")
+    decays = page.get_by_label("λ", exact=True)
+    expect(page.get_by_label("α", exact=True)).to_be_visible()
+    expect(decays).to_have_count(0)
+    page.get_by_role("checkbox", name="Sarsa(λ)").check()
+    expect(decays).to_have_value("0.9")
+    decays.fill("0.5, 2")
+    expect(page.get_by_role("alert").filter(has_text="from 0 to 1")).to_be_visible()
+    decays.fill("0.5, 0.9")
+    dashboard.button("Run Sweep: 7 trials").click()
+    expect(page.locator(".report-head .state")).to_have_text("finished")
+
+    [run] = dashboard.get("/api/v1/experiments")["items"]
+    assert run["config"]["trace_decay"] == [0.5, 0.9]
+    assert run["progress"] == {"done": 7, "total": 7}
+    table = page.get_by_role("table").filter(has_text="Total distance")
+    expect(table.get_by_role("columnheader", name="λ", exact=True)).to_be_visible()
+    expect(table.get_by_role("row", name=re.compile(r"^Q-learning –"))).to_have_count(1)
+    expect(table.get_by_role("row", name=re.compile(r"^Sarsa\(λ\) 0\.[59]"))).to_have_count(2)
+    assert dashboard.violations() == []
+    page.get_by_role("checkbox", name="Sarsa(λ)").uncheck()
+    expect(decays).to_have_count(0)
+    expect(dashboard.button("Run Sweep: 3 trials")).to_be_visible()
