@@ -167,7 +167,10 @@ def _versus(settings: Sequence[SettingResults], seed: int) -> list[dict[str, Any
         if not _are_comparable(a, b):
             continue
         probability = improvement((a.total_m,), (b.total_m,), seed)
-        shared = {k: v for k, v in setting_fields(a).items() if k != "agent"}
+        theirs = setting_fields(b)
+        # Of a setting that one of them does not have, the other's value.
+        shared = {k: theirs[k] if v is None else v for k, v in setting_fields(a).items()}
+        del shared["agent"]
         agents = {"a": a.setting.training.agent, "b": b.setting.training.agent}
         fewest = min(len(a.total_m), len(b.total_m))
         entries.append(

@@ -153,17 +153,16 @@ def test_the_page_changes_it_during_a_training(
 ) -> None:
     dashboard.open(f"{served.address}?agent=wanderer&simulator=kinematic&steps=100000&pace=4")
     page = dashboard.page
-    expect(page.get_by_label("Optimism").first).to_be_visible()
+    page.get_by_text("More settings").click()
+    expect(page.get_by_label("Optimism")).to_have_value("0.5")
     dashboard.button("Train only").click()
-    slider = page.get_by_role("slider", name="Patience")
-    expect(slider).to_be_visible()
-    slider.focus()
-    slider.press("ArrowRight")
+    expect(page.get_by_role("slider", name="Exploration now ε")).to_be_visible()
+    page.get_by_role("slider", name="Patience").fill("0.75")
 
     def changed() -> bool:
         (run, *_) = client.get("/api/v1/trainings").json()["items"]
         return run["config"]["agent"] == "wanderer" and any(
-            change.get("patience", 0.25) > 0.25 for change in run["changes"]
+            change.get("patience") == 0.75 for change in run["changes"]
         )
 
     dashboard.eventually(changed, "the change is in the training")
