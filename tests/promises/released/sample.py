@@ -1,19 +1,24 @@
 """The runs in the dumps. New dumps have the same runs, as far as their schema supports them."""
 
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
+from app.domain.settings import SettingValues
 from app.storage.database.store import RunStore
 from app.storage.run import TABLE, Run
-from tests.storage.stores import ODD, TRIALS, experiment, race, training
+from tests.storage.stores import ODD, SWEEP, TRIALS, experiment, race, training
 
+# Schemas up to 0003 were released when every agent had Q-learning's settings.
+_RATES = {"alpha": 0.3, "gamma": 0.9, "epsilon_start": 1.0, "epsilon_end": 0.0}
+_GRID = {name: (value,) for name, value in _RATES.items()} | {"alpha": (0.1, 0.3)}
 _T = datetime(2026, 2, 28, 23, 59, 59, 123456, tzinfo=UTC)
 RUNS: list[Run] = [
     training(
         "0pmz0000a0001",
         name="Grüße, 'quoted' \\ and so on",
         state="finished",
-        config=ODD,
+        config=replace(ODD, settings=SettingValues(_RATES)),
         done=500,
         changes=({"step": 20, "alpha": 0.1}, {"step": 30, "pace": "max"}),
         greedy_distance_m=0.4321,
@@ -32,7 +37,13 @@ RUNS: list[Run] = [
     race("0pmz0000a0003", state="stopped", result={"lanes": []}, created_at=_T, ended_at=_T),
 ]
 EXPERIMENT = experiment(
-    "0pmz0000a0004", state="interrupted", workers=2, done=2, created_at=_T, ended_at=_T
+    "0pmz0000a0004",
+    state="interrupted",
+    config=replace(SWEEP, settings=SettingValues(_GRID)),
+    workers=2,
+    done=2,
+    created_at=_T,
+    ended_at=_T,
 )
 """Since 0002, with `TRIALS`."""
 CURVE: list[dict[str, Any]] = [
