@@ -12,7 +12,6 @@ import uvicorn
 from fastapi import APIRouter, FastAPI
 
 from app import __version__, assets
-from app.agents.registry import registered
 from app.api import (
     contract,
     docs,
@@ -47,6 +46,7 @@ from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
 from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
+from app.runs.config import usable_agents
 from app.settings import Settings
 from app.stage.stage import Stage
 from app.storage.database.opening import open_store
@@ -104,7 +104,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         jobs=jobs,
         stage=show,
         idempotency=Idempotency(store),
-        agents=tuple(registered()),
+        agents=usable_agents(),
         audience=lambda: viewer.hub.counters,
         ready=lambda: _trouble(jobs, store),
         film=viewer.recorded_stream,

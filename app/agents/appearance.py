@@ -3,10 +3,12 @@
 The colours are those of the Okabe–Ito palette, which is safe for colour blindness.
 """
 
+import re
 from collections.abc import Sequence
 
 from app.agents.registry import OURS, registered
 
+_COLOR = re.compile("#[0-9A-Fa-f]{6}")
 _FURTHER_COLORS = ("#CC79A7", "#D55E00", "#F0E442", "#0072B2")
 
 
@@ -40,5 +42,7 @@ def _attribute(agent: str, name: str) -> str | None:
     """An attribute of a registered agent's class; a module that is named is not imported."""
     if ":" in agent:
         return None
-    found = OURS.get(agent) or registered().get(agent)
-    return getattr(found, name, None)
+    found = getattr(OURS.get(agent) or registered().get(agent), name, None)
+    if not isinstance(found, str) or (name == "color" and not _COLOR.fullmatch(found)):
+        return None
+    return found

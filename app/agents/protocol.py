@@ -8,14 +8,16 @@ A class whose constructor asks, by the names of its parameters, for what it need
 - `explore`: False where the agent is evaluated or raced and should do its best;
 - a field of the training's config by its name, such as `steps` or `steps_per_episode`.
 
-Every other parameter is a setting of the agent, best declared with its limits, title and help
-(`app.domain.settings`): REST, the command line, the page and sweeps then offer it. Attributes of
-the class say the rest:
+A parameter that is declared with its limits, title and help (`app.domain.settings`) is a setting:
+REST, the command line, the page and sweeps offer it. So is one without a declaration that is named
+like a setting of `TabularLearner`, such as `alpha`. Any other keeps its default. Attributes of the
+class state the rest:
 
 - `title`, `description`, `color`: how it is shown;
 - `learns = False`: practice does not change it;
 - `needs_practice = True`: it races only with what it has learned;
-- `is_on_policy = True`: it chooses its next action before it learns from the last one.
+- `is_on_policy = True`: it chooses its next action before it learns from the last one, so that a
+  changed exploration rate acts a step later.
 
 An agent may have more methods: those of `Tunable`, `Valuing` and `Tabular`, and
 `check_state(state)`, a static method that raises `ValueError` or `InvalidInput` for a state that

@@ -2,8 +2,10 @@
 
 import importlib
 import inspect
+import logging
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from importlib.metadata import entry_points
 from typing import Any
 
@@ -11,14 +13,20 @@ from app.agents.lookahead import Greedy, TwoStep
 from app.agents.protocol import Agent
 from app.agents.q_learning import QLearning
 from app.agents.sarsa_lambda import SarsaLambda
+from app.agents.tabular import TabularLearner
 from app.domain.errors import InvalidInput, UnknownName
-from app.domain.settings import DeclaredSetting, declared_parameters, parameters_of, required
+from app.domain.settings import (
+    REQUIRED,
+    DeclaredSetting,
+    declared_parameters,
+    parameters_of,
+    required,
+    takes_any,
+)
 
+_log = logging.getLogger(__name__)
 ENTRY_POINT_GROUP = "hexapods.agents"
 AgentClass = Callable[..., Agent]
-
-_OFFERED = frozenset({"rng", "problem", "expand", "explore"})
-"""What every run offers to an agent's constructor; no settings."""
 
 OURS: Mapping[str, AgentClass] = {
     "q-learning": QLearning,
@@ -32,10 +40,17 @@ _BY_HAND = re.compile(r"[\w.]+:\w+")
 def registered() -> dict[str, AgentClass]:
     """Ours, and those that installed packages offer under the group `hexapods.agents`.
 
-    A package cannot take the name of one of ours.
+    A package cannot take the name of one of ours. One that cannot be loaded is left out, and the
+    log says why.
     """
-    found = {point.name: point for point in entry_points(group=ENTRY_POINT_GROUP)}
-    return {name: point.load() for name, point in found.items() if name not in OURS} | dict(OURS)
+    found = dict(OURS)
+    for point in entry_points(group=ENTRY_POINT_GROUP):
+        if point.name not in OURS:
+            try:
+                found[point.name] = point.load()
+            except Exception as error:
+                _log.warning("agent %s cannot be loaded: %s", point.name, error)
+    return found
 
 
 def find(name: str) -> AgentClass:
@@ -88,22 +103,43 @@ def needs_practice(name: str) -> bool:
 
 
 def settings_of(agent: AgentClass) -> Mapping[str, DeclaredSetting]:
-    """The parameters of an agent's constructor that a person may choose."""
-    declared = declared_parameters(agent)
-    return {name: one for name, one in declared.items() if name not in _OFFERED}
+    """The settings that an agent's constructor declares.
+
+    A parameter without a declaration that is named like one of `TabularLearner` is that setting.
+    """
+    declared, usual = declared_parameters(agent), declared_parameters(TabularLearner)
+    found = {}
+    for name, parameter in parameters_of(agent).items():
+        if name in declared:
+            found[name] = declared[name]
+        elif name in usual:
+            has_default = parameter.default is not REQUIRED and usual[name].allows(
+                parameter.default
+            )
+            found[name] = (
+                replace(usual[name], default=parameter.default) if has_default else usual[name]
+            )
+    return found
 
 
 def live_settings_of(agent: AgentClass) -> Mapping[str, DeclaredSetting]:
     """The settings that an agent's `tune` takes while it learns; none without a `tune`.
 
-    They are those of its constructor that are declared `live`, and the parameters of `tune`.
+    They are those of its constructor that are declared `live`, as far as `tune` takes them, and
+    what `tune` itself declares, or names like `TabularLearner.tune`.
     """
-    if not hasattr(agent, "tune"):
+    if not isinstance(agent, type) or not hasattr(agent, "tune"):
         return {}
-    own = settings_of(agent)
-    live = {name: one for name, one in own.items() if one.about.live}
-    for name, one in declared_parameters(agent, "tune").items():
-        live.setdefault(name, own[name] if name in own else required(one))
+    taken, own = parameters_of(agent, "tune"), settings_of(agent)
+    declared, usual = (declared_parameters(one, "tune") for one in (agent, TabularLearner))
+    live = {
+        name: setting
+        for name, setting in own.items()
+        if setting.about.live and (name in taken or takes_any(agent, "tune"))
+    }
+    for name in taken:
+        if name not in live and name in {**usual, **declared}:
+            live[name] = own[name] if name in own else required({**usual, **declared}[name])
     return live
 
 

@@ -82,6 +82,8 @@ class SarsaLambda(TabularLearner):
         declare("trace_decay", TraceDecay).check(*state["trace_decay"].tolist())
         (pairs, cells), traces = state["shape"].tolist(), state["traces"]
         size = [cells**pairs, pairs * cells]
+        if traces.ndim != 1 or traces.dtype.kind != "f":
+            raise ValueError("its traces are no list of numbers")
         places = state["places"].reshape(len(traces), 2)
         if places.dtype.kind != "i" or (places < 0).any() or (places >= size).any():
             raise ValueError("it has traces of states that do not exist")

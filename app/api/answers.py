@@ -454,6 +454,7 @@ class SettingOption(Answer):
     excludes_minimum: bool = Field(description="whether the minimum itself is not valid")
     excludes_maximum: bool = Field(description="whether the maximum itself is not valid")
     is_number: bool
+    is_boolean: bool
     is_whole: bool
     choices: list[str] = Field(description="the valid words, if only certain words are valid")
     default: Value

@@ -106,7 +106,7 @@ def _config(run: Run) -> ExperimentConfig:
 
 
 def _nothing_yet(run: Run) -> dict[str, Any]:
-    """A summary of no trials, without what nobody has computed yet."""
+    """A summary without any trials, as before the first is computed."""
     lists = ("parameters", "settings", "pooled", "curves", "versus", "timed", "claims", "story")
     config = _config(run)
     return {

@@ -264,6 +264,7 @@ def _setting(setting: DeclaredSetting) -> dict[str, Any]:
         "excludes_minimum": setting.excludes_low,
         "excludes_maximum": setting.excludes_high,
         "is_number": setting.is_number,
+        "is_boolean": bool in setting.kinds,
         "is_whole": setting.is_whole,
         "choices": setting.choices,
         "default": None if setting.default is REQUIRED else setting.default,

@@ -125,8 +125,7 @@ class PracticeBody(Body):
                 "or leave out continue_from"
             )
         elsewhere = {"name", "seed", "continue_from", "agent", *WalkBody.model_fields}
-        own = {name: getattr(self, name) for name in type(self).model_fields}
-        given = {name: value for name, value in own.items() if name not in elsewhere}
+        given = {name: getattr(self, name) for name in self.model_fields_set - elsewhere}
         chosen = seed if self.seed is None else self.seed
         config = training_config(**vars(walk), **given, seed=chosen, agent=agent)
         return TrainingStart(config, self.name or None, self.continue_from)

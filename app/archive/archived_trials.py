@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
 import msgspec
-from msgspec import Meta
+from msgspec import UNSET, Meta, UnsetType
 
 from app.archive.untrusted_input import Large, Metres, Name, PortableText, Seconds, UntrustedInput
 from app.domain.errors import DamagedFile
@@ -82,6 +82,7 @@ class _Summary(msgspec.Struct):
     settings: list[Any]
     claims: list[Any]
     story: list[Any]
+    parameters: list[Name] | UnsetType = UNSET  # since settings are declared by agents
 
 
 def trials_json(rows: Sequence[Mapping[str, Any]]) -> bytes:

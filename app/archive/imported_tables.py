@@ -25,6 +25,7 @@ class TableMeta(msgspec.Struct):
     due_epsilon: Share | None
     greedy_distance_m: Metres | None
     next_action: tuple[int, int] | None = None
+    next_epsilon: Share = 0.0
     changes: list[dict[str, Any]] = []
 
 
@@ -53,6 +54,9 @@ def checked_table(
         meta = msgspec.convert(checkpoint.meta, TableMeta)
         if meta.agent != config.agent or meta.step > config.steps:
             raise ValueError("its step or agent is another than its training's")
+        pair, cell = meta.next_action or (0, 0)
+        if not (0 <= pair < len(config.resolved_gait.pairs) and 0 <= cell < len(config.grid)):
+            raise ValueError("its next action is not on the grid")
         for change in meta.changes:
             check_change(change, config.agent)
         seeding.load(np.random.default_rng(0), meta.rng)

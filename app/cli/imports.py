@@ -8,12 +8,12 @@ import json
 from pathlib import Path
 from typing import Any
 
-from app.agents.registry import registered
 from app.archive.archive import MAX_BYTES
 from app.cli.options import CommandParser
 from app.cli.runs import add_data
 from app.cli.server_client import call_server
 from app.domain.errors import InvalidInput
+from app.runs.config import usable_agents
 from app.settings import Settings, read_settings
 
 
@@ -59,7 +59,7 @@ def _import(settings: Settings, data: bytes, label: str) -> dict[str, Any]:
 
     try:
         with open_store(settings) as store:
-            return run_view(import_run(store, data, RunIds.of(store), registered(), label))
+            return run_view(import_run(store, data, RunIds.of(store), usable_agents(), label))
     except FolderInUse:
         answer: dict[str, Any] = call_server(settings, "POST", "api/v1/import", data)
         return answer

@@ -8,14 +8,19 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from app.agents.registry import registered
 from app.domain.errors import HexapodError, InvalidInput
 from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS, Robot, robot
 from app.domain.settings import REQUIRED, DeclaredSetting, Value, declared_fields
 from app.experiments.config import settings_of
-from app.runs.config import SIMULATORS, TrainingConfig, WalkingProblem, gait_from_json
+from app.runs.config import (
+    SIMULATORS,
+    TrainingConfig,
+    WalkingProblem,
+    gait_from_json,
+    usable_agents,
+)
 
 _GAIT_FIELDS = ("right_leg", "left_leg", "symmetry", "pairs")
 
@@ -73,7 +78,7 @@ class CommandParser(argparse.ArgumentParser):
             own: Mapping[str, Sequence[DeclaredSetting]] = {}
             with contextlib.suppress(HexapodError):  # the command itself refuses the agent
                 own = settings_of(named or [TrainingConfig.agent])
-            self._add_settings(own, settings_of(registered()))
+            self._add_settings(own, settings_of(usable_agents()))
         return super().parse_known_args(args, namespace)
 
     def _add_settings(

@@ -12,9 +12,11 @@ the grid of a sweep, and what checkpoints and archives keep.
 
 import inspect
 import math
+import sys
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import MISSING, asdict, dataclass, fields, replace
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from inspect import Parameter
 from types import MappingProxyType, NoneType, UnionType
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -56,6 +58,9 @@ class Setting:
     unit: str | None = None
     live: bool = False
     examples: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "examples", tuple(self.examples))
 
 
 @dataclass(frozen=True)
@@ -145,6 +150,10 @@ class DeclaredSetting:
             shown = f"{value:,}" if type(value) in (int, float) else repr(value)[:80]
             raise InvalidInput(f"{self.name} must be {self.valid}, not {shown}")
 
+    def allows(self, value: Any) -> bool:
+        """Whether a value is valid."""
+        return self._is_valid(value)
+
     def normalized(self, value: Any) -> Any:
         """Return a value as its own type: JSON and people write 2 for 2.0, and 2.0 for 2.
 
@@ -186,11 +195,9 @@ class DeclaredSetting:
             return value in self.choices or (str in self.kinds and len(value) <= MAX_TEXT)
         if not isinstance(value, int | float) or not self.is_number:
             return False
-        if isinstance(value, float) and not math.isfinite(value):
-            return False
-        if self.is_whole and not isinstance(value, int):
-            return False
-        return all(_holds(limit, value) for limit in self.limits)
+        # No whole number that `float` cannot take either.
+        is_of_kind = isinstance(value, int) if self.is_whole else abs(value) <= sys.float_info.max
+        return is_of_kind and all(_holds(limit, value) for limit in self.limits)
 
     def _range(self) -> list[str]:
         low, high = (None if x is None else f"{x:,.15g}" for x in (self.low, self.high))
@@ -217,47 +224,62 @@ def parameters_of(
     return {name: parameter for name, (parameter, _) in _parameters(function, method).items()}
 
 
+def takes_any(function: Callable[..., Any], method: str = "__init__") -> bool:
+    """Whether a method takes any keyword: no class of the inheritance that it reaches ends that."""
+    functions = [function]
+    if isinstance(function, type):
+        functions = [vars(base)[method] for base in function.__mro__[:-1] if method in vars(base)]
+    return bool(functions) and all(
+        any(
+            one.kind is Parameter.VAR_KEYWORD for one in inspect.signature(each).parameters.values()
+        )
+        for each in functions
+    )
+
+
 @cache
 def declared_parameters(
     function: Callable[..., Any], method: str = "__init__"
 ) -> Mapping[str, DeclaredSetting]:
-    """Find the settings among the parameters that `parameters_of` finds.
-
-    A parameter without a declaration is a setting too, without limits, if it takes plain values
-    and has a default; its type is that of its annotation, or else of its default.
-    """
-    found = {}
-    for name, (parameter, annotation) in _parameters(function, method).items():
-        default = parameter.default
-        if _about(annotation) is not None:
-            found[name] = declare(name, annotation, default)
-        elif default is not REQUIRED and _is_plain(plain := annotation or type(default)):
-            about = Setting(title=name.replace("_", " ").capitalize(), help="")
-            found[name] = DeclaredSetting(name, plain, default, about)
-    return found
+    """Find the settings among the parameters that `parameters_of` finds, in their order."""
+    return {
+        name: declare(name, annotation, parameter.default)
+        for name, (parameter, annotation) in _parameters(function, method).items()
+        if _about(annotation) is not None
+    }
 
 
 def _parameters(function: Callable[..., Any], method: str) -> Mapping[str, tuple[Parameter, Any]]:
-    """The parameters with their annotations: first those of the base classes."""
-    if not isinstance(function, type):
-        functions = [function]
-    else:
-        functions = [vars(one)[method] for one in function.__mro__[:-1] if method in vars(one)]
+    """Find the parameters with their annotations: first those of the base classes."""
+    functions: list[Callable[..., Any]] = [function]
+    if isinstance(function, type):
+        own = [vars(base)[method] for base in function.__mro__[:-1] if method in vars(base)]
+        functions = own or functions
     found: dict[str, tuple[Parameter, Any]] = {}
     for one in functions:
-        try:
-            hints = get_type_hints(one, include_extras=True)
-        except (AttributeError, NameError, TypeError):  # of imports for type checkers only
-            hints = {}
-        own = inspect.signature(one).parameters
+        parameters = inspect.signature(one).parameters
+        hints = _hints(one)
         named = {
             name: (parameter, hints.get(name))
-            for name, parameter in own.items()
+            for name, parameter in parameters.items()
             if parameter.kind not in _REST and name != "self"
         }
         found = {**named, **found}
-        if not any(parameter.kind is Parameter.VAR_KEYWORD for parameter in own.values()):
+        if not any(one.kind is Parameter.VAR_KEYWORD for one in parameters.values()):
             break
+    return found
+
+
+def _hints(function: Callable[..., Any]) -> Mapping[str, Any]:
+    """Resolve a function's annotations; those of imports for type checkers only are left out."""
+    target = function.func if isinstance(function, partial) else function
+    target = target.__init__ if isinstance(target, type) else target  # type: ignore[misc]
+    found: dict[str, Any] = {}
+    for name, annotation in getattr(target, "__annotations__", {}).items():
+        holder = type("Holder", (), {"__annotations__": {name: annotation}})
+        with suppress(AttributeError, NameError, SyntaxError, TypeError):
+            namespace = getattr(target, "__globals__", {})
+            found |= get_type_hints(holder, globalns=namespace, include_extras=True)
     return found
 
 
@@ -282,9 +304,9 @@ def declare(name: str, annotation: Any, default: Any = REQUIRED) -> DeclaredSett
 
 def required(setting: DeclaredSetting) -> DeclaredSetting:
     """Return an optional setting of a function as one that must be given, and not as None."""
-    kinds = get_args(setting.annotation) if _is_union(setting.annotation) else ()
-    (own,) = [one for one in kinds if one is not NoneType] or [setting.annotation]
-    return replace(setting, annotation=own, default=REQUIRED)
+    parts = get_args(setting.annotation) if _is_union(setting.annotation) else ()
+    own = tuple(one for one in parts if one is not NoneType) or (setting.annotation,)
+    return replace(setting, annotation=Union[own], default=REQUIRED)  # noqa: UP007
 
 
 class SettingValues(Mapping[str, V]):
@@ -294,11 +316,11 @@ class SettingValues(Mapping[str, V]):
         """Keep a copy.
 
         Raises:
-            InvalidInput: if a name or a value is none.
+            InvalidInput: if a name is no identifier, or a value is not plain.
         """
         for name, value in values.items():
             if not name.isidentifier() or len(name) > MAX_SETTING_NAME:
-                raise InvalidInput(f"{name[:MAX_SETTING_NAME]!r} is no name of a setting")
+                raise InvalidInput(f"{name[:MAX_SETTING_NAME]!r} cannot be the name of a setting")
             if not _is_value(value):
                 raise InvalidInput(f"{name} must be a number, text, true or false")
         self._values = dict(values)
@@ -333,8 +355,8 @@ def complete(
         owner: of the settings, for the message.
 
     Raises:
-        UnknownName: for a setting that there is not.
-        InvalidInput: for a value that is not valid, or is missing.
+        UnknownName: if a name is not one of the settings.
+        InvalidInput: if a value is invalid, or a required one is missing.
     """
     for name in given:
         if name not in settings:
@@ -361,13 +383,6 @@ def _about(annotation: Any) -> Setting | None:
 
 def _is_union(annotation: Any) -> bool:
     return get_origin(annotation) in (Union, UnionType)
-
-
-def _is_plain(annotation: Any) -> bool:
-    try:
-        return set(_kinds(annotation)) != {NoneType}
-    except TypeError:
-        return False
 
 
 def _is_value(value: Any) -> bool:

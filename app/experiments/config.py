@@ -9,7 +9,7 @@ from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import OBSERVATIONS, Observation
 from app.domain.robot import Robot, as_mapping, robot
-from app.domain.settings import DeclaredSetting, SettingValues, Value
+from app.domain.settings import REQUIRED, DeclaredSetting, SettingValues, Value
 from app.runs.config import (
     SimulatorName,
     TrainingConfig,
@@ -132,7 +132,7 @@ def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentCo
         for name, own in declared.items()
         for default in [tuple(dict.fromkeys(setting.default for setting in own))]
         # Agents of different defaults each keep their own.
-        if name in said or len(default) == 1
+        if name in said or (len(default) == 1 and default[0] is not REQUIRED)
     }
     own_fields = {name: value for name, value in said.items() if name not in declared}
     return ExperimentConfig(

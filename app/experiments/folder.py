@@ -135,7 +135,8 @@ class ResultsFolder(Progress):
             raise DamagedFile(f"{self.path / TRIALS} has a damaged head ({error})") from error
         here = as_json(self.plan.config)
         # Each trial's seed depends on its number only, so that more seeds extend the results.
-        names = [name for name in here if name != "seeds" and here[name] != there[name]]
+        every = dict.fromkeys((*here, *there))
+        names = [name for name in every if name != "seeds" and here.get(name) != there.get(name)]
         if names:
             raise InvalidInput(
                 f"{self.path} has results of another experiment, which differs in "

@@ -232,7 +232,7 @@ def _with_parameters(settings: Sequence[Setting]) -> list[Setting]:
 def _differing(values: Mapping[str, Value], defaults: Mapping[str, Value]) -> list[str]:
     """Name the values that are not the default."""
     return [
-        f"{name}={value}" if isinstance(value, str | bool | None) else f"{name}={value:g}"
+        f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
         for name, value in values.items()
         if value != defaults[name]
     ]

@@ -263,10 +263,10 @@ class Jobs:
                 job = self._live_job(run_id, LIVE, "changed")
                 agent = getattr(self._store.get(run_id).config, "agent", "")
                 valid = changeable_settings(agent)
-                for name, value in changes.items():
+                for name in changes:
                     if name not in valid:
                         raise UnknownName(f"live setting of {agent}", name, valid)
-                    valid[name].check(value)
+                changes = {name: valid[name].normalized(changes[name]) for name in changes}
                 acknowledged = job.tune(changes, _ACKNOWLEDGE_S) if job.is_answering else None
             if acknowledged is None or not acknowledged.wait(_ACKNOWLEDGE_S):
                 raise NotAnswering(

@@ -3,6 +3,7 @@
 Fields that a person may choose are declared as settings (`app.domain.settings`).
 """
 
+import logging
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Annotated, Any, Literal, get_args
@@ -10,7 +11,7 @@ from typing import Annotated, Any, Literal, get_args
 from annotated_types import Ge, Le
 
 from app.agents import registry
-from app.domain.errors import InvalidInput, UnknownName
+from app.domain.errors import HexapodError, InvalidInput, UnknownName
 from app.domain.gait import Gait, GaitSpec, resolve
 from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M, FootGrid
 from app.domain.observation import Observation, check_observation
@@ -24,6 +25,7 @@ from app.domain.settings import (
     declared_fields,
 )
 
+_log = logging.getLogger(__name__)
 SimulatorName = Literal["mujoco", "kinematic"]
 SIMULATORS: tuple[SimulatorName, ...] = get_args(SimulatorName)
 MAX_STEPS = 10_000_000
@@ -174,14 +176,44 @@ class TrainingConfig(WalkingProblem):
 _OWN_FIELDS = frozenset(one.name for one in fields(TrainingConfig))
 
 
+_RESERVED = """
+a agents b beats_greedy beats_greedy_total blocks changes continue_from distances_m elapsed_s
+experiment failed finished from gaits greedy_m h half_side_m help high high_m iqm_m json key lanes
+low low_m mean_m n name observations out points_m practice probability published reaches_greedy
+relative relative_finished retry robots role run scheduler seeds start step table tls_ca tls_cert
+tls_key total training training_id verdict walk walkers workers
+"""
+RESERVED = frozenset(_RESERVED.split())
+"""Names that mean something else beside the settings in requests, answers, files or commands."""
+
+
 def agent_settings(agent: str) -> Mapping[str, DeclaredSetting]:
-    """The settings of an agent: all that its constructor asks for and no run offers.
+    """The settings that an agent's constructor declares, without fields of a training.
 
     Raises:
-        UnknownName, InvalidInput: if there is no such agent.
+        UnknownName, InvalidInput: if there is no such agent, or a setting's name is reserved.
     """
     found = registry.settings_of(registry.find(agent))
+    for name in found:
+        if name in RESERVED or name.startswith(("_", "model_")):
+            raise InvalidInput(
+                f"agent {agent} declares a setting named {name!r}, which means something else in "
+                "requests and files; rename the parameter"
+            )
     return {name: one for name, one in found.items() if name not in _OWN_FIELDS}
+
+
+def usable_agents() -> tuple[str, ...]:
+    """The registered agents; one whose settings cannot be offered is left out, and logged."""
+    usable = []
+    for agent in registry.registered():
+        try:
+            agent_settings(agent), changeable_settings(agent)
+        except (HexapodError, TypeError, ValueError) as error:
+            _log.warning("agent %s is left out: %s", agent, error)
+        else:
+            usable.append(agent)
+    return tuple(usable)
 
 
 def changeable_settings(agent: str) -> Mapping[str, DeclaredSetting]:

@@ -67,12 +67,18 @@ def snapshot(learner: Learner, config: TrainingConfig, **more: Any) -> Checkpoin
         "episode_reward_m": learner.episode_reward_m,
         "greedy_distance_m": learner.greedy_distance_m,
         "due_epsilon": learner.due_epsilon,
-        **({} if learner.next_action is None else {"next_action": learner.next_action}),
+        **_next_step(learner),
         "rng": seeding.dump(learner.rng),
         "config": as_json(config),
         **more,
     }
     return Checkpoint(json.loads(json.dumps(meta)), {**agent, **state})
+
+
+def _next_step(learner: Learner) -> dict[str, Any]:
+    if learner.next_action is None:
+        return {}
+    return {"next_action": learner.next_action, "next_epsilon": learner.next_epsilon}
 
 
 def restore(learner: Learner, checkpoint: Checkpoint) -> None:
@@ -89,7 +95,9 @@ def restore(learner: Learner, checkpoint: Checkpoint) -> None:
     learner.greedy_distance_m = meta["greedy_distance_m"]
     learner.due_epsilon = meta["due_epsilon"]
     chosen = meta.get("next_action")
-    learner.next_action = None if chosen is None else walker.legal_action(chosen)
+    if chosen is not None:
+        learner.next_action = walker.legal_action(chosen)
+        learner.next_epsilon = meta["next_epsilon"]
 
 
 def continue_from(learner: Learner, checkpoint: Checkpoint) -> None:

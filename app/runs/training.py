@@ -30,6 +30,7 @@ class Learner:
         greedy_distance_m: of the baseline, once it was measured.
         due_epsilon: ε of the newest step while its evaluation is yet to come; None if none is.
         next_action: the action that an on-policy agent has chosen to take next.
+        next_epsilon: ε when it was chosen.
     """
 
     walker: Walker
@@ -41,10 +42,13 @@ class Learner:
     greedy_distance_m: float | None = None
     due_epsilon: float | None = None
     next_action: Action | None = None
+    next_epsilon: float = 0.0
 
     @property
     def epsilon(self) -> float:
         """The probability of a random action at the next step; 0 for agents without one."""
+        if self.next_action is not None:
+            return self.next_epsilon
         return float(getattr(self.walker.agent, "epsilon", 0.0))
 
 
@@ -93,8 +97,9 @@ def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> S
     seen, knowledge = walker.seen, walker.knowledge() if record else None
     action = walker.decide() if learner.next_action is None else learner.next_action
     step = walker.carry_out(action, record)
-    on_policy = getattr(walker.agent, "is_on_policy", False)
-    learner.next_action = walker.decide() if on_policy else None
+    learner.next_action = None
+    if getattr(walker.agent, "is_on_policy", False):
+        learner.next_epsilon, learner.next_action = learner.epsilon, walker.decide()
     walker.agent.learn(
         Transition(seen, action, step.reward_m, walker.seen, walker.legal, learner.next_action)
     )

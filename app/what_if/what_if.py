@@ -31,7 +31,7 @@ class WhatIf:
     """Answers by kinematic trials, one question at a time. Safe to use from any thread."""
 
     def __init__(self, pool: TrialPool) -> None:
-        """Ask nobody yet.
+        """Create the service; no process is started yet.
 
         Args:
             pool: runs the trials.
@@ -93,7 +93,7 @@ class WhatIf:
             self._waiting += 1
         try:
             with self._turn:
-                # Whoever was first may have asked the same.
+                # An earlier request may have tried the same.
                 found = self._cached(wanted)
                 found |= self._tried([one for one in dict.fromkeys(wanted) if one not in found])
         finally:

@@ -228,15 +228,18 @@ export const deleteRun = (run) =>
 export function copySettings(run) {
   const { robot, agent, ...config } = run.kind === "race" ? configOfRace(run) : run.config;
   if (agent && learns(agent)) chooseLearner(agent);
-  const known = Object.keys({ ...form.value, ...settingsOf([form.value.agent]) });
+  const racing = run.kind === "race" ? run.config.lanes.map((lane) => lane.agent) : [];
+  const known = Object.keys({ ...form.value, ...settingsOf([form.value.agent, ...racing]) });
   const taken = Object.entries(config).filter(([field]) => known.includes(field) && field !== "name");
   setFields({ ...Object.fromEntries(taken), robot: presetOf(robot) ?? robot ?? form.value.robot });
 }
 
 /** @type {(race: Run) => Omit<Partial<RunConfig>, "lanes"> & { lanes: string[] }} */
 function configOfRace({ config: { lanes, steps, ...walk } }) {
-  const training = lanes.map((lane) => runs.value.get(lane.training_id ?? "")).find(Boolean);
-  return { ...training?.config, ...walk, race_steps: steps, lanes: lanes.map(({ agent }) => agent) };
+  const trainings = lanes.map((lane) => runs.value.get(lane.training_id ?? "")?.config);
+  // Of a setting that several learners have, the value of the first.
+  const practice = Object.assign({}, ...trainings.reverse());
+  return { ...practice, ...walk, race_steps: steps, lanes: lanes.map(({ agent }) => agent) };
 }
 
 /** @param {Run} run */

@@ -7,8 +7,8 @@
  * @param {SettingOption} setting
  * @returns {"number" | "choice" | "switch" | "text"}
  */
-export function kindOf({ is_number, choices, default: standard }) {
-  if (typeof standard === "boolean") return "switch";
+export function kindOf({ is_number, is_boolean, choices }) {
+  if (is_boolean) return "switch";
   if (choices.length) return is_number ? "text" : "choice";
   return is_number ? "number" : "text";
 }

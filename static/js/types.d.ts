@@ -24,6 +24,7 @@ export interface SettingOption extends Limits {
   /** The valid values in words. */
   valid: string;
   is_number: boolean;
+  is_boolean: boolean;
   is_whole: boolean;
   /** The valid words, if only certain words are valid. */
   choices: string[];

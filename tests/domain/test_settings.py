@@ -1,14 +1,25 @@
 """Declared settings: found in signatures and dataclasses, checked, parsed, and put in words."""
 
 import math
+import pickle
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Any, Literal
 
 import pytest
 from annotated_types import Ge, Gt, Le, Lt
 
-from app.domain.errors import InvalidInput
-from app.domain.settings import REQUIRED, Setting, declare, declared_fields, declared_parameters
+from app.domain.errors import InvalidInput, UnknownName
+from app.domain.settings import (
+    REQUIRED,
+    Setting,
+    SettingValues,
+    complete,
+    declare,
+    declared_fields,
+    declared_parameters,
+    takes_any,
+)
 
 ABOUT = Setting(title="A title", help="A sentence.", symbol="α", live=True)
 
@@ -31,17 +42,66 @@ class Config:
     name: str = ""
 
 
-def test_parameters_of_plain_values_with_a_default_are_settings() -> None:
+def test_declared_parameters_are_settings() -> None:
     found = declared_parameters(Agent)
-    assert list(found) == ["rate", "steps", "count"]
-    assert (found["steps"].valid, found["steps"].about.title) == ("a whole number", "Steps")
+    assert list(found) == ["rate", "count"]
     assert (found["rate"].default, found["count"].default) == (0.3, REQUIRED)
     assert found["rate"].about is ABOUT
 
 
 def test_settings_are_found_in_dataclasses_and_functions() -> None:
     assert list(declared_fields(Config)) == ["pace"]
-    assert list(declared_parameters(Agent.__init__)) == ["rate", "steps", "count"]
+    assert list(declared_parameters(Agent.__init__)) == ["rate", "count"]
+
+
+class Extended(Agent):
+    def __init__(self, *args: Any, width: Annotated[int, Ge(1), ABOUT] = 3, **others: Any) -> None:
+        super().__init__(*args, **others)
+        self.width = width
+
+
+class Closed(Agent):
+    def __init__(self, width: Annotated[int, Ge(1), ABOUT] = 3) -> None:
+        super().__init__(None, count=width)
+
+
+def test_parameters_of_a_base_class_are_found_where_others_are_passed_on() -> None:
+    assert list(declared_parameters(Extended)) == ["rate", "count", "width"]
+    assert list(declared_parameters(Closed)) == ["width"]
+    assert not takes_any(Extended)
+    assert takes_any(lambda **changes: changes)
+
+
+def test_one_annotation_that_cannot_be_resolved_hides_no_other() -> None:
+    def build(
+        rng: "Undefined",  # type: ignore[name-defined]  # noqa: F821
+        rate: Annotated[float, Gt(0), ABOUT] = 1.0,
+    ) -> None:
+        pass
+
+    assert declared_parameters(build)["rate"].valid == "a number over 0"
+    assert declared_parameters(partial(build, 1))["rate"].valid == "a number over 0"
+
+
+def test_values_of_settings_are_complete_checked_and_hashable() -> None:
+    values = complete({"rate": RATE, "count": COUNT}, {"count": 2.0, "rate": 1}, "it")
+    assert dict(values) == {"rate": 1.0, "count": 2}
+    assert (type(values["rate"]), type(values["count"])) == (float, int)
+    assert hash(values) == hash(SettingValues({"count": 2, "rate": 1.0}))
+    assert pickle.loads(pickle.dumps(values)) == values
+    assert values | {"rate": 0.5} == SettingValues({"rate": 0.5, "count": 2})
+    with pytest.raises(UnknownName, match="unknown setting of it 'mass'; choose one of: rate"):
+        complete({"rate": RATE}, {"mass": 1}, "it")
+    with pytest.raises(InvalidInput, match="it needs rate, a number over 0"):
+        complete({"rate": RATE}, {}, "it")
+    with pytest.raises(InvalidInput, match="rate must be a number over 0"):
+        complete({"rate": RATE}, {"rate": 10**400}, "it")
+
+
+@pytest.mark.parametrize("values", [{"a b": 1}, {"x": float("nan")}, {"x": {}}, {"x" * 61: 1}])
+def test_values_that_are_not_plain_are_refused(values: dict[str, Any]) -> None:
+    with pytest.raises(InvalidInput):
+        SettingValues(values)
 
 
 @pytest.mark.parametrize(

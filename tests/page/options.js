@@ -7,8 +7,8 @@ const described = (name, title = name) => ({ name, title, description: `About ${
 
 const SETTING = {
   title: "", symbol: null, unit: null, help: "", valid: "a number", minimum: null, maximum: null,
-  excludes_minimum: false, excludes_maximum: false, is_number: true, is_whole: false, choices: [], default: null,
-  is_live: false,
+  excludes_minimum: false, excludes_maximum: false, is_number: true, is_boolean: false,
+  is_whole: false, choices: [], default: null, is_live: false,
 };
 /** @type {(title: string, changes: object) => SettingOption} */
 export const setting = (title, changes) => ({ ...SETTING, title, ...changes });

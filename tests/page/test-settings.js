@@ -13,7 +13,7 @@ beforeEach(() => (options.value = OPTIONS));
 
 const NUMBER = setting("Number", { default: 1 });
 const CHOICE = setting("Choice", { is_number: false, choices: ["one", "two"], default: "one" });
-const SWITCH = setting("Switch", { is_number: false, default: false });
+const SWITCH = setting("Switch", { is_number: false, is_boolean: true, default: false });
 const TEXT = setting("Text", { is_number: false, default: "" });
 const MIXED = setting("Mixed", { choices: ["max"], default: "max" });
 

@@ -2,24 +2,30 @@
 
 import json
 import math
-from typing import Any
+from typing import Annotated, Any
 
 import pytest
 
+from app.agents import registry
+from app.agents.q_learning import QLearning
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import GaitSpec
 from app.domain.robot import robot
-from app.domain.settings import SettingValues
+from app.domain.settings import Setting, SettingValues
 from app.runs.config import (
     LaneConfig,
     RaceConfig,
     TrainingConfig,
     WalkingProblem,
+    agent_settings,
     as_json,
+    changeable_settings,
     config_from_json,
     gait_from_json,
     training_config,
+    usable_agents,
 )
+from tests.own_agents import Restless
 
 GAIT = "left-right-origin"
 LANES = (LaneConfig(agent="greedy"),)
@@ -142,3 +148,59 @@ def test_a_config_in_plain_types_is_fit_for_json_and_names_the_same_gait(
 )
 def test_what_a_file_keeps_is_read_back(config: TrainingConfig | RaceConfig) -> None:
     assert config_from_json(json.loads(json.dumps(as_json(config)))) == config
+
+
+class Older(Restless):
+    """An agent that names settings of Q-learning without declaring them, as was the rule before."""
+
+    def __init__(self, rng: object, alpha: float, gamma: float = 0.5, width: int = 3) -> None:
+        self.given = alpha, gamma, width
+
+    def tune(self, alpha: float | None = None, epsilon: float | None = None) -> None:
+        pass
+
+
+class Clashing(Restless):
+    """An agent with a setting that would hide a field of requests."""
+
+    def __init__(self, seeds: Annotated[int, Setting(title="Seeds", help="")] = 1) -> None:
+        self.seeds = seeds
+
+
+class Untunable(QLearning):
+    """An agent with a live setting that its `tune` does not take."""
+
+    def __init__(
+        self,
+        *args: Any,
+        hope: Annotated[float, Setting(title="Hope", help="", live=True)] = 1.0,
+        **settings: Any,
+    ) -> None:
+        super().__init__(*args, **settings)
+
+
+def test_a_parameter_named_like_a_usual_setting_is_that_setting() -> None:
+    found = agent_settings(f"{__name__}:Older")
+    assert {name: one.default for name, one in found.items()} == {"alpha": 0.3, "gamma": 0.5}
+    assert found["alpha"].valid == "a number over 0 and at most 1"
+    assert list(changeable_settings(f"{__name__}:Older")) == ["pace", "alpha", "epsilon"]
+
+
+def test_a_live_setting_that_tune_does_not_take_cannot_change() -> None:
+    name = f"{__name__}:Untunable"
+    assert "hope" in agent_settings(name)
+    assert list(changeable_settings(name)) == ["pace", "alpha", "gamma", "epsilon"]
+
+
+def test_a_setting_with_a_reserved_name_is_refused() -> None:
+    with pytest.raises(InvalidInput, match=r"declares a setting named 'seeds'.*rename"):
+        agent_settings(f"{__name__}:Clashing")
+
+
+def test_an_agent_that_cannot_be_offered_is_left_out(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(registry, "registered", lambda: {**registry.OURS, "clashing": Clashing})
+    monkeypatch.setattr(registry, "find", registry.registered().__getitem__)
+    assert usable_agents() == tuple(registry.OURS)
+    assert "agent clashing is left out" in caplog.text
