@@ -1,4 +1,4 @@
-"""The server: everything is built here, once, by `create_app`; nothing at import."""
+"""Builds the application with `create_app`, and serves it with uvicorn; nothing at import."""
 
 import asyncio
 import contextlib
@@ -63,9 +63,9 @@ from app.what_if.what_if import WhatIf
 
 GRACE_S = 3
 SWITCH_S = 0.001
-"""A thread that computes an answer lets the event loop go on after this long, not after 5 ms."""
+"""Python's switch interval [s]: shorter than its 5 ms, for the event loop's latency."""
 _TICKS_PER_S = 10
-"""Of uvicorn's main loop."""
+"""Frequency of uvicorn's main loop [1/s]."""
 _DESCRIPTION = (
     "Hexapods that learn to walk, and race against look-ahead search. Errors are problem "
     "documents (RFC 9457), and each says what is valid."
@@ -73,21 +73,23 @@ _DESCRIPTION = (
 
 
 def create_app(settings: Settings, store: RunStore) -> FastAPI:
-    """The whole application; jobs, stage and hub begin and end with its lifespan.
+    """Build the application; its lifespan starts and stops jobs, stage and viewer hub.
 
     Args:
-        settings: of the server.
-        store: store of the runs; stays open for as long as the application lives.
+        settings: settings of the server.
+        store: store of the runs, which must stay open until the application has stopped.
     """
     recordings, bus = Recordings(store), RunMetrics()
-    show = Stage(store, recordings, bus)
+    stage_service = Stage(store, recordings, bus)
     viewer = ViewerService(
-        show,
+        stage_service,
         bus,
         max_viewers=settings.max_viewers,
         max_per_address=settings.viewers_per_address,
     )
-    jobs = Jobs(store, recordings, bus, on_queued=show.offer, niceness=settings.job_niceness)
+    jobs = Jobs(
+        store, recordings, bus, on_queued=stage_service.offer, niceness=settings.job_niceness
+    )
     app = FastAPI(
         title="Racing Hexapods",
         version=__version__,
@@ -102,11 +104,11 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         recordings=recordings,
         bus=bus,
         jobs=jobs,
-        stage=show,
+        stage=stage_service,
         idempotency=Idempotency(store),
         agents=usable_agents(),
         audience=lambda: viewer.hub.counters,
-        ready=lambda: _trouble(jobs, store),
+        ready=lambda: _unready_reason(jobs, store),
         film=viewer.recorded_stream,
         what_if=WhatIf(TrialPool()),
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
@@ -115,7 +117,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     _add_routes(app, viewer, app.state.services.agents)
     problems.install(app)
     contract.install(app, app.state.services.agents, settings)
-    # The last is the first to see a request.
+    # The middleware that is added last runs first.
     app.add_middleware(Disconnects)
     app.add_middleware(BodyLimit)
     app.add_middleware(ConcurrencyLimit)
@@ -131,7 +133,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
 
 def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) -> None:
     versioned = APIRouter(prefix="/api/v1")
-    # First: `import` is no run's id.
+    # First, so that no other route matches `import` as a run's id.
     for module in (transfer, trainings, races, experiments, stage, events, options):
         versioned.include_router(module.router)
     versioned.include_router(start_routes(AgentBodies(agents)))
@@ -142,10 +144,10 @@ def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) ->
     app.router.routes += [*viewer_routes(viewer.hub), *pages.page_routes(assets.static_dir())]
 
 
-def _trouble(jobs: Jobs, store: RunStore) -> str | None:
+def _unready_reason(jobs: Jobs, store: RunStore) -> str | None:
     """Return why runs cannot be started, in a sentence; None if they can."""
-    if (trouble := jobs.health_problem()) is not None:
-        return trouble
+    if (reason := jobs.health_problem()) is not None:
+        return reason
     try:
         store.check_disk_space()
         store.list(limit=1)
@@ -168,18 +170,18 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
 
 
 def serve(settings: Settings) -> None:
-    """Serve until a signal says to stop.
+    """Serve until SIGINT or SIGTERM.
 
     Raises:
-        InvalidInput: if the data folder cannot be written or another server has it, or the
+        InvalidInput: if the data folder cannot be written or is locked by another server, or the
             address cannot be bound.
         DamagedFile, StorageFailed: if the database cannot be used.
-        OwnershipLost: if another server took the database over while this one served.
+        OwnershipLost: if another server took over the database.
     """
     settings.prepare_data()
     sys.setswitchinterval(SWITCH_S)
-    table = connection_table(settings, raise_file_limit())
-    listener = listen(settings, table)
+    connections = connection_table(settings, raise_file_limit())
+    listener = listen(settings, connections)
     logs.install(settings.log_level)
     lost = threading.Event()
     with listener, open_store(settings, on_lost=lost.set) as store:
@@ -193,10 +195,10 @@ def serve(settings: Settings) -> None:
             server_header=False,
             timeout_graceful_shutdown=GRACE_S,
             timeout_keep_alive=KEEP_ALIVE_S,
-            http=limited_http(table),
-            # Another loop may not close sockets by their `close`, which counts them.
+            http=limited_http(connections),
+            # uvloop may not call the sockets' `close`, which counts connections.
             loop="asyncio",
-            # asyncio takes it for how many to accept at once, too.
+            # asyncio also uses it as the number of connections to accept at once.
             backlog=ACCEPTS_AT_ONCE,
             **websocket_options(),
         )
@@ -206,7 +208,7 @@ def serve(settings: Settings) -> None:
 
 
 class _Server(uvicorn.Server):
-    """Tells where it is, and lets go of those who listen before it waits for them."""
+    """Uvicorn server that writes an address file, and closes event streams on shutdown."""
 
     def __init__(
         self,
@@ -235,20 +237,20 @@ class _Server(uvicorn.Server):
         return await super().on_tick(counter) or self._lost.is_set()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        # The lifespan ends after all connections have, and a stream of events never would.
+        # uvicorn waits for all connections, and an event stream would not end by itself.
         self._app.state.services.bus.close()
         await self._app.state.viewer.hub.stop()
         await super().shutdown(sockets)
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
-        # uvicorn would raise the signal again after a clean end, which is no clean exit code.
+        # uvicorn would raise the signal again after shutdown, which gives a nonzero exit code.
         del sig, frame
         self.force_exit = self.should_exit
         self.should_exit = True
 
 
 def _local_address(listener: socket.socket, any_address: str = "127.0.0.1") -> str:
-    """The server's address on this machine."""
+    """Return the URL of the server on this machine; `any_address` stands for a wildcard host."""
     name, port = listener.getsockname()[:2]
     if name in ("0.0.0.0", "::"):  # noqa: S104 - compared, not bound
         name = any_address

@@ -1,4 +1,4 @@
-"""The server as people run it: one process on loopback, its streams, its end, its refusals."""
+"""The server in a process of its own: event streams, shutdown, roles, start errors."""
 
 import signal
 import socket
@@ -24,7 +24,7 @@ def serve(tmp_path: Path) -> Iterator[Callable[..., Served]]:
         yield make
 
 
-def test_a_stream_begins_with_a_snapshot_and_goes_on_with_what_happens(
+def test_event_stream_begins_with_a_snapshot_and_continues_with_changes(
     serve: Callable[..., Served],
 ) -> None:
     server = serve()
@@ -49,8 +49,8 @@ def test_a_stream_begins_with_a_snapshot_and_goes_on_with_what_happens(
     assert seen["stage"][-1]["run_id"] == run["id"]
 
 
-def test_what_only_experiments_need_is_not_in_the_server() -> None:
-    """Nor trimesh, which viser may use: both would double the time that a server takes to start."""
+def test_server_does_not_import_modules_of_experiments() -> None:
+    """These modules, and trimesh, which viser may import, would double the start time."""
     look = (
         "import sys, app.server, app.jobs.worker\n"
         "heavy = ('distributed', 'matplotlib', 'scipy', 'trimesh')\n"
@@ -62,7 +62,7 @@ def test_what_only_experiments_need_is_not_in_the_server() -> None:
     assert done.stdout.strip() == "[]"
 
 
-def test_who_comes_back_misses_no_point_of_a_curve(serve: Callable[..., Served]) -> None:
+def test_reconnected_client_receives_all_evaluations(serve: Callable[..., Served]) -> None:
     server = serve()
     _, _, seen = next(server.events())
     run = server.start({**BODY, "steps": 100})
@@ -87,7 +87,7 @@ def test_who_comes_back_misses_no_point_of_a_curve(serve: Callable[..., Served])
     )
 
 
-def test_a_pause_and_new_rates_reach_who_listens(serve: Callable[..., Served]) -> None:
+def test_pause_and_live_changes_are_published(serve: Callable[..., Served]) -> None:
     server = serve()
     run = server.start(ENDLESS)
     server.moving(run)
@@ -96,13 +96,13 @@ def test_a_pause_and_new_rates_reach_who_listens(serve: Callable[..., Served]) -
     next(events)
     server.client.patch(path, json={"alpha": 0.1})
     server.client.post(f"{path}/pause")
-    told: list[str] = []
+    names: list[str] = []
     for name, data, _ in events:
-        told.append(name)
+        names.append(name)
         assert data.get("run_id", data.get("id")) == run["id"]
         if name == "run" and data["state"] == "paused":
             break
-    assert "rates" in told
+    assert "rates" in names
     server.client.post(f"{path}/stop")
     assert server.client.delete(path).status_code == 204
     assert "run-deleted" in [name for name, _, _ in until_closed(server, events)]
@@ -114,7 +114,7 @@ def until_closed(server: Served, events: Events) -> Iterator[tuple[str, Any, str
 
 
 @pytest.mark.parametrize("by", [signal.SIGTERM, signal.SIGINT], ids=["SIGTERM", "SIGINT"])
-def test_a_signal_ends_it_cleanly_though_people_watch(
+def test_signal_shuts_the_server_down_in_spite_of_open_streams(
     serve: Callable[..., Served], by: int
 ) -> None:
     server = serve()
@@ -122,26 +122,26 @@ def test_a_signal_ends_it_cleanly_though_people_watch(
     server.moving(run)
     events = server.events()
     next(events)
-    family = psutil.Process(server.process.pid).children(recursive=True)
-    assert family
+    children = psutil.Process(server.process.pid).children(recursive=True)
+    assert children
     began = time.monotonic()
     assert server.end(by) == 0
     assert time.monotonic() - began < 10
-    _, left = psutil.wait_procs(family, timeout=LONG_S)
-    assert not left
+    _, alive = psutil.wait_procs(children, timeout=LONG_S)
+    assert not alive
 
 
-def test_killing_it_leaves_no_process_behind(serve: Callable[..., Served]) -> None:
+def test_killed_server_leaves_no_process(serve: Callable[..., Served]) -> None:
     server = serve()
     server.moving(server.start(ENDLESS))
-    family = psutil.Process(server.process.pid).children(recursive=True)
-    assert any("multiprocessing.spawn" in " ".join(p.cmdline()) for p in family)
+    children = psutil.Process(server.process.pid).children(recursive=True)
+    assert any("multiprocessing.spawn" in " ".join(p.cmdline()) for p in children)
     assert server.end(signal.SIGKILL) == -signal.SIGKILL
-    _, left = psutil.wait_procs(family, timeout=10)
-    assert not left
+    _, alive = psutil.wait_procs(children, timeout=10)
+    assert not alive
 
 
-def test_the_stage_is_there_and_only_for_its_own_page(serve: Callable[..., Served]) -> None:
+def test_viewer_websocket_accepts_only_own_host_and_origin(serve: Callable[..., Served]) -> None:
     server = serve()
     address = server.address.replace("http", "ws") + "/viewer/?view=leader"
     protocols: Any = [f"viser-v{viser.__version__}"]
@@ -161,7 +161,7 @@ def test_the_stage_is_there_and_only_for_its_own_page(serve: Callable[..., Serve
     assert server.client.get("/docs").text.count("<details>") > 20
 
 
-def test_a_spectator_is_told_so(serve: Callable[..., Served]) -> None:
+def test_snapshot_has_the_role_of_the_client(serve: Callable[..., Served]) -> None:
     server = serve(HEXAPODS_TOKEN="a-token-for-tests")
     assert next(server.events())[1]["role"] == "spectator"
     assert server.client.post("/api/v1/trainings", json=BODY).status_code == 401
@@ -185,25 +185,25 @@ def refusal(*arguments: str, **variables: str) -> str:
     return done.stderr
 
 
-def test_a_port_in_use(tmp_path: Path) -> None:
+def test_port_in_use_is_refused(tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
-        said = refusal("--port", port, "--data", str(tmp_path))
-    assert port in said
-    assert "--port" in said
+        message = refusal("--port", port, "--data", str(tmp_path))
+    assert port in message
+    assert "--port" in message
 
 
-def test_an_address_that_is_not_ours(tmp_path: Path) -> None:
-    said = refusal(
+def test_foreign_bind_address_is_refused(tmp_path: Path) -> None:
+    message = refusal(
         "--host", "192.0.2.1", "--data", str(tmp_path), HEXAPODS_TOKEN="long-enough-for-all"
     )
-    assert "192.0.2.1" in said
+    assert "192.0.2.1" in message
 
 
-def test_a_data_folder_that_cannot_be_written(tmp_path: Path) -> None:
+def test_unwritable_data_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     assert "HEXAPODS_DATA" in refusal("--port", "0", "--data", str(tmp_path / "file"))
 
 
-def test_no_token_no_network(tmp_path: Path) -> None:
+def test_network_address_without_token_is_refused(tmp_path: Path) -> None:
     assert "HEXAPODS_TOKEN" in refusal("--host", "0.0.0.0", "--data", str(tmp_path))

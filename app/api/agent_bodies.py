@@ -9,7 +9,7 @@ from pydantic_core import core_schema
 
 from app.agents.registry import learns
 from app.api.descriptions import VALID
-from app.api.experiment_body import ExperimentBody, some
+from app.api.experiment_body import ExperimentBody, one_or_more
 from app.api.fields import Declared
 from app.api.schemas import ChangeBody, LaneBody, PracticeBody, RaceBody, TrainingBody
 from app.domain.errors import UnknownName
@@ -19,18 +19,18 @@ from app.runs.config import MAX_LANES, TrainingConfig, agent_settings, changeabl
 from app.stage.scene_spec import PAPERS_LANES
 
 
-class ByAgent:
-    """Chooses the model of a body by the agent that the body names.
+class AgentUnion:
+    """Annotation: a tagged union of body models, discriminated by the field `agent`.
 
-    A body of an agent that is not registered raises `UnknownName`.
+    A body whose agent is not registered raises `UnknownName`.
     """
 
     def __init__(self, models: Mapping[str, type[Any]], default: str | None = None) -> None:
-        """Create the choice.
+        """Create the union.
 
         Args:
-            models: by agent.
-            default: the agent of a body that names none.
+            models: body model by agent name.
+            default: agent of a body without `agent`; by default the first.
         """
         self._models, self._default = models, default or next(iter(models))
 
@@ -38,7 +38,7 @@ class ByAgent:
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
         choices = {name: handler.generate_schema(model) for name, model in self._models.items()}
-        # What is no object, or names no agent where it must, is refused by the default's model.
+        # The default agent's model rejects a body that is no object or lacks a required agent.
         return core_schema.tagged_union_schema(choices, discriminator=self._agent_of)
 
     def _agent_of(self, value: Any) -> str:
@@ -51,30 +51,30 @@ class ByAgent:
 
 
 class AgentBodies:
-    """The request bodies of a server.
+    """Request body models of a server, as annotations for the signatures of routes.
 
     Attributes:
-        training, race, experiment, change: for `Annotated[TrainingBody, bodies.training]` and so
-            on in the signatures of routes.
+        training, race, experiment, change: used as `Annotated[TrainingBody, bodies.training]`,
+            and likewise for the others.
     """
 
     def __init__(self, agents: Sequence[str]) -> None:
-        """Build them.
+        """Build the models.
 
         Args:
-            agents: the names that are registered.
+            agents: names of the registered agents.
         """
         practices = {agent: _practice_body(agent) for agent in agents}
         trainings = {agent: _training_body(agent, body) for agent, body in practices.items()}
         lanes = {agent: _lane_body(agent, body) for agent, body in practices.items()}
-        self.training = ByAgent(trainings, TrainingConfig.agent)
-        self.race = Instead(_race_body(lanes))
-        self.experiment = Instead(_experiment_body(agents))
-        self.change = Instead(_change_body(agents))
+        self.training = AgentUnion(trainings, TrainingConfig.agent)
+        self.race = ValidatedAs(_race_body(lanes))
+        self.experiment = ValidatedAs(_experiment_body(agents))
+        self.change = ValidatedAs(_change_body(agents))
 
 
-class Instead:
-    """Validates by another model than the one that is annotated, which is its base class."""
+class ValidatedAs:
+    """Annotation: validate with a subclass of the annotated model."""
 
     def __init__(self, model: type[Any]) -> None:
         self._model = model
@@ -86,33 +86,33 @@ class Instead:
 
 
 def _practice_body(agent: str) -> type[PracticeBody]:
-    own: dict[str, Any] = {
+    fields: dict[str, Any] = {
         name: (_field([one]), ... if one.default is REQUIRED else one.default)
         for name, one in agent_settings(agent).items()
     }
-    return create_model(f"{_camel(agent)}Practice", __base__=PracticeBody, **own)
+    return create_model(f"{_camel_case(agent)}Practice", __base__=PracticeBody, **fields)
 
 
 def _training_body(agent: str, practice: type[PracticeBody]) -> type[TrainingBody]:
-    named = (_literal(agent), agent if agent == TrainingConfig.agent else ...)
-    made: type[TrainingBody] = create_model(
-        f"{_camel(agent)}Training",
+    agent_field = (_literal(agent), agent if agent == TrainingConfig.agent else ...)
+    model: type[TrainingBody] = create_model(
+        f"{_camel_case(agent)}Training",
         __base__=(practice, TrainingBody),  # type: ignore[arg-type]
         __doc__=TrainingBody.__doc__,
-        agent=named,
+        agent=agent_field,
     )
-    return made
+    return model
 
 
 def _lane_body(agent: str, practice: type[PracticeBody]) -> type[LaneBody]:
-    described = Field(description=VALID["training"])
-    own: dict[str, Any] = {"training": (Annotated[practice | None, described], None)}
+    description = Field(description=VALID["training"])
+    fields: dict[str, Any] = {"training": (Annotated[practice | None, description], None)}
     return create_model(
-        f"{_camel(agent)}Lane",
+        f"{_camel_case(agent)}Lane",
         __base__=LaneBody,
         __doc__=LaneBody.__doc__,
         agent=(_literal(agent), ...),
-        **(own if learns(agent) else {}),
+        **(fields if learns(agent) else {}),
     )
 
 
@@ -126,18 +126,19 @@ def _race_body(lanes: Mapping[str, type[LaneBody]]) -> type[RaceBody]:
         ]
 
     limits = Field(min_length=1, max_length=MAX_LANES, description=VALID["lanes"])
-    lane = Annotated[LaneBody, ByAgent(lanes)]
+    lane = Annotated[LaneBody, AgentUnion(lanes)]
     kind = Annotated[list[lane], limits]
-    own: dict[str, Any] = {"lanes": (kind, Field(default_factory=papers_lanes))}
-    return create_model("RaceBody", __base__=RaceBody, __doc__=RaceBody.__doc__, **own)
+    fields: dict[str, Any] = {"lanes": (kind, Field(default_factory=papers_lanes))}
+    return create_model("RaceBody", __base__=RaceBody, __doc__=RaceBody.__doc__, **fields)
 
 
 def _experiment_body(agents: Sequence[str]) -> type[ExperimentBody]:
-    own: dict[str, Any] = {
-        name: (some(_field(declared)), None) for name, declared in settings_of(agents).items()
+    fields: dict[str, Any] = {
+        name: (one_or_more(_field(declared)), None)
+        for name, declared in settings_of(agents).items()
     }
     doc = ExperimentBody.__doc__
-    return create_model("ExperimentBody", __base__=ExperimentBody, __doc__=doc, **own)
+    return create_model("ExperimentBody", __base__=ExperimentBody, __doc__=doc, **fields)
 
 
 def _change_body(agents: Sequence[str]) -> type[ChangeBody]:
@@ -145,27 +146,27 @@ def _change_body(agents: Sequence[str]) -> type[ChangeBody]:
     for agent in agents:
         for name, setting in changeable_settings(agent).items():
             declared.setdefault(name, []).append(setting)
-    own: dict[str, Any] = {name: (_field(one) | None, None) for name, one in declared.items()}
-    made: type[ChangeBody] = create_model(
-        "ChangeBody", __base__=ChangeBody, __doc__=ChangeBody.__doc__, **own
+    fields: dict[str, Any] = {name: (_field(one) | None, None) for name, one in declared.items()}
+    model: type[ChangeBody] = create_model(
+        "ChangeBody", __base__=ChangeBody, __doc__=ChangeBody.__doc__, **fields
     )
-    made.model_config["json_schema_extra"] = {
+    model.model_config["json_schema_extra"] = {
         "anyOf": [
-            {"required": [name], "properties": {name: {"not": {"type": "null"}}}} for name in own
+            {"required": [name], "properties": {name: {"not": {"type": "null"}}}} for name in fields
         ]
     }
-    return made
+    return model
 
 
 def _field(declared: Sequence[DeclaredSetting]) -> Any:
-    """The type of a setting, valid as any of the agents that have it declares it."""
-    kinds = {(str(one.annotation), one.about): Annotated[Any, Declared(one)] for one in declared}
-    return Union[tuple(kinds.values())]  # noqa: UP007 - of as many as there are
+    """Return the type of a setting: the union of its declarations by the agents that have it."""
+    types = {(str(one.annotation), one.about): Annotated[Any, Declared(one)] for one in declared}
+    return Union[tuple(types.values())]  # noqa: UP007 - a union of a variable number of types
 
 
 def _literal(agent: str) -> Any:
     return Literal[agent]
 
 
-def _camel(agent: str) -> str:
+def _camel_case(agent: str) -> str:
     return "".join(word.capitalize() for word in re.split(r"[\W_]+", agent))

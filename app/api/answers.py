@@ -1,7 +1,7 @@
-"""Response models: the shape of every JSON answer, for the API's description and its tests.
+"""Response models: the schema of every JSON response, for the OpenAPI document and the tests.
 
-Answers are made of plain types by the services and are sent as they are; these models validate
-nothing at run time. Tests hold the answers to them.
+Services build responses from plain types, which are sent unvalidated; these models are used at run
+time only to describe them. Tests validate real responses against the models.
 """
 
 from datetime import datetime
@@ -22,7 +22,7 @@ Count = Annotated[int, Field(ge=0)]
 
 
 class Answer(BaseModel):
-    """An object with exactly these members."""
+    """Base class of response objects; forbids additional members."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -35,7 +35,7 @@ class LegView(Answer):
 
 
 class RobotView(BaseModel):
-    """A preset, and by name the numbers in which the robot differs from it."""
+    """A preset, and by name the numeric parameters that override it."""
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, float]
@@ -45,7 +45,7 @@ class RobotView(BaseModel):
 
 
 class GaitParts(Answer):
-    """A gait of one's own; members that were not given are left out."""
+    """A custom gait; members that were not given are absent."""
 
     right_leg: int
     left_leg: int
@@ -57,7 +57,7 @@ Gait = str | GaitParts
 
 
 class WalkView(Answer):
-    """Which robot walks how, on which foot grid, in which simulator."""
+    """The walking problem: gait, robot, simulator and foot grid."""
 
     gait: Gait
     robot: RobotView
@@ -67,7 +67,7 @@ class WalkView(Answer):
 
 
 class TrainingConfigView(WalkView):
-    """Config of a training, with the settings of its agent by their names."""
+    """Config of a training; the settings of its agent are further members, by name."""
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, Value]
@@ -83,7 +83,7 @@ class TrainingConfigView(WalkView):
 
 
 class LaneView(Answer):
-    """A lane of a race, and the training whose table it uses."""
+    """A lane of a race, with the id of the training whose Q-table it uses."""
 
     agent: str
     observation: Observation
@@ -99,7 +99,7 @@ class RaceConfigView(WalkView):
 
 
 class ExperimentConfigView(Answer):
-    """Config of an experiment: every combination of the lists is a setting."""
+    """Config of an experiment; each element of the lists' Cartesian product is a setting."""
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, list[Value]]
@@ -120,14 +120,14 @@ class ExperimentConfigView(Answer):
 
 
 class ProgressView(Answer):
-    """Steps of a training or of all lanes of a race; trials of an experiment."""
+    """Progress: steps of a training or of all lanes of a race; trials of an experiment."""
 
     done: Count
     total: Count
 
 
 class RunView(Answer):
-    """The members that every kind of run has. Times are ISO 8601 in UTC."""
+    """Members common to all kinds of runs. Times are ISO 8601 in UTC."""
 
     id: str
     name: str
@@ -143,7 +143,7 @@ class RunView(Answer):
 
 
 class TrainingResult(Answer):
-    """How far it walks in the end [m], and how far greedy does."""
+    """Final distance [m] of the agent and of the greedy reference, and the Q-table's hash."""
 
     distance_m: float | None
     greedy_distance_m: float | None
@@ -151,7 +151,7 @@ class TrainingResult(Answer):
 
 
 class Change(BaseModel):
-    """Live settings that were changed after so many steps, by their names."""
+    """A change of live settings: their new values by name, and the step after which it applies."""
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, Value]
@@ -170,7 +170,7 @@ class TrainingView(RunView):
 
 
 class FiguresUnderClock(Answer):
-    """Of a lane under one clock; the distance at time-out ranks the race."""
+    """Figures of a lane under one clock; lanes are ranked by the distance at time-out."""
 
     finished_distance_m: float
     elapsed_s: float
@@ -179,7 +179,7 @@ class FiguresUnderClock(Answer):
 
 
 class LaneFigures(Answer):
-    """Of a lane under each clock."""
+    """Figures of a lane under each clock."""
 
     paper: FiguresUnderClock
     wall: FiguresUnderClock
@@ -187,7 +187,7 @@ class LaneFigures(Answer):
 
 
 class LaneResult(Answer):
-    """Result of a lane; `trained_robot` where its table was learned on another robot."""
+    """Result of a lane; `trained_robot` is set if its table was learned on another robot."""
 
     agent: str
     training_id: str | None
@@ -217,7 +217,7 @@ class RaceView(RunView):
 
 
 class TrialCounts(Answer):
-    """How many trials there are, and what became of them."""
+    """Number of trials by outcome."""
 
     done: Count
     total: Count
@@ -251,32 +251,32 @@ class ExperimentView(RunView):
 
 
 class Page(Answer):
-    """A part of a list, newest first."""
+    """Page of a list, newest first, with cursor pagination."""
 
     next_cursor: str | None
-    """Where the next page begins; null on the last."""
+    """Cursor of the next page; null on the last page."""
 
 
 class TrainingPage(Page):
-    """Trainings."""
+    """Page of trainings."""
 
     items: list[TrainingView]
 
 
 class RacePage(Page):
-    """Races."""
+    """Page of races."""
 
     items: list[RaceView]
 
 
 class ExperimentPage(Page):
-    """Experiments."""
+    """Page of experiments."""
 
     items: list[ExperimentView]
 
 
 class Evaluation(Answer):
-    """How far it walked after so many steps of practice [m]."""
+    """Evaluation of a training: the distance walked [m] after `step` steps of practice."""
 
     step: Count
     distance_m: float
@@ -284,14 +284,14 @@ class Evaluation(Answer):
 
 
 class CurveView(Answer):
-    """A learning curve, and greedy's distance to compare with [m]."""
+    """A learning curve, and the greedy agent's distance [m] as its reference."""
 
     evaluations: list[Evaluation]
     greedy_distance_m: float | None
 
 
 class ActionValue(Answer):
-    """The value of an action, [pair, cell], in a state: the cell of each pair."""
+    """Value of an action, [pair, cell], in a state, which is the cell of each pair."""
 
     state: list[int]
     action: tuple[int, int]
@@ -300,7 +300,7 @@ class ActionValue(Answer):
 
 
 class QTableView(Answer):
-    """All legal actions in all states; `cells` are the (x, y) of each cell [m]."""
+    """Q-table: all legal actions in all states; `cells` are the (x, y) of each cell [m]."""
 
     gait: Gait
     divisions: int
@@ -310,7 +310,7 @@ class QTableView(Answer):
 
 
 class RecordedStep(Answer):
-    """A step, with the joints' `qpos` at the times `time_s` since its motion began."""
+    """A recorded step, with the joint positions `qpos` at `time_s` since the motion began."""
 
     step: Count
     observation: list[int]
@@ -324,7 +324,7 @@ class RecordedStep(Answer):
 
 
 class RecordedLane(Answer):
-    """A lane of a recording, and how its robot stands before the first step."""
+    """A lane of a recording; `rest_qpos` are the joint positions before the first step."""
 
     agent: str
     training_id: str | None
@@ -334,14 +334,14 @@ class RecordedLane(Answer):
 
 
 class RecordingView(Answer):
-    """All that a replay needs."""
+    """Recording of a race, sufficient to replay it."""
 
     steps: int
     lanes: list[RecordedLane]
 
 
 class TimelineLane(Answer):
-    """Points are [s, m]; stretches of thinking are [from s, to s]."""
+    """A lane's distance over time: points are [s, m], decision intervals are [from s, to s]."""
 
     agent: str
     training_id: str | None
@@ -355,7 +355,7 @@ class TimelineLane(Answer):
 
 
 class TimelineView(Answer):
-    """A race over time under one clock."""
+    """Timeline of a race under one clock."""
 
     clock: Clock
     steps: int
@@ -365,7 +365,7 @@ class TimelineView(Answer):
 
 
 class StageView(Answer):
-    """The stage: the run that all viewers see."""
+    """State of the stage, which shows one run to all viewers."""
 
     run_id: str | None
     kind: Literal["idle", "training", "race"]
@@ -381,7 +381,7 @@ class StageView(Answer):
 
 
 class WhatIfHalf(BaseModel):
-    """Thirty seeds with these settings: how far each comes [m], and what lies in the middle."""
+    """Result of 30 seeds with these settings: their distances [m] and interquartile mean."""
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, Value]
@@ -393,7 +393,7 @@ class WhatIfHalf(BaseModel):
 
 
 class WhatIfView(Answer):
-    """The answer to a what-if."""
+    """Result of a what-if: the chosen settings compared with the defaults."""
 
     seeds: int
     greedy_m: float
@@ -403,14 +403,14 @@ class WhatIfView(Answer):
 
 
 class Described(Answer):
-    """A choice, in a sentence."""
+    """An option of a form, with a one-sentence description."""
 
     name: str
     description: str
 
 
 class GaitOption(Described):
-    """A gait, with its legs' directions [°] and the pairs that move together."""
+    """A gait, with the directions of its legs [°] and the pairs of legs that move together."""
 
     title: str
     forward_deg: float
@@ -419,13 +419,13 @@ class GaitOption(Described):
 
 
 class RobotOption(Described):
-    """A preset."""
+    """A robot preset."""
 
     robot: RobotView
 
 
 class ExperimentOption(Described):
-    """An experiment, the fields that it takes, and their defaults."""
+    """An experiment, with the fields of its request body and their defaults."""
 
     title: str
     fields: list[str]
@@ -434,7 +434,7 @@ class ExperimentOption(Described):
 
 
 class DefaultsView(Answer):
-    """The bodies of a training and of a race as they are by default, and a what-if's seeds."""
+    """Default request bodies of a training and of a race, and the number of seeds of a what-if."""
 
     training: dict[str, Any]
     race: dict[str, Any]
@@ -442,7 +442,7 @@ class DefaultsView(Answer):
 
 
 class SettingOption(Answer):
-    """A setting as it is declared: labels and limits of its control."""
+    """Declaration of a setting: the labels, limits and default of its form control."""
 
     title: str
     symbol: str | None
@@ -462,7 +462,7 @@ class SettingOption(Answer):
 
 
 class AgentOption(Described):
-    """An agent, the settings of its constructor, and those that may change while it learns."""
+    """An agent, with its constructor's settings and those that can change during a training."""
 
     title: str
     learns: bool
@@ -473,7 +473,7 @@ class AgentOption(Described):
 
 
 class OptionsView(Answer):
-    """All that a form needs."""
+    """Options, defaults, limits and help texts of all forms."""
 
     version: str
     gaits: list[GaitOption]
@@ -492,7 +492,7 @@ class OptionsView(Answer):
 
 
 class HealthView(Answer):
-    """The server answers."""
+    """Status and version of the server."""
 
     status: Literal["ok", "ready"]
     version: str

@@ -1,4 +1,7 @@
-"""Roles: a spectator may watch, an operator may start, change, stop and delete."""
+"""Token and session authentication, which gives each request the role operator or spectator.
+
+Spectators have read access; operators may also start, change, stop and delete runs.
+"""
 
 import asyncio
 import hmac
@@ -21,124 +24,126 @@ from app.storage.sessions import Sessions
 
 Role = Literal["operator", "spectator"]
 
-_READS = frozenset({"GET", "HEAD", "OPTIONS"})
-OPEN = ("/healthz", "/readyz")
-_OPEN_FOLDERS = ("/static/",)
+_READ_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+PUBLIC_PATHS = ("/healthz", "/readyz")
+_PUBLIC_FOLDERS = ("/static/",)
 WRONG_TOKENS, WRONG_TOKENS_PER_S = 20, 0.2
-_HOW = (
+_AUTH_HINT = (
     "send the server's token as Authorization: Bearer …, or open its page once with ?token=… "
     "in the address"
 )
 
 
 class TokenGuard:
-    """Lets operators do everything, and others what they may; for every route, known or not.
+    """Authentication middleware: authorises every request and websocket by its role.
 
-    Without a token in the settings everyone is operator: then the server listens on loopback only.
-    An operator's browser has a session, whose id is in a cookie. Wrong tokens and wrong session
-    ids of an address are counted together.
+    Without a token in the settings every client is operator; the server then binds to loopback
+    only. An operator's browser has a session, whose id is in a cookie. Wrong tokens and wrong
+    session ids of an address draw on the same token bucket. Paths without a route are guarded too.
     """
 
     def __init__(self, app: ASGIApp, settings: Settings, sessions: Sessions | None) -> None:
-        """Guard an app.
+        """Wrap an app.
 
         Args:
-            app: to be guarded.
-            settings: have the token, and say who may watch.
-            sessions: that the token opened; None where there is no token.
+            app: the guarded app.
+            settings: its `token`, `spectators` and `public_url` are used.
+            sessions: store of open operator sessions; None without a token.
         """
         self._app = app
         self._token, self._sessions = settings.token, sessions
-        self._all_may_watch = settings.token is None or settings.spectators == "public"
-        self._guesses = RateLimiter(WRONG_TOKENS, WRONG_TOKENS_PER_S)
+        self._is_public = settings.token is None or settings.spectators == "public"
+        self._wrong_guesses = RateLimiter(WRONG_TOKENS, WRONG_TOKENS_PER_S)
         self._is_https = (settings.public_url or "").startswith("https:")
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on what is allowed, with its role in the scope's state."""
+        """Store the role in the scope's state and call the app, or refuse with 401 or 429."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        is_link = _offers_token(scope)
-        wait_s = self._guesses.wait_s(client_of(scope)) if is_link or _bearer(headers) else 0.0
+        is_link = _has_token_parameter(scope)
+        wait_s = (
+            self._wrong_guesses.wait_s(client_of(scope)) if is_link or _bearer(headers) else 0.0
+        )
         if wait_s > 0:
-            # Also for the right one: whoever guesses must not learn that it was.
+            # Also for the right token: the limit must not reveal which guess was right.
             await _too_many_guesses(scope, wait_s)(scope, receive, send)
             return
         if is_link:
-            response = await self._let_in(scope, headers)
+            response = await self._open_session(scope, headers)
             await response(scope, receive, send)
             return
         role = self._role(headers, scope)
         if role == "spectator":
             cookie = self._cookie(scope, headers)
             if cookie.value:
-                wait_s = self._guesses.take(client_of(scope))
-                send = _forgetting(cookie, send)
+                wait_s = self._wrong_guesses.take(client_of(scope))
+                send = _expiring_cookie(cookie, send)
             if wait_s > 0:
                 await _too_many_guesses(scope, wait_s)(scope, receive, send)
                 return
-        if role == "operator" or self._may_anyone(scope):
+        if role == "operator" or self._is_readable_by_all(scope):
             scope.setdefault("state", {})["role"] = role
             if role == "operator" and self._token is not None:
-                _note_operator(scope)
+                _mark_authenticated(scope)
             await self._app(scope, receive, send)
         elif scope["type"] == "websocket":
             await _refuse_websocket(scope, receive, send)
         else:
-            await _unauthorized(f"This needs the operator: {_HOW}.")(scope, receive, send)
+            await _unauthorized(f"This needs the operator: {_AUTH_HINT}.")(scope, receive, send)
 
     def _role(self, headers: Headers, scope: Scope) -> Role:
         if self._token is None or self._sessions is None:
             return "operator"
         token = _bearer(headers)
-        if token and _same(token, self._token):
+        if token and _equal_in_constant_time(token, self._token):
             return "operator"
         if token:
-            self._guesses.take(client_of(scope))
+            self._wrong_guesses.take(client_of(scope))
         session_id = self._cookie(scope, headers).value
         return "operator" if session_id and self._sessions.is_open(session_id) else "spectator"
 
     def _cookie(self, scope: Scope, headers: Headers) -> SessionCookie:
         return SessionCookie(headers, self._is_https or scope["scheme"] in ("https", "wss"))
 
-    def _may_anyone(self, scope: Scope) -> bool:
-        if scope["type"] == "http" and scope["method"] not in _READS:
+    def _is_readable_by_all(self, scope: Scope) -> bool:
+        if scope["type"] == "http" and scope["method"] not in _READ_METHODS:
             return False
         path: str = scope["path"]
-        # The page itself is no secret; what it shows is.
-        is_open = path == "/" or path in OPEN or path.startswith(_OPEN_FOLDERS)
-        return self._all_may_watch or is_open
+        # The page's files are public; the data they show is not.
+        is_open = path == "/" or path in PUBLIC_PATHS or path.startswith(_PUBLIC_FOLDERS)
+        return self._is_public or is_open
 
-    async def _let_in(self, scope: Scope, headers: Headers) -> Response:
-        """Open a session for the token of `/?token=…`, and clean the address of it."""
+    async def _open_session(self, scope: Scope, headers: Headers) -> Response:
+        """Open a session for the token of `/?token=…`, and redirect to the address without it."""
         items = _query(scope)
         rest = urlencode([(name, value) for name, value in items if name != "token"])
         given = next(value for name, value in items if name == "token")
-        # Relative, so that it holds behind a proxy that serves the app under a prefix.
+        # Relative, so that it is valid behind a proxy that serves the app under a prefix.
         response = RedirectResponse(f"?{rest}" if rest else "./", 303)
         response.headers["Cache-Control"] = "no-store"
         if self._token is None or self._sessions is None:
             return response
-        if not _same(given, self._token):
-            self._guesses.take(client_of(scope))
+        if not _equal_in_constant_time(given, self._token):
+            self._wrong_guesses.take(client_of(scope))
             return _unauthorized("This is not the server's token; look at what its start printed.")
         try:
             session_id = await asyncio.to_thread(self._sessions.open)
         except HexapodError as error:
             return problem(503, f"No session can be kept: {error}.", headers={"Retry-After": "10"})
-        response.headers.append("Set-Cookie", self._cookie(scope, headers).holding(session_id))
+        response.headers.append("Set-Cookie", self._cookie(scope, headers).set_header(session_id))
         return response
 
 
-def _note_operator(scope: Scope) -> None:
-    """Keep the connection from being closed to make room for a stranger's."""
+def _mark_authenticated(scope: Scope) -> None:
+    """Mark the connection as authenticated, which exempts it from eviction."""
     connection: Connection | None = scope["state"].get("connection")
     if connection is not None:
         connection.authenticated()
 
 
-def _offers_token(scope: Scope) -> bool:
+def _has_token_parameter(scope: Scope) -> bool:
     if scope["type"] != "http" or scope["path"] != "/" or scope["method"] not in ("GET", "HEAD"):
         return False
     return any(name == "token" for name, _ in _query(scope))
@@ -148,15 +153,15 @@ def _query(scope: Scope) -> list[tuple[str, str]]:
     return parse_qsl(scope["query_string"].decode("latin-1"), keep_blank_values=True)
 
 
-def _forgetting(cookie: SessionCookie, send: Send) -> Send:
-    """Tell a browser to drop its cookie, lest all its requests count as wrong guesses."""
+def _expiring_cookie(cookie: SessionCookie, send: Send) -> Send:
+    """Wrap `send` to expire the cookie, as its requests would all count as wrong guesses."""
 
-    async def also_forget(message: Message) -> None:
+    async def send_expiring(message: Message) -> None:
         if message["type"] == "http.response.start":
-            MutableHeaders(scope=message).append("Set-Cookie", cookie.gone())
+            MutableHeaders(scope=message).append("Set-Cookie", cookie.expire_header())
         await send(message)
 
-    return also_forget
+    return send_expiring
 
 
 def _bearer(headers: Headers) -> str:
@@ -179,6 +184,6 @@ def _unauthorized(detail: str) -> Response:
     return problem(401, detail, headers={"WWW-Authenticate": 'Bearer realm="Racing Hexapods"'})
 
 
-def _same(one: str, other: str) -> bool:
-    """Compare in a time that does not tell how much is right."""
+def _equal_in_constant_time(one: str, other: str) -> bool:
+    """Compare in constant time, against timing attacks."""
     return hmac.compare_digest(one.encode("utf-8", "surrogateescape"), other.encode())

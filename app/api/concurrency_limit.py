@@ -1,7 +1,7 @@
-"""Limits how many requests are worked on at once, so that an operator's never wait for strangers'.
+"""Concurrency limit per role: spectators' requests do not delay an operator's.
 
-A request has a turn while the server works on it, not while its client sends or reads: who reads
-slowly keeps nobody from anything.
+A request holds a slot while the server computes, not while its client sends or reads: a slow client
+occupies none.
 """
 
 import asyncio
@@ -15,139 +15,139 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.api.auth import Role
 from app.limits.addresses import client_of
 
-TURNS: dict[Role, int] = {"operator": 16, "spectator": 2}
-"""Python threads share one interpreter: each that computes delays all the others."""
-_STREAM = "text/event-stream"
+SLOTS: dict[Role, int] = {"operator": 16, "spectator": 2}
+"""Slots by role. Few, as Python threads share one interpreter lock and delay each other."""
+_EVENT_STREAM = "text/event-stream"
 T = TypeVar("T")
 
 
 class RoundRobinSemaphore:
-    """A semaphore whose waiters take turns by who they are, so that none wins by asking more.
+    """A fair semaphore: round-robin over clients, first in, first out within a client.
 
-    To be used on one event loop.
+    Not thread-safe; to be used on one event loop.
     """
 
     def __init__(self, size: int) -> None:
-        """All of it is free.
+        """Create a semaphore with all slots free.
 
         Args:
-            size: how many may hold it at once.
+            size: number of concurrent holders.
         """
         self._free = size
-        self._waiting: OrderedDict[str, deque[asyncio.Future[None]]] = OrderedDict()
+        self._waiters: OrderedDict[str, deque[asyncio.Future[None]]] = OrderedDict()
 
-    async def acquire(self, who: str) -> None:
-        """Wait for one's turn."""
+    async def acquire(self, client: str) -> None:
+        """Wait for a slot."""
         if self._free > 0:
             self._free -= 1
             return
-        turn = asyncio.get_running_loop().create_future()
-        self._waiting.setdefault(who, deque()).append(turn)
+        future = asyncio.get_running_loop().create_future()
+        self._waiters.setdefault(client, deque()).append(future)
         try:
-            await turn
+            await future
         except asyncio.CancelledError:
-            if turn.done() and not turn.cancelled():
+            if future.done() and not future.cancelled():
                 self.release()
             raise
 
     def release(self) -> None:
-        """Let the next one have it."""
-        while self._waiting:
-            who, turns = self._waiting.popitem(last=False)
-            turn = turns.popleft()
-            while turn.done() and turns:  # cancelled while it waited
-                turn = turns.popleft()
-            if turns:
-                self._waiting[who] = turns
-            if not turn.done():
-                turn.set_result(None)
+        """Pass the slot to the next waiter, or free it."""
+        while self._waiters:
+            client, futures = self._waiters.popitem(last=False)
+            future = futures.popleft()
+            while future.done() and futures:  # cancelled while waiting
+                future = futures.popleft()
+            if futures:
+                self._waiters[client] = futures
+            if not future.done():
+                future.set_result(None)
                 return
         self._free += 1
 
 
 class ConcurrencyLimit:
-    """Lets so many requests of each role be worked on at once; the others wait."""
+    """Middleware that limits concurrent requests by role; requests beyond the limit wait."""
 
     def __init__(self, app: ASGIApp) -> None:
-        """Limit an app; inside of what finds out the role."""
+        """Wrap an app; to be installed inside `TokenGuard`, which sets the role."""
         self._app = app
-        self._semaphores = {role: RoundRobinSemaphore(size) for role, size in TURNS.items()}
+        self._semaphores = {role: RoundRobinSemaphore(size) for role, size in SLOTS.items()}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Wait for a turn, and pass on."""
+        """Wait for a slot, and call the app."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        turn = _Turn(self._semaphores[scope["state"]["role"]], client_of(scope))
-        await turn.take()
+        slot = _Slot(self._semaphores[scope["state"]["role"]], client_of(scope))
+        await slot.acquire()
         try:
-            await self._app(scope, turn.receiving(receive), turn.sending(send))
+            await self._app(scope, slot.wrap_receive(receive), slot.wrap_send(send))
         finally:
-            turn.give_up()
+            slot.close()
 
 
-class _Turn:
-    """The turn of one request."""
+class _Slot:
+    """The slot of one request, released while its client sends or reads."""
 
-    def __init__(self, semaphore: RoundRobinSemaphore, who: str) -> None:
-        self._semaphore, self._who = semaphore, who
+    def __init__(self, semaphore: RoundRobinSemaphore, client: str) -> None:
+        self._semaphore, self._client = semaphore, client
         self._is_held = False
-        self._given_up = asyncio.Event()
-        # An answer may be sent while another task of the request waits for its client to go.
-        self._taking = asyncio.Lock()
+        self._closed = asyncio.Event()
+        # One task may send the response while another waits for the client's disconnect.
+        self._acquire_lock = asyncio.Lock()
 
-    async def take(self) -> None:
-        async with self._taking:
-            if self._is_held or self._given_up.is_set():
+    async def acquire(self) -> None:
+        async with self._acquire_lock:
+            if self._is_held or self._closed.is_set():
                 return
-            await self._semaphore.acquire(self._who)
+            await self._semaphore.acquire(self._client)
             self._is_held = True
-            if self._given_up.is_set():  # meanwhile
-                self._let_go()
+            if self._closed.is_set():  # closed while waiting
+                self._release()
 
-    def give_up(self) -> None:
-        """For good."""
-        self._given_up.set()
-        self._let_go()
+    def close(self) -> None:
+        """Release the slot and never acquire it again."""
+        self._closed.set()
+        self._release()
 
-    def receiving(self, receive: Receive) -> Receive:
-        """The same without a turn, until the body is here; later ones wait for its client to go."""
+    def wrap_receive(self, receive: Receive) -> Receive:
+        """Wrap `receive`: release the slot until the body is complete, not during later calls."""
         has_all = False
 
-        async def without_turn() -> Message:
+        async def call_without_slot() -> Message:
             nonlocal has_all
-            message = await (receive() if has_all else self._without(receive))
+            message = await (receive() if has_all else self._without_slot(receive))
             has_all = has_all or not message.get("more_body", False)
             return message
 
-        return without_turn
+        return call_without_slot
 
-    def sending(self, send: Send) -> Send:
-        """The same without a turn; for good once a stream of events has begun to wait for them."""
+    def wrap_send(self, send: Send) -> Send:
+        """Wrap `send`: release the slot while sending, and for good after a stream's snapshot."""
         is_stream = False
 
-        async def without_turn(message: Message) -> None:
+        async def call_without_slot(message: Message) -> None:
             nonlocal is_stream
             if message["type"] == "http.response.start":
                 is_stream = _is_stream(message)
             elif is_stream:
-                # Its first words, the snapshot, were work.
-                self.give_up()
-            await self._without(lambda: send(message))
+                # The first event, the snapshot, was computed under the slot.
+                self.close()
+            await self._without_slot(lambda: send(message))
 
-        return without_turn
+        return call_without_slot
 
-    async def _without(self, act: Callable[[], Awaitable[T]]) -> T:
-        self._let_go()
-        done = await act()
-        await self.take()
-        return done
+    async def _without_slot(self, act: Callable[[], Awaitable[T]]) -> T:
+        self._release()
+        result = await act()
+        await self.acquire()
+        return result
 
-    def _let_go(self) -> None:
+    def _release(self) -> None:
         if self._is_held:
             self._is_held = False
             self._semaphore.release()
 
 
 def _is_stream(message: Message) -> bool:
-    return Headers(raw=message.get("headers", [])).get("content-type", "").startswith(_STREAM)
+    return Headers(raw=message.get("headers", [])).get("content-type", "").startswith(_EVENT_STREAM)

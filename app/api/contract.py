@@ -1,7 +1,7 @@
-"""The API's description: what every operation can be sent and can answer.
+"""Completes the OpenAPI document: problem responses, security schemes, links, agent names.
 
-Routes state their own answers. What any operation can answer beside them follows from its method,
-path and parameters, and is added here, so that a new route has it by itself.
+Routes declare their own successful responses. The problem responses of an operation are derived
+here from its method, path and parameters, so that a new route has them without declaring them.
 """
 
 import threading
@@ -11,7 +11,7 @@ from typing import Any
 from fastapi import FastAPI
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.api.auth import OPEN
+from app.api.auth import PUBLIC_PATHS
 from app.api.cookies import NAME
 from app.api.problems import MEDIA_TYPE
 from app.settings import Settings
@@ -19,13 +19,13 @@ from app.settings import Settings
 Schema = dict[str, Any]
 BINARY: Schema = {"type": "string", "format": "binary"}
 TEXT: Schema = {"type": "string"}
-_VERBS = ("get", "put", "post", "patch", "delete")
+_METHODS = ("get", "put", "post", "patch", "delete")
 _UNUSED_SCHEMAS = ("HTTPValidationError", "ValidationError")
-_WRITES = frozenset(_VERBS) - {"get"}
+_WRITE_METHODS = frozenset(_METHODS) - {"get"}
 
 
 class FieldProblem(BaseModel):
-    """A field that is wrong, and what is valid there."""
+    """An invalid field, and its valid values."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -72,7 +72,7 @@ _PROBLEMS: Mapping[int, tuple[str, str]] = {
     503: ("ServiceUnavailable", "The server cannot do it at the moment; try again later."),
     507: ("InsufficientStorage", "There is no room for what is to be kept."),
 }
-"""By status the name of the answer in the description, and what it means."""
+"""By status: the name of the response component, and its description."""
 _HEADERS: Mapping[int, Schema] = {
     401: {"WWW-Authenticate": {"required": True, "schema": TEXT}},
     405: {"Allow": {"required": True, "schema": TEXT, "description": "methods, by comma"}},
@@ -90,42 +90,42 @@ ATTACHMENT: Schema = {
 def answers(
     status: int, forms: Mapping[str, Schema] | None = None, headers: Schema | None = None
 ) -> dict[int | str, Schema]:
-    """A route's `responses` for what its response model does not say.
+    """Return a route's `responses` argument: media types and headers beside its response model.
 
     Args:
-        status: of the answer.
-        forms: schemas by media type: beside JSON, or in place of it without a response model.
-        headers: that it has.
+        status: of the response.
+        forms: schemas by media type, besides JSON; instead of JSON without a response model.
+        headers: schemas of the response headers.
     """
-    found: Schema = {} if headers is None else {"headers": headers}
+    response: Schema = {} if headers is None else {"headers": headers}
     if forms is not None:
         content = {media_type: {"schema": schema} for media_type, schema in forms.items()}
-        found["content"] = content
-    return {status: found}
+        response["content"] = content
+    return {status: response}
 
 
 def takes_file(*media_types: str) -> Schema:
-    """A route's `openapi_extra` for a request whose body is a file."""
+    """Return a route's `openapi_extra` argument for a request whose body is a file."""
     content = {media_type: {"schema": BINARY} for media_type in media_types}
     return {"requestBody": {"content": content, "required": True}}
 
 
 def install(app: FastAPI, agents: tuple[str, ...], settings: Settings) -> None:
-    """Complete the app's description, whenever it is first asked for.
+    """Make the app complete its OpenAPI document on first use, and cache it.
 
     Args:
-        app: with all its routes.
-        agents: the names that are registered.
-        settings: say who needs the token.
+        app: the app, with all its routes.
+        agents: names of the registered agents.
+        settings: decide which operations need the token.
     """
-    described, making = app.openapi, threading.Lock()
-    finished: list[Schema] = []
+    generate, lock = app.openapi, threading.Lock()
+    cache: list[Schema] = []
 
     def openapi() -> Schema:
-        with making:
-            if not finished:
-                finished.append(_completed(described(), agents, settings))
-            return finished[0]
+        with lock:
+            if not cache:
+                cache.append(_completed(generate(), agents, settings))
+            return cache[0]
 
     app.openapi = openapi  # type: ignore[method-assign]
 
@@ -133,18 +133,18 @@ def install(app: FastAPI, agents: tuple[str, ...], settings: Settings) -> None:
 def _completed(schema: Schema, agents: tuple[str, ...], settings: Settings) -> Schema:
     components = schema.setdefault("components", {})
     schemas = components.setdefault("schemas", {})
-    made = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
-    schemas |= made.pop("$defs")
-    schemas["Problem"] = made
+    problem_schema = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
+    schemas |= problem_schema.pop("$defs")
+    schemas["Problem"] = problem_schema
     for name in _UNUSED_SCHEMAS:
         schemas.pop(name, None)
     components["responses"] = {name: _problem(status) for status, (name, _) in _PROBLEMS.items()}
     for method, path, operation in operations(schema):
-        given = {k: v for k, v in operation["responses"].items() if int(k) < 400}
+        successes = {k: v for k, v in operation["responses"].items() if int(k) < 400}
         extra = {s for s in operation["responses"] if int(s) >= 400 and s != "422"}
         statuses = sorted({*problems_of(method, path, operation), *map(int, extra)})
         problems = {str(s): {"$ref": f"#/components/responses/{_PROBLEMS[s][0]}"} for s in statuses}
-        operation["responses"] = given | problems
+        operation["responses"] = successes | problems
     _link_runs(schema)
     _name_agents(schemas, agents)
     _add_security(schema, settings)
@@ -152,16 +152,16 @@ def _completed(schema: Schema, agents: tuple[str, ...], settings: Settings) -> S
 
 
 def operations(schema: Schema) -> Iterator[tuple[str, str, Schema]]:
-    """Each operation with its method, in lower case, and its path."""
+    """Yield (method in lower case, path, operation) for each operation."""
     for path, methods in schema["paths"].items():
-        for method in _VERBS:
+        for method in _METHODS:
             if method in methods:
                 yield method, path, methods[method]
 
 
 def problems_of(method: str, path: str, operation: Mapping[str, Any]) -> set[int]:
-    """The statuses of all errors that an operation can answer by what it is."""
-    # By the guards before it, by the store behind it, and by defects.
+    """Return the error statuses of an operation, derived from method, path and parameters."""
+    # From middleware, from the store, and from defects.
     statuses = {400, 401, 403, 429, 500, 503}
     parameters = [parameter["name"] for parameter in operation.get("parameters", ())]
     if parameters:
@@ -169,9 +169,9 @@ def problems_of(method: str, path: str, operation: Mapping[str, Any]) -> set[int
     if "{" in path or "run_id" in parameters:
         statuses |= {404}
     if "}/" in path:
-        # What belongs to a run is there in some of its states only.
+        # Subresources of a run exist only in some of its states.
         statuses |= {409}
-    if method in _WRITES:
+    if method in _WRITE_METHODS:
         statuses |= {409, 422, 507}
     if "requestBody" in operation:
         statuses |= {404, 413, 415}
@@ -181,19 +181,19 @@ def problems_of(method: str, path: str, operation: Mapping[str, Any]) -> set[int
 
 
 def _problem(status: int) -> Schema:
-    found: Schema = {
+    response: Schema = {
         "description": _PROBLEMS[status][1],
         "content": {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}},
     }
-    return found | ({"headers": _HEADERS[status]} if status in _HEADERS else {})
+    return response | ({"headers": _HEADERS[status]} if status in _HEADERS else {})
 
 
 def _link_runs(schema: Schema) -> None:
-    """Lead from a run that was started to all that can be done with it."""
+    """Add OpenAPI links from each start response to the operations on the new run."""
     for path, methods in schema["paths"].items():
-        started = methods.get("post", {}).get("responses", {}).get("202")
-        if started is not None and "{" not in path:
-            started["links"] = {
+        response = methods.get("post", {}).get("responses", {}).get("202")
+        if response is not None and "{" not in path:
+            response["links"] = {
                 operation["operationId"]: {
                     "operationId": operation["operationId"],
                     "parameters": {"run_id": "$response.body#/id"},
@@ -204,11 +204,11 @@ def _link_runs(schema: Schema) -> None:
 
 
 def _name_agents(schemas: Schema, agents: tuple[str, ...]) -> None:
-    """Which agents there are is known when the server starts."""
-    for kind in schemas["ExperimentBody"]["properties"]["agents"]["anyOf"]:
-        named = kind.get("items", kind)
-        if named.get("type") == "string":
-            named["enum"] = list(agents)
+    """Enumerate the registered agents, which are known only when the server starts."""
+    for alternative in schemas["ExperimentBody"]["properties"]["agents"]["anyOf"]:
+        item = alternative.get("items", alternative)
+        if item.get("type") == "string":
+            item["enum"] = list(agents)
 
 
 def _add_security(schema: Schema, settings: Settings) -> None:
@@ -225,6 +225,7 @@ def _add_security(schema: Schema, settings: Settings) -> None:
     operator: list[Schema] = [{"bearer": []}, {"cookie": []}]
     for method, path, operation in operations(schema):
         needs_token = settings.token is not None and (
-            method in _WRITES or (settings.spectators != "public" and path not in OPEN)
+            method in _WRITE_METHODS
+            or (settings.spectators != "public" and path not in PUBLIC_PATHS)
         )
         operation["security"] = operator if needs_token else [*operator, {}]

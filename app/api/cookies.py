@@ -1,4 +1,4 @@
-"""The cookie that holds the id of an operator's session."""
+"""Session cookie of an operator."""
 
 from starlette.datastructures import Headers
 from starlette.requests import cookie_parser
@@ -9,19 +9,19 @@ NAME = "hexapods_operator"
 
 
 class SessionCookie:
-    """The cookie of a request, by the name that it has there.
+    """The session cookie of a request.
 
-    Browsers send cookies to all ports of a host, so that the name has the port in it: two servers
-    on one machine do not take each other's away. A secure one cannot be set by another host or
-    over plain HTTP, since its name begins with `__Host-`.
+    Browsers send cookies to all ports of a host, so the name contains the port: two servers on one
+    machine do not overwrite each other's cookie. A secure cookie has the prefix `__Host-`, which
+    prevents other hosts and plain HTTP from setting it.
 
     Attributes:
         name: of the cookie.
-        value: that was sent; "" if there is none.
+        value: session id that the client sent; "" without a cookie.
     """
 
     def __init__(self, headers: Headers, is_secure: bool) -> None:
-        """Find it in the headers of a request.
+        """Parse it from the headers of a request.
 
         Args:
             headers: of the request.
@@ -34,12 +34,12 @@ class SessionCookie:
         self.name = f"{'__Host-' if is_secure else ''}{NAME}_{port}"
         self.value = cookie_parser("; ".join(headers.getlist("cookie"))).get(self.name, "")
 
-    def holding(self, session_id: str) -> str:
-        """The header that sets it."""
+    def set_header(self, session_id: str) -> str:
+        """Return the `Set-Cookie` value that stores a session id."""
         return self._header(session_id, SESSION_S)
 
-    def gone(self) -> str:
-        """The header that lets the browser forget it."""
+    def expire_header(self) -> str:
+        """Return the `Set-Cookie` value that deletes the cookie."""
         return self._header("", 0)
 
     def _header(self, value: str, age_s: int) -> str:

@@ -1,4 +1,4 @@
-"""Learning curves and Q-tables as CSV and JSON, row by row."""
+"""Learning curves and Q-tables as CSV and JSON, streamed in chunks."""
 
 import json
 import math
@@ -10,33 +10,33 @@ import numpy as np
 from app.domain.grid import FootGrid
 from app.domain.types import Cells, FloatArray
 
-_VALUES_A_CHUNK = 500
-"""Some 30 kB of text: it is held while a client takes it."""
+_VALUES_PER_CHUNK = 500
+"""Action values per chunk, about 30 kB of text, which stay in memory while a client reads them."""
 
 
 class Rows(Protocol):
-    """A Q-table, in memory or in its file."""
+    """A Q-table whose rows can be iterated, in memory or in its file."""
 
     pairs: int
 
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
-        """Every state in order with its values and visits, (pairs, cells), NaN where illegal."""
+        """Yield (state, values, visits) in order; both arrays (pairs, cells), NaN where illegal."""
 
 
 def as_csv(rows: Sequence[Mapping[str, Any]]) -> bytes:
-    """A curve as CSV: step, distance_m, epsilon."""
+    """Return a learning curve as CSV with the columns step, distance_m, epsilon."""
     columns = ("step", "distance_m", "epsilon")
     lines = [",".join(columns), *(",".join(_cell(row[c]) for c in columns) for row in rows)]
     return "".join(f"{line}\r\n" for line in lines).encode()
 
 
 def _cell(number: float) -> str:
-    """Empty where there is no number."""
+    """Return a number as text; empty if it is not finite."""
     return str(number) if math.isfinite(number) else ""
 
 
 def table_as_json(table: Rows, meta: Mapping[str, Any]) -> Iterator[str]:
-    """The values of all legal actions, in chunks: large tables have millions."""
+    """Yield the values of all legal actions as JSON, in chunks; large tables have millions."""
     grid = FootGrid(meta["grid_side_m"], meta["divisions"])
     head = {
         "gait": meta["gait"],
@@ -60,7 +60,7 @@ def table_as_json(table: Rows, meta: Mapping[str, Any]) -> Iterator[str]:
 
 
 def table_as_csv(table: Rows) -> Iterator[str]:
-    """The same as CSV: the state's cells, pair, cell, value, visits."""
+    """Yield the values of all legal actions as CSV: state's cells, pair, cell, value, visits."""
     cells = [f"state_{pair}" for pair in range(table.pairs)]
     yield ",".join([*cells, "action_pair", "action_cell", "value", "visits"]) + "\r\n"
     for rows in _chunks(table):
@@ -77,9 +77,9 @@ def _chunks(table: Rows) -> Iterator[list[_Row]]:
     chunk: list[_Row] = []
     for state, values, visits in table.rows():
         for pair, cell in np.argwhere(~np.isnan(values)).tolist():
-            value, times = float(values[pair, cell]), int(visits[pair, cell])
-            chunk.append((state, pair, cell, value, times))
-        if len(chunk) >= _VALUES_A_CHUNK:
+            value, count = float(values[pair, cell]), int(visits[pair, cell])
+            chunk.append((state, pair, cell, value, count))
+        if len(chunk) >= _VALUES_PER_CHUNK:
             yield chunk
             chunk = []
     if chunk:

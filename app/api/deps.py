@@ -1,4 +1,4 @@
-"""Dependencies of routes: the services that `create_app` built, and the client's role."""
+"""FastAPI dependencies of routes: the services, the client's role, a start request."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -23,12 +23,12 @@ from app.storage.recordings import Recordings
 from app.storage.run import Run
 from app.what_if.what_if import WhatIf
 
-Film = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock], bytes]
-"""From a race, its name and a clock to a file that viser's client plays."""
+StreamEncoder = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock], bytes]
+"""Encodes a race's lanes, with its name and under a clock, as a recorded stream for viser."""
 
 
-class Audience(Protocol):
-    """Those who watch the stage, as the hub counts them."""
+class HubCounters(Protocol):
+    """Counters of the viewer hub: connected viewers, frames sent and frames coalesced."""
 
     viewers: int
     frames_sent: int
@@ -37,17 +37,17 @@ class Audience(Protocol):
 
 @dataclass(frozen=True)
 class Services:
-    """All that the API stands on.
+    """Services that `create_app` builds and routes use.
 
     Attributes:
-        store, recordings, bus, jobs, stage, idempotency: the services.
-        agents: the names that were registered when the server started.
-        audience: counts who watches the stage, and what they were sent.
-        ready: says what is not ready, or None.
-        what_if: tries settings out.
-        film: makes a race's recording playable.
-        listeners: places for streams of events.
-        exports: counts what exports hold in memory until they are read.
+        store, recordings, bus, jobs, stage, idempotency: the services of these names.
+        agents: names of the agents that were registered at server start.
+        audience: returns the counters of the viewer hub.
+        ready: returns why runs cannot be started, in a sentence; None if they can.
+        what_if: computes what-ifs.
+        film: encodes a race's recording as a recorded stream for viser.
+        listeners: slots of event streams.
+        exports: memory budget of exports that clients are still reading.
     """
 
     store: RunStore
@@ -57,31 +57,31 @@ class Services:
     stage: Stage
     idempotency: Idempotency
     agents: tuple[str, ...]
-    audience: Callable[[], Audience]
+    audience: Callable[[], HubCounters]
     ready: Callable[[], str | None]
-    film: Film
+    film: StreamEncoder
     what_if: WhatIf
     listeners: ClientSlots["Listener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
 
 
 class Listener:
-    """Someone who follows the events; `close` ends the stream, once there is one."""
+    """A client of the event stream; `close` ends its stream, if one is open."""
 
     def __init__(self) -> None:
         self.close: Callable[[], None] = lambda: None
 
 
 class StartRequest(NamedTuple):
-    """A request to start something, as it was sent."""
+    """A start request as it was sent, with its idempotency key."""
 
     address: str
     body: bytes
     key: str | None
-    """Chosen by the client, so that it can ask again without starting twice."""
+    """Idempotency key of the client, which makes a repeated request safe; None if none was sent."""
 
     def start(self, services: Services, start: Start) -> Run:
-        """The run that `start` creates, or created when this was asked for before."""
+        """Return the run that `start` creates, or that an earlier request with this key created."""
         return services.idempotency.run(self.key, self.address.encode() + b"\n" + self.body, start)
 
 
@@ -95,7 +95,7 @@ def _role(request: Request) -> Role:
     return role
 
 
-async def _asked(
+async def _start_request(
     request: Request,
     idempotency_key: Annotated[
         str | None,
@@ -110,5 +110,5 @@ async def _asked(
 
 
 ServicesDep = Annotated[Services, Depends(_services)]
-StartRequestDep = Annotated[StartRequest, Depends(_asked)]
-Who = Annotated[Role, Depends(_role)]
+StartRequestDep = Annotated[StartRequest, Depends(_start_request)]
+RoleDep = Annotated[Role, Depends(_role)]

@@ -1,4 +1,4 @@
-"""Valid values of each field in words, for refusals and for the API's description."""
+"""Valid values of each field in words, for validation errors and the OpenAPI document."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -56,27 +56,27 @@ VALID: Mapping[str, str] = {
 }
 
 
-def in_sentences(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
-    """Pydantic's errors as `field` and `detail`, one for each field.
+def field_errors(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
+    """Convert Pydantic's errors to `field` and `detail`, one for each field.
 
-    What was sent is not repeated: it may be large, or not even be JSON.
+    The invalid value is not quoted: it may be large, or not even JSON.
     """
-    said: dict[str, str] = {}
+    details: dict[str, str] = {}
     for error in errors:
-        # Not the names of agents, which the schemas of bodies are chosen by.
-        known = {*VALID, error.get("ctx", {}).get("name")}
+        # `loc` also has the tags of unions, which are agents' names: keep only fields.
+        fields = {*VALID, error.get("ctx", {}).get("name")}
         if error["type"] == "missing":
-            known.add(error["loc"][-1])
-        place = [part for part in error["loc"] if part in known or isinstance(part, int)]
+            fields.add(error["loc"][-1])
+        path = [part for part in error["loc"] if part in fields or isinstance(part, int)]
         if error["type"] == "json_invalid":
-            place = []
-        field = ".".join(str(part) for part in place)
-        said.setdefault(field, _sentence(field, error, place))
-    return [{"field": field, "detail": detail} for field, detail in said.items()]
+            path = []
+        field = ".".join(str(part) for part in path)
+        details.setdefault(field, _sentence(field, error, path))
+    return [{"field": field, "detail": detail} for field, detail in details.items()]
 
 
-def _sentence(field: str, error: Mapping[str, Any], place: list[Any]) -> str:
-    named = [part for part in place if isinstance(part, str)]
+def _sentence(field: str, error: Mapping[str, Any], path: list[Any]) -> str:
+    names = [part for part in path if isinstance(part, str)]
     if error["type"] in ("unknown_field", "says_all"):
         where = f"{field}: " if field else ""
         return f"{where}{error['msg']}."
@@ -84,8 +84,8 @@ def _sentence(field: str, error: Mapping[str, Any], place: list[Any]) -> str:
         return f"{field} {error['msg']}."
     if error["type"] == "json_invalid":
         return "The request's body is not valid JSON."
-    if not named:
+    if not names:
         return "The request's body must be a JSON object, sent as application/json."
     is_missing = error["type"] == "missing"
-    valid = VALID.get(named[-1], "given")
+    valid = VALID.get(names[-1], "given")
     return f"{field} {'is missing; it ' if is_missing else ''}must be {valid}."

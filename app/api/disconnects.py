@@ -1,46 +1,46 @@
-"""Lets clients leave in the middle of a stream without an error in the log."""
+"""Suppresses stream errors that a client's disconnect causes, so that they are not logged."""
 
 import logging
 
 import anyio
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-_ENDED = (anyio.BrokenResourceError, anyio.ClosedResourceError)
+_STREAM_ERRORS = (anyio.BrokenResourceError, anyio.ClosedResourceError)
 _logger = logging.getLogger(__name__)
 
 
 class Disconnects:
-    """Takes the broken ends of a stream whose client has left for what they are.
+    """Middleware that suppresses broken-stream errors after the client has disconnected.
 
-    FastAPI's stream of events raises them, now and then, when it is cancelled.
+    FastAPI's event stream sometimes raises them when it is cancelled.
     """
 
     def __init__(self, app: ASGIApp) -> None:
-        """Guard an app."""
+        """Wrap an app."""
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on."""
+        """Call the app; suppress broken-stream errors after a disconnect."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        has_left = False
+        is_disconnected = False
 
-        async def noting() -> Message:
-            nonlocal has_left
+        async def receive_noting_disconnect() -> Message:
+            nonlocal is_disconnected
             message = await receive()
-            has_left = has_left or message["type"] == "http.disconnect"
+            is_disconnected = is_disconnected or message["type"] == "http.disconnect"
             return message
 
         try:
-            await self._app(scope, noting, send)
+            await self._app(scope, receive_noting_disconnect, send)
         except Exception as error:
-            if not has_left or not _is_of_a_stream(error):
+            if not is_disconnected or not _is_stream_error(error):
                 raise
             _logger.debug("a client left in the middle of a stream")
 
 
-def _is_of_a_stream(error: Exception) -> bool:
+def _is_stream_error(error: Exception) -> bool:
     if isinstance(error, ExceptionGroup):
-        return error.split(_ENDED)[1] is None
-    return isinstance(error, _ENDED)
+        return error.split(_STREAM_ERRORS)[1] is None
+    return isinstance(error, _STREAM_ERRORS)

@@ -1,4 +1,4 @@
-"""The API's description as an HTML page without scripts, rendered from `/openapi.json`."""
+"""API documentation as an HTML page without scripts, rendered from the OpenAPI document."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -12,17 +12,17 @@ from starlette.responses import HTMLResponse, Response
 
 router = APIRouter(include_in_schema=False)
 
-_VERBS = ("get", "post", "put", "patch", "delete")
+_METHODS = ("get", "post", "put", "patch", "delete")
 
 
 @router.get("/docs")
 def get_docs(request: Request) -> Response:
-    """Every route with its fields, drawn from `/openapi.json`."""
+    """Return every route with its fields, rendered from `/openapi.json`."""
     return HTMLResponse(render(request.app.openapi(), str(request.base_url).rstrip("/")))
 
 
 def render(schema: Mapping[str, Any], base: str) -> str:
-    """The page.
+    """Render the page.
 
     Args:
         schema: the OpenAPI document.
@@ -30,7 +30,7 @@ def render(schema: Mapping[str, Any], base: str) -> str:
     """
     groups: dict[str, list[Mapping[str, Any]]] = {}
     for path, verbs in schema["paths"].items():
-        for verb in (v for v in _VERBS if v in verbs):
+        for verb in (v for v in _METHODS if v in verbs):
             tag = (verbs[verb].get("tags") or ["other"])[0]
             groups.setdefault(tag, []).append(_operation(verb, path, verbs[verb], schema, base))
     return _environment().get_template("docs.html").render(info=schema["info"], groups=groups)
@@ -83,8 +83,8 @@ def _resolved(kind: Mapping[str, Any], schema: Mapping[str, Any]) -> Mapping[str
     if "$ref" not in kind:
         return kind
     name = kind["$ref"].rpartition("/")[2]
-    found: Mapping[str, Any] = schema["components"]["schemas"][name]
-    return found
+    component: Mapping[str, Any] = schema["components"]["schemas"][name]
+    return component
 
 
 def _type(kind: Mapping[str, Any], schema: Mapping[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""Response models of an experiment's summary and trials."""
+"""Response models of an experiment's summary and trials; see `answers`."""
 
 from typing import Annotated, Literal
 
@@ -35,7 +35,7 @@ class TrialFigures(Answer):
 
 
 class TrialRow(Answer):
-    """A trial by its key: the setting, `#`, and the number of the seed."""
+    """A trial; its key is the setting, `#` and the seed's number."""
 
     key: str
     result: TrialFigures | None
@@ -57,7 +57,7 @@ class Reason(Answer):
 
 
 class SummaryCounts(Answer):
-    """How many trials there are, and what became of them."""
+    """Number of trials by outcome, with the reasons of those that failed or were set aside."""
 
     done: Count
     total: Count
@@ -67,7 +67,7 @@ class SummaryCounts(Answer):
 
 
 class Cost(Answer):
-    """Cost of the run."""
+    """Computing time of an experiment [s], trials per second, and workers."""
 
     wall_s: float
     compute_s: float
@@ -76,14 +76,14 @@ class Cost(Answer):
 
 
 class Machine(Answer):
-    """Where it ran; empty before it began."""
+    """Machine on which the experiment ran; empty before its start."""
 
     platform: str = ""
     cores: int | None = None
 
 
 class Interval95(Answer):
-    """A value in the middle of its 95 % interval, where there are seeds enough for one."""
+    """Interquartile mean with its 95 % interval, which is null with too few seeds."""
 
     iqm: float
     low: float | None
@@ -99,13 +99,13 @@ class SharedBy(Answer):
 
 
 class Beats(SharedBy):
-    """A share of the seeds, and whether it is over one half."""
+    """A share of the seeds, and the verdict whether it exceeds one half."""
 
     verdict: Decided
 
 
 class Distances(Answer):
-    """The seeds' distances and what lies in their middle [m]."""
+    """Distances of the seeds, their mean, median, interquartile mean and 95 % interval [m]."""
 
     points_m: list[float]
     mean_m: float
@@ -116,7 +116,7 @@ class Distances(Answer):
 
 
 class PublishedView(Answer):
-    """Printed value of the paper [m], and the quantile of our seeds in which it falls."""
+    """Value printed in the paper [m], and its quantile among the seeds."""
 
     total_m: float | None
     finished_m: float | None
@@ -125,7 +125,7 @@ class PublishedView(Answer):
 
 
 class Parameters(BaseModel):
-    """Parameters of a setting: also the settings of its agent, by name; null where it has none."""
+    """Parameters of a setting and, by name, its agent's settings; null where the agent has none."""
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, Value]
@@ -147,7 +147,7 @@ class Named(Parameters):
 
 
 class Measured(Answer):
-    """Everything that is measured against greedy; null where it cannot be said."""
+    """Comparisons with the greedy agent; null where undefined."""
 
     relative: Interval95 | None
     relative_finished: Interval95 | None
@@ -158,7 +158,7 @@ class Measured(Answer):
 
 
 class SettingView(Measured, Named):
-    """A setting over its seeds."""
+    """Results of a setting over its seeds."""
 
     key: str
     role: Literal["learner", "reference"]
@@ -172,14 +172,14 @@ class SettingView(Measured, Named):
 
 
 class PooledView(Measured, Named):
-    """A setting over its gaits."""
+    """Results of a setting, pooled over its gaits."""
 
     gaits: list[str]
     n: Count
 
 
 class CurveOfSetting(Named):
-    """Distance against practice [m], by block."""
+    """Learning curve of a setting: distances after each block of practice [m]."""
 
     key: str
     gait: str
@@ -190,11 +190,11 @@ class CurveOfSetting(Named):
     mean_m: list[float]
     walkers: list[Share | None]
     points_m: list[list[float]]
-    steps: list[int]  # type: ignore[assignment] # after each block, in place of a block's own
+    steps: list[int]  # type: ignore[assignment] # cumulative steps after each block
 
 
 class VersusView(Parameters):
-    """The probability that agent `a` comes farther than agent `b`."""
+    """Probability that agent `a` walks farther than agent `b`, with its 95 % interval."""
 
     gait: str
     observation: Observation
@@ -232,7 +232,7 @@ class Finding(Answer):
 
 
 class ClaimView(Answer):
-    """One of the paper's claims, and what the trials say of it."""
+    """A claim of the paper, with its verdict and the evidence."""
 
     id: str
     claim: str

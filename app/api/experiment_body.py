@@ -39,8 +39,8 @@ def _as_list(value: Any) -> Any:
     return value if isinstance(value, list) or value is None else [value]
 
 
-class _AlsoOne:
-    """Describes that an item may stand for a list of it."""
+class _ItemOrList:
+    """Adds to the JSON schema that a single item is accepted in place of a list."""
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
@@ -50,26 +50,26 @@ class _AlsoOne:
 
 
 T = TypeVar("T")
-Some = Annotated[
+OneOrMore = Annotated[
     Annotated[
         list[T], Field(min_length=1, max_length=MAX_VALUES, json_schema_extra={"uniqueItems": True})
     ]
     | None,
     BeforeValidator(_as_list),
-    _AlsoOne(),
+    _ItemOrList(),
 ]
-"""One value stands for a list of it."""
+"""A list of 1 to `MAX_VALUES` values; a single value is converted to a list."""
 
 
-def some(kind: Any) -> Any:
-    """`Some` of a type that is made at run time."""
-    return Some[kind]  # type: ignore[misc]
+def one_or_more(kind: Any) -> Any:
+    """Return `OneOrMore` of a type that is built at run time."""
+    return OneOrMore[kind]  # type: ignore[misc]
 
 
 class ExperimentBody(Body):
-    """An experiment, with the settings of all agents. What is left out has its own default.
+    """An experiment, with the settings of all agents. Omitted fields take its defaults.
 
-    Where a list is asked for, one value will do.
+    A single value is accepted in place of a list.
     """
 
     experiment: Annotated[ExperimentName, Field(description=VALID["experiment"])]
@@ -80,15 +80,15 @@ class ExperimentBody(Body):
         INTEGRAL,
     ] = ExperimentConfig.seeds
     seed: Seed = ExperimentConfig.seed
-    gaits: Some[Gait] = None
-    observations: Some[Observation] = None
-    robots: Some[RobotBody] = None
+    gaits: OneOrMore[Gait] = None
+    observations: OneOrMore[Observation] = None
+    robots: OneOrMore[RobotBody] = None
     simulator: SimulatorName = ExperimentConfig.simulator
-    agents: Some[str] = None
-    steps: Some[Steps] = None
-    steps_per_episode: Some[StepsPerEpisode] = None
-    divisions: Some[Divisions] = None
-    grid_side_m: Some[GridSide] = None
+    agents: OneOrMore[str] = None
+    steps: OneOrMore[Steps] = None
+    steps_per_episode: OneOrMore[StepsPerEpisode] = None
+    divisions: OneOrMore[Divisions] = None
+    grid_side_m: OneOrMore[GridSide] = None
     workers: Annotated[
         int | None,
         Field(strict=True, ge=1, le=MAX_WORKERS, description=VALID["workers"]),
@@ -99,7 +99,7 @@ class ExperimentBody(Body):
         """Convert to the request of the service.
 
         Raises:
-            InvalidInput: for what cannot be.
+            InvalidInput: if the values are not valid together, or an agent is not registered.
         """
         for agent in self.agents or ():
             if agent not in agents:

@@ -1,4 +1,4 @@
-"""Experiments: watch the summary fill, and take the report away."""
+"""Routes of experiments: summary, trials, report and its files."""
 
 from typing import Annotated, Any, Literal
 
@@ -8,7 +8,7 @@ from starlette.responses import JSONResponse, Response
 from app.api.contract import ATTACHMENT, BINARY, TEXT, answers
 from app.api.deps import ServicesDep
 from app.api.experiment_answers import SummaryView, TrialsView
-from app.api.formats import attachment, chosen, file_response
+from app.api.formats import attachment, file_response, negotiated
 from app.api.runs import RunPath, find, run_routes
 from app.experiments.config import ExperimentConfig
 from app.storage.artifact_file import ArtifactFile
@@ -21,8 +21,8 @@ REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'self'; sandbox allow-popups"
 )
-"""A report is one file without scripts, and what pretends to be one gets to do nothing."""
-_TYPES = {
+"""Content security policy of reports, which need no scripts: a forged one can run none."""
+_MEDIA_TYPES = {
     ".html": "text/html; charset=utf-8",
     ".json": "application/json",
     ".csv": "text/csv; charset=utf-8",
@@ -30,7 +30,7 @@ _TYPES = {
     ".svg": "image/svg+xml",
     ".pdf": "application/pdf",
 }
-_FILES: dict[str, dict[str, Any]] = {
+_FILE_SCHEMAS: dict[str, dict[str, Any]] = {
     "text/html": TEXT,
     "application/json": {"$ref": "#/components/schemas/SummaryView"},
     "text/csv": TEXT,
@@ -44,11 +44,11 @@ router = run_routes("experiment")
 
 @router.get("/{run_id}/summary", summary="What its trials show so far", response_model=SummaryView)
 def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
-    """The newest summary; it is made again every few seconds while trials come in."""
+    """Return the newest summary, which is recomputed every few seconds while trials run."""
     run = find(services, "experiment", run_id)
     summary = services.store.open_artifact(run_id, SUMMARY)
     if summary is None:
-        return JSONResponse(_nothing_yet(run))
+        return JSONResponse(_empty_summary(run))
     return file_response(summary, "application/json")
 
 
@@ -59,23 +59,23 @@ def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
     responses=answers(200, {"text/html": TEXT}, headers=ATTACHMENT),
 )
 def get_report(services: ServicesDep, run_id: RunPath) -> Response:
-    """All of it in one file, once the experiment has ended."""
+    """Return the whole report as one file, once the experiment has ended."""
     run = find(services, "experiment", run_id)
-    return _file(run, REPORT, _reported(services, run, REPORT), "inline")
+    return _report_response(run, REPORT, _open_report_file(services, run, REPORT), "inline")
 
 
 @router.get(
     "/{run_id}/files/{name:path}",
     summary="A file of its report",
     response_class=Response,
-    responses=answers(200, _FILES, headers=ATTACHMENT),
+    responses=answers(200, _FILE_SCHEMAS, headers=ATTACHMENT),
 )
 def get_file(
     services: ServicesDep, run_id: RunPath, name: Annotated[str, Path(description="of the file")]
 ) -> Response:
-    """One of those that the run's `result` names in `files`."""
+    """Return one of the report's files, which the run's `result` lists in `files`."""
     run = find(services, "experiment", run_id)
-    return _file(run, name, _reported(services, run, name), "attachment")
+    return _report_response(run, name, _open_report_file(services, run, name), "attachment")
 
 
 @router.get(
@@ -90,10 +90,10 @@ def get_trials(
     run_id: RunPath,
     format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
 ) -> Response:
-    """By key: the setting and the number of the seed."""
+    """Return the trials so far, by key: the setting and the seed's number."""
     config = _config(find(services, "experiment", run_id))
     rows = services.store.trials(run_id)
-    if chosen(request, format, ("json", "csv")) == "csv":
+    if negotiated(request, format, ("json", "csv")) == "csv":
         table = trials_as_csv(config, rows)
         return attachment(table, "text/csv; charset=utf-8", f"trials-{run_id}.csv")
     return JSONResponse(finite({"trials": list(rows)}))
@@ -105,8 +105,8 @@ def _config(run: Run) -> ExperimentConfig:
     return run.config
 
 
-def _nothing_yet(run: Run) -> dict[str, Any]:
-    """A summary without any trials, as before the first is computed."""
+def _empty_summary(run: Run) -> dict[str, Any]:
+    """Return the summary of zero trials, for an experiment that has none yet."""
     lists = ("parameters", "settings", "pooled", "curves", "versus", "timed", "claims", "story")
     config = _config(run)
     return {
@@ -121,7 +121,7 @@ def _nothing_yet(run: Run) -> dict[str, Any]:
     }
 
 
-def _reported(services: ServicesDep, run: Run, name: str) -> ArtifactFile:
+def _open_report_file(services: ServicesDep, run: Run, name: str) -> ArtifactFile:
     if run.state in NOT_ENDED or run.state == "interrupted":
         raise Conflict(
             f"experiment {run.id} is {run.state}; its report can be had once it is finished or "
@@ -131,16 +131,16 @@ def _reported(services: ServicesDep, run: Run, name: str) -> ArtifactFile:
     files = (run.result or {}).get("files", [])
     file = services.store.open_artifact(run.id, name) if name in files else None
     if file is None:
-        there_are = ", ".join(files) or "none"
-        raise NotFound(f"experiment {run.id} has no such file; there are: {there_are}")
+        valid_names = ", ".join(files) or "none"
+        raise NotFound(f"experiment {run.id} has no such file; there are: {valid_names}")
     return file
 
 
-def _file(run: Run, name: str, file: ArtifactFile, disposition: str) -> Response:
+def _report_response(run: Run, name: str, file: ArtifactFile, disposition: str) -> Response:
     last = name.rpartition("/")[2]
     stem, dot, suffix = last.rpartition(".")
     headers = {
         "Content-Disposition": f'{disposition}; filename="{stem}-{run.id}{dot}{suffix}"',
         "Content-Security-Policy": REPORT_POLICY,
     }
-    return file_response(file, _TYPES.get(f"{dot}{suffix}"), headers)
+    return file_response(file, _MEDIA_TYPES.get(f"{dot}{suffix}"), headers)

@@ -1,4 +1,4 @@
-"""Fields that requests have in common, and what every request's object is."""
+"""Field types and the base class of request bodies."""
 
 from typing import Annotated, Any, Literal
 
@@ -32,24 +32,24 @@ def _name(text: str) -> str:
         raise ValueError(str(error)) from error
 
 
-def _describe_name(schema: dict[str, Any]) -> None:
-    """As a pattern, which takes a moment, and only the API's description needs."""
-    ranges = (f"{_in_pattern(first)}-{_in_pattern(last)}" for first, last in invisible_ranges())
+def _add_name_pattern(schema: dict[str, Any]) -> None:
+    """Add the pattern of valid names; deferred, as only the OpenAPI document needs it."""
+    ranges = (f"{_escaped(first)}-{_escaped(last)}" for first, last in invisible_ranges())
     schema["pattern"] = f"^[^{''.join(ranges)}]*$"
 
 
-def _in_pattern(point: int) -> str:
-    """Beyond 16 bits the languages have no escape in common."""
+def _escaped(point: int) -> str:
+    """Return a code point for a regular expression; above 16 bits no escape is portable."""
     return f"\\u{point:04x}" if point < 0x10000 else chr(point)
 
 
 def number(**limits: Any) -> Any:
-    """A number that JSON has, within limits."""
+    """Return a field for a finite number within limits."""
     return Field(strict=True, allow_inf_nan=False, **limits)
 
 
 class Declared:
-    """Makes a request's field of a declared setting: its check, its schema and its description."""
+    """Annotation: validate and describe a request's field by the declaration of a setting."""
 
     def __init__(self, setting: DeclaredSetting) -> None:
         self._setting = setting
@@ -63,9 +63,9 @@ class Declared:
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
         about = self._setting.about
-        described = f"{about.help} It must be {self._setting.valid}.".lstrip()
+        description = f"{about.help} It must be {self._setting.valid}.".lstrip()
         shape = TypeAdapter(self._setting.annotation).json_schema()
-        return {**shape, "title": about.title, "description": described}
+        return {**shape, "title": about.title, "description": description}
 
     def _validate(self, value: Any) -> Any:
         try:
@@ -76,18 +76,18 @@ class Declared:
 
 
 def _integral(value: Any) -> Any:
-    """To JSON 2.0 is the same number as 2."""
+    """Convert an integral float to int, as JSON does not distinguish 2.0 from 2."""
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
 INTEGRAL = BeforeValidator(_integral)
-"""After the limits of a strict int: takes a whole number however JSON writes it."""
+"""Accepts whole numbers written as floats; to be listed after the limits of a strict int."""
 Name = Annotated[
     str,
     Field(
         max_length=MAX_NAME,
         description=VALID["name"],
-        json_schema_extra=_describe_name,
+        json_schema_extra=_add_name_pattern,
     ),
     AfterValidator(_name),
 ]
@@ -129,7 +129,7 @@ _ROBOT_PARTS = {
 }
 RobotBody = Annotated[
     str | dict[str, Any],
-    # Its parts are checked by the domain, whose limits these are.
+    # The domain validates the parts; the schema repeats its limits.
     WithJsonSchema(
         {
             "anyOf": [
@@ -152,16 +152,16 @@ RobotBody = Annotated[
 
 
 class Body(BaseModel):
-    """A JSON object without a field that nobody knows."""
+    """Base class of request bodies; rejects unknown fields and names the valid ones."""
 
     model_config = ConfigDict(extra="forbid")
 
     @model_validator(mode="before")
     @classmethod
-    def _know_all_fields(cls, value: Any) -> Any:
+    def _reject_unknown_fields(cls, value: Any) -> Any:
         unknown = [n for n in value if n not in cls.model_fields] if isinstance(value, dict) else []
         if unknown:
             message = str(UnknownName("field", unknown[0][:MAX_NAME], cls.model_fields))
-            # As a value and not as a template: a name may have braces in it.
+            # Passed as a value, as a name with braces is no valid template.
             raise PydanticCustomError("unknown_field", "{message}", {"message": message})
         return value

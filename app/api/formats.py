@@ -1,4 +1,4 @@
-"""In which form an answer is wanted: `?format=` decides, else the Accept header."""
+"""Content negotiation by `?format=` or else the Accept header, and responses with files."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -15,30 +15,30 @@ _TYPES = {
 }
 
 
-def chosen(request: Request, query: str | None, formats: Sequence[str]) -> str:
-    """One of `formats`; the first where nobody says.
+def negotiated(request: Request, query: str | None, formats: Sequence[str]) -> str:
+    """Return the negotiated format, by default the first of `formats`.
 
     Args:
-        request: whose Accept header counts.
-        query: what `?format=` says.
-        formats: that there are.
+        request: its Accept header is used without a query.
+        query: value of `?format=`, if given.
+        formats: available formats.
     """
     if query is not None:
         return query
-    wanted: dict[str, float] = {}
+    qualities: dict[str, float] = {}
     for entry in request.headers.get("accept", "").split(","):
         media_type, *parameters = (part.strip().lower() for part in entry.split(";"))
         name = _TYPES.get(media_type)
         if name in formats:
-            wanted.setdefault(str(name), _quality(parameters))
-    best = max(wanted, key=wanted.__getitem__, default=formats[0])
-    return best if wanted.get(best, 1.0) > 0 else formats[0]
+            qualities.setdefault(str(name), _quality(parameters))
+    best = max(qualities, key=qualities.__getitem__, default=formats[0])
+    return best if qualities.get(best, 1.0) > 0 else formats[0]
 
 
 def attachment(
     content: bytes | Iterable[str] | Iterable[bytes] | ArtifactFile, media_type: str, name: str
 ) -> Response:
-    """A file to be saved under this name."""
+    """Return a response that browsers save as a file of this name."""
     headers = {"Content-Disposition": f'attachment; filename="{name}"'}
     if isinstance(content, bytes):
         return Response(content, headers=headers, media_type=media_type)
@@ -50,9 +50,9 @@ def attachment(
 def file_response(
     file: ArtifactFile, media_type: str | None, headers: Mapping[str, str] | None = None
 ) -> Response:
-    """A file that is sent piece by piece, as fast as the client takes it, and closed then."""
-    told = {**(headers or {}), "Content-Length": str(file.size)}
-    return StreamingResponse(chunks(file), headers=told, media_type=media_type)
+    """Return a response that streams a file in chunks with back-pressure, then closes it."""
+    all_headers = {**(headers or {}), "Content-Length": str(file.size)}
+    return StreamingResponse(chunks(file), headers=all_headers, media_type=media_type)
 
 
 def _quality(parameters: Sequence[str]) -> float:

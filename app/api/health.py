@@ -1,4 +1,4 @@
-"""Whether the server lives, and whether it is ready to work."""
+"""Liveness and readiness probes."""
 
 from fastapi import APIRouter
 from starlette.responses import JSONResponse, Response
@@ -13,13 +13,13 @@ router = APIRouter(tags=["health"])
 
 @router.get("/healthz", response_model=HealthView, summary="Whether the server lives")
 async def get_health() -> Response:
-    """Answers as long as the server can answer at all."""
+    """Liveness probe: return 200 as long as the server responds at all."""
     return JSONResponse({"status": "ok", "version": __version__})
 
 
 @router.get("/readyz", response_model=HealthView, summary="Whether the server is ready to work")
 def get_readiness(services: ServicesDep) -> Response:
-    """503 with the reason while something that runs need is away."""
+    """Readiness probe: return 503 with the reason while something that runs need is unavailable."""
     trouble = services.ready()
     if trouble is not None:
         return problem(503, trouble, headers={"Retry-After": "1"})

@@ -1,9 +1,9 @@
-"""Bounds the memory that clients can make the server hold: bodies they send, answers they read.
+"""Memory budget of request and response bodies, by role and by client.
 
-An answer goes out in pieces, as fast as its client takes them; until then it counts. Where too much
-is held already, a request is refused with 429 or 503 rather than queued, since what waits is held
-as well. A body over its own limit is refused with 413. Streams that make their pieces one by one
-hold next to nothing, and always get in.
+A response is sent in chunks with back-pressure, and counts until its client has read it. A request
+that would exceed the budget is refused with 429 or 503 rather than queued, since a queued body is
+in memory too. A body over its own limit is refused with 413. Streams that generate their chunks one
+by one hold little memory and are not limited.
 """
 
 from starlette.datastructures import Headers
@@ -17,27 +17,27 @@ from app.storage.artifact_file import CHUNK_BYTES
 
 MAX_BODY_BYTES = 1 << 20
 MAX_FILE_BYTES = 64 << 20
-_TAKES_FILE = ("/api/v1/trainings/import", "/api/v1/import")
+_FILE_ROUTES = ("/api/v1/trainings/import", "/api/v1/import")
 ANSWERS_BYTES, ANSWERS_SHARE_BYTES = 64 << 20, 32 << 20
 BODIES_BYTES, BODIES_SHARE_BYTES = 128 << 20, 96 << 20
 _SMALL_BYTES = 64 << 10
-"""Smaller ones are not counted: there are no more of them than connections."""
+"""Smaller bodies are not counted: the limit on connections bounds their number."""
 _RETRY_AFTER_S = 5
 
 
 class BodyLimit:
-    """Refuses a body that is too large from its length, or else as soon as it goes over."""
+    """Middleware that refuses a large body by its Content-Length, or once it exceeds the limit."""
 
     def __init__(self, app: ASGIApp) -> None:
-        """Limit what an app is sent."""
+        """Wrap an app."""
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Count what is received."""
+        """Call the app with a counting `receive`; refuse with 413."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        limit = MAX_FILE_BYTES if scope["path"] in _TAKES_FILE else MAX_BODY_BYTES
+        limit = MAX_FILE_BYTES if scope["path"] in _FILE_ROUTES else MAX_BODY_BYTES
         refusal = problem(413, f"The request's body may have at most {limit:,} bytes here.")
         length = Headers(scope=scope).get("content-length", "")
         if length.isdigit() and int(length[:18]) > limit:
@@ -45,22 +45,22 @@ class BodyLimit:
             return
         received, refused = 0, False
 
-        async def counted() -> Message:
+        async def receive_counted() -> Message:
             nonlocal received, refused
             message = await receive()
             received += len(message.get("body", b""))
             if received > limit:
                 refused = True
-                # For the app it is as if the sender had left; the answer is given below.
+                # Simulate a disconnect for the app; the refusal is sent below.
                 return {"type": "http.disconnect"}
             return message
 
-        async def unless_refused(message: Message) -> None:
+        async def send_unless_refused(message: Message) -> None:
             if not refused:
                 await send(message)
 
         try:
-            await self._app(scope, counted, unless_refused)
+            await self._app(scope, receive_counted, send_unless_refused)
         except Exception:
             if not refused:
                 raise
@@ -69,23 +69,23 @@ class BodyLimit:
 
 
 class HeldBodies:
-    """Counts the large bodies of each role's requests and answers; within what finds the role."""
+    """Middleware that budgets large bodies by role; to be installed inside `TokenGuard`."""
 
     def __init__(self, app: ASGIApp) -> None:
-        """Bound what an app holds."""
+        """Wrap an app."""
         self._app = app
         roles: tuple[Role, ...] = ("operator", "spectator")
         self._answers = {r: MemoryBudget(ANSWERS_BYTES, ANSWERS_SHARE_BYTES) for r in roles}
         self._bodies = {r: MemoryBudget(BODIES_BYTES, BODIES_SHARE_BYTES) for r in roles}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, or refuse."""
+        """Call the app, or refuse with 429 or 503."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
         role: Role = scope["state"]["role"]
-        body = _Body(receive, self._bodies[role], client_of(scope))
-        answer = _Answer(send, self._answers[role], client_of(scope), body)
+        body = _RequestBody(receive, self._bodies[role], client_of(scope))
+        answer = _Response(send, self._answers[role], client_of(scope), body)
         try:
             await self._app(scope, body.receive, answer.send)
         except Exception:
@@ -94,12 +94,12 @@ class HeldBodies:
         finally:
             body.release()
         refusal = body.refusal or answer.refusal
-        if refusal is not None and not answer.is_begun:
-            await _refused(refusal)(scope, receive, send)
+        if refusal is not None and not answer.is_started:
+            await _refusal_response(refusal)(scope, receive, send)
 
 
-class _Body:
-    """A request's body."""
+class _RequestBody:
+    """The request body, with its memory reservation."""
 
     def __init__(self, receive: Receive, budget: MemoryBudget, client: str) -> None:
         self._receive, self._budget, self._client = receive, budget, client
@@ -113,7 +113,7 @@ class _Body:
             more = self._received - self._held
             self.refusal = self._budget.reserve(self._client, more)
             if self.refusal is not None:
-                # For the app it is as if the sender had left; the answer is given outside.
+                # Simulate a disconnect for the app; `HeldBodies` sends the refusal.
                 return {"type": "http.disconnect"}
             self._held += more
         return message
@@ -123,45 +123,47 @@ class _Body:
             self._budget.release(self._client, self._held)
 
 
-class _Answer:
-    """An answer, which is begun once it is known that it can be given."""
+class _Response:
+    """The response; its start is held back until its first chunk has a reservation."""
 
-    def __init__(self, send: Send, budget: MemoryBudget, client: str, request_body: _Body) -> None:
+    def __init__(
+        self, send: Send, budget: MemoryBudget, client: str, request_body: _RequestBody
+    ) -> None:
         self._send, self._request_body = send, request_body
         self._budget, self._client = budget, client
         self._start: Message | None = None
         self.refusal: Refusal | None = None
-        self.is_begun = False
+        self.is_started = False
 
     async def send(self, message: Message) -> None:
-        if (self.refusal or self._request_body.refusal) and not self.is_begun:
+        if (self.refusal or self._request_body.refusal) and not self.is_started:
             return
         if message["type"] == "http.response.start":
             self._start = message
         elif message["type"] != "http.response.body":
-            await self._begin()
+            await self._send_start()
             await self._send(message)
         else:
             await self._send_body(message)
 
-    async def _begin(self) -> None:
+    async def _send_start(self) -> None:
         start, self._start = self._start, None
-        self.is_begun = True
+        self.is_started = True
         if start is not None:
             await self._send(start)
 
     async def _send_body(self, message: Message) -> None:
         body: bytes = message.get("body", b"")
         if len(body) <= _SMALL_BYTES:
-            await self._begin()
+            await self._send_start()
             await self._send(message)
             return
         refusal = self._budget.reserve(self._client, len(body))
-        if refusal is not None and not self.is_begun:
+        if refusal is not None and not self.is_started:
             self.refusal = refusal
             return
         try:
-            await self._begin()
+            await self._send_start()
             view = memoryview(body)
             for offset in range(0, len(view), CHUNK_BYTES):
                 is_last = offset + CHUNK_BYTES >= len(view)
@@ -173,7 +175,7 @@ class _Answer:
                 self._budget.release(self._client, len(body))
 
 
-def _refused(refusal: Refusal) -> ASGIApp:
+def _refusal_response(refusal: Refusal) -> ASGIApp:
     headers = {"Retry-After": str(_RETRY_AFTER_S)}
     if refusal == "share":
         detail = "This address has too much to send or to read here at once; take it in turns."

@@ -1,4 +1,4 @@
-"""Figures for Prometheus, read from the services whenever they are asked for."""
+"""Prometheus metrics, collected from the services at each scrape."""
 
 from collections.abc import Iterable
 
@@ -37,22 +37,22 @@ router = APIRouter(tags=["health"])
     ),
 )
 def get_metrics(request: Request) -> Response:
-    """Runs by state, steps, viewers, frames, the queue, and the server's own process."""
+    """Return metrics of runs by state, steps, viewers, frames, the queue and the process."""
     encode, content_type = exposition.choose_encoder(request.headers.get("accept", ""))
     registry: CollectorRegistry = request.app.state.metrics
     return Response(encode(registry), headers={"Content-Type": content_type})
 
 
 def registry_of(services: Services) -> CollectorRegistry:
-    """One registry for one app; nothing is global."""
+    """Create an app's own registry, rather than use the global one."""
     registry = CollectorRegistry()
-    registry.register(_OfServices(services))
+    registry.register(_ServicesCollector(services))
     for of_process in (ProcessCollector, PlatformCollector, GCCollector):
         of_process(registry=registry)
     return registry
 
 
-class _OfServices(Collector):
+class _ServicesCollector(Collector):
     def __init__(self, services: Services) -> None:
         self._services = services
         self._damaged = DamageCount(services.store)

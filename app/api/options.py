@@ -1,4 +1,4 @@
-"""The options: every name, default, limit and sentence of help that a form needs."""
+"""Route of the options: names, defaults, limits and help texts of all forms."""
 
 from collections.abc import Collection, Mapping
 from typing import Annotated, Any
@@ -51,7 +51,7 @@ router = APIRouter(prefix="/options", tags=["options"])
     summary="Gaits, robots, agents, clocks; defaults, limits and help",
 )
 def get_options(services: ServicesDep) -> Response:
-    """All that a form needs."""
+    """Return the options, defaults, limits and help texts of all forms."""
     return JSONResponse(catalogue(services.agents))
 
 
@@ -120,7 +120,7 @@ _HELP = {
     "trials": "Settings times seeds; agents that look ahead are tried once.",
     "workers": "How many trials are computed at once; by default one for each core.",
 }
-# As many as a race of any number of lanes may have.
+# The limit of a race with the maximum number of lanes.
 _LANE_STEPS = Annotated[
     int, Ge(1), Le(MAX_RACE_STEPS // MAX_LANES), declared_fields(RaceConfig)["steps"].about
 ]
@@ -128,14 +128,14 @@ _SETTINGS = {
     **declared_fields(TrainingConfig),
     "race_steps": declare("race_steps", _LANE_STEPS, RACE_STEPS),
 }
-"""Declared settings that are not an agent's, by the name of the form's field."""
+"""Declared settings that belong to no agent, by form field."""
 
 
 def catalogue(agents: Collection[str]) -> dict[str, Any]:
-    """All choices, their defaults and limits, in plain types.
+    """Return all options, defaults and limits, in plain types.
 
     Args:
-        agents: the names that were registered at start.
+        agents: names of the agents that were registered at server start.
     """
     settings = _all_settings(agents)
     return {
@@ -174,17 +174,17 @@ def _gait(name: str) -> dict[str, Any]:
 
 
 def _all_settings(agents: Collection[str]) -> dict[str, DeclaredSetting]:
-    """Every setting by name: as the first agent that has it declares it."""
-    found = dict(_SETTINGS)
+    """Return every setting by name, as the first agent that has it declares it."""
+    settings = dict(_SETTINGS)
     for agent in agents:
         for name, setting in {**agent_settings(agent), **changeable_settings(agent)}.items():
-            found.setdefault(name, setting)
-    return found
+            settings.setdefault(name, setting)
+    return settings
 
 
 def _agents(names: Collection[str]) -> list[dict[str, Any]]:
-    ours = [name for name in OURS if name in names]
-    ordered = [*ours, *(name for name in names if name not in ours)]
+    built_in = [name for name in OURS if name in names]
+    ordered = [*built_in, *(name for name in names if name not in built_in)]
     return [
         {
             "name": name,
@@ -205,14 +205,14 @@ def _agents(names: Collection[str]) -> list[dict[str, Any]]:
 
 
 def _experiments(agents: Collection[str]) -> list[dict[str, Any]]:
-    """Each with its name, title, a sentence, its defaults, and the fields that it takes."""
+    """Return the experiments, each with title, description, defaults and fields."""
     settings = settings_of(agents)
-    shown = []
+    options = []
     for name in EXPERIMENTS:
         defaults = experiment_as_json(experiment_config(name, {}))
         defaults["robots"] = [robot["preset"] for robot in defaults["robots"]]
         fields = [*fields_of(name), *(settings if name == "sweep" else ())]
-        shown.append(
+        options.append(
             {
                 "name": name,
                 "title": TITLES[name],
@@ -222,16 +222,16 @@ def _experiments(agents: Collection[str]) -> list[dict[str, Any]]:
                 "defaults": defaults,
             }
         )
-    return shown
+    return options
 
 
 def _described(sentences: dict[str, str]) -> list[dict[str, str]]:
-    return [{"name": name, "description": said} for name, said in sentences.items()]
+    return [{"name": name, "description": sentence} for name, sentence in sentences.items()]
 
 
 def _training_defaults() -> dict[str, Any]:
-    shown = as_json(training_config(gait=next(iter(NAMED_GAITS))))
-    return {**shown, "robot": Robot().name}
+    config = as_json(training_config(gait=next(iter(NAMED_GAITS))))
+    return {**config, "robot": Robot().name}
 
 
 def _race_defaults() -> dict[str, Any]:

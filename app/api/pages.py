@@ -1,4 +1,4 @@
-"""The dashboard's files."""
+"""Static files of the dashboard, with cache and content security headers."""
 
 import base64
 import hashlib
@@ -12,26 +12,26 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
 _INLINE_SCRIPT = re.compile(r"<script(?![^>]*\ssrc=)[^>]*>(.*?)</script>", re.DOTALL)
-# Always asked for again, answered 304: so a page and its scripts are of one version.
-_FRESH = {"Cache-Control": "no-cache"}
+# Revalidate at each use (304): a page and its scripts are then of the same version.
+_REVALIDATE = {"Cache-Control": "no-cache"}
 
 
 def page_routes(folder: Path) -> list[BaseRoute]:
-    """Routes for the page at `/` and its files under `/static/`.
+    """Return the routes of the page at `/` and its files under `/static/`.
 
     Args:
-        folder: of the dashboard, with its `index.html`.
+        folder: folder of the dashboard, with its `index.html`.
     """
     index = folder / "index.html"
 
     async def show(request: Request) -> Response:
         del request
         policy = content_policy(index.read_text("utf-8"))
-        return FileResponse(index, headers={**_FRESH, "Content-Security-Policy": policy})
+        return FileResponse(index, headers={**_REVALIDATE, "Content-Security-Policy": policy})
 
     async def favicon(request: Request) -> Response:
         del request
-        return FileResponse(folder / "favicon.svg", headers=_FRESH)
+        return FileResponse(folder / "favicon.svg", headers=_REVALIDATE)
 
     return [
         Route("/", show, name="dashboard"),
@@ -54,5 +54,5 @@ def content_policy(page: str) -> str:
 class _Files(StaticFiles):
     async def get_response(self, path: str, scope: Scope) -> Response:
         response = await super().get_response(path, scope)
-        response.headers.update(_FRESH)
+        response.headers.update(_REVALIDATE)
         return response

@@ -1,4 +1,4 @@
-"""Errors as RFC 9457 problem documents: the one place where they meet HTTP."""
+"""Exception handlers that map errors to HTTP statuses and RFC 9457 problem documents."""
 
 import json
 import logging
@@ -14,7 +14,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import compile_path
 
-from app.api.descriptions import in_sentences
+from app.api.descriptions import field_errors
 from app.domain.errors import HexapodError, InvalidInput
 from app.storage.errors import (
     Busy,
@@ -56,13 +56,13 @@ def problem(
     headers: Mapping[str, str] | None = None,
     **more: Any,
 ) -> Response:
-    """A problem document.
+    """Return a response with a problem document.
 
     Args:
-        status: of the response.
-        detail: one sentence or two for the user, naming what is valid.
-        errors: the fields that are wrong: `field` and `detail`.
-        headers: of the response.
+        status: HTTP status of the response.
+        detail: one or two sentences for the user, naming what is valid.
+        errors: invalid fields, each with `field` and `detail`.
+        headers: headers of the response.
         more: further members of the document.
     """
     body = {
@@ -74,12 +74,12 @@ def problem(
     }
     if errors is not None:
         body["errors"] = list(errors)
-    # Escaped to ASCII, because a message may quote what is no valid Unicode.
+    # Escaped to ASCII, because a message may quote invalid Unicode.
     return Response(json.dumps(body), status, headers, MEDIA_TYPE)
 
 
 def install(app: FastAPI) -> None:
-    """Let every error of the app become a problem document."""
+    """Register the exception handlers of an app."""
     app.add_exception_handler(HexapodError, _hexapod_error)
     app.add_exception_handler(RequestValidationError, _validation_error)
     app.add_exception_handler(HTTPException, _http_error)
@@ -89,7 +89,7 @@ def install(app: FastAPI) -> None:
 async def _hexapod_error(request: Request, error: Exception) -> Response:
     message = str(error)
     sentence = message[:1].upper() + message[1:] + ("" if message.endswith((".", "!")) else ".")
-    status = next((found for kind, found in STATUSES.items() if isinstance(error, kind)), None)
+    status = next((code for kind, code in STATUSES.items() if isinstance(error, kind)), None)
     if status is None:
         return await _unexpected(request, error)
     match error:
@@ -105,7 +105,7 @@ async def _hexapod_error(request: Request, error: Exception) -> Response:
 async def _validation_error(request: Request, error: Exception) -> Response:
     del request
     raw = error.errors() if isinstance(error, RequestValidationError) else []
-    errors = in_sentences(raw)
+    errors = field_errors(raw)
     return problem(422, " ".join(e["detail"] for e in errors[:3]), errors)
 
 
@@ -116,24 +116,24 @@ async def _http_error(request: Request, error: Exception) -> Response:
     if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
         headers["Allow"] = _allowed(request)
     template = _DETAILS.get(HTTPStatus(error.status_code), str(error.detail))
-    words = {"path": request.url.path, "method": request.method, "allow": headers.get("Allow", "")}
-    return problem(error.status_code, template.format_map(words), headers=headers)
+    values = {"path": request.url.path, "method": request.method, "allow": headers.get("Allow", "")}
+    return problem(error.status_code, template.format_map(values), headers=headers)
 
 
 def _allowed(request: Request) -> str:
-    """The methods of all routes with this path; a router only knows of the first."""
+    """Return the methods of all routes that match the path; a 405 has only those of the first."""
     routes = [route for route in iter_route_contexts(request.app.routes) if route.path]
     path = request.url.path
-    # A path that is spelled out hides those with a parameter in its place.
-    spelled_out = [route for route in routes if route.path == path]
-    found = spelled_out or [r for r in routes if r.path and compile_path(r.path)[0].match(path)]
-    methods = {method for route in found for method in route.methods or ()}
+    # A literal path takes precedence over paths with a parameter.
+    literal = [route for route in routes if route.path == path]
+    matching = literal or [r for r in routes if r.path and compile_path(r.path)[0].match(path)]
+    methods = {method for route in matching for method in route.methods or ()}
     return ", ".join(sorted(methods | ({"HEAD"} if "GET" in methods else set())))
 
 
 async def _unexpected(request: Request, error: Exception) -> Response:
     _logger.error("%s %s failed", request.method, request.url.path, exc_info=error)
     detail = "Something broke in the server; its log says what. Other runs go on."
-    # Answered outside of the middleware that adds these to everything else.
+    # This handler runs outside `SecurityHeaders`, which adds these elsewhere.
     headers = {"X-Content-Type-Options": "nosniff", "Content-Security-Policy": "default-src 'none'"}
     return problem(500, detail, headers=headers)

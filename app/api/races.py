@@ -1,4 +1,4 @@
-"""Races: what there is to replay."""
+"""Routes of races: recording and timeline."""
 
 from typing import Annotated, Literal
 
@@ -8,7 +8,7 @@ from starlette.responses import JSONResponse, Response, StreamingResponse
 from app.api.answers import RecordingView, TimelineView
 from app.api.contract import BINARY, answers
 from app.api.deps import Services, ServicesDep
-from app.api.formats import attachment, chosen
+from app.api.formats import attachment, negotiated
 from app.api.runs import RunPath, find, run_routes
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
@@ -37,13 +37,15 @@ def get_recording(
     clock: Annotated[Clock, Query()] = "paper",
 ) -> Response:
     """Joint positions over time; `viser`, timed by `clock`, is for `/viewer/?playbackPath=…`."""
-    run, config, _ = _recorded(services, run_id)
-    kind = chosen(request, format, ("json", "npz"))
+    run, config, _ = _find_recorded(services, run_id)
+    kind = negotiated(request, format, ("json", "npz"))
     if kind == "viser":
-        film = _film(services, run, config, clock)
+        film = _recorded_stream(services, run, config, clock)
         return attachment(film, "application/octet-stream", f"race-{run_id}.viser")
     if kind == "npz":
-        return attachment(_arrays(services, run), "application/x-npz", f"race-{run_id}.npz")
+        return attachment(
+            _stored_recording(services, run), "application/x-npz", f"race-{run_id}.npz"
+        )
     chunks = recording_export.as_json(
         lambda: _lanes(services, run), run.lane_training_ids, config.steps
     )
@@ -58,13 +60,13 @@ def get_recording(
 def get_timeline(
     services: ServicesDep, run_id: RunPath, clock: Annotated[Clock, Query()] = "paper"
 ) -> Response:
-    """When each lane thinks and walks; flat parts of its points are thinking."""
-    run, config, lanes = _recorded(services, run_id)
+    """Return each lane's distance over time; it is constant while the lane computes a decision."""
+    run, config, lanes = _find_recorded(services, run_id)
     return JSONResponse(timeline(lanes, run.lane_training_ids, config.steps, clock))
 
 
-def _arrays(services: Services, run: Run) -> ArtifactFile:
-    """The recording as it is kept once the race ended: one that grows would be in memory twice."""
+def _stored_recording(services: Services, run: Run) -> ArtifactFile:
+    """Return the stored recording of an ended race; a live one would be in memory twice."""
     file = None if run.state in NOT_ENDED else services.store.open_artifact(run.id, RACE)
     if file is None:
         raise Conflict(
@@ -73,8 +75,10 @@ def _arrays(services: Services, run: Run) -> ArtifactFile:
     return file
 
 
-def _film(services: Services, run: Run, config: RaceConfig, clock: Clock) -> ArtifactFile:
-    """Made once: it takes seconds."""
+def _recorded_stream(
+    services: Services, run: Run, config: RaceConfig, clock: Clock
+) -> ArtifactFile:
+    """Return the race as a recorded stream; cached as an artifact, as encoding takes seconds."""
     lanes = services.recordings.race(run.id)
     if run.state in NOT_ENDED or lanes is None:
         raise Conflict(
@@ -82,12 +86,12 @@ def _film(services: Services, run: Run, config: RaceConfig, clock: Clock) -> Art
         )
     name = f"film-{clock}.viser"
     while (film := services.store.open_artifact(run.id, name)) is None:
-        made = services.film(config, lanes, run.name, clock)
-        services.store.put_artifact(run.id, name, made)
+        encoded = services.film(config, lanes, run.name, clock)
+        services.store.put_artifact(run.id, name, encoded)
     return film
 
 
-def _recorded(services: Services, run_id: str) -> tuple[Run, RaceConfig, list[LaneRecording]]:
+def _find_recorded(services: Services, run_id: str) -> tuple[Run, RaceConfig, list[LaneRecording]]:
     run = find(services, "race", run_id)
     lanes = _lanes(services, run)
     if not isinstance(run.config, RaceConfig):

@@ -1,4 +1,4 @@
-"""How often one address may start what costs the machine something."""
+"""Rate limit of starts: a token bucket per client address and role."""
 
 import math
 import re
@@ -13,23 +13,24 @@ from app.limits.token_bucket import RateLimiter
 from app.settings import PREFIX, Settings
 
 _STARTS = re.compile(r"/api/v1/(?!stage$|events$)\w+(/import|/[^/]+/resume)?")
-_FILM = re.compile(r"/api/v1/races/[^/]+/recording")
+_RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")
 
 
 class RateLimit:
-    """Lets each address, in each role, start so many runs a minute, and no more.
+    """Middleware that limits starts per minute, by client address and role.
 
-    Beside runs these count: imports, resuming, and a race's film, which takes seconds to make.
+    Besides runs it counts imports, resumes, and a race's recorded stream, which takes seconds to
+    encode.
     """
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
-        """Limit an app as the settings say; inside of what finds out the role."""
+        """Wrap an app; to be installed inside `TokenGuard`, which sets the role."""
         self._app = app
         self._per_minute = settings.starts_per_minute
         self._buckets = RateLimiter(self._per_minute, self._per_minute / 60)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, or answer 429."""
+        """Call the app, or respond 429."""
         if not _starts_work(scope):
             await self._app(scope, receive, send)
             return
@@ -45,7 +46,7 @@ class RateLimit:
 
 
 def too_many(detail: str, wait_s: float) -> Response:
-    """Say that it is enough for now, and when it will not be."""
+    """Return a 429 response whose Retry-After is the wait, rounded up to at least 1 s."""
     return problem(429, detail, headers={"Retry-After": str(max(1, math.ceil(wait_s)))})
 
 
@@ -54,7 +55,7 @@ def _starts_work(scope: Scope) -> bool:
         return False
     if scope["method"] == "POST":
         return _STARTS.fullmatch(scope["path"]) is not None
-    if _FILM.fullmatch(scope["path"]) is None:
+    if _RECORDING.fullmatch(scope["path"]) is None:
         return False
-    # As the endpoint reads it, however it is encoded.
+    # Decoded as the endpoint decodes it, so that percent-encoding cannot bypass the limit.
     return "viser" in QueryParams(scope["query_string"]).getlist("format")

@@ -1,4 +1,4 @@
-"""Routes that all kinds of runs share: list, get, stop, pause, resume, delete."""
+"""Routes common to all kinds of runs: list, get, stop, pause, resume, delete."""
 
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any
@@ -26,11 +26,11 @@ RunPath = Annotated[str, Path(description="of the run")]
 
 
 def find(services: Services, kind: Kind, run_id: str) -> Run:
-    """A run of this kind.
+    """Return a run of this kind.
 
     Raises:
-        NotFound: if there is none.
-        Damaged: if it cannot be read.
+        NotFound: if there is no such run.
+        Damaged: if its row cannot be read.
     """
     run = find_any(services, kind, run_id)
     if isinstance(run, DamagedRun):
@@ -39,10 +39,10 @@ def find(services: Services, kind: Kind, run_id: str) -> Run:
 
 
 def find_any(services: Services, kind: Kind, run_id: str) -> AnyRun:
-    """A run of this kind, or one that may be, of which not even that can be read.
+    """Return a run of this kind, or a damaged run whose kind cannot be read.
 
     Raises:
-        NotFound: if there is none.
+        NotFound: if there is no such run.
     """
     try:
         run = services.store.find(run_id)
@@ -53,14 +53,14 @@ def find_any(services: Services, kind: Kind, run_id: str) -> AnyRun:
     return run
 
 
-def accepted(request: Request, shown: dict[str, Any]) -> Response:
-    """The answer to who started a run."""
-    location = request.url_for(f"get_{shown['kind']}", run_id=shown["id"]).path
-    return JSONResponse(shown, 202, {"Location": location})
+def accepted(request: Request, view: dict[str, Any]) -> Response:
+    """Return the 202 response to a start, with the run's Location."""
+    location = request.url_for(f"get_{view['kind']}", run_id=view["id"]).path
+    return JSONResponse(view, 202, {"Location": location})
 
 
 def run_routes(kind: Kind) -> APIRouter:
-    """The routes that every kind of run has."""
+    """Create the routes common to all kinds of runs, for one kind."""
     router = APIRouter(prefix=f"/{kind}s", tags=[f"{kind}s"])
     view, page = _VIEWS[kind]
 
@@ -115,9 +115,9 @@ _VIEWS: Mapping[Kind, tuple[type[RunView], type[Page]]] = {
 
 
 def phrase(template: str, kind: Kind) -> str:
-    """Put a kind of run with its article into a sentence."""
-    said = template.format(f"an {kind}" if kind[0] in "aeiou" else f"a {kind}")
-    return said[0].upper() + said[1:]
+    """Insert a kind of run, with its article, into a sentence."""
+    sentence = template.format(f"an {kind}" if kind[0] in "aeiou" else f"a {kind}")
+    return sentence[0].upper() + sentence[1:]
 
 
 def _command(kind: Kind, verb: str) -> Callable[..., Any]:

@@ -1,4 +1,4 @@
-"""Request bodies, as Pydantic models; each makes the frozen dataclass that a service takes."""
+"""Request bodies as Pydantic models, each converted to the dataclass that a service takes."""
 
 from typing import Annotated, Any, Literal
 
@@ -37,13 +37,13 @@ from app.runs.config import (
 )
 
 Leg = Annotated[
-    # Which legs there are depends on the robot, so the domain checks them.
+    # The upper limit depends on the robot, so the domain validates it.
     int, Field(strict=True, json_schema_extra={"minimum": 1, "maximum": MAX_LEGS}), INTEGRAL
 ]
 
 
 class GaitBody(Body):
-    """A gait of one's own."""
+    """A custom gait."""
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -60,7 +60,7 @@ class GaitBody(Body):
     pairs: list[tuple[Leg, Leg]] | None = None
 
     def spec(self) -> GaitSpec:
-        """As the domain says it."""
+        """Convert to the specification of the domain."""
         pairs = None if self.pairs is None else tuple(self.pairs)
         return GaitSpec(self.right_leg, self.left_leg, self.symmetry, pairs)
 
@@ -78,7 +78,7 @@ Gait = Annotated[
 
 
 class WalkBody(Body):
-    """Which robot walks how, on which foot grid, in which simulator."""
+    """The walking problem: gait, robot, simulator and foot grid."""
 
     gait: Gait
     robot: RobotBody = "stiff"
@@ -87,10 +87,10 @@ class WalkBody(Body):
     grid_side_m: GridSide = WalkingProblem.grid_side_m
 
     def walk(self) -> WalkingProblem:
-        """As the loops know it.
+        """Convert to the walking problem.
 
         Raises:
-            InvalidInput: for a gait or robot that cannot be.
+            InvalidInput: if gait or robot is not valid.
         """
         return WalkingProblem(
             gait=self.gait.spec() if isinstance(self.gait, GaitBody) else self.gait,
@@ -102,7 +102,7 @@ class WalkBody(Body):
 
 
 class PracticeBody(Body):
-    """How to practise: what a race's lane may say of its training, with its agent's settings."""
+    """Practice parameters of a training or of a race's lane."""
 
     name: Name | None = None
     steps: Steps = TrainingConfig.steps
@@ -114,25 +114,25 @@ class PracticeBody(Body):
     continue_from: Annotated[RunId | None, Field(description=VALID["continue_from"])] = None
 
     def practice(self, walk: WalkingProblem, agent: str, seed: int = 0) -> TrainingStart:
-        """The training of an agent, with this seed where none is given.
+        """Convert to the start of an agent's training; `seed` is the default seed.
 
         Raises:
-            InvalidInput: for what cannot be.
+            InvalidInput: if the values are not valid together.
         """
         if self.continue_from is not None and self.seed is not None:
             raise InvalidInput(
                 "a training that continues another goes on with its generator: leave out seed, "
                 "or leave out continue_from"
             )
-        elsewhere = {"name", "seed", "continue_from", "agent", *WalkBody.model_fields}
-        given = {name: getattr(self, name) for name in self.model_fields_set - elsewhere}
-        chosen = seed if self.seed is None else self.seed
-        config = training_config(**vars(walk), **given, seed=chosen, agent=agent)
+        other_fields = {"name", "seed", "continue_from", "agent", *WalkBody.model_fields}
+        given = {name: getattr(self, name) for name in self.model_fields_set - other_fields}
+        chosen_seed = seed if self.seed is None else self.seed
+        config = training_config(**vars(walk), **given, seed=chosen_seed, agent=agent)
         return TrainingStart(config, self.name or None, self.continue_from)
 
 
 class TrainingBody(PracticeBody, WalkBody):
-    """A training. Everything but the gait has the paper's value by default."""
+    """A training. All fields but the gait default to the paper's values."""
 
     agent: str = TrainingConfig.agent
 
@@ -140,13 +140,13 @@ class TrainingBody(PracticeBody, WalkBody):
         """Convert to the request of the service.
 
         Raises:
-            InvalidInput: for what cannot be.
+            InvalidInput: if the values are not valid together.
         """
         return self.practice(self.walk(), self.agent)
 
 
 class LaneBody(Body):
-    """A lane; one that learns has either `training_id` or `training`."""
+    """A lane; a learning agent needs either `training_id` or `training`."""
 
     agent: str
     training_id: Annotated[RunId | None, Field(description=VALID["training_id"])] = None
@@ -161,7 +161,7 @@ class LaneBody(Body):
 
 
 class RaceBody(WalkBody):
-    """A race, by default of the paper's three lanes; the learner practises first."""
+    """A race, by default of the paper's three lanes; its learners are trained first."""
 
     name: Name | None = None
     steps: RaceSteps = RACE_STEPS
@@ -172,7 +172,7 @@ class RaceBody(WalkBody):
         """Convert to the request of the service.
 
         Raises:
-            InvalidInput: for what cannot be.
+            InvalidInput: if the values are not valid together.
         """
         walk = self.walk()
         lanes = [lane.start(walk, self.seed) for lane in self.lanes]
@@ -180,22 +180,22 @@ class RaceBody(WalkBody):
 
 
 class ChangeBody(Body):
-    """Changes to a training while it runs: of its pace, and of live settings of its agent."""
+    """Changes to a running training: its pace, and live settings of its agent."""
 
     @model_validator(mode="after")
-    def _say_something(self) -> "ChangeBody":
+    def _require_a_change(self) -> "ChangeBody":
         if not self.changes():
             names = ", ".join(type(self).model_fields)
             raise PydanticCustomError("says_all", "{message}", {"message": f"Give one of {names}"})
         return self
 
     def changes(self) -> dict[str, Any]:
-        """Return the fields that are given."""
+        """Return the given fields."""
         return self.model_dump(exclude_none=True)
 
 
 class StageBody(Body):
-    """Changes to the stage; fields that are left out stay as they are."""
+    """Changes to the stage; omitted fields are unchanged."""
 
     run_id: RunId | None = None
     time_s: Annotated[float, number(ge=0)] | None = None

@@ -1,4 +1,4 @@
-"""Add security headers to each answer."""
+"""Security headers of every response."""
 
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -10,14 +10,14 @@ _CONTENT_POLICY = (
 
 
 class SecurityHeaders:
-    """Adds to every answer what browsers should know; a page may have said it more strictly."""
+    """Middleware that adds security headers, unless the response sets its own."""
 
     def __init__(self, app: ASGIApp) -> None:
-        """Add headers to what an app answers."""
+        """Wrap an app."""
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, and add."""
+        """Call the app, and add the headers to its response."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return

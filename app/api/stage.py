@@ -1,4 +1,4 @@
-"""Routes of the stage, the run that all viewers see."""
+"""Routes of the stage, which shows one run to all viewers."""
 
 from fastapi import APIRouter
 from starlette.responses import JSONResponse, Response
@@ -12,12 +12,12 @@ router = APIRouter(prefix="/stage", tags=["stage"])
 
 @router.get("", response_model=StageView, summary="What is on stage")
 def get_stage(services: ServicesDep) -> Response:
-    """Which run, at which time, how fast, by which clock."""
+    """Return the state of the stage: run, time, speed and clock."""
     return JSONResponse(services.stage.state())
 
 
 @router.put("", response_model=StageView, summary="Show a run, or command the show")
 def put_stage(services: ServicesDep, body: StageBody) -> Response:
-    """Change the given fields; the others stay as they are."""
+    """Change the given fields; the others are unchanged."""
     services.stage.set(**body.model_dump())
     return JSONResponse(services.stage.state())

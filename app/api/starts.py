@@ -1,4 +1,4 @@
-"""Start runs, change a training, ask a what-if: the routes whose bodies name agents."""
+"""Routes whose bodies depend on the registered agents: starts, live changes, what-ifs."""
 
 from typing import Annotated
 
@@ -16,7 +16,7 @@ from app.domain.errors import InvalidInput
 
 
 def start_routes(bodies: AgentBodies) -> APIRouter:
-    """Make the routes for the agents of a server."""
+    """Create the routes, with the request bodies of a server's agents."""
     router = APIRouter()
 
     @router.post(
@@ -30,12 +30,12 @@ def start_routes(bodies: AgentBodies) -> APIRouter:
     def start_training(
         services: ServicesDep,
         request: Request,
-        asked: StartRequestDep,
+        start_request: StartRequestDep,
         body: Annotated[TrainingBody, bodies.training],
     ) -> Response:
-        """Queue a training, and answer with its run."""
+        """Queue a training, and return its run."""
         jobs = services.jobs
-        run = asked.start(services, lambda key: jobs.train(body.start(), key))
+        run = start_request.start(services, lambda key: jobs.train(body.start(), key))
         return accepted(request, jobs.view(run))
 
     @router.patch(
@@ -47,7 +47,7 @@ def start_routes(bodies: AgentBodies) -> APIRouter:
     def change_training(
         services: ServicesDep, run_id: RunPath, body: Annotated[ChangeBody, bodies.change]
     ) -> Response:
-        """Obeyed between two steps, and kept with the step's number in `changes`."""
+        """Apply the change between two steps, and record it with the step's number in `changes`."""
         find(services, "training", run_id)
         return JSONResponse(services.jobs.view(services.jobs.change(run_id, body.changes())))
 
@@ -62,12 +62,12 @@ def start_routes(bodies: AgentBodies) -> APIRouter:
     def start_race(
         services: ServicesDep,
         request: Request,
-        asked: StartRequestDep,
+        start_request: StartRequestDep,
         body: Annotated[RaceBody, bodies.race],
     ) -> Response:
-        """Queue the trainings of its lanes and then the race, and answer with the race's run."""
+        """Queue the trainings of its lanes, then the race, and return the race's run."""
         jobs = services.jobs
-        run = asked.start(services, lambda key: jobs.race(body.start(), key))
+        run = start_request.start(services, lambda key: jobs.race(body.start(), key))
         return accepted(request, jobs.view(run))
 
     @router.post(
@@ -81,12 +81,12 @@ def start_routes(bodies: AgentBodies) -> APIRouter:
     def start_experiment(
         services: ServicesDep,
         request: Request,
-        asked: StartRequestDep,
+        start_request: StartRequestDep,
         body: Annotated[ExperimentBody, bodies.experiment],
     ) -> Response:
-        """Queue it, and answer with its run."""
+        """Queue an experiment, and return its run."""
         jobs, agents = services.jobs, services.agents
-        run = asked.start(services, lambda key: jobs.experiment(body.start(agents), key))
+        run = start_request.start(services, lambda key: jobs.experiment(body.start(agents), key))
         return accepted(request, jobs.view(run))
 
     @router.post(
@@ -96,7 +96,7 @@ def start_routes(bodies: AgentBodies) -> APIRouter:
         summary="How far 30 seeds would come after a practice, and by default",
     )
     def ask(services: ServicesDep, body: Annotated[TrainingBody, bodies.training]) -> Response:
-        """A training's body, of at most 2,000 steps; always computed in the kinematic simulator."""
+        """Take a training's body, of at most 2,000 steps; always use the kinematic simulator."""
         if body.continue_from is not None:
             raise InvalidInput("a what-if begins with an empty table; leave out continue_from")
         return JSONResponse(services.what_if.ask(body.start().config))

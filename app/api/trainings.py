@@ -1,4 +1,4 @@
-"""Trainings: import, and what they learned."""
+"""Routes of trainings: import, learning curve and Q-table."""
 
 from typing import Annotated, Literal
 
@@ -10,7 +10,7 @@ from app.api.answers import CurveView, QTableView, TrainingView
 from app.api.contract import BINARY, LOCATION, TEXT, answers, takes_file
 from app.api.deps import ServicesDep, StartRequestDep
 from app.api.fields import Name
-from app.api.formats import attachment, chosen
+from app.api.formats import attachment, negotiated
 from app.api.runs import RunPath, find, run_routes
 from app.archive import table_import
 from app.domain.errors import InvalidInput
@@ -20,7 +20,6 @@ from app.storage.errors import Conflict
 from app.storage.json_text import finite
 from app.storage.stored_tables import open_table, read_rows
 
-# Before the routes that all runs have: `import` is no run's id.
 router = run_routes("training")
 
 
@@ -35,15 +34,15 @@ router = run_routes("training")
 def import_training(
     services: ServicesDep,
     request: Request,
-    asked: StartRequestDep,
+    start_request: StartRequestDep,
     name: Annotated[Name | None, Query()] = None,
 ) -> Response:
-    """Take the `.npz` that a training's q-table gives, or `hexapods train` wrote, as the body."""
-    if not asked.body:
+    """Import the body, an `.npz` from a training's `q-table` or from `hexapods train`."""
+    if not start_request.body:
         raise InvalidInput("send the .npz file of a Q-table as the request's body")
     jobs, agents = services.jobs, services.agents
-    run = asked.start(
-        services, lambda key: table_import.import_table(jobs, asked.body, agents, name, key)
+    run = start_request.start(
+        services, lambda key: table_import.import_table(jobs, start_request.body, agents, name, key)
     )
     location = request.url_for("get_training", run_id=run.id).path
     return JSONResponse(jobs.view(run), 201, {"Location": location})
@@ -61,10 +60,10 @@ def get_curve(
     run_id: RunPath,
     format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
 ) -> Response:
-    """The evaluations so far, and the distance of the one-step look-ahead agent to compare with."""
+    """Return the evaluations so far, and the one-step look-ahead agent's distance to compare."""
     run = find(services, "training", run_id)
     rows = services.store.evaluations(run_id)
-    if chosen(request, format, ("json", "csv")) == "csv":
+    if negotiated(request, format, ("json", "csv")) == "csv":
         return attachment(curves.as_csv(rows), "text/csv; charset=utf-8", f"curve-{run_id}.csv")
     shown = {"evaluations": rows, "greedy_distance_m": run.greedy_distance_m}
     return JSONResponse(finite(shown))
@@ -82,10 +81,10 @@ def get_table(
     run_id: RunPath,
     format: Annotated[Literal["json", "npz", "csv"] | None, Query()] = None,  # noqa: A002
 ) -> Response:
-    """The values of all legal actions in all states; as `.npz` all that is needed to go on."""
+    """Return the values of all legal actions in all states; the `.npz` can be trained further."""
     run = find(services, "training", run_id)
     file = open_table(services.store, run_id)
-    kind = chosen(request, format, ("json", "npz", "csv"))
+    kind = negotiated(request, format, ("json", "npz", "csv"))
     if kind == "npz":
         return attachment(file, tables.MEDIA_TYPE, f"q-table-{run_id}.npz")
     try:

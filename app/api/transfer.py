@@ -1,4 +1,4 @@
-"""Runs as files: out of one server, and into another."""
+"""Routes that export a run as an archive, and import one."""
 
 from collections.abc import Callable
 
@@ -21,7 +21,7 @@ router = APIRouter()
 
 def _export(kind: Kind) -> Callable[..., Response]:
     def export(services: ServicesDep, run_id: RunPath) -> Response:
-        """A `.zip` that another server's import, or `hexapods import`, takes in."""
+        """Return a `.zip` that another server's import, or `hexapods import`, accepts."""
         run = find(services, kind, run_id)
         data = export_chunks(services.store, run.id, services.exports)
         return attachment(data, archive.MEDIA_TYPE, f"{kind}-{run.id}.zip")
@@ -50,17 +50,20 @@ for _kind in KINDS:
     responses=answers(201, headers=LOCATION),
     openapi_extra=takes_file("application/octet-stream"),
 )
-def import_archive(services: ServicesDep, request: Request, asked: StartRequestDep) -> Response:
-    """The archive is the body. A run that is here already is not replaced: it comes twice.
+def import_archive(
+    services: ServicesDep, request: Request, start_request: StartRequestDep
+) -> Response:
+    """Import the body, an archive. A run that exists already is not replaced but duplicated.
 
-    Unless it is the same request again, with the same `Idempotency-Key`. It keeps its id if that
-    is free here, and could have been made by now; the answer has the id that it got.
+    A repeated request with the same `Idempotency-Key` returns the run that it imported first. The
+    run keeps its id if that is free here and not in the future; the response has the actual id.
     """
-    if not asked.body:
+    if not start_request.body:
         raise InvalidInput("send the .zip file of an exported run as the request's body")
     store, agents, ids = services.store, services.agents, services.jobs.new_id
-    run = asked.start(
-        services, lambda key: import_run(store, asked.body, ids, agents, "the archive", key=key)
+    run = start_request.start(
+        services,
+        lambda key: import_run(store, start_request.body, ids, agents, "the archive", key=key),
     )
     services.bus.publish("run", run_view(run), run.id)
     location = request.url_for(f"get_{run.kind}", run_id=run.id).path

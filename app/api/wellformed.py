@@ -1,4 +1,4 @@
-"""Refuses requests that are not well-formed, before anything reads them in a way of its own."""
+"""Refuses malformed requests before parsers can disagree on them (request smuggling)."""
 
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -9,20 +9,20 @@ MAX_TARGET_BYTES = 8 << 10
 
 
 class WellFormed:
-    """Refuses ambiguous framing and odd targets, and answers HEAD wherever there is a GET."""
+    """Middleware: refuse ambiguous framing and malformed targets; serve HEAD by GET."""
 
     def __init__(self, app: ASGIApp) -> None:
-        """Guard an app."""
+        """Wrap an app."""
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on what is well-formed."""
+        """Call the app, or refuse with 400 or 414 and close the connection."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
         status, detail = _fault(scope)
         if status:
-            # What comes next on the connection may be a part of this request.
+            # The bytes that follow on the connection may belong to this request.
             refusal = problem(status, detail, headers={"Connection": "close"})
             await refusal(scope, receive, send)
         elif scope["method"] == "HEAD":
@@ -32,7 +32,7 @@ class WellFormed:
 
 
 def _fault(scope: Scope) -> tuple[int, str]:
-    """Status and detail of a refusal; status 0 for a request that is well-formed."""
+    """Return status and detail of a refusal; status 0 for a well-formed request."""
     headers = Headers(scope=scope)
     if "transfer-encoding" in headers and "content-length" in headers:
         return 400, "A request has either a Content-Length or a Transfer-Encoding, not both."
@@ -50,13 +50,13 @@ def _fault(scope: Scope) -> tuple[int, str]:
 
 
 def _head_only(send: Send) -> Send:
-    """Send the head of an answer, and end it there: a stream would go on without an end."""
-    is_answered = False
+    """Wrap `send` to end the response after its head, as an event stream would not end."""
+    is_sent = False
 
     async def head(message: Message) -> None:
-        nonlocal is_answered
-        if message["type"] == "http.response.start" and not is_answered:
-            is_answered = True
+        nonlocal is_sent
+        if message["type"] == "http.response.start" and not is_sent:
+            is_sent = True
             await send(message)
             await send({"type": "http.response.body", "body": b"", "more_body": False})
 

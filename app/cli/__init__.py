@@ -1,4 +1,12 @@
-"""The `hexapods` command: arguments in, one call out."""
+"""The `hexapods` command line: each command parses its options and makes one call.
+
+Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `runs` (list, show, delete), `export`,
+`imports`, `doctor` (with checks in `data_diagnostics` and `physics_diagnostics`), `bench` (with the
+measurements in `benchmarks`). Their module docstrings are the descriptions in `--help`.
+Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments
+and sweeps), `files` (files that users name), `server_client` (requests to a running server),
+`terminal` (progress bars and tables).
+"""
 
 import argparse
 import io
@@ -25,8 +33,8 @@ COMMANDS = (serve, train, race, experiment, sweep, runs, export, imports, doctor
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; the exit code is 2 for what cannot be done as asked, with one sentence."""
-    # A terminal that cannot show an α or a tick is no reason to end.
+    """Run one command and return its exit code: 2 after a `HexapodError`, 130 after SIGINT."""
+    # Replace characters that the terminal cannot encode, rather than fail.
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")

@@ -1,4 +1,4 @@
-"""`python -m app.cli`, the same as `hexapods`."""
+"""Entry point of `python -m app.cli`, equivalent to `hexapods`."""
 
 import sys
 

@@ -19,14 +19,14 @@ LIMITS = {
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Describe the command."""
+    """Add the command's parser."""
     parser = commands.add_parser("bench", help="measure this machine", description=__doc__)
     parser.add_argument("--json", action="store_true", help="print the figures as one object")
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Measure everything once; takes about a minute."""
+    """Run all benchmarks once, in about a minute, and print the figures."""
     steps: tuple[Callable[[], dict[str, float]], ...] = (
         benchmarks.training,
         benchmarks.look_ahead,
@@ -48,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _stage() -> dict[str, float]:
-    # Its imports take a second that the other commands need not.
+    # Imported here, as it takes a second that other commands would wait for.
     from app.viewer.update_cost import measure_stage_update  # noqa: PLC0415
 
     milliseconds, size = measure_stage_update(updates=200)

@@ -1,7 +1,7 @@
-"""Benchmarks of learning and looking ahead, as ratios within one run.
+"""Benchmarks of learning and look-ahead, as ratios within one run.
 
-Machines are shared and noisy: what is compared is measured in turns, and the best of several
-turns counts, since noise only ever adds.
+Machines are shared and noisy: the compared measurements alternate, and the minimum over several
+rounds is used, since noise only adds time.
 """
 
 import os
@@ -24,11 +24,11 @@ from app.runs.training import train
 from app.runs.walker import SimulatorExpand, Walker
 
 WALK = WalkingProblem(gait="left-right-origin")
-TURNS = 5
+ROUNDS = 5
 
 
 def training() -> dict[str, float]:
-    """Time of a training without evaluations over that of the bare physics of its substeps."""
+    """Measure the time of a training without evaluations, relative to its physics alone."""
     config = TrainingConfig(gait=WALK.gait, steps=200, evaluate_every=0)
     replay = _Replay(threads=1)
     state = replay.simulator.rest()
@@ -36,42 +36,42 @@ def training() -> dict[str, float]:
         if isinstance(record, StepTaken):
             replay.add([state], [record.action])
             state = replay.simulator.step(state, record.action).state
-    whole, bare = [], []
-    for _ in range(TURNS):
+    training_s, physics_s = [], []
+    for _ in range(ROUNDS):
         learner = build_learner(config)
         began = time.perf_counter()
         for _record in train(learner, config):
             pass
-        whole.append(time.perf_counter() - began)
-        bare.append(_seconds(replay.run))
+        training_s.append(time.perf_counter() - began)
+        physics_s.append(_seconds(replay.run))
     return {
-        "training_over_physics": min(whole) / min(bare),
-        "training_steps_per_second": config.steps / min(whole),
+        "training_over_physics": min(training_s) / min(physics_s),
+        "training_steps_per_second": config.steps / min(training_s),
     }
 
 
 def look_ahead() -> dict[str, float]:
-    """Two-step decisions on one thread and on all, and what of them is not physics."""
-    one, everyone, replay = _two_step(threads=1), _two_step(threads=0), _Replay(threads=0)
+    """Measure two-step decisions on one and on all threads, and their overhead over physics."""
+    one, parallel, replay = _two_step(threads=1), _two_step(threads=0), _Replay(threads=0)
     _add_layers(replay)
-    slow, quick, bare = [], [], []
-    for _ in range(TURNS):
-        slow.append(_seconds(one.decide))
-        quick.append(_seconds(everyone.decide))
-        bare.append(_seconds(replay.run))
+    single_s, parallel_s, physics_s = [], [], []
+    for _ in range(ROUNDS):
+        single_s.append(_seconds(one.decide))
+        parallel_s.append(_seconds(parallel.decide))
+        physics_s.append(_seconds(replay.run))
     return {
-        "lookahead_speedup": min(slow) / min(quick),
-        "planning_overhead": (min(quick) - min(bare)) / min(quick),
-        "two_step_decision_s": min(quick),
+        "lookahead_speedup": min(single_s) / min(parallel_s),
+        "planning_overhead": (min(parallel_s) - min(physics_s)) / min(parallel_s),
+        "two_step_decision_s": min(parallel_s),
         "threads": float(len(os.sched_getaffinity(0))),
     }
 
 
 def racing() -> dict[str, float]:
-    """A two-step lane's decision time over its motion time, in a race."""
+    """Measure a two-step lane's decision time relative to its motion time, in a race."""
     config = RaceConfig(gait=WALK.gait, lanes=(LaneConfig(agent="two-step"),), steps=10)
     walkers = build_walkers(config, [None])
-    walkers[0].decide()  # warms its threads up
+    walkers[0].decide()  # warm-up of its threads
     records = race(walkers, config.steps, time.perf_counter)
     steps = [record for record in records if isinstance(record, LaneStep)]
     decided = sum(step.decision_s for step in steps)
@@ -79,7 +79,7 @@ def racing() -> dict[str, float]:
 
 
 class _Replay:
-    """Physics alone: the same states and the same commands again, and nothing around them."""
+    """Simulates recorded states and commands again, as a baseline of physics alone."""
 
     def __init__(self, threads: int) -> None:
         self.simulator = MujocoSimulator(WALK.robot, WALK.resolved_gait, WALK.grid, threads)
@@ -88,7 +88,7 @@ class _Replay:
         self._batches: dict[int, Batch] = {}
 
     def add(self, states: Sequence[MujocoState], actions: Sequence[Action]) -> None:
-        """A layer to be simulated in one call."""
+        """Add a layer of states and actions, which `run` simulates in one call."""
         rows = np.array([state.row for state in states])
         self._layers.append((rows, self.simulator.commands(states, actions)))
         if len(rows) not in self._batches:
@@ -103,7 +103,7 @@ class _Replay:
 
 
 def _add_layers(replay: _Replay) -> None:
-    """The two layers of the first decision of a two-step agent."""
+    """Add the two layers of a two-step agent's first decision."""
     simulator = replay.simulator
     states: list[MujocoState] = [simulator.rest()]
     for _ in range(2):
@@ -115,15 +115,15 @@ def _add_layers(replay: _Replay) -> None:
 
 
 def _two_step(threads: int) -> Walker:
-    """A walker at rest; its simulator has warmed up."""
+    """Return a two-step walker at rest, with a warmed-up simulator."""
     simulator = MujocoSimulator(WALK.robot, WALK.resolved_gait, WALK.grid, threads)
-    foresight = SimulatorExpand(simulator, "measured")
-    walker = Walker(simulator, TwoStep(foresight), "measured", foresight)
+    expand = SimulatorExpand(simulator, "measured")
+    walker = Walker(simulator, TwoStep(expand), "measured", expand)
     walker.decide()
     return walker
 
 
-def _seconds(work: Callable[[], object]) -> float:
+def _seconds(function: Callable[[], object]) -> float:
     began = time.perf_counter()
-    work()
+    function()
     return time.perf_counter() - began

@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from app.cli.doctor import Trouble, can_listen
+from app.cli.doctor import CheckFailed, can_listen
 from app.events.damage import damaged_runs
 from app.settings import PREFIX, Settings
 from app.storage.database.read_only import open_read_only
@@ -15,15 +15,15 @@ from app.storage.server_lock import LOCK_FILE, FolderInUse, lock_folder, read_ad
 
 WANTED_FREE_MB = 200
 _NEARLY_FULL = 0.9
-_NAMED = 10
+_MAX_NAMED = 10
 
 
 def _folder(settings: Settings) -> str:
-    """Nothing is made that is not there: a doctor only looks."""
+    """Check that the data folder is writable, without creating it."""
     folder = settings.data
     there = next(path for path in (folder, *folder.parents) if path.exists())
     if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
-        raise Trouble(
+        raise CheckFailed(
             f"{there} cannot be written by this user; give it to this user, or choose another "
             f"data folder with --data or {PREFIX}DATA"
         )
@@ -34,11 +34,11 @@ def _folder(settings: Settings) -> str:
     return f"{folder} can be written"
 
 
-def _room(settings: Settings) -> str:
+def _disk_space(settings: Settings) -> str:
     there = next(path for path in (settings.data, *settings.data.parents) if path.exists())
     free_mb = shutil.disk_usage(there).free // MB
     if free_mb < WANTED_FREE_MB:
-        raise Trouble(
+        raise CheckFailed(
             f"the disk has {free_mb:,} MB left, and runs need some: make room for "
             f"{WANTED_FREE_MB} MB at least, or delete runs"
         )
@@ -46,7 +46,7 @@ def _room(settings: Settings) -> str:
     if settings.quota_mb is None:
         return f"{used_mb:,} MB are used, {free_mb:,} MB are free, and there is no quota"
     if used_mb >= _NEARLY_FULL * settings.quota_mb:
-        raise Trouble(
+        raise CheckFailed(
             f"{used_mb:,} MB of {settings.quota_mb:,} MB are used: delete runs, or raise "
             f"{PREFIX}QUOTA_MB"
         )
@@ -54,43 +54,43 @@ def _room(settings: Settings) -> str:
 
 
 def _lock(settings: Settings) -> str:
-    if not _is_served(settings.data):
+    if not _is_locked(settings.data):
         return "no server has the data folder now"
     address = read_address_file(settings.data) or "an address unsaid"
     return f"a server has the data folder, at {address}"
 
 
 def _database(settings: Settings) -> str:
-    # What the URL says stays out of it, because it may hold a password.
+    # The URL is not shown, because it may contain a password.
     kind = "SQLite in the data folder" if settings.database_url is None else "PostgreSQL"
     with open_read_only(settings) as store:
         has_runs = bool(store.list(limit=1).items)
         damaged = damaged_runs(store)
     if damaged:
         named = "; ".join(
-            f"{run.kind or 'run'} {run.id}: {run.damaged}" for run in damaged[:_NAMED]
+            f"{run.kind or 'run'} {run.id}: {run.damaged}" for run in damaged[:_MAX_NAMED]
         )
-        raise Trouble(
+        raise CheckFailed(
             f"{len(damaged):,} of the runs cannot be shown, {named}; remove them with `hexapods "
             "runs delete`, or put a backup back"
         )
     return f"{kind} can be read, " + ("and has runs" if has_runs else "and is empty or to be made")
 
 
-def _port(settings: Settings) -> str:
+def _address(settings: Settings) -> str:
     where = f"{settings.host} port {settings.port}"
     if can_listen(settings):
         return f"{where} is free"
-    noted = read_address_file(settings.data) or ""
-    if _is_served(settings.data) and noted.rstrip("/").endswith(f":{settings.port}"):
+    recorded_address = read_address_file(settings.data) or ""
+    if _is_locked(settings.data) and recorded_address.rstrip("/").endswith(f":{settings.port}"):
         return f"{where} is where this data folder's server listens"
-    raise Trouble(
+    raise CheckFailed(
         f"something else listens on {where}, or the address is not this machine's; choose another "
         f"with {PREFIX}HOST and {PREFIX}PORT"
     )
 
 
-def _is_served(folder: Path) -> bool:
+def _is_locked(folder: Path) -> bool:
     if not (folder / LOCK_FILE).exists():
         return False
     try:
@@ -102,8 +102,8 @@ def _is_served(folder: Path) -> bool:
 
 CHECKS: Mapping[str, Callable[[Settings], str]] = {
     "data folder": _folder,
-    "room": _room,
+    "room": _disk_space,
     "lock": _lock,
     "database": _database,
-    "address": _port,
+    "address": _address,
 }

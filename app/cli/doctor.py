@@ -20,7 +20,7 @@ from app.settings import PREFIX, Settings, is_loopback, read_settings
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Describe the command."""
+    """Add the command's parser."""
     parser = commands.add_parser("doctor", help="check this machine", description=__doc__)
     add_data(parser)
     parser.add_argument("--json", action="store_true", help="for programs")
@@ -28,7 +28,7 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Check everything; 0 if all is well, else 1."""
+    """Run all checks; return 0 if all pass, else 1."""
     findings = []
     for finding in examine(options.data):
         findings.append(finding)
@@ -41,19 +41,19 @@ def run(options: argparse.Namespace) -> int:
 
 
 _PYTHON = (3, 11)
-_PHYSICS_WITHIN_S = 60.0
+_PHYSICS_TIMEOUT_S = 60.0
 _INSTALL = "install it again as the README says"
 _NO_AVX = "it needs a processor with AVX, which some virtual machines hide"
 _ASSET = re.compile(r'"(?:\./)?static/([^"]+\.(?:js|css|svg))"')
 _PIN = re.compile(r"([A-Za-z0-9-]+)==([\w.]+)$")
 
 
-class Trouble(Exception):
-    """Something is not as it has to be; the message says what, and what to do."""
+class CheckFailed(Exception):
+    """A failed check; the message states the problem and its remedy."""
 
 
 class Finding(NamedTuple):
-    """Result of one check."""
+    """Result of one check; its fields are the members of the JSON output."""
 
     name: str
     ok: bool
@@ -61,80 +61,80 @@ class Finding(NamedTuple):
 
 
 def examine(data: str | None) -> Iterator[Finding]:
-    """One check after the other.
+    """Run the checks one after the other, and yield each result.
 
     Args:
-        data: the data folder, if another than the environment's.
+        data: data folder, if other than that of the environment.
     """
-    for name, check in _OF_THE_MACHINE.items():
-        yield _found(name, check)
+    for name, check in _MACHINE_CHECKS.items():
+        yield _run_check(name, check)
     settings: list[Settings] = []
 
     def read() -> str:
         settings.append(read_settings(data=data))
         return _settings(settings[0])
 
-    yield _found("settings", read)
-    # Imports the database, which takes a moment.
+    yield _run_check("settings", read)
+    # Imported here, as the database modules would slow the start of other commands.
     from app.cli.data_diagnostics import CHECKS  # noqa: PLC0415
 
-    for name, look in CHECKS.items() if settings else ():
-        yield _found(name, lambda look=look: look(settings[0]))  # type: ignore[misc]
+    for name, check_data in CHECKS.items() if settings else ():
+        yield _run_check(name, lambda check_data=check_data: check_data(settings[0]))  # type: ignore[misc]
 
 
-def _found(name: str, check: Callable[[], str]) -> Finding:
+def _run_check(name: str, check: Callable[[], str]) -> Finding:
     try:
         return Finding(name, True, check())
-    except (Trouble, HexapodError) as error:
+    except (CheckFailed, HexapodError) as error:
         return Finding(name, False, str(error))
-    except Exception as error:  # whatever is broken here, a doctor goes on
+    except Exception as error:  # one broken check must not stop the others
         return Finding(name, False, f"{type(error).__name__}: {error}; {_INSTALL}")
 
 
 def _python() -> str:
-    found = ".".join(map(str, sys.version_info[:3]))
+    python_version = ".".join(map(str, sys.version_info[:3]))
     if sys.version_info < _PYTHON:
-        raise Trouble(f"this is Python {found}; Racing Hexapods needs 3.11 or newer")
-    return f"Python {found} on {sys.platform}"
+        raise CheckFailed(f"this is Python {python_version}; Racing Hexapods needs 3.11 or newer")
+    return f"Python {python_version} on {sys.platform}"
 
 
 def _packages() -> str:
-    """The versions that are exact are those whose formats and results are relied on."""
+    """Check the exactly pinned packages: results and file formats depend on their versions."""
     try:
-        wanted = distribution("racing-hexapods").requires or []
+        requirements = distribution("racing-hexapods").requires or []
     except PackageNotFoundError as error:
-        raise Trouble(f"Racing Hexapods is not installed as a package; {_INSTALL}") from error
-    pins = [found.groups() for found in map(_PIN.match, wanted) if found]
+        raise CheckFailed(f"Racing Hexapods is not installed as a package; {_INSTALL}") from error
+    pins = [found.groups() for found in map(_PIN.match, requirements) if found]
     for name, pinned in pins:
         try:
-            here = version(name)
+            installed = version(name)
         except PackageNotFoundError as error:
-            raise Trouble(f"{name} is missing; {_INSTALL}") from error
-        if here != pinned:
-            raise Trouble(f"{name} is {here}, and has to be {pinned}; {_INSTALL}")
-    said = ", ".join(f"{name} {pinned}" for name, pinned in pins)
-    return f"Racing Hexapods {__version__} with {said}, as they have to be"
+            raise CheckFailed(f"{name} is missing; {_INSTALL}") from error
+        if installed != pinned:
+            raise CheckFailed(f"{name} is {installed}, and has to be {pinned}; {_INSTALL}")
+    versions = ", ".join(f"{name} {pinned}" for name, pinned in pins)
+    return f"Racing Hexapods {__version__} with {versions}, as they have to be"
 
 
 def _physics() -> str:
-    # In a process of its own, because a processor that MuJoCo was not made for ends it at once.
+    # In a process of its own, as MuJoCo dies of SIGILL on a processor without AVX.
     command = [sys.executable, "-m", "app.cli.physics_diagnostics"]
     try:
         done = subprocess.run(
-            command, capture_output=True, text=True, timeout=_PHYSICS_WITHIN_S, check=False
+            command, capture_output=True, text=True, timeout=_PHYSICS_TIMEOUT_S, check=False
         )
     except subprocess.TimeoutExpired as error:
-        raise Trouble(
-            f"ten steps took over {_PHYSICS_WITHIN_S:.0f} s; is the machine overloaded?"
+        raise CheckFailed(
+            f"ten steps took over {_PHYSICS_TIMEOUT_S:.0f} s; is the machine overloaded?"
         ) from error
     if done.returncode == 0:
         return done.stdout.strip()
     if done.returncode < 0:
         ended_by = signal.Signals(-done.returncode)
         why = f"; {_NO_AVX}" if ended_by == signal.SIGILL else ""
-        raise Trouble(f"MuJoCo was ended by {ended_by.name}{why}")
-    said = (done.stderr.strip().splitlines() or ["it said nothing"])[-1]
-    raise Trouble(f"MuJoCo does not work: {said}; {_INSTALL}")
+        raise CheckFailed(f"MuJoCo was ended by {ended_by.name}{why}")
+    last_line = (done.stderr.strip().splitlines() or ["it said nothing"])[-1]
+    raise CheckFailed(f"MuJoCo does not work: {last_line}; {_INSTALL}")
 
 
 def _browser() -> str:
@@ -142,7 +142,7 @@ def _browser() -> str:
     wanted = _ASSET.findall((folder / "index.html").read_text("utf-8"))
     missing = [name for name in wanted if not (folder / name).is_file()]
     if missing:
-        raise Trouble(f"the page lacks {missing[0]}; {_INSTALL}")
+        raise CheckFailed(f"the page lacks {missing[0]}; {_INSTALL}")
     from app.viewer.viser_internals.client import ViewerPage  # noqa: PLC0415 - takes a second
 
     ViewerPage()
@@ -156,26 +156,26 @@ def _cores() -> str:
 
 
 def _settings(settings: Settings) -> str:
-    who = "whoever is on this machine may change everything"
+    access = "whoever is on this machine may change everything"
     if settings.token is not None:
-        who = "changes need the token"
-        who += ", and so does watching" if settings.spectators == "token" else ""
-    said = f"it would listen on {settings.host}, and {who}"
+        access = "changes need the token"
+        access += ", and so does watching" if settings.spectators == "token" else ""
+    summary = f"it would listen on {settings.host}, and {access}"
     if settings.public_url is not None and settings.token is None:
-        raise Trouble(
+        raise CheckFailed(
             f"{PREFIX}PUBLIC_URL offers the server at {settings.public_url}, and without a token "
             f"everyone there may change everything; set {PREFIX}TOKEN"
         )
     if not is_loopback(settings.host) and settings.public_url is None:
-        said += f"; a proxy before it needs {PREFIX}PUBLIC_URL"
-    return said
+        summary += f"; a proxy before it needs {PREFIX}PUBLIC_URL"
+    return summary
 
 
 def can_listen(settings: Settings) -> bool:
-    """Whether the address is this machine's, and free."""
+    """Whether the address belongs to this machine and is free."""
     try:
-        found = socket.getaddrinfo(settings.host, settings.port, type=socket.SOCK_STREAM)
-        family, kind, protocol, _, address = found[0]
+        candidates = socket.getaddrinfo(settings.host, settings.port, type=socket.SOCK_STREAM)
+        family, kind, protocol, _, address = candidates[0]
         with socket.socket(family, kind, protocol) as probe:
             if sys.platform != "win32":
                 probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -186,7 +186,7 @@ def can_listen(settings: Settings) -> bool:
     return True
 
 
-_OF_THE_MACHINE: dict[str, Callable[[], str]] = {
+_MACHINE_CHECKS: dict[str, Callable[[], str]] = {
     "python": _python,
     "packages": _packages,
     "physics": _physics,

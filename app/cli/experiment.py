@@ -6,8 +6,8 @@ from app.cli.options import CommandParser, split
 from app.cli.trial_options import (
     add_machine_options,
     add_trial_options,
+    cluster_from,
     trial_grid_from,
-    where_from,
 )
 from app.cli.trials import run_experiment
 from app.domain.errors import InvalidInput
@@ -17,7 +17,7 @@ _NAMES = ("table1", "figure4")
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Describe the command."""
+    """Add the command's parser."""
     parser = commands.add_parser(
         "experiment", help="repeat the paper's experiments", description=__doc__
     )
@@ -33,18 +33,18 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run it, or go on with it.
+    """Run the experiment, or resume it from its results folder.
 
     Raises:
-        HexapodError: if the options cannot be followed.
+        HexapodError: if the options are not valid.
     """
     agents = agents_from(options.agent)
     if agents is not None and options.experiment == "table1":
         raise InvalidInput("table1 has the paper's agents; --agent is for figure4 and sweep")
     config = experiment_config(options.experiment, {**trial_grid_from(options), "agents": agents})
-    return run_experiment(config, where_from(options), options)
+    return run_experiment(config, cluster_from(options), options)
 
 
 def agents_from(texts: list[str] | None) -> tuple[str, ...] | None:
-    """The agents that were named, if any."""
+    """Parse the agents named by `--agent`; None without the option."""
     return None if texts is None else tuple(agent for text in texts for agent in split(text))

@@ -1,4 +1,4 @@
-"""Files that users name: read with a clear error, written whole or not at all."""
+"""Read and atomically write files that users name, with clear errors."""
 
 import tempfile
 from pathlib import Path
@@ -9,11 +9,11 @@ from app.runs.tables import Checkpoint, from_bytes
 
 
 def read_table(path: str) -> Checkpoint:
-    """A Q-table from a file.
+    """Read a Q-table with its metadata from a file.
 
     Raises:
-        InvalidInput: if there is no such file.
-        DamagedFile: if it is not a whole table.
+        InvalidInput: if the file cannot be read.
+        DamagedFile: if it is not a complete Q-table.
     """
     try:
         data = Path(path).read_bytes()
@@ -23,7 +23,11 @@ def read_table(path: str) -> Checkpoint:
 
 
 def check_writable(path: str) -> None:
-    """Raise `InvalidInput` now rather than after the work is done."""
+    """Check that a file can be written, before the work whose result it stores.
+
+    Raises:
+        InvalidInput: if it cannot.
+    """
     folder = Path(path).absolute().parent
     try:
         with tempfile.TemporaryFile(dir=folder):

@@ -18,7 +18,7 @@ from app.settings import Settings, read_settings
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Describe the command."""
+    """Add the command's parser."""
     parser = commands.add_parser("import", help="take a run out of a file", description=__doc__)
     parser.add_argument("file", metavar="RUN.ZIP", help="what `hexapods export` made")
     add_data(parser)
@@ -30,27 +30,27 @@ def run(options: argparse.Namespace) -> int:
     """Import a run.
 
     Raises:
-        HexapodError: if the file is not what it should be, or cannot be kept.
+        HexapodError: if the file is not a valid archive, or the run cannot be stored.
     """
-    shown = _import(read_settings(data=options.data), _read(options.file), options.file)
+    view = _import(read_settings(data=options.data), _read(options.file), options.file)
     if options.json:
-        print(json.dumps(shown))
+        print(json.dumps(view))
     else:
-        print(f"{options.file} is {shown['kind']} {shown['id']} here, {shown['name']!r}.")
+        print(f"{options.file} is {view['kind']} {view['id']} here, {view['name']!r}.")
     return 0
 
 
 def _read(path: str) -> bytes:
     try:
         with Path(path).open("rb") as file:
-            # One byte more than may be, so that a file that grows meanwhile is refused as well.
+            # One byte over the limit suffices to refuse a file that is too large.
             return file.read(MAX_BYTES + 1)
     except OSError as error:
         raise InvalidInput(f"cannot read {path}: {error.strerror}") from error
 
 
 def _import(settings: Settings, data: bytes, label: str) -> dict[str, Any]:
-    # Databases take a moment to import, which other commands need not.
+    # Imported here, as the database modules would slow the start of other commands.
     from app.archive.transfer import import_run  # noqa: PLC0415
     from app.events.run_view import run_view  # noqa: PLC0415
     from app.storage.database.opening import open_store  # noqa: PLC0415

@@ -1,4 +1,4 @@
-"""Options that several commands share, and how their values are read."""
+"""Options that several commands share, and the parsers of their values."""
 
 import argparse
 import contextlib
@@ -26,7 +26,7 @@ _GAIT_FIELDS = ("right_leg", "left_leg", "symmetry", "pairs")
 
 
 def add_walk_options(parser: argparse.ArgumentParser) -> None:
-    """The walking problem: gait, robot, simulator, foot grid."""
+    """Add the options of the walking problem: gait, robot, simulator, foot grid."""
     parser.add_argument(
         "--gait",
         required=True,
@@ -56,27 +56,27 @@ def add_settings(
 
 
 class CommandParser(argparse.ArgumentParser):
-    """A command's parser; it can have an option for each setting of the agents.
+    """Parser of a command, optionally with an option for each setting of the agents.
 
-    They are the registered agents, and those that the command line names by `--agent`: their
-    modules are imported when the arguments are parsed, not before.
+    These are the registered agents and those named by `--agent`, whose modules are imported only
+    when the arguments are parsed.
 
     Attributes:
-        offers_settings: whether it has such options.
-        takes_lists: whether such an option takes several values, by comma.
+        offers_settings: whether the parser has options for the agents' settings.
+        takes_lists: whether such an option takes several values, separated by commas.
     """
 
     offers_settings = takes_lists = False
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Add the options, and parse."""
+        """Add the options of the agents' settings, then parse."""
         if self.offers_settings:
-            peek = argparse.ArgumentParser(add_help=False)
-            peek.add_argument("--agent", action="append", default=[])
-            given, _ = peek.parse_known_args(args)
+            agent_parser = argparse.ArgumentParser(add_help=False)
+            agent_parser.add_argument("--agent", action="append", default=[])
+            given, _ = agent_parser.parse_known_args(args)
             named = [name for text in given.agent for name in split(text)]
             own: Mapping[str, Sequence[DeclaredSetting]] = {}
-            with contextlib.suppress(HexapodError):  # the command itself refuses the agent
+            with contextlib.suppress(HexapodError):  # the command reports the unknown agent
                 own = settings_of(named or [TrainingConfig.agent])
             self._add_settings(own, settings_of(usable_agents()))
         return super().parse_known_args(args, namespace)
@@ -86,7 +86,7 @@ class CommandParser(argparse.ArgumentParser):
         own: Mapping[str, Sequence[DeclaredSetting]],
         every: Mapping[str, Sequence[DeclaredSetting]],
     ) -> None:
-        """Add options for the settings of the named agents, and of all."""
+        """Add options for the settings of all agents; only those of the named agents are parsed."""
         group = self.add_argument_group("settings of the agents")
         for name, declared in {**every, **own}.items():
             setting = declared[0]
@@ -99,7 +99,7 @@ class CommandParser(argparse.ArgumentParser):
 
 
 def settings_from(options: argparse.Namespace) -> dict[str, Any]:
-    """The settings of agents that a `CommandParser` found on the command line."""
+    """Return the agents' settings that were given on the command line, by name."""
     given = {name: getattr(options, name) for name in vars(options).get("agent_settings", ())}
     return {name: value for name, value in given.items() if value is not None}
 
@@ -109,7 +109,7 @@ def add_list(
     setting: DeclaredSetting,
     read: Callable[[str], Any] | None = None,
 ) -> None:
-    """Add an option for several values of a setting, by comma; `read` reads one of them."""
+    """Add an option for comma-separated values of a setting; `read` parses one value."""
     one = parser_of(setting) if read is None else read
     parser.add_argument(
         flag(setting.name),
@@ -120,7 +120,7 @@ def add_list(
 
 
 def split(text: str) -> list[str]:
-    """Split a list with commas."""
+    """Split a comma-separated list."""
     return [part.strip() for part in text.split(",")]
 
 
@@ -129,20 +129,20 @@ def _help(setting: DeclaredSetting, lists: bool = False) -> str:
     given = "" if default is REQUIRED else f" (default {default})"
     if lists and about.examples:
         examples = ",".join(f"{value:g}" for value in about.examples)
-        shown = f"such as {examples}; each {setting.valid}{given}"
+        text = f"such as {examples}; each {setting.valid}{given}"
     else:
         label = f"{about.title} {about.symbol}" if about.symbol else about.title
-        shown = " ".join(filter(None, [f"{label}.", about.help, f"Valid: {setting.valid}{given}"]))
-    return shown.replace("%", "%%")
+        text = " ".join(filter(None, [f"{label}.", about.help, f"Valid: {setting.valid}{given}"]))
+    return text.replace("%", "%%")
 
 
 def flag(name: str) -> str:
-    """The option of a setting."""
+    """Return the option's name of a setting."""
     return f"--{name.replace('_', '-')}"
 
 
 def parser_of(setting: DeclaredSetting) -> Callable[[str], Value]:
-    """Parses a setting's value for argparse, which reports what is valid."""
+    """Return a parser of a setting's value for argparse, whose error names the valid values."""
 
     def parse(text: str) -> Value:
         try:
@@ -155,7 +155,7 @@ def parser_of(setting: DeclaredSetting) -> Callable[[str], Value]:
 
 
 def add_observation(parser: argparse.ArgumentParser, help_text: str) -> None:
-    """How an agent reads its state."""
+    """Add `--observation`: how an agent observes the robot's state."""
     parser.add_argument(
         "--observation", default="measured", help=f"{' or '.join(OBSERVATIONS)}: {help_text}"
     )
@@ -173,10 +173,10 @@ def walk_from(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def read_gait(text: str) -> str | GaitSpec:
-    """A gait by name, or a specification in JSON.
+    """Parse a gait: a name, or a specification in JSON.
 
     Raises:
-        InvalidInput: if the JSON is no gait.
+        InvalidInput: if the JSON is not a valid gait.
     """
     if not text.lstrip().startswith("{"):
         return text
@@ -194,10 +194,10 @@ def read_gait(text: str) -> str | GaitSpec:
 
 
 def read_robot(text: str) -> Robot:
-    """A robot by its preset's name, from a TOML file, or in JSON.
+    """Parse a robot: the name of a preset, the path of a TOML file, or JSON.
 
     Raises:
-        InvalidInput: if it is none of them.
+        InvalidInput: if it is none of these.
     """
     if text.lstrip().startswith("{"):
         return robot(_json("--robot", text))
@@ -209,8 +209,8 @@ def read_robot(text: str) -> Robot:
         raise InvalidInput(f"--robot {text}: cannot be read as TOML: {error}") from error
 
 
-def whole(text: str) -> int:
-    """A whole number, or a clear refusal."""
+def integer(text: str) -> int:
+    """Parse an integer for argparse, with a clear error."""
     try:
         return int(text)
     except ValueError:

@@ -1,4 +1,4 @@
-"""Walks ten steps in the real physics, and says how long that took; a process of the doctor's."""
+"""Physics check of `hexapods doctor`, run in a subprocess: ten steps in MuJoCo, timed."""
 
 import time
 
@@ -12,17 +12,17 @@ STEPS = 10
 
 
 def main() -> None:
-    """Walk, and print what there is to say; any exception is the finding."""
+    """Simulate the steps and print the rate; an exception is reported as the check's failure."""
     walk = WalkingProblem(gait="left-right-origin")
     simulator = MujocoSimulator(walk.robot, walk.resolved_gait, walk.grid)
     state, began = simulator.rest(), time.perf_counter()
     for number in range(STEPS):
         legal = legal_actions(observe(simulator, state, "measured"), len(walk.grid))
         state = simulator.step(state, legal[number % len(legal)]).state
-    took = time.perf_counter() - began
+    elapsed_s = time.perf_counter() - began
     if not np.isfinite(state.row).all():
         raise ValueError("the physics left the finite numbers")
-    print(f"MuJoCo walks {STEPS / took:,.0f} steps a second on one core")
+    print(f"MuJoCo walks {STEPS / elapsed_s:,.0f} steps a second on one core")
 
 
 if __name__ == "__main__":

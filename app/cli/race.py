@@ -29,7 +29,7 @@ from app.runs.walker import Walker
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Describe the command."""
+    """Add the command's parser."""
     parser = commands.add_parser("race", help="race agents", description=__doc__)
     add_walk_options(parser)
     add_observation(parser, "of lanes without a table; a trained lane uses its table's")
@@ -47,10 +47,10 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Race as the options say.
+    """Run a race and print its result.
 
     Raises:
-        HexapodError: if they cannot be followed.
+        HexapodError: if the options are not valid.
     """
     check_clock(options.clock)
     lanes = [_lane(text, options.observation) for text in options.lane]
@@ -95,7 +95,7 @@ def _race(walkers: Sequence[Walker], config: RaceConfig) -> list[LaneRecording]:
 
 
 def show_lanes(result: dict[str, Any], clock: str) -> None:
-    """Print a race's result under a clock."""
+    """Print the result of a race as a table, ranked under a clock."""
     rows = []
     for lane in sorted(result["lanes"], key=lambda lane: lane["clocks"][clock]["rank"]):
         timed, total = lane["clocks"][clock], lane["total_distance_m"]

@@ -12,7 +12,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
-from app.cli.options import CommandParser, whole
+from app.cli.options import CommandParser, integer
 from app.cli.race import show_lanes
 from app.cli.server_client import call_server
 from app.cli.terminal import show_table
@@ -32,13 +32,13 @@ _HEAD = ("run", "kind", "state", "steps", "result", "began", "name")
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Describe the command."""
+    """Add the command's parser."""
     parser = commands.add_parser("runs", help="list, show, delete runs", description=__doc__)
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     listing = verbs.add_parser("list", help="the runs, newest first")
     listing.add_argument("--kind", choices=KINDS, help="only these")
     listing.add_argument("--state", choices=STATES, help="only those that are this now")
-    listing.add_argument("--limit", type=whole, default=_LIMIT, help=f"default {_LIMIT}")
+    listing.add_argument("--limit", type=integer, default=_LIMIT, help=f"default {_LIMIT}")
     showing = verbs.add_parser("show", help="all about a run")
     deleting = verbs.add_parser("delete", help="forget a run that has ended, with all it has")
     for verb, run in ((listing, _list), (showing, _show), (deleting, _delete)):
@@ -50,15 +50,15 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
 
 
 def add_data(parser: argparse.ArgumentParser) -> None:
-    """Which data folder."""
+    """Add `--data`, the data folder."""
     parser.add_argument("--data", help="data folder (default: the user's, or HEXAPODS_DATA)")
 
 
-def found(store: "RunStore", run_id: str) -> AnyRun:
-    """A run, or what can be read of it.
+def find_run(store: "RunStore", run_id: str) -> AnyRun:
+    """Return a run, or what can be read of a damaged one.
 
     Raises:
-        InvalidInput: if there is none.
+        InvalidInput: if there is no such run.
     """
     try:
         return store.find(run_id)
@@ -66,9 +66,9 @@ def found(store: "RunStore", run_id: str) -> AnyRun:
         raise InvalidInput(f"{error}; `hexapods runs list` shows what there is") from error
 
 
-def looking(settings: Settings) -> "AbstractContextManager[RunStore]":
-    """The store of a data folder, for who only reads."""
-    # Databases take a moment to import, which other commands need not.
+def open_for_reading(settings: Settings) -> "AbstractContextManager[RunStore]":
+    """Open the store of a data folder read-only."""
+    # Imported here, as the database modules would slow the start of other commands.
     from app.storage.database.read_only import open_read_only  # noqa: PLC0415
 
     return open_read_only(settings)
@@ -78,7 +78,7 @@ def _list(options: argparse.Namespace) -> int:
     if options.limit < 1:
         raise InvalidInput(f"--limit must be at least 1, not {options.limit}")
 
-    with looking(read_settings(data=options.data)) as store:
+    with open_for_reading(read_settings(data=options.data)) as store:
         page = store.list(options.kind, options.state, options.limit)
     if options.json:
         items = [run_view(run) for run in page.items]
@@ -114,7 +114,7 @@ def _local(moment: datetime) -> str:
 
 
 def _outcome(run: Run) -> str:
-    """Summarise the result in a word or two."""
+    """Summarise the result of a run in one or two words."""
     if not run.result:
         return ""
     if run.kind == "training":
@@ -129,22 +129,22 @@ def _outcome(run: Run) -> str:
 
 
 def _show(options: argparse.Namespace) -> int:
-    with looking(read_settings(data=options.data)) as store:
-        run = found(store, options.run_id)
+    with open_for_reading(read_settings(data=options.data)) as store:
+        run = find_run(store, options.run_id)
         curve = store.evaluations(run.id)
-    shown = run_view(run)
+    view = run_view(run)
     if options.json:
-        print(json_text({**shown, "curve": list(curve)}))
+        print(json_text({**view, "curve": list(curve)}))
         return 0
-    if "damaged" in shown:
-        for name, value in shown.items():
+    if "damaged" in view:
+        for name, value in view.items():
             print(f"{name:>18}  {value or ''}")
         return 0
-    progress, result = shown.pop("progress"), shown.pop("result")
+    progress, result = view.pop("progress"), view.pop("result")
     counted = "trials" if run.kind == "experiment" else "steps"
-    shown[counted] = f"{progress['done']:,} of {progress['total']:,}"
-    shown["evaluations"] = len(curve)
-    for name, value in shown.items():
+    view[counted] = f"{progress['done']:,} of {progress['total']:,}"
+    view["evaluations"] = len(curve)
+    for name, value in view.items():
         if value:
             print(f"{name:>18}  {value if isinstance(value, str) else json.dumps(value)}")
     if result and "lanes" in result:
@@ -159,15 +159,15 @@ def _delete(options: argparse.Namespace) -> int:
     from app.storage.server_lock import FolderInUse  # noqa: PLC0415
 
     settings = read_settings(data=options.data)
-    # First, so that a wrong id is no reason to ask anyone for anything.
-    with looking(settings) as seen:
-        run = found(seen, options.run_id)
+    # Look the run up first: an unknown id needs no lock and no server.
+    with open_for_reading(settings) as reader:
+        run = find_run(reader, options.run_id)
     try:
         with open_store(settings) as store:
             store.delete(run.id)
     except FolderInUse:
         kind = run.kind or KINDS[0]
         call_server(settings, "DELETE", f"api/v1/{kind}s/{quote(run.id, safe='')}")
-    said = f"Deleted {run.kind or 'run'} {run.id}."
-    print(json.dumps({"deleted": run.id}) if options.json else said)
+    message = f"Deleted {run.kind or 'run'} {run.id}."
+    print(json.dumps({"deleted": run.id}) if options.json else message)
     return 0

@@ -9,15 +9,15 @@ from typing import Any
 
 import segno
 
-from app.cli.options import CommandParser, whole
+from app.cli.options import CommandParser, integer
 from app.settings import Settings, read_settings
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Describe the command."""
+    """Add the command's parser."""
     parser = commands.add_parser("serve", help="open the dashboard", description=__doc__)
     parser.add_argument("--host", help="address to bind (default 127.0.0.1, or HEXAPODS_HOST)")
-    parser.add_argument("--port", type=whole, help="default 8000, or HEXAPODS_PORT")
+    parser.add_argument("--port", type=integer, help="default 8000, or HEXAPODS_PORT")
     parser.add_argument("--data", help="data folder (default: the user's, or HEXAPODS_DATA)")
     parser.add_argument(
         "--share",
@@ -32,9 +32,9 @@ def run(options: argparse.Namespace) -> int:
     """Serve until stopped.
 
     Raises:
-        InvalidInput: if the server cannot start as it is asked to.
+        InvalidInput: if the server cannot start with these options.
     """
-    from app.server import serve  # noqa: PLC0415 - its imports take a second that others need not
+    from app.server import serve  # noqa: PLC0415 - its imports take a second
 
     given: dict[str, Any] = {"host": options.host, "port": options.port, "data": options.data}
     if options.share:
@@ -48,12 +48,12 @@ def run(options: argparse.Namespace) -> int:
 
 
 def read_token() -> str | None:
-    """The token of the environment, if it has one."""
+    """Return the token of the environment; None without one."""
     return os.environ.get("HEXAPODS_TOKEN") or None
 
 
 def show_links(settings: Settings) -> None:
-    """Print who may open what, and the spectators' link as a QR code."""
+    """Print the links of operators and spectators, the latter also as a QR code."""
     base = settings.public_url or f"http://{local_address()}:{settings.port}"
     print(f"Operator (may start and stop):  {base}/?token={settings.token}")
     print(f"Spectators (may watch):         {base}/")
@@ -62,10 +62,10 @@ def show_links(settings: Settings) -> None:
 
 
 def local_address() -> str:
-    """This machine's address in the local network; a UDP socket tells it without sending."""
+    """Return this machine's address in the local network, as a connected UDP socket has it."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
-            probe.connect(("192.0.2.1", 9))  # a documentation address: nothing is ever there
+            probe.connect(("192.0.2.1", 9))  # TEST-NET-1 (RFC 5737); nothing is sent
             address: str = probe.getsockname()[0]
         except OSError:
             return "127.0.0.1"

@@ -1,4 +1,4 @@
-"""Asks the server that has the data folder to do what only it may do there."""
+"""Client of the running server that holds the data folder's lock."""
 
 import json
 import urllib.error
@@ -9,20 +9,20 @@ from app.domain.errors import InvalidInput
 from app.settings import PREFIX, Settings
 from app.storage.server_lock import read_address_file
 
-_WAIT_S = 60.0
+_TIMEOUT_S = 60.0
 
 
 def call_server(settings: Settings, method: str, path: str, body: bytes | None = None) -> Any:
-    """Call the server of the data folder and return its answer.
+    """Send a request to the server of the data folder, and return its decoded JSON response.
 
     Args:
-        settings: its data folder, and the token if it has one.
-        method: of the request.
-        path: without the slash at its beginning.
-        body: of the request, if it has one.
+        settings: data folder, and token if the server needs one.
+        method: HTTP method.
+        path: path without its leading slash.
+        body: body of the request, if any.
 
     Raises:
-        InvalidInput: if there is no answer, or the server refuses.
+        InvalidInput: if the server does not respond, or refuses.
     """
     address = read_address_file(settings.data)
     if address is None:
@@ -33,13 +33,13 @@ def call_server(settings: Settings, method: str, path: str, body: bytes | None =
     headers = {"Content-Type": "application/octet-stream"} if body is not None else {}
     if settings.token is not None:
         headers["Authorization"] = f"Bearer {settings.token}"
-    request = urllib.request.Request(  # noqa: S310 - our own server's, which is checked
+    request = urllib.request.Request(  # noqa: S310 - the address file's URL is validated
         address + path, body, headers, method=method
     )
-    # A proxy for the world outside is none for this machine.
+    # Without the proxies of the environment, as the server is on this machine.
     opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
     try:
-        with opener.open(request, timeout=_WAIT_S) as answer:
+        with opener.open(request, timeout=_TIMEOUT_S) as answer:
             data = answer.read()
     except urllib.error.HTTPError as error:
         with error:

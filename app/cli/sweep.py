@@ -7,8 +7,8 @@ from app.cli.options import CommandParser, add_list, settings_from
 from app.cli.trial_options import (
     add_machine_options,
     add_trial_options,
+    cluster_from,
     trial_grid_from,
-    where_from,
 )
 from app.cli.trials import run_experiment
 from app.domain.settings import declared_fields
@@ -17,7 +17,7 @@ from app.runs.config import TrainingConfig
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Describe the command."""
+    """Add the command's parser."""
     parser = commands.add_parser("sweep", help="try a grid of parameters", description=__doc__)
     parser.offers_settings = parser.takes_lists = True
     add_trial_options(parser, observations="measured", robots="stiff")
@@ -34,12 +34,12 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run it, or go on with it.
+    """Run the sweep, or resume it from its results folder.
 
     Raises:
-        HexapodError: if the options cannot be followed.
+        HexapodError: if the options are not valid.
     """
     given = {name: getattr(options, name) for name in GRID} | settings_from(options)
     agents = agents_from(options.agent)
     config = experiment_config("sweep", {**trial_grid_from(options), **given, "agents": agents})
-    return run_experiment(config, where_from(options), options)
+    return run_experiment(config, cluster_from(options), options)

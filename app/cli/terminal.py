@@ -1,4 +1,4 @@
-"""Progress and tables for people; programs get neither."""
+"""Progress bars and tables for terminals."""
 
 import sys
 from collections.abc import Sequence
@@ -19,23 +19,23 @@ from rich.text import Text
 
 
 class _Rate(ProgressColumn):
-    """How many of something are done a second."""
+    """Progress column with the rate per second."""
 
     def __init__(self, what: str) -> None:
         super().__init__()
         self._what = what
 
     def render(self, task: Task) -> Text:
-        """Nothing until there is a rate."""
+        """Return the rate as text; empty until it is known."""
         return Text("" if task.speed is None else f"{task.speed:.1f} {self._what}/s")
 
 
 def progress(what: str | None = None, window_s: float = 30.0) -> Progress:
-    """A progress bar on the terminal's error stream; nothing in a pipe.
+    """Return a progress bar on standard error; disabled if that is no terminal.
 
     Args:
-        what: is counted, to show its rate too.
-        window_s: over which rate and time left are estimated.
+        what: name of the counted items, to show their rate; None for no rate.
+        window_s: time over which rate and remaining time are estimated [s].
     """
     console = Console(stderr=True)
     return Progress(
@@ -54,20 +54,19 @@ def progress(what: str | None = None, window_s: float = 30.0) -> Progress:
 def show_table(
     title: str, head: Sequence[str], rows: Sequence[Sequence[Any]], *, long_names: bool = False
 ) -> None:
-    """A table with a title; all columns but the first are numbers.
+    """Print a table; all columns but the first are right-aligned, for numbers.
 
     Args:
-        title: above it.
+        title: title above the table.
         head: names of the columns.
-        rows: as many cells each.
-        long_names: whether what is in the first column may go on in a further line, rather than
-            the numbers.
+        rows: cells of each row, as many as columns.
+        long_names: whether to wrap the first column rather than the others.
     """
     table = Table(title=title, title_justify="left")
     for place, name in enumerate(head):
         whole = (place == 0) != long_names
         table.add_column(name, justify="left" if place == 0 else "right", no_wrap=whole)
     for row in rows:
-        # As text: in a name, [brackets] would be taken for markup.
+        # As `Text`, as Rich would parse [brackets] in a name as markup.
         table.add_row(*(Text(str(cell)) for cell in row))
     Console(file=sys.stdout).print(table)

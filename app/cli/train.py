@@ -25,19 +25,19 @@ from app.runs.training import Learner, train
 _SETTINGS = tuple(
     name
     for name in declared_fields(TrainingConfig)
-    # A command practises as fast as it can; the walking problem has its own options.
+    # The command has no pace; `add_walk_options` adds the walking problem's options.
     if name not in (*declared_fields(WalkingProblem), "pace")
 )
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Describe the command."""
+    """Add the command's parser."""
     parser = commands.add_parser("train", help="learn to walk", description=__doc__)
     parser.offers_settings = True
     add_walk_options(parser)
     add_observation(parser, "how the agent reads the state")
     add_settings(parser, declared_fields(TrainingConfig), _SETTINGS)
-    # Not given with a table, whose generator goes on.
+    # None if not given: with --from, the table's generator state is used instead.
     parser.set_defaults(seed=None)
     parser.add_argument("--agent", default=TrainingConfig.agent, help="a name, or my.module:Agent")
     parser.add_argument("--from", dest="table", metavar="Q.NPZ", help="go on with this table")
@@ -47,10 +47,10 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Train as the options say.
+    """Train an agent, print the result, and write the table.
 
     Raises:
-        HexapodError: if they cannot be followed.
+        HexapodError: if the options are not valid, or a file cannot be read or written.
     """
     table = read_table(options.table) if options.table else None
     config = _config(options, table)
@@ -64,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps({"config": as_json(config), "result": result, "curve": curve}))
     else:
-        _tell(options, config, result)
+        _print_result(options, config, result)
     return 0
 
 
@@ -82,7 +82,7 @@ def _config(options: argparse.Namespace, table: Checkpoint | None) -> TrainingCo
 
 
 def _practise(learner: Learner, config: TrainingConfig) -> list[dict[str, float]]:
-    """Run the loop behind a progress bar; the evaluations on the way."""
+    """Run the training loop with a progress bar, and return the evaluations."""
     curve = []
     with progress() as bar:
         task = bar.add_task("practising", total=config.steps)
@@ -101,7 +101,9 @@ def _practise(learner: Learner, config: TrainingConfig) -> list[dict[str, float]
     return curve
 
 
-def _tell(options: argparse.Namespace, config: TrainingConfig, result: dict[str, Any]) -> None:
+def _print_result(
+    options: argparse.Namespace, config: TrainingConfig, result: dict[str, Any]
+) -> None:
     print(
         f"After {config.steps:,} steps of practice it walks {result['distance_m']:.2f} m in 50 "
         f"steps; one-step look-ahead walks {result['greedy_distance_m']:.2f} m."

@@ -1,11 +1,11 @@
-"""Options of what runs many trials: what is tried, on which machines, and where it is kept."""
+"""Options of experiments and sweeps: trial grid, machines, results folder."""
 
 import argparse
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from app.cli.options import read_gait, read_robot, split, whole
+from app.cli.options import integer, read_gait, read_robot, split
 from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS, Robot
@@ -16,15 +16,15 @@ T = TypeVar("T")
 
 
 def add_trial_options(parser: argparse.ArgumentParser, observations: str, robots: str) -> None:
-    """Add the options of a trial grid that commands share.
+    """Add the options of a trial grid that `experiment` and `sweep` share.
 
     Args:
-        parser: of the command.
-        observations: what is tried if none is named, in words.
-        robots: likewise.
+        parser: parser of the command.
+        observations: default observations, for the help text.
+        robots: default robots, for the help text.
     """
-    parser.add_argument("--seeds", type=whole, help="of each learner (default 30)")
-    parser.add_argument("--seed", type=whole, help="of which all are spawned (default 0)")
+    parser.add_argument("--seeds", type=integer, help="of each learner (default 30)")
+    parser.add_argument("--seed", type=integer, help="of which all are spawned (default 0)")
     parser.add_argument(
         "--gait", action="append", help=f"all (default), or of {', '.join(NAMED_GAITS)}; or JSON"
     )
@@ -42,8 +42,8 @@ def add_trial_options(parser: argparse.ArgumentParser, observations: str, robots
 
 
 def add_machine_options(parser: argparse.ArgumentParser) -> None:
-    """On which machines, and where the results go."""
-    parser.add_argument("--workers", type=whole, help="processes here (default one a core)")
+    """Add the options for workers or cluster, results folder and output."""
+    parser.add_argument("--workers", type=integer, help="processes here (default one a core)")
     parser.add_argument(
         "--scheduler", metavar="ADDRESS", help="of a Dask cluster, tcp://HOST:PORT or tls://…"
     )
@@ -56,7 +56,7 @@ def add_machine_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
 
 
-def where_from(options: argparse.Namespace) -> ClusterSpec:
+def cluster_from(options: argparse.Namespace) -> ClusterSpec:
     """Build the cluster's specification from `add_machine_options`."""
     names = ("workers", "scheduler", "tls_ca", "tls_cert", "tls_key")
     return ClusterSpec(**{name: getattr(options, name) for name in names})
@@ -68,13 +68,13 @@ def trial_grid_from(options: argparse.Namespace) -> dict[str, Any]:
         "seeds": options.seeds,
         "seed": options.seed,
         "simulator": options.simulator,
-        "gaits": _several(options.gait, _gaits),
-        "observations": _several(options.observation, _observations),
-        "robots": _several(options.robot, _robots),
+        "gaits": _join_values(options.gait, _gaits),
+        "observations": _join_values(options.observation, _observations),
+        "robots": _join_values(options.robot, _robots),
     }
 
 
-def _several(
+def _join_values(
     texts: Sequence[str] | None, read: Callable[[str], Sequence[T]]
 ) -> tuple[T, ...] | None:
     """Join the values of an option that may be repeated."""

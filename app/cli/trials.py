@@ -1,4 +1,4 @@
-"""Runs an experiment's trials behind a progress bar, keeps them, and reports what they show."""
+"""Runs the trials of an experiment with a progress bar, stores them, and writes the report."""
 
 import argparse
 import json
@@ -24,69 +24,69 @@ _HEAD = ("setting", "seeds", "total m", "95 %", "at time-out m", "of greedy")
 
 
 def run_experiment(
-    config: ExperimentConfig, where: ClusterSpec, options: argparse.Namespace
+    config: ExperimentConfig, cluster: ClusterSpec, options: argparse.Namespace
 ) -> int:
-    """Run what is not done yet, and write the report.
+    """Run the remaining trials of an experiment, write the report, and return the exit code.
 
     Args:
-        config: the experiment.
-        where: its machines.
-        options: `out`, `retry` and `json` of the command line.
+        config: config of the experiment.
+        cluster: workers of this machine, or a Dask cluster.
+        options: options of the command line: `out`, `retry` and `json`.
 
     Raises:
-        HexapodError: if it cannot be run, or not to its end; what was done is kept.
+        HexapodError: if the experiment cannot be run or completed; finished trials are stored.
     """
     path: Path = options.out or Path(f"{config.experiment}-results")
-    say = _nothing if options.json else print
+    print_line = _discard if options.json else print
     with open_results(path, config) as folder:
-        total, undone = folder.plan.total, folder.remaining(options.retry)
-        done = total - len(undone)
+        total, remaining = folder.plan.total, folder.remaining(options.retry)
+        done = total - len(remaining)
         before = f"; {done:,} are there already" if done else ""
-        say(f"{total:,} trials {_on(where)}, kept in {path}{before}")
-        with _interruption() as interrupted:
-            _run(undone, where, folder, lambda: not interrupted.is_set())
+        print_line(f"{total:,} trials {_workers_text(cluster)}, kept in {path}{before}")
+        with _stop_signals() as interrupted:
+            _run(remaining, cluster, folder, lambda: not interrupted.is_set())
         if interrupted.is_set():
-            say(
+            print_line(
                 f"\nInterrupted: {folder.done:,} of {total:,} trials are kept in {path}; the same "
                 "command goes on from there."
             )
             return _INTERRUPTED
-        summary = _report(where, folder)
+        summary = _report(cluster, folder)
     if options.json:
         print(json.dumps(summary))
     else:
-        _tell(summary, path)
+        _print_summary(summary, path)
     return 0
 
 
-def _on(where: ClusterSpec) -> str:
-    if where.scheduler is not None:
-        return f"on the cluster of {where.scheduler}"
-    workers = where.workers or cores()
+def _workers_text(cluster: ClusterSpec) -> str:
+    if cluster.scheduler is not None:
+        return f"on the cluster of {cluster.scheduler}"
+    workers = cluster.workers or cores()
     return f"on {workers} worker{'s' if workers > 1 else ''}"
 
 
 def _run(
-    undone: list[Trial],
-    where: ClusterSpec,
+    remaining: list[Trial],
+    cluster: ClusterSpec,
     folder: ResultsFolder,
-    go_on: Callable[[], bool],
+    should_continue: Callable[[], bool],
 ) -> None:
-    running, total = closing(folder.run(undone, where, go_on)), folder.plan.total
+    running, total = closing(folder.run(remaining, cluster, should_continue)), folder.plan.total
     with progress("trials", _RATE_WINDOW_S) as bar, running as outcomes:
-        task = bar.add_task("trials", total=total, completed=total - len(undone))
+        task = bar.add_task("trials", total=total, completed=total - len(remaining))
         for _ in outcomes:
             aside = f", {len(folder.set_aside)} set aside" if folder.set_aside else ""
             bar.update(task, advance=1, description=f"trials{aside}")
 
 
-def _report(where: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
-    # SciPy and Matplotlib take a second to import, which other commands need not.
+def _report(cluster: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
+    # Imported here, as SciPy and Matplotlib take a second to import.
     from app.experiments.report.files import write_report  # noqa: PLC0415
     from app.experiments.summary import summarise  # noqa: PLC0415
 
     results, set_aside = folder.planned()
-    workers = None if where.scheduler is not None else where.workers or cores()
+    workers = None if cluster.scheduler is not None else cluster.workers or cores()
     summary = summarise(folder.plan.config, results, set_aside, folder.cost(workers))
     try:
         write_report(folder.path, summary, results)
@@ -98,7 +98,7 @@ def _report(where: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
     return summary
 
 
-def _tell(summary: Mapping[str, Any], path: Path) -> None:
+def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
     rows = [_row(setting) for setting in summary["settings"]]
     show_table("Interquartile means over the seeds", _HEAD, rows, long_names=True)
     trials, cost = summary["trials"], summary["cost"]
@@ -126,25 +126,28 @@ def _row(setting: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 @contextmanager
-def _interruption() -> Iterator[threading.Event]:
-    """Set by Ctrl-C, or by who tells the process to end.
+def _stop_signals() -> Iterator[threading.Event]:
+    """Handle SIGINT and SIGTERM: yield an event that the first signal sets.
 
-    Both wait for a moment in which the cluster can be taken down; whoever cannot wait asks twice.
+    The experiment then stops once the cluster can be shut down; a second signal raises
+    `KeyboardInterrupt` at once.
     """
-    asked = threading.Event()
+    stop_requested = threading.Event()
 
-    def ask(_number: int, _frame: FrameType | None) -> None:
-        if asked.is_set():
+    def handle_signal(_number: int, _frame: FrameType | None) -> None:
+        if stop_requested.is_set():
             raise KeyboardInterrupt
-        asked.set()
+        stop_requested.set()
 
-    before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {
+        number: signal.signal(number, handle_signal) for number in (signal.SIGINT, signal.SIGTERM)
+    }
     try:
-        yield asked
+        yield stop_requested
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
 
 
-def _nothing(_: str) -> None:
-    """For programs that read JSON."""
+def _discard(_: str) -> None:
+    """Print nothing; used with `--json`."""

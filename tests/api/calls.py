@@ -1,4 +1,4 @@
-"""A client of the API for tests, and waiting for states."""
+"""Test client of the API, which can wait for a run's state."""
 
 import time
 from dataclasses import dataclass
@@ -20,11 +20,11 @@ class Api:
 
     client: TestClient
 
-    def call(self, method: str, path: str, **more: Any) -> httpx2.Response:
-        return self.client.request(method, f"/api/v1{path}", **more)
+    def call(self, method: str, path: str, **options: Any) -> httpx2.Response:
+        return self.client.request(method, f"/api/v1{path}", **options)
 
-    def get(self, path: str, **more: Any) -> Any:
-        response = self.call("GET", path, **more)
+    def get(self, path: str, **options: Any) -> Any:
+        response = self.call("GET", path, **options)
         assert response.status_code == 200, response.text
         return response.json()
 
@@ -35,24 +35,24 @@ class Api:
         assert response.headers["location"] == f"/api/v1{path}/{run['id']}"
         return run
 
-    def train(self, **more: Any) -> dict[str, Any]:
-        return self.start("/trainings", {**WALK, "steps": 100, **more})
+    def train(self, **options: Any) -> dict[str, Any]:
+        return self.start("/trainings", {**WALK, "steps": 100, **options})
 
-    def race(self, **more: Any) -> dict[str, Any]:
-        return self.start("/races", {**WALK, **more})
+    def race(self, **options: Any) -> dict[str, Any]:
+        return self.start("/races", {**WALK, **options})
 
-    def slow_training(self, **more: Any) -> dict[str, Any]:
-        """One that runs until it is stopped."""
-        run = self.train(steps=10_000_000, pace=20, evaluate_every=0, **more)
+    def slow_training(self, **options: Any) -> dict[str, Any]:
+        """Start a training that runs until it is stopped."""
+        run = self.train(steps=10_000_000, pace=20, evaluate_every=0, **options)
         return self.until(run, lambda now: now["progress"]["done"] > 0)
 
     def look(self, run: dict[str, Any]) -> dict[str, Any]:
         shown: dict[str, Any] = self.get(f"/{run['kind']}s/{run['id']}")
         return shown
 
-    def until(self, run: dict[str, Any], is_so: Any) -> dict[str, Any]:
+    def until(self, run: dict[str, Any], condition: Any) -> dict[str, Any]:
         patience = Patience()
-        while not is_so(now := self.look(run)):
+        while not condition(now := self.look(run)):
             assert now["state"] not in ENDED, now
             patience.check(now)
             time.sleep(0.01)
@@ -75,7 +75,7 @@ class Api:
 
 
 def refused(response: httpx2.Response, status: int, *words: str) -> dict[str, Any]:
-    """Check that an answer is a problem document whose detail has these words."""
+    """Check that a response is a problem document whose detail has these words."""
     assert response.status_code == status, response.text
     assert response.headers["content-type"] == "application/problem+json"
     problem: dict[str, Any] = response.json()

@@ -1,4 +1,4 @@
-"""The real app with its real jobs; a client that calls it as a browser on this machine would."""
+"""Fixtures: the real app with real jobs, and a client that calls it as a local browser does."""
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -22,7 +22,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="package")
 def api(data: Path) -> Iterator[Api]:
-    """One server for all tests of this folder that do not mind each other's runs."""
+    """Return an API client of a server that the tests of this folder share."""
     settings = Settings(data=data, job_niceness=0)
     with open_store(settings) as store:
         app = create_app(settings, store)
@@ -32,13 +32,13 @@ def api(data: Path) -> Iterator[Api]:
 
 @pytest.fixture(scope="package")
 def trained(api: Api) -> dict[str, Any]:
-    """A training that is finished."""
+    """Return a finished training."""
     return api.finished(api.train(name="trained once"))
 
 
 @pytest.fixture
 def serve(data: Path) -> Iterator[Callable[..., Api]]:
-    """A server of a test's own, with settings of its own; without its lifespan, so no jobs run."""
+    """Return a factory of servers with own settings; without lifespan, so that no jobs run."""
     with ExitStack() as stack:
 
         def make(**settings: Any) -> Api:

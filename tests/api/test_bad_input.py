@@ -1,4 +1,4 @@
-"""Whatever is wrong gets a 4xx and one sentence that names what is valid."""
+"""Invalid input is refused with a 4xx whose detail names the valid values."""
 
 import json
 from typing import Any
@@ -65,8 +65,10 @@ WRONG_TRAININGS: list[tuple[dict[str, Any], tuple[str, ...]]] = [
 
 
 @pytest.mark.parametrize(("wrong", "words"), WRONG_TRAININGS, ids=lambda v: str(v)[:40])
-def test_of_a_training(api: Api, wrong: dict[str, Any], words: tuple[str, ...]) -> None:
-    # As text, because no client of good manners sends NaN.
+def test_invalid_training_is_refused_with_valid_values(
+    api: Api, wrong: dict[str, Any], words: tuple[str, ...]
+) -> None:
+    # Encoded here, because the client's encoder rejects NaN.
     body = json.dumps({**WALK, **wrong})
     problem = refused(post(api, "/trainings", body), 422, *words)
     assert len(problem["detail"]) < 700
@@ -96,7 +98,9 @@ WRONG_RACES: list[tuple[dict[str, Any], tuple[str, ...]]] = [
 
 
 @pytest.mark.parametrize(("wrong", "words"), WRONG_RACES, ids=lambda v: str(v)[:40])
-def test_of_a_race(api: Api, wrong: dict[str, Any], words: tuple[str, ...]) -> None:
+def test_invalid_race_is_refused_with_valid_values(
+    api: Api, wrong: dict[str, Any], words: tuple[str, ...]
+) -> None:
     refused(post(api, "/races", json.dumps({**WALK, **wrong})), 422, *words)
 
 
@@ -105,24 +109,24 @@ def test_of_a_race(api: Api, wrong: dict[str, Any], words: tuple[str, ...]) -> N
     ["", "{", "[]", "3", "null", '"text"', "[" * 100_000, '{"gait": 1' + "0" * 10_000 + "}"],
     ids=lambda body: body[:12] or "nothing",
 )
-def test_of_json(api: Api, body: str) -> None:
+def test_invalid_json_is_refused(api: Api, body: str) -> None:
     response = post(api, "/trainings", body)
     assert response.status_code in (400, 422)
     refused(response, response.status_code)
 
 
-def test_of_what_is_not_json(api: Api) -> None:
+def test_body_that_is_not_json_is_refused(api: Api) -> None:
     refused(api.call("POST", "/trainings", data={"gait": "x"}), 422, "JSON object")
     refused(api.call("POST", "/trainings", content=b"\xff\xfe{"), 422)
 
 
-def test_all_wrong_fields_are_named(api: Api) -> None:
+def test_all_invalid_fields_are_listed(api: Api) -> None:
     body = {**WALK, "steps": 0, "alpha": 2, "pace": "fast"}
     problem = refused(api.call("POST", "/trainings", json=body), 422)
     assert [error["field"] for error in problem["errors"]] == ["steps", "pace", "alpha"]
 
 
-def test_a_training_that_has_not_ended_gives_no_table(api: Api) -> None:
+def test_running_training_has_no_table(api: Api) -> None:
     run = api.slow_training()
     lanes = [{"agent": "q-learning", "training_id": run["id"]}]
     problem = refused(
@@ -133,7 +137,7 @@ def test_a_training_that_has_not_ended_gives_no_table(api: Api) -> None:
     api.stop(run)
 
 
-def test_a_table_for_another_gait(api: Api, trained: dict[str, Any]) -> None:
+def test_table_of_another_gait_or_grid_is_refused(api: Api, trained: dict[str, Any]) -> None:
     lanes = [{"agent": "q-learning", "training_id": trained["id"]}]
     other = {**WALK, "gait": "front-back-origin", "lanes": lanes}
     refused(api.call("POST", "/races", json=other), 422, "gait", "front-back-origin")
@@ -141,7 +145,7 @@ def test_a_table_for_another_gait(api: Api, trained: dict[str, Any]) -> None:
     refused(api.call("POST", "/races", json=wider), 422, "grid_side_m")
 
 
-def test_unknown_paths_and_methods(api: Api) -> None:
+def test_unknown_paths_and_methods_are_refused(api: Api) -> None:
     refused(api.call("GET", "/contests"), 404, "/docs")
     refused(api.call("GET", "/trainings/none"), 404, "none", "/api/v1/trainings")
     refused(api.call("PUT", "/trainings"), 405, "POST")
@@ -150,7 +154,7 @@ def test_unknown_paths_and_methods(api: Api) -> None:
     refused(api.client.get("/static/%2e%2e/pyproject.toml"), 404)
 
 
-def test_of_the_stage(api: Api) -> None:
+def test_invalid_stage_change_is_refused(api: Api) -> None:
     refused(api.call("PUT", "/stage", json={"run_id": "none"}), 404, "none")
     for wrong, word in (
         ({"speed": 65}, "0.25 to 64"),
@@ -171,7 +175,7 @@ def post(api: Api, path: str, body: str) -> Any:
 
 
 @pytest.mark.parametrize("mark", ["\u202e", "\u2066", "\u200f", "\u061c", "\u200b", "\ufeff"])
-def test_a_name_has_no_characters_that_cannot_be_seen(api: Api, mark: str) -> None:
+def test_name_with_invisible_characters_is_refused(api: Api, mark: str) -> None:
     body = {**WALK, "steps": 5, "name": f"a{mark}b"}
     refused(api.call("POST", "/trainings", json=body), 422, "invisible", "writing direction")
     refused(api.call("POST", "/races", json={**WALK, "name": f"{mark}b"}), 422, "invisible")

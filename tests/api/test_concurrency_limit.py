@@ -1,10 +1,10 @@
-"""Requests are worked on in turns, fairly by address, and not while their clients are slow."""
+"""Concurrency limit: slots by role, fair by client, and not held by slow clients."""
 
 import asyncio
 
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api.concurrency_limit import TURNS, ConcurrencyLimit, RoundRobinSemaphore
+from app.api.concurrency_limit import SLOTS, ConcurrencyLimit, RoundRobinSemaphore
 
 
 def scope(role: str, address: str) -> Scope:
@@ -19,17 +19,17 @@ async def ignore(message: Message) -> None:
     del message
 
 
-def test_the_semaphore_is_fair_by_who_waits() -> None:
-    async def play() -> list[str]:
+def test_semaphore_is_round_robin_by_client() -> None:
+    async def scenario() -> list[str]:
         semaphore, order = RoundRobinSemaphore(1), []
         await semaphore.acquire("first")
 
-        async def take(who: str) -> None:
-            await semaphore.acquire(who)
-            order.append(who)
+        async def take(client: str) -> None:
+            await semaphore.acquire(client)
+            order.append(client)
             semaphore.release()
 
-        tasks = [asyncio.create_task(take(who)) for who in ("a", "a", "a", "b")]
+        tasks = [asyncio.create_task(take(client)) for client in ("a", "a", "a", "b")]
         await asyncio.sleep(0)
         tasks[0].cancel()
         semaphore.release()
@@ -37,11 +37,11 @@ def test_the_semaphore_is_fair_by_who_waits() -> None:
         await asyncio.wait_for(semaphore.acquire("last"), 1)
         return order
 
-    assert asyncio.run(play()) == ["a", "b", "a"]
+    assert asyncio.run(scenario()) == ["a", "b", "a"]
 
 
-def test_strangers_keep_no_operator_waiting() -> None:
-    async def play() -> tuple[int, int]:
+def test_spectators_do_not_delay_operators() -> None:
+    async def scenario() -> tuple[int, int]:
         working = {"spectator": 0, "operator": 0}
 
         async def work(scope: Scope, receive: Receive, send: Send) -> None:
@@ -59,11 +59,11 @@ def test_strangers_keep_no_operator_waiting() -> None:
         await asyncio.gather(*tasks, return_exceptions=True)
         return working["spectator"], working["operator"]
 
-    assert asyncio.run(play()) == (TURNS["spectator"], 2)
+    assert asyncio.run(scenario()) == (SLOTS["spectator"], 2)
 
 
-def test_who_does_not_read_and_who_streams_has_no_turn() -> None:
-    async def play() -> int:
+def test_slow_readers_and_streams_hold_no_slot() -> None:
+    async def scenario() -> int:
         answered = 0
 
         async def answer(scope: Scope, receive: Receive, send: Send) -> None:
@@ -87,8 +87,8 @@ def test_who_does_not_read_and_who_streams_has_no_turn() -> None:
 
         app = ConcurrencyLimit(answer)
         tasks = [
-            asyncio.ensure_future(app(scope("spectator", who), never, stall))
-            for who in ["stream", "unread"] * 10 * TURNS["spectator"]
+            asyncio.ensure_future(app(scope("spectator", client), never, stall))
+            for client in ["stream", "unread"] * 10 * SLOTS["spectator"]
         ]
         await asyncio.sleep(0.05)
         for task in tasks:
@@ -96,13 +96,13 @@ def test_who_does_not_read_and_who_streams_has_no_turn() -> None:
         await asyncio.gather(*tasks, return_exceptions=True)
         return answered
 
-    assert asyncio.run(play()) == 20 * TURNS["spectator"]
+    assert asyncio.run(scenario()) == 20 * SLOTS["spectator"]
 
 
-def test_a_turn_is_taken_once_though_two_tasks_of_a_request_wait() -> None:
-    """As where an answer is sent while another task waits for the client to go."""
+def test_two_tasks_of_a_request_acquire_one_slot() -> None:
+    """One task sends a response while another waits for the client's disconnect."""
 
-    async def play() -> None:
+    async def scenario() -> None:
         async def answer(scope: Scope, receive: Receive, send: Send) -> None:
             async def stream() -> None:
                 for _ in range(3):
@@ -118,7 +118,7 @@ def test_a_turn_is_taken_once_though_two_tasks_of_a_request_wait() -> None:
             await asyncio.sleep(0)
 
         app = ConcurrencyLimit(answer)
-        for _ in range(10 * TURNS["spectator"]):
+        for _ in range(10 * SLOTS["spectator"]):
             await asyncio.wait_for(app(scope("spectator", "a"), later, slowly), 1)
 
-    asyncio.run(play())
+    asyncio.run(scenario())

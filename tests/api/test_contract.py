@@ -1,4 +1,4 @@
-"""The API's description: every route, every answer, and real answers as it says."""
+"""OpenAPI document: it describes every route and response, and real responses match it."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -33,7 +33,7 @@ from tests.experiments.made import around, summary_of, walked
 from tests.storage.stores import temporary_store
 
 PAGES = {"/", "/docs", "/favicon.ico", "/openapi.json", "/static", "/viewer", "/viewer/"}
-"""For browsers: they are no part of the API."""
+"""Pages for browsers, which are no part of the API."""
 Serve = Callable[..., Api]
 
 
@@ -49,7 +49,7 @@ def described(app: FastAPI) -> dict[str, Any]:
 
 
 def resolved(described: dict[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
-    """The answer that a reference leads to."""
+    """Resolve a reference to a response component."""
     if "$ref" not in answer:
         return answer
     found: dict[str, Any] = described["components"]["responses"][answer["$ref"].rpartition("/")[2]]
@@ -67,7 +67,7 @@ def test_every_route_is_described(app: FastAPI, described: dict[str, Any]) -> No
     assert {(method, path) for method, path, _ in operations(described)} == routes
 
 
-def test_every_operation_names_all_that_it_can_answer(described: dict[str, Any]) -> None:
+def test_every_operation_describes_all_its_responses(described: dict[str, Any]) -> None:
     for method, path, operation in operations(described):
         said = {int(status) for status in operation["responses"]}
         assert problems_of(method, path, operation) <= said, path
@@ -85,7 +85,7 @@ def test_every_operation_names_all_that_it_can_answer(described: dict[str, Any])
                 assert schema, (path, status, media_type)
 
 
-def test_every_error_of_the_product_has_a_described_answer(described: dict[str, Any]) -> None:
+def test_every_error_status_is_described(described: dict[str, Any]) -> None:
     statuses = {
         problem["content"]["application/problem+json"]["schema"]["$ref"]
         for problem in described["components"]["responses"].values()
@@ -98,11 +98,11 @@ def test_every_error_of_the_product_has_a_described_answer(described: dict[str, 
     assert all(issubclass(error, HexapodError) for error in STATUSES)
 
 
-def test_what_a_new_route_can_answer_follows_from_what_it_is(app: FastAPI) -> None:
+def test_new_route_gets_its_problem_responses(app: FastAPI) -> None:
 
     @app.put("/api/v1/new/{thing}/part")
     def put_part(thing: str, body: dict[str, int]) -> None:
-        """A route that says nothing of its errors."""
+        """A route without declared errors."""
 
     operation = app.openapi()["paths"]["/api/v1/new/{thing}/part"]["put"]
     errors = {int(status) for status in operation["responses"] if int(status) >= 400}
@@ -118,7 +118,7 @@ def test_what_a_new_route_can_answer_follows_from_what_it_is(app: FastAPI) -> No
         ({"token": "a-token-for-tests", "spectators": "token"}, False, False),
     ],
 )
-def test_who_needs_the_token_is_described(
+def test_security_requirements_are_described(
     serve: Serve, settings: dict[str, Any], reads: bool, writes: bool
 ) -> None:
     api = serve(**settings)
@@ -136,7 +136,7 @@ def test_who_needs_the_token_is_described(
                 assert (answer.status_code != 401) == is_free, path
 
 
-def test_starts_say_where_the_run_is_and_what_can_be_done_with_it(
+def test_starts_have_location_and_links(
     described: dict[str, Any],
 ) -> None:
     for kind in ("training", "race", "experiment"):
@@ -147,9 +147,7 @@ def test_starts_say_where_the_run_is_and_what_can_be_done_with_it(
     assert too_many["headers"]["Retry-After"]["required"]
 
 
-def test_figures_are_described_in_the_types_in_which_they_come(
-    api: Api, described: dict[str, Any]
-) -> None:
+def test_metrics_are_described_in_their_media_types(api: Api, described: dict[str, Any]) -> None:
     forms = described["paths"]["/metrics"]["get"]["responses"]["200"]["content"]
     for accept in ("", "application/openmetrics-text; version=1.0.0", "text/html", "a/b;version=x"):
         answer = api.client.get("/metrics", headers={"Accept": accept})
@@ -159,8 +157,8 @@ def test_figures_are_described_in_the_types_in_which_they_come(
         }
 
 
-def real_answers(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, Any]]:
-    """Answers of all kinds, each with its model."""
+def real_responses(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, Any]]:
+    """Yield (response model, response) for responses of all kinds."""
     race = api.race(
         lanes=[{"agent": "greedy"}, {"agent": "q-learning", "training_id": training["id"]}], steps=3
     )
@@ -193,16 +191,16 @@ def real_answers(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, Any]
     yield TrialsView, api.get(f"/experiments/{experiment['id']}/trials")
 
 
-def test_real_answers_are_as_described(api: Api, trained: dict[str, Any]) -> None:
+def test_real_responses_match_their_models(api: Api, trained: dict[str, Any]) -> None:
     count = 0
-    for model, answer in real_answers(api, trained):
+    for model, answer in real_responses(api, trained):
         TypeAdapter(model).validate_python(answer)
         count += 1
     assert count > 20
 
 
 @pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep"])
-def test_summaries_of_every_experiment_are_as_described(experiment: str) -> None:
+def test_summaries_of_every_experiment_match_the_model(experiment: str) -> None:
     agents = {} if experiment == "table1" else {"agents": ("q-learning", "greedy")}
     if experiment == "figure4":
         agents = {}
@@ -212,7 +210,7 @@ def test_summaries_of_every_experiment_are_as_described(experiment: str) -> None
         assert summary["settings"]
 
 
-def test_the_summary_of_an_experiment_that_ran_is_as_described() -> None:
+def test_summary_of_a_run_experiment_matches_the_model() -> None:
     from app.experiments.summary import summarise
 
     tried, results = walked("table1", 2)

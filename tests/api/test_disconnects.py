@@ -1,4 +1,4 @@
-"""A client that leaves a stream is no error; an error is one all the same."""
+"""Stream errors after a disconnect are suppressed; other errors are raised."""
 
 import asyncio
 
@@ -11,11 +11,11 @@ from app.api.disconnects import Disconnects
 SCOPE: Scope = {"type": "http"}
 
 
-async def gone() -> Message:
+async def receive_disconnect() -> Message:
     return {"type": "http.disconnect"}
 
 
-async def here() -> Message:
+async def receive_request() -> Message:
     return {"type": "http.request", "body": b"", "more_body": False}
 
 
@@ -35,13 +35,13 @@ BROKEN = anyio.BrokenResourceError()
 
 
 @pytest.mark.parametrize("error", [BROKEN, ExceptionGroup("", [ExceptionGroup("", [BROKEN])])])
-def test_who_has_left_breaks_nothing(error: Exception) -> None:
-    asyncio.run(failing(error)(SCOPE, gone, ignore))
+def test_stream_error_after_a_disconnect_is_suppressed(error: Exception) -> None:
+    asyncio.run(failing(error)(SCOPE, receive_disconnect, ignore))
     with pytest.raises(type(error)):
-        asyncio.run(failing(error)(SCOPE, here, ignore))
+        asyncio.run(failing(error)(SCOPE, receive_request, ignore))
 
 
-def test_other_errors_are_told() -> None:
+def test_other_errors_are_raised() -> None:
     for error in (ValueError(), ExceptionGroup("", [BROKEN, ValueError()])):
         with pytest.raises(type(error)):
-            asyncio.run(failing(error)(SCOPE, gone, ignore))
+            asyncio.run(failing(error)(SCOPE, receive_disconnect, ignore))

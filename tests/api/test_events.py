@@ -1,4 +1,4 @@
-"""The stream of server-sent events: its snapshot, beside what happens while that is read."""
+"""Event stream: the snapshot is consistent with the events published while it is read."""
 
 import asyncio
 import json
@@ -21,7 +21,7 @@ from tests.patience import LONG_S
 from tests.storage.stores import training
 
 
-class Told(NamedTuple):
+class ReceivedEvent(NamedTuple):
     """One server-sent event."""
 
     event: str
@@ -30,15 +30,15 @@ class Told(NamedTuple):
 
 
 class Stream:
-    """The stream of one client, on the loop of the test."""
+    """The event stream of one client, on the event loop of the test."""
 
     def __init__(self, services: Services, last_event_id: int | None = None) -> None:
         header = None if last_event_id is None else str(last_event_id)
         self.events: Any = events.get_events(services, "operator", None, Listener(), header)
 
-    async def next(self) -> Told:
+    async def next(self) -> ReceivedEvent:
         event = await asyncio.wait_for(anext(self.events), LONG_S)
-        return Told(event.event, int(event.id), json.loads(event.raw_data))
+        return ReceivedEvent(event.event, int(event.id), json.loads(event.raw_data))
 
     async def __aenter__(self) -> "Stream":
         return self
@@ -46,7 +46,7 @@ class Stream:
     async def __aexit__(self, *_: object) -> None:
         await self.events.aclose()
 
-    async def next_of(self, name: str) -> Told:
+    async def next_of(self, name: str) -> ReceivedEvent:
         while (event := await self.next()).event != name:
             pass
         return event
@@ -60,8 +60,8 @@ def services(tmp_path: Path) -> Iterator[Services]:
         yield made
 
 
-class Held:
-    """Holds the read of a snapshot, before or after it asks the database."""
+class BlockedRead:
+    """Blocks the read of a snapshot, before or after its query."""
 
     def __init__(self, services: Services, monkeypatch: pytest.MonkeyPatch, moment: str) -> None:
         self.reached, self.go_on = threading.Event(), threading.Event()
@@ -79,7 +79,7 @@ class Held:
 
 
 def change(services: Services, state: Any) -> None:
-    """Change the state of run `a`, and publish it, as jobs do."""
+    """Change the state of run `a` and publish the change, as jobs do."""
     run = services.store.change("a", QUEUED | LIVE, state)
     services.bus.publish("run", run_view(run), "a")
 
@@ -89,12 +89,12 @@ def test_change_during_the_read_of_the_snapshot_is_neither_lost_nor_undone(
     services: Services, monkeypatch: pytest.MonkeyPatch, moment: str
 ) -> None:
     services.store.create(training("a"))
-    held = Held(services, monkeypatch, moment)
+    held = BlockedRead(services, monkeypatch, moment)
 
     async def test() -> None:
         async with Stream(services) as stream:
             first = asyncio.create_task(stream.next())
-            # The loop goes on meanwhile.
+            # The event loop is not blocked meanwhile.
             assert await asyncio.to_thread(held.reached.wait, LONG_S)
             change(services, "running")
             services.bus.publish("evaluation", {"run_id": "a", "step": 1}, "a")
@@ -104,8 +104,8 @@ def test_change_during_the_read_of_the_snapshot_is_neither_lost_nor_undone(
             assert snapshot.event == "snapshot"
             shown = snapshot.data["runs"][0]["state"]
             assert shown == ("queued" if moment == "after" else "finished")
-            told = [await stream.next(), await stream.next()]
-            assert [(t.event, t.data.get("state")) for t in told] == [
+            received = [await stream.next(), await stream.next()]
+            assert [(t.event, t.data.get("state")) for t in received] == [
                 ("evaluation", None),
                 ("run", "finished"),
             ]
@@ -114,7 +114,7 @@ def test_change_during_the_read_of_the_snapshot_is_neither_lost_nor_undone(
     assert held.thread is not threading.main_thread()
 
 
-def test_snapshot_is_read_and_encoded_beside_the_loop(
+def test_snapshot_is_read_and_encoded_off_the_event_loop(
     services: Services, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for number in range(200):
@@ -137,8 +137,8 @@ def test_snapshot_is_read_and_encoded_beside_the_loop(
     assert threads[0] is not threading.main_thread()
 
 
-def test_client_that_leaves_after_the_snapshot_misses_nothing(services: Services) -> None:
-    """The snapshot's id is no later than the events that it was followed by."""
+def test_client_that_reconnects_after_the_snapshot_misses_no_event(services: Services) -> None:
+    """The snapshot's id precedes the ids of the events that follow it."""
     first = services.bus.last_id
     for step in range(1, 4):
         services.bus.publish("evaluation", {"run_id": "a", "step": step}, "a")
@@ -155,7 +155,7 @@ def test_client_that_leaves_after_the_snapshot_misses_nothing(services: Services
     asyncio.run(test())
 
 
-def test_replayed_deletion_does_not_take_away_a_run_that_was_imported_again(
+def test_replayed_deletion_does_not_remove_a_run_that_was_imported_again(
     services: Services,
 ) -> None:
     first = services.bus.last_id

@@ -1,4 +1,4 @@
-"""The resource `experiments`: what is asked for, what fills, and what is there in the end."""
+"""The resource `experiments`: start, summary, trials, report; and the what-if."""
 
 import csv
 import io
@@ -26,11 +26,11 @@ SMALL = {
 
 @pytest.fixture(scope="module")
 def swept(api: Api) -> dict[str, Any]:
-    """A small grid that is finished."""
+    """Return a finished sweep over a small grid."""
     return api.finished(api.start("/experiments", {**SMALL, "name": "<b>Mine</b>"}))
 
 
-def test_it_ends_with_a_summary_and_a_report(swept: dict[str, Any], api: Api) -> None:
+def test_finished_experiment_has_summary_and_report(swept: dict[str, Any], api: Api) -> None:
     assert (swept["kind"], swept["name"], swept["workers"]) == ("experiment", "<b>Mine</b>", 1)
     assert swept["progress"] == {"done": 7, "total": 7}
     assert swept["config"]["alpha"] == [0.1, 0.5]
@@ -45,9 +45,7 @@ def test_it_ends_with_a_summary_and_a_report(swept: dict[str, Any], api: Api) ->
     assert swept["id"] not in {run["id"] for run in api.get("/trainings")["items"]}
 
 
-def test_the_report_comes_with_a_policy_that_lets_nothing_run(
-    swept: dict[str, Any], api: Api
-) -> None:
+def test_report_has_a_policy_that_forbids_scripts(swept: dict[str, Any], api: Api) -> None:
     for path in ("report", *(f"files/{name}" for name in swept["result"]["files"])):
         answer = api.call("GET", f"/experiments/{swept['id']}/{path}")
         assert answer.status_code == 200, path
@@ -63,7 +61,7 @@ def test_the_report_comes_with_a_policy_that_lets_nothing_run(
     assert kinds >= {"html", "json", "csv", "png", "svg", "pdf"}
 
 
-def test_trials_are_there_one_by_one(swept: dict[str, Any], api: Api) -> None:
+def test_trials_are_returned_as_json_and_csv(swept: dict[str, Any], api: Api) -> None:
     rows = api.get(f"/experiments/{swept['id']}/trials")["trials"]
     given = {"seeds": 3, "simulator": "kinematic", "gaits": ("left-right-origin",)}
     config = experiment_config("sweep", {**given, "steps": (40,), "alpha": (0.1, 0.5)})
@@ -77,7 +75,7 @@ def test_trials_are_there_one_by_one(swept: dict[str, Any], api: Api) -> None:
     assert file.content == answer.content
 
 
-def test_only_its_own_files_are_given(swept: dict[str, Any], api: Api) -> None:
+def test_only_report_files_are_served(swept: dict[str, Any], api: Api) -> None:
     for name in ("nothing", "q-table.npz", "../run.json", "..%2f..%2frun.json", "figures", "%00"):
         answer = api.call("GET", f"/experiments/{swept['id']}/files/{name}")
         assert answer.status_code == 404, name
@@ -86,7 +84,7 @@ def test_only_its_own_files_are_given(swept: dict[str, Any], api: Api) -> None:
         refused(api.call("GET", f"/experiments/none{path}"), 404, "/api/v1/experiments")
 
 
-def test_it_moves_to_another_server(swept: dict[str, Any], api: Api) -> None:
+def test_exported_experiment_can_be_imported(swept: dict[str, Any], api: Api) -> None:
     archive = api.call("GET", f"/experiments/{swept['id']}/export")
     assert archive.headers["content-type"] == "application/zip"
     answer = api.call("POST", "/import", content=archive.content)
@@ -101,26 +99,28 @@ def test_it_moves_to_another_server(swept: dict[str, Any], api: Api) -> None:
     refused(api.call("GET", f"/experiments/{copy['id']}/summary"), 404)
 
 
-def test_before_it_has_begun_there_is_an_empty_summary_and_no_report(serve: Serve) -> None:
-    calm = serve()
-    run = calm.start("/experiments", {"experiment": "table1"})
+def test_queued_experiment_has_an_empty_summary_and_no_report(serve: Serve) -> None:
+    idle = serve()
+    run = idle.start("/experiments", {"experiment": "table1"})
     assert (run["name"], run["progress"]["total"]) == ("Table 1, 30 seeds", 1008)
-    summary = calm.get(f"/experiments/{run['id']}/summary")
+    summary = idle.get(f"/experiments/{run['id']}/summary")
     assert summary["trials"] == {"done": 0, "total": 1008, "failed": 0, "set_aside": []}
     assert (summary["experiment"], summary["settings"]) == ("table1", [])
-    told = refused(calm.call("GET", f"/experiments/{run['id']}/report"), 409, "finished or stopped")
-    assert told["state"] == "queued"
-    assert calm.get(f"/experiments/{run['id']}/trials") == {"trials": []}
-    stopped = calm.tell(run, "stop").json()
+    problem = refused(
+        idle.call("GET", f"/experiments/{run['id']}/report"), 409, "finished or stopped"
+    )
+    assert problem["state"] == "queued"
+    assert idle.get(f"/experiments/{run['id']}/trials") == {"trials": []}
+    stopped = idle.tell(run, "stop").json()
     assert stopped["state"] == "stopped"
-    assert calm.tell(run, "resume").json()["state"] == "queued"
-    refused(calm.tell(run, "resume"), 409, "failed or interrupted or paused or stopped")
+    assert idle.tell(run, "resume").json()["state"] == "queued"
+    refused(idle.tell(run, "resume"), 409, "failed or interrupted or paused or stopped")
 
 
-def test_the_same_key_is_the_same_experiment(serve: Serve) -> None:
-    calm = serve()
+def test_same_idempotency_key_returns_the_same_experiment(serve: Serve) -> None:
+    idle = serve()
     key = {"Idempotency-Key": "once"}
-    answers = [calm.call("POST", "/experiments", json=SMALL, headers=key) for _ in range(3)]
+    answers = [idle.call("POST", "/experiments", json=SMALL, headers=key) for _ in range(3)]
     assert len({answer.json()["id"] for answer in answers}) == 1
 
 
@@ -158,26 +158,26 @@ def test_the_same_key_is_the_same_experiment(serve: Serve) -> None:
          "settings"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_is_refused_in_a_sentence(
+def test_invalid_experiment_is_refused_with_a_sentence(
     serve: Serve, body: dict[str, Any], words: str
 ) -> None:
     whole = body if not body else {"experiment": "sweep", "simulator": "kinematic", **body}
-    calm = serve()
-    refused(calm.call("POST", "/experiments", json=whole), 422, words)
-    assert calm.get("/experiments")["items"] == []
+    idle = serve()
+    refused(idle.call("POST", "/experiments", json=whole), 422, words)
+    assert idle.get("/experiments")["items"] == []
 
 
-def test_experiments_are_not_for_the_stage(serve: Serve) -> None:
-    calm = serve()
-    run = calm.start("/experiments", SMALL)
-    assert calm.get("/stage")["run_id"] is None
-    refused(calm.call("PUT", "/stage", json={"run_id": run["id"]}), 422, "trainings and races")
-    assert calm.get("/stage")["run_id"] is None
-    training = calm.train()
-    assert calm.get("/stage")["run_id"] == training["id"]
+def test_experiment_cannot_be_shown_on_stage(serve: Serve) -> None:
+    idle = serve()
+    run = idle.start("/experiments", SMALL)
+    assert idle.get("/stage")["run_id"] is None
+    refused(idle.call("PUT", "/stage", json={"run_id": run["id"]}), 422, "trainings and races")
+    assert idle.get("/stage")["run_id"] is None
+    training = idle.train()
+    assert idle.get("/stage")["run_id"] == training["id"]
 
 
-def test_a_form_is_told_all_that_it_needs(api: Api) -> None:
+def test_options_describe_every_experiment(api: Api) -> None:
     options = api.get("/options")
     shown = {one["name"]: one for one in options["experiments"]}
     assert list(shown) == ["table1", "figure4", "sweep"]
@@ -194,16 +194,16 @@ def test_a_form_is_told_all_that_it_needs(api: Api) -> None:
 
 
 @pytest.mark.parametrize("body", [{}, {"gait": "left-right-origin", "steps": 2_001}])
-def test_a_what_if_says_what_is_wrong(serve: Serve, body: dict[str, Any]) -> None:
+def test_invalid_what_if_is_refused(serve: Serve, body: dict[str, Any]) -> None:
     refused(serve().call("POST", "/what-if", json=body), 422)
 
 
-def test_a_what_if_begins_with_an_empty_table(serve: Serve) -> None:
+def test_what_if_that_continues_a_training_is_refused(serve: Serve) -> None:
     body = {"gait": "left-right-origin", "continue_from": "abc"}
     refused(serve().call("POST", "/what-if", json=body), 422, "continue_from")
 
 
-def test_a_what_if_has_both_halves(api: Api) -> None:
+def test_what_if_compares_chosen_with_default_settings(api: Api) -> None:
     body = {"gait": "left-right-origin", "steps": 20, "alpha": 0.7, "seed": 3, "name": "x"}
     answer = api.call("POST", "/what-if", json=body).json()
     assert (answer["seeds"], len(answer["chosen"]["distances_m"])) == (30, 30)

@@ -1,4 +1,4 @@
-"""Large answers that nobody reads, and large bodies that never end, are bounded."""
+"""Memory budget: unread responses and unfinished request bodies are bounded."""
 
 import socket
 import threading
@@ -51,7 +51,7 @@ def port() -> Iterator[int]:
     thread.join()
 
 
-def ask(stack: ExitStack, port: int, head: str, body: bytes = b"") -> socket.socket:
+def send_request(stack: ExitStack, port: int, head: str, body: bytes = b"") -> socket.socket:
     sock = stack.enter_context(socket.socket())
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
     sock.settimeout(30)
@@ -60,32 +60,32 @@ def ask(stack: ExitStack, port: int, head: str, body: bytes = b"") -> socket.soc
     return sock
 
 
-def test_unread_answers_are_refused_beyond_the_share_and_whole_within(port: int) -> None:
+def test_unread_responses_are_complete_within_the_share_and_refused_beyond(port: int) -> None:
     with ExitStack() as stack:
         within = ANSWERS_SHARE_BYTES // LARGE
-        readers = [ask(stack, port, "GET /large", b"\r\n") for _ in range(within)]
+        readers = [send_request(stack, port, "GET /large", b"\r\n") for _ in range(within)]
         assert [reader.recv(12) for reader in readers] == [b"HTTP/1.1 200"] * within
-        refused = ask(stack, port, "GET /large", b"\r\n").recv(4096)
+        refused = send_request(stack, port, "GET /large", b"\r\n").recv(4096)
         assert refused.startswith(b"HTTP/1.1 429")
         assert b"retry-after: 5" in refused.lower()
-        assert ask(stack, port, "GET /small", b"\r\n").recv(12) == b"HTTP/1.1 200"
+        assert send_request(stack, port, "GET /small", b"\r\n").recv(12) == b"HTTP/1.1 200"
 
         whole = b""
         while whole.count(b"x") < LARGE:
             part = readers[0].recv(1 << 16)
             assert part
             whole += part
-        assert ask(stack, port, "GET /large", b"\r\n").recv(12) == b"HTTP/1.1 200"
+        assert send_request(stack, port, "GET /large", b"\r\n").recv(12) == b"HTTP/1.1 200"
 
 
-def test_bodies_that_never_end_are_refused_beyond_the_share(port: int) -> None:
+def test_unfinished_bodies_are_refused_beyond_the_share(port: int) -> None:
     with ExitStack() as stack:
         length = f"Content-Length: {64 * MB}\r\n\r\n".encode()
         held = BODIES_SHARE_BYTES // (16 * MB)
-        senders = [ask(stack, port, "POST /small", length) for _ in range(held + 1)]
+        senders = [send_request(stack, port, "POST /small", length) for _ in range(held + 1)]
         for sender in senders[:held]:
             sender.sendall(bytes(16 * MB - 256 * 1024))
         time.sleep(0.5)
-        with suppress(OSError):  # hung up on while it still sent
+        with suppress(OSError):  # the server closes the connection during the send
             senders[held].sendall(bytes(16 * MB))
         assert senders[held].recv(12) == b"HTTP/1.1 429"

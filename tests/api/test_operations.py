@@ -1,4 +1,4 @@
-"""Rate limits and metrics."""
+"""Rate limits, metrics and idempotency keys."""
 
 from collections.abc import Callable
 from typing import Any
@@ -12,7 +12,7 @@ TOKEN = "a-token-for-tests"
 Serve = Callable[..., Api]
 
 
-def test_an_address_starts_so_often_a_minute(serve: Serve) -> None:
+def test_starts_per_minute_are_limited_by_address(serve: Serve) -> None:
     api = serve(starts_per_minute=3)
     for _ in range(3):
         refused(api.call("POST", "/trainings", json={}), 422)
@@ -26,7 +26,7 @@ def test_an_address_starts_so_often_a_minute(serve: Serve) -> None:
         assert api.call(method, path, json={}).status_code != 429
 
 
-def test_spectators_have_an_allowance_of_their_own(serve: Serve) -> None:
+def test_spectators_have_a_token_bucket_of_their_own(serve: Serve) -> None:
     api = serve(starts_per_minute=1, token=TOKEN)
     film = "/races/x/recording?format=viser"
     refused(api.call("GET", film), 404)
@@ -35,7 +35,7 @@ def test_spectators_have_an_allowance_of_their_own(serve: Serve) -> None:
     refused(api.call("POST", "/trainings", json={}, headers=bearer), 422)
 
 
-def test_guessing_the_token_is_slow(serve: Serve) -> None:
+def test_wrong_tokens_are_rate_limited(serve: Serve) -> None:
     client = serve(token=TOKEN).client
     wrong = {"Authorization": "Bearer not-this-one"}
     for number in range(WRONG_TOKENS):
@@ -53,7 +53,7 @@ def test_guessing_the_token_is_slow(serve: Serve) -> None:
     assert client.get("/api/v1/stage").status_code == 200
 
 
-def test_who_has_the_cookie_is_not_kept_out_by_others_guesses(serve: Serve) -> None:
+def test_session_works_in_spite_of_wrong_guesses_from_its_address(serve: Serve) -> None:
     client = serve(token=TOKEN).client
     assert client.get("/", params={"token": TOKEN}).status_code == 303
     for _ in range(2 * WRONG_TOKENS):
@@ -61,7 +61,7 @@ def test_who_has_the_cookie_is_not_kept_out_by_others_guesses(serve: Serve) -> N
     assert client.put("/api/v1/stage", json={"playing": True}).status_code == 200
 
 
-def test_figures_for_prometheus(api: Api, trained: dict[str, Any]) -> None:
+def test_metrics_have_the_prometheus_format(api: Api, trained: dict[str, Any]) -> None:
     answer = api.client.get("/metrics")
     assert answer.headers["content-type"].startswith("text/plain")
     found = {
@@ -78,12 +78,12 @@ def test_figures_for_prometheus(api: Api, trained: dict[str, Any]) -> None:
     assert found["process_start_time_seconds",] > 0
 
 
-def test_figures_are_for_whoever_may_watch(serve: Serve) -> None:
+def test_metrics_are_readable_by_spectators(serve: Serve) -> None:
     assert serve(token=TOKEN).client.get("/metrics").status_code == 200
     refused(serve(token=TOKEN, spectators="token").client.get("/metrics"), 401)
 
 
-def test_a_key_that_is_none_is_refused(api: Api) -> None:
+def test_invalid_idempotency_key_is_refused(api: Api) -> None:
     for key in ("", "a b", "x" * 201):
         headers = {"Idempotency-Key": key}
         refused(api.call("POST", "/trainings", json=WALK, headers=headers), 422, "idempotency-key")

@@ -1,4 +1,4 @@
-"""Every error of the product's own has a status, and says in its sentence what to do."""
+"""Each error class is mapped to its HTTP status and headers, with its message as the detail."""
 
 import asyncio
 import json
@@ -25,12 +25,14 @@ from app.storage.errors import Busy, Conflict, NotFound, StorageFailed, StorageF
     ],
     ids=lambda value: type(value).__name__,
 )
-def test_an_error_has_its_status(error: HexapodError, status: int, headers: dict[str, str]) -> None:
+def test_error_is_mapped_to_its_status(
+    error: HexapodError, status: int, headers: dict[str, str]
+) -> None:
     request = Request({"type": "http", "method": "GET", "path": "/", "headers": []})
     response = asyncio.run(_hexapod_error(request, error))
     assert response.status_code == status
     assert response.headers["content-type"] == "application/problem+json"
     assert headers.items() <= dict(response.headers).items()
     if status != 500:
-        said = json.loads(bytes(response.body))["detail"]
-        assert said == f"{str(error)[:1].upper()}{str(error)[1:]}."
+        detail = json.loads(bytes(response.body))["detail"]
+        assert detail == f"{str(error)[:1].upper()}{str(error)[1:]}."

@@ -1,4 +1,4 @@
-"""The resource `races`: one request that trains and races, and what can be replayed."""
+"""The resource `races`: start with trainings, result, recording, timeline; and the stage."""
 
 import io
 from collections.abc import Callable
@@ -20,11 +20,11 @@ LANES = [
 
 @pytest.fixture(scope="module")
 def raced(api: Api) -> dict[str, Any]:
-    """The paper's three lanes, after a short practice."""
+    """Return a finished race of the paper's three lanes, after a short practice."""
     return api.finished(api.race(lanes=LANES, name="raced once"))
 
 
-def test_a_race_needs_no_more_than_its_gait(api: Api) -> None:
+def test_race_needs_only_a_gait(api: Api) -> None:
     race = api.start("/races", {"gait": WALK["gait"]})
     lanes = race["config"]["lanes"]
     assert [lane["agent"] for lane in lanes] == ["q-learning", "greedy", "two-step"]
@@ -36,7 +36,7 @@ def test_a_race_needs_no_more_than_its_gait(api: Api) -> None:
     api.stop(race)
 
 
-def test_one_request_trains_and_then_races(raced: dict[str, Any], api: Api) -> None:
+def test_race_trains_its_learner_first(raced: dict[str, Any], api: Api) -> None:
     lanes = raced["result"]["lanes"]
     training = api.get(f"/trainings/{lanes[0]['training_id']}")
     assert training["state"] == "finished"
@@ -53,7 +53,7 @@ def test_one_request_trains_and_then_races(raced: dict[str, Any], api: Api) -> N
     assert isinstance(raced["result"]["shared_machine"], bool)
 
 
-def test_the_same_race_comes_out_the_same(raced: dict[str, Any], api: Api) -> None:
+def test_race_is_reproducible(raced: dict[str, Any], api: Api) -> None:
     again = api.finished(api.race(lanes=LANES))
     for one, other in zip(raced["result"]["lanes"], again["result"]["lanes"], strict=True):
         for name in ("total_distance_m", "simulated_transitions", "steps"):
@@ -62,7 +62,7 @@ def test_the_same_race_comes_out_the_same(raced: dict[str, Any], api: Api) -> No
             assert one["clocks"][clock] == other["clocks"][clock]
 
 
-def test_a_race_with_a_table_that_there_is(api: Api, trained: dict[str, Any]) -> None:
+def test_lane_can_use_an_existing_table(api: Api, trained: dict[str, Any]) -> None:
     lanes = [{"agent": "q-learning", "training_id": trained["id"]}]
     robot = {"preset": "compliant"}
     race = api.finished(api.race(lanes=lanes, robot="compliant"))
@@ -75,7 +75,7 @@ def test_a_race_with_a_table_that_there_is(api: Api, trained: dict[str, Any]) ->
     assert plain["trained_robot"] is None
 
 
-def test_a_lane_observes_as_its_table_does(api: Api) -> None:
+def test_lane_uses_the_observation_of_its_table(api: Api) -> None:
     practice = {"steps": 20, "observation": "commanded", "seed": 3}
     race = api.finished(api.race(lanes=[{"agent": "q-learning", "training": practice}], seed=9))
     lane = race["config"]["lanes"][0]
@@ -84,7 +84,7 @@ def test_a_lane_observes_as_its_table_does(api: Api) -> None:
     assert (training["config"]["seed"], race["config"]["seed"]) == (3, 9)
 
 
-def test_practise_more_and_race_again(api: Api, raced: dict[str, Any]) -> None:
+def test_race_can_continue_an_earlier_training(api: Api, raced: dict[str, Any]) -> None:
     before = raced["config"]["lanes"][0]["training_id"]
     practice = {**PRACTICE, "continue_from": before}
     again = api.finished(api.race(lanes=[{"agent": "q-learning", "training": practice}]))
@@ -92,7 +92,7 @@ def test_practise_more_and_race_again(api: Api, raced: dict[str, Any]) -> None:
     assert training["config"]["continue_from"] == before
 
 
-def test_stopping_the_race_stops_the_practice_for_it(api: Api) -> None:
+def test_stopping_a_race_stops_its_training(api: Api) -> None:
     practice = {"steps": 10_000_000, "pace": 1, "evaluate_every": 0}
     race = api.race(lanes=[{"agent": "q-learning", "training": practice}])
     training = api.get(f"/trainings/{race['waiting_for'][0]}")
@@ -101,7 +101,7 @@ def test_stopping_the_race_stops_the_practice_for_it(api: Api) -> None:
     assert api.ended(training)["state"] == "stopped"
 
 
-def test_stopping_the_practice_stops_the_race_and_says_so(api: Api) -> None:
+def test_stopping_a_training_stops_the_race_with_the_reason(api: Api) -> None:
     practice = {"steps": 10_000_000, "pace": 1, "evaluate_every": 0}
     race = api.race(lanes=[{"agent": "q-learning", "training": practice}])
     training = api.get(f"/trainings/{race['waiting_for'][0]}")
@@ -114,7 +114,9 @@ def test_stopping_the_practice_stops_the_race_and_says_so(api: Api) -> None:
     refused(api.call("GET", f"/races/{race['id']}/recording"), 409, "no recording")
 
 
-def test_a_table_that_is_waited_for_is_kept(api: Api, trained: dict[str, Any]) -> None:
+def test_training_that_a_queued_race_needs_cannot_be_deleted(
+    api: Api, trained: dict[str, Any]
+) -> None:
     practice = {"steps": 10_000_000, "pace": 1, "evaluate_every": 0}
     lanes = [
         {"agent": "q-learning", "training_id": trained["id"]},
@@ -125,7 +127,7 @@ def test_a_table_that_is_waited_for_is_kept(api: Api, trained: dict[str, Any]) -
     api.stop(race)
 
 
-def test_its_recording_replays_it(api: Api, raced: dict[str, Any]) -> None:
+def test_recording_matches_its_arrays(api: Api, raced: dict[str, Any]) -> None:
     path = f"/races/{raced['id']}/recording"
     shown = api.get(path)
     assert [lane["agent"] for lane in shown["lanes"]] == ["q-learning", "greedy", "two-step"]
@@ -160,7 +162,7 @@ def test_its_timeline_is_flat_while_it_thinks(api: Api, raced: dict[str, Any]) -
     refused(api.call("GET", f"/races/{raced['id']}/timeline?clock=sun"), 422, "paper, wall, free")
 
 
-def test_who_starts_a_run_gives_it_the_stage(api: Api) -> None:
+def test_new_run_takes_a_stage_without_live_run(api: Api) -> None:
     first = api.slow_training()
     api.call("PUT", "/stage", json={"run_id": first["id"]})
     second = api.slow_training()
@@ -173,7 +175,7 @@ def test_who_starts_a_run_gives_it_the_stage(api: Api) -> None:
     api.stop(second, third)
 
 
-def test_too_many_that_wait_are_told_to_come_back(serve: Callable[..., Api]) -> None:
+def test_full_queue_refuses_starts_with_retry_after(serve: Callable[..., Api]) -> None:
     api = serve()  # whose jobs never start, so that all of them wait
     lanes = [{"agent": "q-learning", "training": {}}] * 6
     answers = [api.call("POST", "/races", json={**WALK, "lanes": lanes}) for _ in range(50)]
@@ -185,7 +187,7 @@ def test_too_many_that_wait_are_told_to_come_back(serve: Callable[..., Api]) -> 
     assert len(api.get("/trainings?limit=100")["items"]) == 6 * len(taken)
 
 
-def test_options_are_all_that_can_be_asked_for(api: Api) -> None:
+def test_all_options_can_be_started(api: Api) -> None:
     options = api.get("/options")
     for gait in options["gaits"]:
         for robot in options["robots"]:
@@ -198,7 +200,7 @@ def test_options_are_all_that_can_be_asked_for(api: Api) -> None:
     assert set(options["limits"]) <= set(options["help"])
 
 
-def test_its_film_is_for_the_viewer(api: Api) -> None:
+def test_recorded_stream_plays_in_the_viewer(api: Api) -> None:
     race = api.finished(api.race(lanes=[{"agent": "greedy"}], steps=3))
     path = f"/races/{race['id']}/recording?format=viser"
     film = api.call("GET", path)

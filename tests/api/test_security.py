@@ -1,4 +1,4 @@
-"""Authorisation of every route that the app has, found by iteration over the app."""
+"""Authentication, Host and Origin checks of every route, found by iteration over the app."""
 
 from collections.abc import Callable
 from typing import Any
@@ -21,7 +21,7 @@ Serve = Callable[..., Api]
 
 
 def every_route(client: TestClient) -> list[tuple[str, str]]:
-    """(method, path) of all there is, `WS` for websockets."""
+    """Return (method, path) of all routes; the method is `WS` for websockets."""
     app = client.app
     assert isinstance(app, FastAPI)
     found = []
@@ -36,22 +36,22 @@ def every_route(client: TestClient) -> list[tuple[str, str]]:
 
 
 def answer(client: TestClient, method: str, path: str, headers: dict[str, str]) -> int:
-    """The status; 101 for a websocket that is let in."""
+    """Return the response's status; 101 for an accepted websocket."""
     if method != "WS":
         response = client.request(method, path, headers=headers)
         if response.status_code >= 400 and method != "HEAD":
             refused(response, response.status_code)
         return response.status_code
     try:
-        # The test client calls websockets by a name of its own.
+        # The test client has another default Host for websockets.
         with client.websocket_connect(path, headers={"Host": "127.0.0.1:8000", **headers}):
             return 101
     except WebSocketDisconnect as closed:
         return 403 if closed.code == 1008 else closed.code
 
 
-def quick(routes: list[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Without the stream that never ends; who may not have it is answered all the same."""
+def without_stream(routes: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Omit the event stream: a response that is not a refusal would not end."""
     return [(method, path) for method, path in routes if path != "/api/v1/events"]
 
 
@@ -85,7 +85,7 @@ def quick(routes: list[tuple[str, str]]) -> list[tuple[str, str]]:
     ],
     ids=str,
 )
-def test_foreign_names_and_pages_get_nowhere(serve: Serve, headers: dict[str, str]) -> None:
+def test_foreign_hosts_and_origins_are_refused(serve: Serve, headers: dict[str, str]) -> None:
     client = serve().client
     for method, path in [*every_route(client), ("GET", "/nothing")]:
         assert answer(client, method, path, headers) == 403, (method, path)
@@ -111,16 +111,16 @@ def test_foreign_names_and_pages_get_nowhere(serve: Serve, headers: dict[str, st
     ],
     ids=str,
 )
-def test_ones_own_names_and_pages_get_in(serve: Serve, headers: dict[str, str]) -> None:
+def test_own_hosts_and_origins_are_accepted(serve: Serve, headers: dict[str, str]) -> None:
     client = serve(public_url="https://hexapods.example", allowed_hosts=("lab.example",)).client
     headers = {"X-Requested-With": "tests", **headers}
-    for method, path in quick(every_route(client)):
+    for method, path in without_stream(every_route(client)):
         assert answer(client, method, path, headers) not in (401, 403), (method, path)
 
 
-def test_without_the_token_one_may_look_and_change_nothing(serve: Serve) -> None:
+def test_spectator_has_read_access_only(serve: Serve) -> None:
     client = serve(token=TOKEN).client
-    for method, path in quick(every_route(client)):
+    for method, path in without_stream(every_route(client)):
         status = answer(client, method, path, {})
         if method in SAFE | {"WS"}:
             assert status != 401, (method, path)
@@ -129,7 +129,7 @@ def test_without_the_token_one_may_look_and_change_nothing(serve: Serve) -> None
     refused(client.post("/nothing"), 401, "Bearer")
 
 
-def test_spectators_may_need_the_token_too(serve: Serve) -> None:
+def test_reading_needs_the_token_if_so_configured(serve: Serve) -> None:
     client = serve(token=TOKEN, spectators="token").client
     is_open = {"/", "/healthz", "/readyz", "/static/favicon.svg"}
     for method, path in every_route(client):
@@ -141,7 +141,7 @@ def test_spectators_may_need_the_token_too(serve: Serve) -> None:
 
 
 @pytest.mark.parametrize("how", ["Bearer", "bearer", "cookie"])
-def test_with_the_token_one_may_do_everything(serve: Serve, how: str) -> None:
+def test_operator_has_access_to_every_route(serve: Serve, how: str) -> None:
     client = serve(token=TOKEN, spectators="token").client
     headers = {}
     if how == "cookie":
@@ -152,7 +152,7 @@ def test_with_the_token_one_may_do_everything(serve: Serve, how: str) -> None:
         }
     else:
         headers["Authorization"] = f"{how} {TOKEN}"
-    for method, path in quick(every_route(client)):
+    for method, path in without_stream(every_route(client)):
         assert answer(client, method, path, headers) not in (401, 403), (method, path)
 
 
@@ -170,14 +170,14 @@ def test_with_the_token_one_may_do_everything(serve: Serve, how: str) -> None:
     ],
     ids=str,
 )
-def test_what_is_not_the_token_is_not(serve: Serve, headers: Any) -> None:
+def test_wrong_credentials_are_refused(serve: Serve, headers: Any) -> None:
     client = serve(token=TOKEN).client
     response = client.put("/api/v1/stage", json={}, headers=headers)
     refused(response, 401, "token")
     assert response.headers["www-authenticate"].startswith("Bearer")
 
 
-def test_the_link_sets_a_cookie_and_cleans_the_address(serve: Serve) -> None:
+def test_token_link_sets_a_cookie_and_redirects_without_the_token(serve: Serve) -> None:
     client = serve(token=TOKEN).client
     response = client.get(f"/?gait=x&token={TOKEN}&steps=5")
     assert response.status_code == 303
@@ -208,24 +208,24 @@ def test_the_link_sets_a_cookie_and_cleans_the_address(serve: Serve) -> None:
     ids=str,
 )
 @pytest.mark.parametrize("mark", ["Origin", "Cookie", "Referer", "Sec-Fetch-Site"])
-def test_what_a_form_could_send_changes_nothing(
+def test_cross_site_form_requests_are_refused(
     serve: Serve, mark: str, headers: dict[str, str]
 ) -> None:
     client = serve().client
     value = {"Origin": "http://127.0.0.1:8000", "Sec-Fetch-Site": "same-origin"}.get(mark, "x=y")
-    for method, path in quick(every_route(client)):
+    for method, path in without_stream(every_route(client)):
         if method in SAFE | {"WS"}:
             continue
         by_browser = {mark: value, **headers}
         refused(client.request(method, path, headers=by_browser), 403, "X-Requested-With")
-        for told in ({"X-Requested-With": "x"}, {"Content-Type": "application/json"}):
-            own = {**by_browser, **told}
+        for header in ({"X-Requested-With": "x"}, {"Content-Type": "application/json"}):
+            own = {**by_browser, **header}
             assert client.request(method, path, headers=own).status_code != 403, (method, path)
-        # Other programs need not know of it.
+        # Other programs need no such header.
         assert client.request(method, path, headers=headers).status_code != 403, (method, path)
 
 
-def test_links_from_elsewhere_can_be_followed(serve: Serve) -> None:
+def test_links_from_other_sites_can_be_followed(serve: Serve) -> None:
     headers = {
         "Sec-Fetch-Site": "cross-site",
         "Sec-Fetch-Mode": "navigate",
@@ -237,7 +237,7 @@ def test_links_from_elsewhere_can_be_followed(serve: Serve) -> None:
     refused(client.post("/api/v1/trainings", headers=headers), 403, "another origin")
 
 
-def test_wrong_cookies_are_counted_like_tokens(serve: Serve) -> None:
+def test_wrong_session_cookies_are_rate_limited_like_tokens(serve: Serve) -> None:
     client = serve(token=TOKEN).client
     statuses = [
         client.get("/healthz", headers={"Cookie": f"{COOKIE}=guess-{number}"}).status_code
@@ -245,16 +245,16 @@ def test_wrong_cookies_are_counted_like_tokens(serve: Serve) -> None:
     ]
     assert statuses[:WRONG_TOKENS] == [200] * WRONG_TOKENS
     assert statuses.count(429) > 1900
-    # A browser whose session has ended is told to forget it, and watches on.
+    # A browser's expired session cookie is deleted, so that it is a spectator again.
     answer = client.get("/healthz", headers={"Cookie": f"{COOKIE}=guess"})
     refused(answer, 429, "wrong tokens")
     assert f"{COOKIE}=; Max-Age=0" in answer.headers["set-cookie"]
     assert client.get("/healthz").status_code == 200
 
 
-def test_every_answer_tells_browsers_to_be_careful(serve: Serve) -> None:
+def test_every_response_has_security_headers(serve: Serve) -> None:
     client = serve().client
-    for method, path in quick(every_route(client)):
+    for method, path in without_stream(every_route(client)):
         if method == "WS":
             continue
         headers = client.request(method, path).headers
@@ -266,7 +266,7 @@ def test_every_answer_tells_browsers_to_be_careful(serve: Serve) -> None:
     assert "unsafe-inline" not in page.partition("script-src")[2].partition(";")[0]
 
 
-def test_bodies_are_capped(serve: Serve) -> None:
+def test_request_bodies_are_limited(serve: Serve) -> None:
     api = serve()
     large = b"x" * (MAX_BODY_BYTES + 1)
     refused(api.call("POST", "/trainings", content=large), 413, "1,048,576")

@@ -1,4 +1,4 @@
-"""The resource `trainings`: start, watch, change, and take away what was learned."""
+"""The resource `trainings`: start, live changes, learning curve, Q-table, import."""
 
 import csv
 import io
@@ -22,7 +22,7 @@ def train_directly(**fields: Any) -> dict[str, Any]:
     return finish_training(learner, config)
 
 
-def test_a_training_needs_no_more_than_its_gait(api: Api) -> None:
+def test_training_needs_only_a_gait(api: Api) -> None:
     run = api.start("/trainings", {"gait": "front-back-vertical"})
     api.stop(run)
     config = run["config"]
@@ -34,7 +34,7 @@ def test_a_training_needs_no_more_than_its_gait(api: Api) -> None:
     assert run["created_at"].endswith("Z")
 
 
-def test_it_computes_what_the_loop_computes_to_the_last_bit(
+def test_result_equals_that_of_a_direct_call_on_kinematic(
     api: Api, trained: dict[str, Any]
 ) -> None:
     again = api.finished(api.train())
@@ -42,12 +42,12 @@ def test_it_computes_what_the_loop_computes_to_the_last_bit(
     assert trained["result"] == train_directly(steps=100, simulator="kinematic")
 
 
-def test_so_it_does_on_mujoco(api: Api) -> None:
+def test_result_equals_that_of_a_direct_call_on_mujoco(api: Api) -> None:
     run = api.finished(api.start("/trainings", {"gait": WALK["gait"], "steps": 30, "seed": 7}))
     assert run["result"] == train_directly(steps=30, seed=7)
 
 
-def test_its_curve_is_its_evaluations(api: Api, trained: dict[str, Any]) -> None:
+def test_curve_has_the_evaluations_as_json_and_csv(api: Api, trained: dict[str, Any]) -> None:
     curve = api.get(f"/trainings/{trained['id']}/curve")
     assert [row["step"] for row in curve["evaluations"]] == [50, 100]
     assert curve["evaluations"][-1]["distance_m"] == trained["result"]["distance_m"]
@@ -59,7 +59,7 @@ def test_its_curve_is_its_evaluations(api: Api, trained: dict[str, Any]) -> None
     assert [{k: float(v) for k, v in row.items()} for row in rows] == curve["evaluations"]
 
 
-def test_its_table_is_there_in_three_forms(api: Api, trained: dict[str, Any]) -> None:
+def test_table_is_returned_as_json_npz_and_csv(api: Api, trained: dict[str, Any]) -> None:
     path = f"/trainings/{trained['id']}/q-table"
     shown = api.get(path)
     assert (shown["gait"], shown["divisions"], shown["grid_side_m"]) == (WALK["gait"], 2, 0.04)
@@ -79,7 +79,7 @@ def test_its_table_is_there_in_three_forms(api: Api, trained: dict[str, Any]) ->
     assert by_accept.headers["content-type"] == "application/x-npz"
 
 
-def test_a_table_can_be_brought_along(api: Api, trained: dict[str, Any]) -> None:
+def test_table_can_be_imported_and_raced(api: Api, trained: dict[str, Any]) -> None:
     data = api.call("GET", f"/trainings/{trained['id']}/q-table?format=npz").content
     response = api.call("POST", "/trainings/import?name=from+elsewhere", content=data)
     assert response.status_code == 201
@@ -93,7 +93,7 @@ def test_a_table_can_be_brought_along(api: Api, trained: dict[str, Any]) -> None
     assert api.finished(api.race(lanes=lanes))["result"]["lanes"][0]["steps"] == 50
 
 
-def test_a_damaged_table_is_refused(api: Api, trained: dict[str, Any]) -> None:
+def test_damaged_table_is_refused(api: Api, trained: dict[str, Any]) -> None:
     data = api.call("GET", f"/trainings/{trained['id']}/q-table?format=npz").content
     middle = len(data) // 2
     changed = data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
@@ -104,7 +104,7 @@ def test_a_damaged_table_is_refused(api: Api, trained: dict[str, Any]) -> None:
     refused(api.call("POST", "/trainings/import"), 422, ".npz")
 
 
-def test_practice_goes_on_where_it_ended(api: Api, trained: dict[str, Any]) -> None:
+def test_training_continues_from_another(api: Api, trained: dict[str, Any]) -> None:
     more = api.finished(api.train(continue_from=trained["id"]))
     assert more["config"]["continue_from"] == trained["id"]
     table = api.get(f"/trainings/{more['id']}/q-table")
@@ -117,7 +117,7 @@ def test_practice_goes_on_where_it_ended(api: Api, trained: dict[str, Any]) -> N
     refused(api.call("POST", "/trainings", json=unseen), 422, "nothing", "/api/v1/trainings")
 
 
-def test_pause_resume_stop(api: Api) -> None:
+def test_training_can_be_paused_resumed_and_stopped(api: Api) -> None:
     run = api.slow_training()
     refused(api.tell(run, "resume"), 409, "running", "paused")
     assert api.tell(run, "pause").json()["state"] == "paused"
@@ -137,7 +137,7 @@ def test_pause_resume_stop(api: Api) -> None:
     refused(api.call("GET", f"/trainings/{run['id']}"), 404, run["id"])
 
 
-def test_rates_and_pace_change_while_it_runs_and_are_kept(api: Api) -> None:
+def test_live_changes_are_applied_and_recorded(api: Api) -> None:
     run = api.slow_training()
     path = f"/trainings/{run['id']}"
     now = api.call("PATCH", path, json={"alpha": 0.1, "epsilon": 0.5}).json()
@@ -153,7 +153,7 @@ def test_rates_and_pace_change_while_it_runs_and_are_kept(api: Api) -> None:
         refused(api.call("PATCH", path, json=body), 422)
 
 
-def test_changed_rates_can_be_repeated_exactly(api: Api) -> None:
+def test_training_with_live_changes_is_reproducible(api: Api) -> None:
     run = api.slow_training()
     now = api.call("PATCH", f"/trainings/{run['id']}", json={"alpha": 0.05, "pace": 50}).json()
     api.until(run, lambda then: then["progress"]["done"] > now["changes"][0]["step"] + 20)
@@ -172,7 +172,7 @@ def test_changed_rates_can_be_repeated_exactly(api: Api) -> None:
     assert finish_training(learner, config, measure_reference=False) == now["result"]
 
 
-def test_lists_come_in_pages_newest_first(api: Api, trained: dict[str, Any]) -> None:
+def test_list_is_paginated_newest_first(api: Api, trained: dict[str, Any]) -> None:
     made = [api.finished(api.train(steps=1, name=f"page {n}"))["id"] for n in range(3)]
     first = api.get("/trainings?limit=2&state=finished")
     assert [run["id"] for run in first["items"]] == made[:0:-1]
@@ -183,13 +183,13 @@ def test_lists_come_in_pages_newest_first(api: Api, trained: dict[str, Any]) -> 
     refused(api.call("GET", "/trainings?limit=0"), 422, "1 to 100")
 
 
-def test_a_race_is_no_training(api: Api) -> None:
+def test_race_is_not_found_among_trainings(api: Api) -> None:
     race = api.finished(api.race(lanes=[{"agent": "greedy"}]))
     refused(api.call("GET", f"/trainings/{race['id']}"), 404, race["id"])
     refused(api.call("POST", f"/trainings/{race['id']}/stop"), 404)
 
 
-def test_a_broken_physics_is_a_failed_run_with_the_reason(api: Api) -> None:
+def test_diverged_physics_fails_the_run_with_the_reason(api: Api) -> None:
     body = {"gait": WALK["gait"], "steps": 200, "robot": {"dt_s": 0.005, "servo_kp": 1000.0,
             "servo_torque_nm": 100.0, "servo_kv": 0.001, "tibia_kg": 0.001, "foot_kg": 0.001,
             "coxa_kg": 0.001, "femur_kg": 0.001, "joint_armature": 0.0001,

@@ -1,4 +1,4 @@
-"""Requests that are not well-formed, over raw sockets: refused, and never a 500."""
+"""Malformed requests over raw sockets are refused with a 4xx or 501, never a 500."""
 
 import contextlib
 from collections.abc import Iterator
@@ -49,7 +49,9 @@ def ask(server: Serving, *lines: str, body: bytes = b"") -> bytes:
     ids=lambda value: str(value)[:30],
 )
 @pytest.mark.parametrize("method", ["GET", "HEAD", "POST", "OPTIONS"])
-def test_odd_targets(server: Serving, method: str, target: str, status: int) -> None:
+def test_malformed_targets_are_refused(
+    server: Serving, method: str, target: str, status: int
+) -> None:
     answer = ask(server, f"{method} {target} HTTP/1.1", "Content-Length: 0")
     if method in ("GET", "HEAD") or status in (400, 414):
         assert status_of(answer) == status, answer[:300]
@@ -57,8 +59,8 @@ def test_odd_targets(server: Serving, method: str, target: str, status: int) -> 
     assert b"location: " not in answer.lower()
 
 
-def test_a_target_without_an_end(server: Serving) -> None:
-    # The server may hang up while it is still being sent.
+def test_overlong_target_is_refused(server: Serving) -> None:
+    # The server may close the connection during the send.
     with contextlib.suppress(ConnectionResetError, BrokenPipeError):
         answer = ask(server, f"GET /{'a' * 1_000_000} HTTP/1.1")
         assert status_of(answer) in (0, 400, 414), answer[:300]
@@ -82,7 +84,7 @@ def test_a_target_without_an_end(server: Serving) -> None:
     ids=str,
 )
 def test_ambiguous_framing_is_refused(server: Serving, lines: tuple[str, ...]) -> None:
-    """And what follows on the connection is not taken for another request."""
+    """The bytes that follow on the connection are not parsed as another request."""
     more = (f"Authorization: Bearer {TOKEN}", "Content-Type: application/json")
     hidden = b"0\r\n\r\nGET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
     answer = ask(server, "PUT /api/v1/stage HTTP/1.1", *more, *lines, body=hidden)
@@ -90,26 +92,26 @@ def test_ambiguous_framing_is_refused(server: Serving, lines: tuple[str, ...]) -
     assert answer.count(b"HTTP/1.1 ") == 1
 
 
-def test_head_is_as_get_without_the_body(server: Serving) -> None:
+def test_head_has_the_headers_of_get_without_the_body(server: Serving) -> None:
     bearer = f"Authorization: Bearer {TOKEN}"
     routes = every_route()
     paths = {r.path.replace("{run_id}", "none") for r in routes if r.method == "GET"}
     assert len(paths) > 20
     for path in sorted(paths):
-        # It would not end where a GET does not.
+        # `ask` reads to the end, so a HEAD of the event stream must end.
         head, _, body = ask(server, f"HEAD {path} HTTP/1.1", bearer).partition(b"\r\n\r\n")
         assert body == b"", path
         if path == "/api/v1/events":
             assert b"text/event-stream" in head
             continue
         got, _, _ = ask(server, f"GET {path} HTTP/1.1", bearer).partition(b"\r\n\r\n")
-        assert fixed(head) == fixed(got), path
+        assert stable_headers(head) == stable_headers(got), path
     answer = ask(server, "PUT /api/v1/options HTTP/1.1", bearer, "Content-Length: 0")
     assert b"allow: GET, HEAD\r\n" in answer.lower().replace(b"get, head", b"GET, HEAD")
 
 
-def fixed(head: bytes) -> dict[bytes, Any]:
-    """Status and headers, without those that change by themselves."""
+def stable_headers(head: bytes) -> dict[bytes, Any]:
+    """Return status and headers, without those that differ between requests."""
     status, *lines = head.split(b"\r\n")
     found = dict(line.lower().split(b": ", 1) for line in lines)
     for name in (b"date", b"content-length", b"transfer-encoding"):
@@ -123,7 +125,7 @@ def test_head_of_a_stream_leaves_the_connection_usable(server: Serving) -> None:
     assert answer.count(b"HTTP/1.1 200") >= 1
 
 
-def test_a_film_is_limited_however_it_is_asked_for(tmp_path: Path) -> None:
+def test_recorded_stream_is_rate_limited_however_its_query_is_encoded(tmp_path: Path) -> None:
     with serving(tmp_path, token=TOKEN, starts_per_minute=1) as one:
         film = "GET /api/v1/races/x/recording?{} HTTP/1.1"
         assert status_of(ask(one, film.format("format=viser"))) == 404

@@ -1,4 +1,4 @@
-"""Runs `hexapods` as a user does: in a process of its own, in a folder of its own."""
+"""Run `hexapods` in a subprocess and a working folder of its own, as a user does."""
 
 import json
 import subprocess
@@ -11,7 +11,7 @@ EXAMPLES = ROOT / "docs" / "examples"
 
 
 def hexapods(*arguments: str, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
-    """The finished command, with further variables in its environment."""
+    """Run a command to its end, with additional environment variables."""
     return subprocess.run(
         [sys.executable, "-m", "app.cli", *arguments],
         cwd=folder,
@@ -32,7 +32,7 @@ def output(*arguments: str, folder: Path) -> Any:
 
 
 def refusal(*arguments: str, folder: Path) -> str:
-    """The one sentence with which a command refuses."""
+    """Return the error message of a command, which must exit with 2."""
     done = hexapods(*arguments, folder=folder)
     assert done.returncode == 2, (done.returncode, done.stdout, done.stderr)
     assert "Traceback" not in done.stderr

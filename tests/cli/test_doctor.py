@@ -1,4 +1,4 @@
-"""`hexapods doctor`, as a user runs it: what is well, and what to do about what is not."""
+"""`hexapods doctor`, as a user runs it: passed checks, and failed checks with their remedy."""
 
 import json
 import socket
@@ -17,7 +17,7 @@ ANY_PORT = {"HEXAPODS_PORT": "0"}
 
 
 def examined(folder: Path, **variables: str) -> dict[str, Any]:
-    """The findings by name, in a data folder `data`."""
+    """Return the checks' results by name, for the data folder `data`."""
     data = ("--data", str(folder / "data"))
     done = hexapods("doctor", *data, "--json", folder=folder, **{**ANY_PORT, **variables})
     found = json.loads(done.stdout)
@@ -27,12 +27,12 @@ def examined(folder: Path, **variables: str) -> dict[str, Any]:
     return {check["name"]: (check["ok"], check["said"]) for check in found["checks"]}
 
 
-def trouble(found: dict[str, Any]) -> dict[str, str]:
+def failures(found: dict[str, Any]) -> dict[str, str]:
     """Return the failed checks."""
     return {name: said for name, (ok, said) in found.items() if not ok}
 
 
-def test_a_sound_machine_is_well_and_nothing_is_made(tmp_path: Path) -> None:
+def test_all_checks_pass_and_no_file_is_created(tmp_path: Path) -> None:
     done = hexapods("doctor", "--data", "data", folder=tmp_path, **ANY_PORT)
     assert done.returncode == 0, done.stdout
     lines = done.stdout.splitlines()
@@ -43,34 +43,34 @@ def test_a_sound_machine_is_well_and_nothing_is_made(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_is_kept_is_looked_at(tmp_path: Path) -> None:
+def test_quota_and_database_are_checked(tmp_path: Path) -> None:
     with opened(tmp_path / "data", None):
         found = examined(tmp_path)
-    assert trouble(found) == {}
+    assert failures(found) == {}
     assert "a server has the data folder" in found["lock"][1]
     (tmp_path / "data" / "big").write_bytes(bytes(9_500_000))
-    assert "raise HEXAPODS_QUOTA_MB" in trouble(examined(tmp_path, HEXAPODS_QUOTA_MB="10"))["room"]
+    assert "raise HEXAPODS_QUOTA_MB" in failures(examined(tmp_path, HEXAPODS_QUOTA_MB="10"))["room"]
     (tmp_path / "data" / DATABASE_FILE).write_text("milk" * 1000)
-    assert "damaged" in trouble(examined(tmp_path))["database"]
+    assert "damaged" in failures(examined(tmp_path))["database"]
 
 
-def test_a_folder_that_cannot_be_one_is_named(tmp_path: Path) -> None:
+def test_unusable_data_folder_is_named(tmp_path: Path) -> None:
     (tmp_path / "data").write_text("a file")
-    assert f"{tmp_path / 'data'} cannot be written" in trouble(examined(tmp_path))["data folder"]
+    assert f"{tmp_path / 'data'} cannot be written" in failures(examined(tmp_path))["data folder"]
 
 
-def test_an_address_that_is_taken_is_told_from_the_servers_own(tmp_path: Path) -> None:
+def test_port_of_another_process_fails_and_that_of_the_own_server_passes(tmp_path: Path) -> None:
     folder = tmp_path / "data"
     folder.mkdir()
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
-        found = trouble(examined(tmp_path, HEXAPODS_PORT=str(port)))
+        found = failures(examined(tmp_path, HEXAPODS_PORT=str(port)))
         assert "something else listens" in found["address"]
         write_address_file(folder, f"http://127.0.0.1:{port}/")
-        assert "address" in trouble(examined(tmp_path, HEXAPODS_PORT=str(port)))
+        assert "address" in failures(examined(tmp_path, HEXAPODS_PORT=str(port)))
         with lock_folder(folder):
             found = examined(tmp_path, HEXAPODS_PORT=str(port))
-    assert trouble(found) == {}
+    assert failures(found) == {}
     assert found["lock"][1].endswith(f"at http://127.0.0.1:{port}/")
 
 
@@ -82,14 +82,12 @@ def test_an_address_that_is_taken_is_told_from_the_servers_own(tmp_path: Path) -
         ({"HEXAPODS_PUBLIC_URL": "https://hexapods.example"}, "set HEXAPODS_TOKEN"),
     ],
 )
-def test_settings_that_are_not_sane_are_named(
-    variables: dict[str, str], names: str, tmp_path: Path
-) -> None:
-    found = trouble(examined(tmp_path, **variables))
+def test_invalid_settings_are_named(variables: dict[str, str], names: str, tmp_path: Path) -> None:
+    found = failures(examined(tmp_path, **variables))
     assert names in found["settings"]
 
 
-def test_a_postgresql_server_is_looked_at_and_its_password_shown_to_nobody(
+def test_postgresql_is_checked_without_showing_its_password(
     postgresql: PostgresServer, tmp_path: Path
 ) -> None:
     with database_url("postgresql", postgresql) as url:
@@ -97,7 +95,7 @@ def test_a_postgresql_server_is_looked_at_and_its_password_shown_to_nobody(
         assert "to be made" in examined(tmp_path, HEXAPODS_DATABASE_URL=url)["database"][1]
         with opened(tmp_path / "data", url):
             found = examined(tmp_path, HEXAPODS_DATABASE_URL=url)
-        assert trouble(found) == {}
+        assert failures(found) == {}
         assert "PostgreSQL can be read" in found["database"][1]
     away = "postgresql://me:hunter2secret@127.0.0.1:1/hexapods"
     done = hexapods("doctor", folder=tmp_path, **ANY_PORT, HEXAPODS_DATABASE_URL=away)

@@ -21,7 +21,7 @@ SWEEP = ("sweep", *ONE_GAIT, "--alpha", "0.1,0.3", "--steps", "50")
 
 
 def start(*arguments: str, folder: Path) -> "subprocess.Popen[str]":
-    """A command that is at work, as in a terminal of its own."""
+    """Start a command in a session of its own, as a terminal does."""
     return subprocess.Popen(
         [sys.executable, "-m", "app.cli", *arguments],
         cwd=folder,
@@ -34,14 +34,14 @@ def start(*arguments: str, folder: Path) -> "subprocess.Popen[str]":
 
 
 def kept(folder: Path) -> dict[str, Any]:
-    """Results by key in a folder; each is there once."""
+    """Return the stored results by key; check that no key is repeated."""
     _, *lines = (folder / TRIALS).read_text("utf-8").splitlines()
     trials = [json.loads(line) for line in lines]
     assert len({trial["key"] for trial in trials}) == len(trials)
     return {trial["key"]: trial["result"] for trial in trials}
 
 
-def test_a_sweep_says_what_it_does_and_leaves_a_report(tmp_path: Path) -> None:
+def test_sweep_prints_its_progress_and_writes_a_report(tmp_path: Path) -> None:
     done = hexapods(*SWEEP, "--seeds", "4", "--workers", "1", folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("9 trials on 1 worker, kept in sweep-results\n")
@@ -53,7 +53,7 @@ def test_a_sweep_says_what_it_does_and_leaves_a_report(tmp_path: Path) -> None:
     assert sorted(p.name for p in tmp_path.iterdir()) == ["sweep-results"]
 
 
-def test_table_1_in_json_and_further_seeds_in_the_same_folder(tmp_path: Path) -> None:
+def test_table1_prints_json_and_adds_seeds_in_the_same_folder(tmp_path: Path) -> None:
     table1 = ("experiment", "table1", *ONE_GAIT, "--robot", "stiff", "--out", "here")
     first = output(*table1, "--seeds", "2", folder=tmp_path)
     # 2 readings × (greedy, two-step, 2 practices over 2 seeds, 1 race by the wall)
@@ -69,7 +69,7 @@ def test_table_1_in_json_and_further_seeds_in_the_same_folder(tmp_path: Path) ->
     }
 
 
-def test_agents_of_ones_own_against_ours_and_a_second_chance(tmp_path: Path) -> None:
+def test_custom_agent_is_compared_and_its_failed_trials_are_retried(tmp_path: Path) -> None:
     agent = tmp_path / "mine.py"
     shutil.copy(EXAMPLES / "my_agent.py", agent)
     text = agent.read_text("utf-8")
@@ -90,10 +90,10 @@ def test_agents_of_ones_own_against_ours_and_a_second_chance(tmp_path: Path) -> 
     assert [len(curve["steps"]) for curve in summary["curves"]] == [8, 8]
 
 
-def test_what_was_interrupted_goes_on_with_the_same_command(tmp_path: Path) -> None:
+def test_interrupted_sweep_is_resumed_by_the_same_command(tmp_path: Path) -> None:
     file = tmp_path / "kept" / TRIALS
     before: dict[str, Any] = {}
-    # As a terminal does, to every process; and as whoever ends one.
+    # SIGINT to the process group, as a terminal sends it; SIGTERM to the process.
     for end in (lambda one: os.killpg(one.pid, signal.SIGINT), subprocess.Popen.terminate):
         process = start("sweep", *ONE_GAIT, "--seeds", "400", "--out", "kept", folder=tmp_path)
         while not file.exists() or len(file.read_bytes().splitlines()) < len(before) + 20:
@@ -109,7 +109,7 @@ def test_what_was_interrupted_goes_on_with_the_same_command(tmp_path: Path) -> N
         before = now
 
 
-def test_a_full_disk_ends_it_and_nothing_is_lost(tmp_path: Path) -> None:
+def test_full_disk_ends_the_sweep_and_finished_trials_are_stored(tmp_path: Path) -> None:
     done = subprocess.run(
         ["sh", "-c", 'ulimit -f 8; exec "$0" "$@"', sys.executable, "-m", "app.cli", *SWEEP],
         cwd=tmp_path,
@@ -158,7 +158,7 @@ def test_a_full_disk_ends_it_and_nothing_is_lost(tmp_path: Path) -> None:
         (("sweep", "--grid-side-m", "0.2"), "cannot reach"),
     ],
 )
-def test_bad_input_is_one_sentence(
+def test_invalid_input_is_refused_in_one_sentence(
     arguments: tuple[str, ...],
     names: str,
     tmp_path: Path,
@@ -176,13 +176,13 @@ def test_bad_input_is_one_sentence(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_scheduler_that_is_not_there_is_one_sentence(tmp_path: Path) -> None:
+def test_unreachable_scheduler_is_refused_in_one_sentence(tmp_path: Path) -> None:
     sentence = refusal(*SWEEP, "--scheduler", "tcp://127.0.0.1:9", folder=tmp_path)
     assert "no scheduler answers at tcp://127.0.0.1:9" in sentence
     assert "`dask scheduler`" in sentence
 
 
-def test_a_folder_of_something_else_is_left_as_it_is(tmp_path: Path) -> None:
+def test_foreign_results_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.txt").touch()
     sentence = refusal(*SWEEP, "--out", "mine", folder=tmp_path)

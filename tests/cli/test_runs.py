@@ -21,7 +21,7 @@ TRAINING, RACED = "00000000000t1", "00000000000r1"
 
 @pytest.fixture
 def data(tmp_path: Path) -> Path:
-    """A data folder in which a server has been."""
+    """Return a data folder with a finished training and race."""
     folder = tmp_path / "data"
     with opened(folder, None) as store:
         ended_training(store, TRAINING, "[b]old[/b]")
@@ -30,8 +30,8 @@ def data(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def kept(data: Path) -> Iterator[RunStore]:
-    """The same, while a server has it."""
+def locked_store(data: Path) -> Iterator[RunStore]:
+    """Return the open store of the data folder, which holds its lock as a server does."""
     with opened(data, None) as store:
         yield store
 
@@ -54,7 +54,7 @@ def test_runs_are_listed(data: Path, tmp_path: Path) -> None:
     assert "at least 1" in refusal("runs", "list", *here, "--limit", "0", folder=tmp_path)
 
 
-def test_a_terminal_gets_a_table(data: Path, tmp_path: Path) -> None:
+def test_runs_are_printed_as_a_table_in_a_terminal(data: Path, tmp_path: Path) -> None:
     ours, theirs = pty.openpty()
     command = [sys.executable, "-m", "app.cli", "runs", "list", "--data", str(data)]
     environment = {"PYTHONPATH": str(ROOT), "TERM": "xterm", "COLUMNS": "120"}
@@ -66,18 +66,18 @@ def test_a_terminal_gets_a_table(data: Path, tmp_path: Path) -> None:
     assert "[b]old[/b]" in shown
 
 
-def test_a_run_is_shown(data: Path, tmp_path: Path) -> None:
+def test_run_is_shown_as_json_and_text(data: Path, tmp_path: Path) -> None:
     here = ("--data", str(data))
     shown = output("runs", "show", TRAINING, *here, folder=tmp_path)
     assert shown["name"] == "[b]old[/b]"
     assert len(shown["curve"]) == 24
-    said = hexapods("runs", "show", RACED, *here, folder=tmp_path).stdout
-    assert "Ranked at time-out, paper clock" in said
-    assert "16 of 16" in said
+    text = hexapods("runs", "show", RACED, *here, folder=tmp_path).stdout
+    assert "Ranked at time-out, paper clock" in text
+    assert "16 of 16" in text
 
 
 @pytest.mark.parametrize("verb", [("runs", "show"), ("runs", "delete"), ("export", "--out", "x")])
-def test_an_unknown_run_is_refused_with_how_to_find_one(
+def test_unknown_run_is_refused_with_a_hint(
     verb: tuple[str, ...], data: Path, tmp_path: Path
 ) -> None:
     for folder in (data, tmp_path / "empty"):
@@ -88,14 +88,14 @@ def test_an_unknown_run_is_refused_with_how_to_find_one(
     assert not (tmp_path / "empty").exists()
 
 
-def test_a_run_is_deleted(data: Path, tmp_path: Path) -> None:
+def test_run_is_deleted(data: Path, tmp_path: Path) -> None:
     here = ("--data", str(data))
     assert output("runs", "delete", RACED, *here, folder=tmp_path) == {"deleted": RACED}
     listed = output("runs", "list", *here, folder=tmp_path)
     assert [run["id"] for run in listed["items"]] == [TRAINING]
 
 
-def test_a_run_moves_to_another_folder(data: Path, tmp_path: Path) -> None:
+def test_exported_run_is_imported_into_another_folder(data: Path, tmp_path: Path) -> None:
     for run_id in (TRAINING, RACED):
         out = ("--out", "run.zip", "--data", str(data))
         assert output("export", run_id, *out, folder=tmp_path)["id"] == run_id
@@ -105,14 +105,14 @@ def test_a_run_moves_to_another_folder(data: Path, tmp_path: Path) -> None:
         assert there[0] == there[1]
         again = output("import", "run.zip", *other, folder=tmp_path)
         assert again["id"] != run_id
-    told = hexapods("import", "run.zip", "--data", str(data), folder=tmp_path)
-    assert "is race " in told.stdout
+    imported = hexapods("import", "run.zip", "--data", str(data), folder=tmp_path)
+    assert "is race " in imported.stdout
     with opened(tmp_path / "other", None) as store:
         assert store.artifact(TRAINING, TABLE) is not None
         assert len(store.list().items) == 4
 
 
-def test_what_cannot_be_moved_is_one_sentence(data: Path, tmp_path: Path) -> None:
+def test_invalid_archive_or_output_is_refused_in_one_sentence(data: Path, tmp_path: Path) -> None:
     here = ("--data", str(data))
     (tmp_path / "junk.zip").write_text("milk")
     (tmp_path / "folder").mkdir()
@@ -126,17 +126,21 @@ def test_what_cannot_be_moved_is_one_sentence(data: Path, tmp_path: Path) -> Non
         assert names in refusal("export", TRAINING, "--out", out, *here, folder=tmp_path)
 
 
-def test_looking_disturbs_no_server(kept: RunStore, data: Path, tmp_path: Path) -> None:
+def test_reading_commands_work_beside_a_server(
+    locked_store: RunStore, data: Path, tmp_path: Path
+) -> None:
     here = ("--data", str(data))
-    kept.create(training("zz", state="running"))
+    locked_store.create(training("zz", state="running"))
     listed = output("runs", "list", *here, "--state", "running", folder=tmp_path)
     assert [run["id"] for run in listed["items"]] == ["zz"]
     assert "stop it first" in refusal("export", "zz", "--out", "x", *here, folder=tmp_path)
     assert output("export", RACED, "--out", "x", *here, folder=tmp_path)["id"] == RACED
-    assert kept.get("zz").state == "running"
+    assert locked_store.get("zz").state == "running"
 
 
-def test_nothing_is_changed_behind_a_server(kept: RunStore, data: Path, tmp_path: Path) -> None:
+def test_changes_are_refused_without_a_server_address(
+    locked_store: RunStore, data: Path, tmp_path: Path
+) -> None:
     here = ("--data", str(data))
     output("export", RACED, "--out", "x.zip", *here, folder=tmp_path)
     for command in (("runs", "delete", RACED), ("import", "x.zip")):
@@ -145,10 +149,10 @@ def test_nothing_is_changed_behind_a_server(kept: RunStore, data: Path, tmp_path
     (data / "server.address").write_text(json.dumps({"address": "http://127.0.0.1:1/"}))
     sentence = refusal("runs", "delete", RACED, *here, folder=tmp_path)
     assert "does not answer at http://127.0.0.1:1/" in sentence
-    assert [run.id for run in kept.list().items] == [TRAINING, RACED]
+    assert [run.id for run in locked_store.list().items] == [TRAINING, RACED]
 
 
-def test_experiments_are_runs_as_well(tmp_path: Path) -> None:
+def test_experiment_is_listed_shown_moved_and_deleted(tmp_path: Path) -> None:
     data, other = tmp_path / "data", tmp_path / "other"
     with opened(data, None) as store:
         ended_experiment(store, "00000000000e1")

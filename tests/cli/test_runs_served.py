@@ -1,4 +1,4 @@
-"""`hexapods runs`, `export` and `import` beside a server, which does what only it may do."""
+"""`hexapods runs`, `export` and `import` beside a server, which makes the changes."""
 
 import json
 from collections.abc import Iterator
@@ -31,7 +31,7 @@ def server(data: Path) -> Iterator[Served]:
     served.end()
 
 
-def test_the_server_does_what_changes_something(server: Served, data: Path, tmp_path: Path) -> None:
+def test_changes_are_made_by_the_running_server(server: Served, data: Path, tmp_path: Path) -> None:
     here = ("--data", str(data))
     output("export", RACED, "--out", "run.zip", *here, folder=tmp_path)
     with server.client.stream("GET", "/api/v1/events") as events:
@@ -50,7 +50,7 @@ def test_the_server_does_what_changes_something(server: Served, data: Path, tmp_
     assert "race-" in exported.headers["content-disposition"]
 
 
-def test_the_servers_refusals_are_passed_on(server: Served, data: Path, tmp_path: Path) -> None:
+def test_refusals_of_the_server_are_reported(server: Served, data: Path, tmp_path: Path) -> None:
     here = ("--data", str(data))
     for token in ("", "another-token-for-tests"):
         done = hexapods("runs", "delete", RACED, *here, folder=tmp_path, HEXAPODS_TOKEN=token)
@@ -65,7 +65,7 @@ def test_the_servers_refusals_are_passed_on(server: Served, data: Path, tmp_path
     assert [run["id"] for run in listed["items"]] == [TRAINING, RACED]
 
 
-def test_an_import_over_rest_is_bounded(server: Served) -> None:
+def test_import_route_checks_token_archive_and_size(server: Served) -> None:
     bearer = {"Authorization": f"Bearer {TOKEN}"}
     post: Any = server.client.post
     assert post("/api/v1/import", content=b"x").status_code == 401
@@ -76,7 +76,7 @@ def test_an_import_over_rest_is_bounded(server: Served) -> None:
     assert server.client.get("/api/v1/trainings/import/export").status_code == 404
 
 
-def test_no_run_is_started_without_room(data: Path) -> None:
+def test_full_quota_refuses_starts(data: Path) -> None:
     (data / "big").write_bytes(bytes(9_000_000))
     server = Served(data, HEXAPODS_QUOTA_MB="10")
     try:
@@ -95,7 +95,7 @@ def test_no_run_is_started_without_room(data: Path) -> None:
         server.end()
 
 
-def test_after_a_crash_there_is_no_server_to_ask(data: Path, tmp_path: Path) -> None:
+def test_runs_can_be_deleted_after_a_crash_of_the_server(data: Path, tmp_path: Path) -> None:
     server = Served(data)
     server.end(by=9)
     here = ("--data", str(data))
@@ -103,7 +103,7 @@ def test_after_a_crash_there_is_no_server_to_ask(data: Path, tmp_path: Path) -> 
     assert output("runs", "delete", RACED, *here, folder=tmp_path) == {"deleted": RACED}
     with opened(data, None) as store:
         store.create(training("zz", state="running"))
-    # No server has it, and so nobody works on it.
+    # No server holds the lock, so the run is interrupted and can be deleted.
     done = hexapods("runs", "delete", "zz", *here, folder=tmp_path)
     assert (done.returncode, done.stdout) == (0, "Deleted training zz.\n")
     assert "The last server died: 1 runs are interrupted" in done.stderr

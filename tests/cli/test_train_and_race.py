@@ -17,20 +17,20 @@ QUICK = (*GAIT, "--simulator", "kinematic")
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a trained table in it, `q.npz`."""
+    """Return a folder with a trained Q-table, `q.npz`."""
     place = tmp_path_factory.mktemp("cli")
     output("train", *QUICK, "--steps", "300", "--out", "q.npz", folder=place)
     return place
 
 
-def test_train_tells_how_far_it_walks(tmp_path: Path) -> None:
+def test_train_prints_the_distance(tmp_path: Path) -> None:
     done = hexapods("train", *QUICK, "--steps", "100", "--out", "q.npz", folder=tmp_path)
     assert done.returncode == 0
     assert "After 100 steps of practice it walks 0." in done.stdout
     assert (tmp_path / "q.npz").stat().st_size > 1000
 
 
-def test_the_command_line_and_a_direct_call_learn_the_same_table(tmp_path: Path) -> None:
+def test_train_equals_a_direct_call(tmp_path: Path) -> None:
     printed = output("train", *GAIT, "--steps", "60", "--seed", "7", folder=tmp_path)
     config = training_config(gait="left-right-origin", steps=60, seed=7)
     learner = build_learner(config)
@@ -40,7 +40,7 @@ def test_the_command_line_and_a_direct_call_learn_the_same_table(tmp_path: Path)
     assert [point["step"] for point in printed["curve"]] == [50, 60]
 
 
-def test_training_goes_on_from_a_table(folder: Path) -> None:
+def test_training_continues_from_a_table(folder: Path) -> None:
     result = output(
         "train", *QUICK, "--steps", "300", "--from", "q.npz", "--out", "q2.npz", folder=folder
     )
@@ -71,7 +71,7 @@ def test_the_example_agent_learns_and_races(tmp_path: Path) -> None:
     assert raced[0]["failure"] is None
 
 
-def test_robots_and_gaits_of_ones_own(tmp_path: Path) -> None:
+def test_custom_robot_and_gait_are_accepted(tmp_path: Path) -> None:
     (tmp_path / "eight.toml").write_text('preset = "compliant"\nn_legs = 8\nhome_radius_m = 0.26\n')
     gait = json.dumps({"right_leg": 1, "left_leg": 2, "pairs": [[1, 2], [8, 3], [7, 4], [6, 5]]})
     own = ("--gait", gait, "--robot", "eight.toml", "--steps", "20", "--evaluate-every", "0")
@@ -114,7 +114,7 @@ def test_robots_and_gaits_of_ones_own(tmp_path: Path) -> None:
         ((), "--gait"),
     ],
 )
-def test_bad_input_to_train_is_one_sentence(
+def test_invalid_input_to_train_is_refused_in_one_sentence(
     arguments: tuple[str, ...], names: str, tmp_path: Path
 ) -> None:
     assert names in refusal("train", *arguments, folder=tmp_path)
@@ -132,18 +132,18 @@ def test_bad_input_to_train_is_one_sentence(
         ((*QUICK,), "--lane"),
     ],
 )
-def test_bad_input_to_race_is_one_sentence(
+def test_invalid_input_to_race_is_refused_in_one_sentence(
     arguments: tuple[str, ...], names: str, folder: Path
 ) -> None:
     assert names in refusal("race", *arguments, folder=folder)
 
 
-def test_a_seed_beside_a_table_to_go_on_with_is_refused(folder: Path) -> None:
+def test_seed_with_a_table_to_continue_is_refused(folder: Path) -> None:
     sentence = refusal("train", *QUICK, "--from", "q.npz", "--seed", "1", folder=folder)
     assert "leave --seed out" in sentence
 
 
-def test_a_file_that_is_no_table_is_refused_by_name(folder: Path) -> None:
+def test_file_that_is_no_table_is_refused_by_name(folder: Path) -> None:
     (folder / "shopping.npz").write_text("milk")
     sentence = refusal("race", *QUICK, "--lane", "q-learning=shopping.npz", folder=folder)
     assert "shopping.npz is not a Q-table" in sentence
