@@ -24,33 +24,33 @@ def walker(
     simulator = KinematicSimulator(
         Robot(), resolve(gait, Robot().azimuths_deg), FootGrid(divisions=divisions)
     )
-    foresight = SimulatorExpand(simulator, "measured")
-    return Walker(simulator, LookAhead(foresight, depth), "measured", foresight), foresight
+    expand = SimulatorExpand(simulator, "measured")
+    return Walker(simulator, LookAhead(expand, depth), "measured", expand), expand
 
 
 @pytest.mark.parametrize(("depth", "transitions"), [(1, 12), (2, 156), (3, 1884)])
 def test_a_decision_simulates_every_sequence_once(depth: int, transitions: int) -> None:
-    robot, foresight = walker(depth)
+    robot, expand = walker(depth)
     robot.decide()
 
-    assert foresight.transitions == transitions
+    assert expand.transitions == transitions
     assert transitions == sum(12**d for d in range(1, depth + 1))
 
 
 def test_at_three_divisions_there_are_24_actions() -> None:
-    robot, foresight = walker(2, divisions=3)
+    robot, expand = walker(2, divisions=3)
     robot.decide()
 
-    assert foresight.transitions == 24 + 24 * 24
+    assert expand.transitions == 24 + 24 * 24
 
 
 @pytest.mark.parametrize(("depth", "transitions"), [(1, 600), (2, 7_800)])
 def test_depth_is_kept_to_the_last_of_fifty_steps(depth: int, transitions: int) -> None:
-    robot, foresight = walker(depth)
+    robot, expand = walker(depth)
     for _ in range(50):
         robot.carry_out(robot.decide())
 
-    assert foresight.transitions == robot.transitions == transitions
+    assert expand.transitions == robot.transitions == transitions
 
 
 @pytest.mark.parametrize("gait", NAMED_GAITS)

@@ -38,9 +38,9 @@ def walk(learner: Learner, steps: int) -> list[tuple[Action, float]]:
     """Act, and learn from what comes of it."""
     walker, done = learner.walker, []
     for _ in range(steps):
-        seen, action = walker.seen, walker.decide()
+        observed, action = walker.observed, walker.decide()
         reward = walker.carry_out(action).reward_m
-        walker.agent.learn(Transition(seen, action, reward, walker.seen, walker.legal))
+        walker.agent.learn(Transition(observed, action, reward, walker.observed, walker.legal))
         done.append((action, reward))
     return done
 
@@ -67,10 +67,10 @@ def test_it_keeps_to_the_protocol(agent: str) -> None:
 def test_it_takes_legal_actions_by_what_it_sees(agent: str, observation: Observation) -> None:
     walker = learner(agent, observation=observation).walker
     for _ in range(steps_for(agent)):
-        seen = observe(walker.simulator, walker.state, observation)
+        observed = observe(walker.simulator, walker.state, observation)
         action = walker.decide()
         assert action in walker.legal
-        assert seen[action.pair] != action.cell
+        assert observed[action.pair] != action.cell
         assert [type(part) for part in action] == [int, int]
         walker.carry_out(action)
 
