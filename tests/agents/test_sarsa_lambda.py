@@ -119,6 +119,6 @@ def test_check_state_refuses_an_invalid_state(name: str, array: Any) -> None:
         SarsaLambda.check_state({**agent.state(), name: array})
 
 
-def test_sarsa_lambda_is_tunable_valuing_and_tabular() -> None:
+def test_sarsa_lambda_is_tunable_and_tabular() -> None:
     assert isinstance(learner(), Tunable)
     assert isinstance(learner(), Tabular)
