@@ -1,4 +1,4 @@
-"""Settings: values that a person may choose, each declared once, where it is used.
+"""Settings: values that a user may choose, each declared once, where it is used.
 
 A setting is a keyword parameter of an agent's constructor, or a field of a config dataclass, whose
 type is annotated with its limits and with a `Setting`:
@@ -6,8 +6,8 @@ type is annotated with its limits and with a `Setting`:
     alpha: Annotated[float, Gt(0), Le(1), Setting(title="Learning rate", help="…")] = 0.3
 
 `declared_parameters` and `declared_fields` find the declarations. From them follow validation,
-request fields and refusals, `GET /options`, options of the command line, controls on the page,
-the grid of a sweep, and what checkpoints and archives keep.
+request fields and error messages, `GET /options`, options of the command line, controls on the
+page, the grid of a sweep, and fields of checkpoints and archives.
 """
 
 import inspect
@@ -27,26 +27,26 @@ Value = float | int | str | bool | None
 V = TypeVar("V")
 Limit = Ge | Gt | Le | Lt
 REQUIRED = inspect.Parameter.empty
-"""The default of a setting that has none."""
-_REST = (Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD)
-_KINDS = (bool, int, float, str, NoneType)
+"""Default of a setting without a default."""
+_VARIADIC = (Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD)
+_PLAIN_TYPES = (bool, int, float, str, NoneType)
 MAX_SETTING_NAME = 60
 MAX_TEXT = 200
 
 
 @dataclass(frozen=True, kw_only=True)
 class Setting:
-    """Describes a setting to people, and says whether it may change during a run.
+    """Description of a setting for users, and whether it may change during a run.
 
     Attributes:
-        title: the label of its control.
-        help: one sentence.
-        symbol: the field's letter for it, such as α.
-        phrase: how a report says a value, a format string such as `{} divisions`; by default the
+        title: label of its control.
+        help: description, one sentence.
+        symbol: conventional symbol, such as α.
+        phrase: format string for a value in a report, such as `{} divisions`; by default the
             symbol or title, and the value.
-        unit: what a number counts or measures, such as m.
+        unit: unit of a number, such as m.
         live: whether it may change while a run is active; the agent's `tune` receives changes.
-        examples: values that a sweep might compare.
+        examples: example values for a sweep.
     """
 
     title: str
@@ -60,13 +60,13 @@ class Setting:
 
 @dataclass(frozen=True)
 class DeclaredSetting:
-    """A setting with its declaration.
+    """Declaration of a setting, with validation, parsing and formatting of its values.
 
     Attributes:
-        name: of the parameter or field.
-        annotation: its type with all metadata, as Pydantic and Hypothesis take it.
-        default: `REQUIRED` if it has none.
-        about: its description.
+        name: name of the parameter or field.
+        annotation: its type with all metadata, as Pydantic and Hypothesis accept it.
+        default: default value; `REQUIRED` if it has none.
+        about: description for users.
     """
 
     name: str
@@ -76,17 +76,17 @@ class DeclaredSetting:
 
     @cached_property
     def kinds(self) -> frozenset[type]:
-        """The plain types of valid values: of bool, int, float, str and NoneType."""
+        """Types of valid values, a subset of bool, int, float, str and NoneType."""
         return frozenset(_kinds(self.annotation))
 
     @cached_property
     def choices(self) -> tuple[str, ...]:
-        """The valid words, if only certain words are valid."""
-        return tuple(word for word in _literals(self.annotation) if isinstance(word, str))
+        """The valid strings of a `Literal` type; empty for other types."""
+        return tuple(literal for literal in _literals(self.annotation) if isinstance(literal, str))
 
     @cached_property
     def limits(self) -> tuple[Limit, ...]:
-        """The limits of valid numbers."""
+        """Limits of valid numbers."""
         return tuple(_limits(self.annotation))
 
     @property
@@ -96,35 +96,35 @@ class DeclaredSetting:
 
     @property
     def is_whole(self) -> bool:
-        """Whether of all numbers only whole ones are valid."""
+        """Whether integers are the only valid numbers."""
         return int in self.kinds and float not in self.kinds
 
     @property
     def low(self) -> float | None:
-        """The lower limit, whether it is itself valid or not."""
+        """Lower limit, inclusive or exclusive; None without one."""
         return next((_bound(x) for x in self.limits if isinstance(x, Ge | Gt)), None)
 
     @property
     def high(self) -> float | None:
-        """The upper limit, whether it is itself valid or not."""
+        """Upper limit, inclusive or exclusive; None without one."""
         return next((_bound(x) for x in self.limits if isinstance(x, Le | Lt)), None)
 
     @property
     def excludes_low(self) -> bool:
-        """Whether the lower limit itself is not valid."""
+        """Whether the lower limit is exclusive."""
         return any(isinstance(limit, Gt) for limit in self.limits)
 
     @property
     def excludes_high(self) -> bool:
-        """Whether the upper limit itself is not valid."""
+        """Whether the upper limit is exclusive."""
         return any(isinstance(limit, Lt) for limit in self.limits)
 
     @cached_property
     def valid(self) -> str:
-        """The valid values in words that follow "must be"."""
+        """Description of the valid values for error messages, to follow "must be"."""
         parts = list(self.choices)
         if self.is_whole:
-            # Of a count the unit is clear from its name.
+            # The unit of a count is clear from its name.
             parts.append(" ".join(["a whole number", *self._range()]))
         elif self.is_number:
             unit = [self.about.unit] if self.about.unit else []
@@ -142,11 +142,11 @@ class DeclaredSetting:
             InvalidInput: if it is not; the message names what is.
         """
         if not self._is_valid(value):
-            shown = f"{value:,}" if type(value) in (int, float) else repr(value)[:80]
-            raise InvalidInput(f"{self.name} must be {self.valid}, not {shown}")
+            formatted = f"{value:,}" if type(value) in (int, float) else repr(value)[:80]
+            raise InvalidInput(f"{self.name} must be {self.valid}, not {formatted}")
 
     def normalized(self, value: Any) -> Any:
-        """Return a value as its own type: JSON and people write 2 for 2.0, and 2.0 for 2.
+        """Return a value converted to the type of the setting: 2 to 2.0, or 2.0 to 2.
 
         Raises:
             InvalidInput: if it is not valid.
@@ -159,13 +159,13 @@ class DeclaredSetting:
         return value
 
     def describe(self, value: Any) -> str:
-        """Describe a value for a report: `α 0.3`."""
+        """Format a value for a report: `α 0.3`."""
         name = self.about.symbol or self.about.title.lower()
         kind = {float: "g", int: ","}.get(type(value), "")
         return (self.about.phrase or name + "\u00a0{}").format(format(value, kind))
 
     def parse(self, text: str) -> Value:
-        """Parse a value as typed on a command line or in an address.
+        """Parse a value from a command line or a URL.
 
         Raises:
             InvalidInput: if it is not valid; the message names what is.
@@ -190,7 +190,7 @@ class DeclaredSetting:
             return False
         if self.is_whole and not isinstance(value, int):
             return False
-        return all(_holds(limit, value) for limit in self.limits)
+        return all(_satisfies(limit, value) for limit in self.limits)
 
     def _range(self) -> list[str]:
         low, high = (None if x is None else f"{x:,.15g}" for x in (self.low, self.high))
@@ -210,9 +210,9 @@ class DeclaredSetting:
 def parameters_of(
     function: Callable[..., Any], method: str = "__init__"
 ) -> Mapping[str, Parameter]:
-    """Find the named parameters of a function, or of a method of a class.
+    """Return the named parameters of a function, or of a method of a class.
 
-    Those of the base class are included where a method passes on any others by `**`.
+    Those of the base class are included if the method has a `**` parameter.
     """
     return {name: parameter for name, (parameter, _) in _parameters(function, method).items()}
 
@@ -221,80 +221,80 @@ def parameters_of(
 def declared_parameters(
     function: Callable[..., Any], method: str = "__init__"
 ) -> Mapping[str, DeclaredSetting]:
-    """Find the settings among the parameters that `parameters_of` finds.
+    """Return the settings among the parameters of `parameters_of`.
 
-    A parameter without a declaration is a setting too, without limits, if it takes plain values
-    and has a default; its type is that of its annotation, or else of its default.
+    A parameter without a `Setting` is a setting too, without limits, if it has a plain type and a
+    default; its type is that of its annotation, or else of its default.
     """
-    found = {}
+    collected = {}
     for name, (parameter, annotation) in _parameters(function, method).items():
         default = parameter.default
-        if _about(annotation) is not None:
-            found[name] = declare(name, annotation, default)
+        if _setting_of(annotation) is not None:
+            collected[name] = declare(name, annotation, default)
         elif default is not REQUIRED and _is_plain(plain := annotation or type(default)):
             about = Setting(title=name.replace("_", " ").capitalize(), help="")
-            found[name] = DeclaredSetting(name, plain, default, about)
-    return found
+            collected[name] = DeclaredSetting(name, plain, default, about)
+    return collected
 
 
 def _parameters(function: Callable[..., Any], method: str) -> Mapping[str, tuple[Parameter, Any]]:
-    """The parameters with their annotations: first those of the base classes."""
+    """Return the parameters with their annotations, those of the base classes first."""
     if not isinstance(function, type):
         functions = [function]
     else:
         functions = [vars(one)[method] for one in function.__mro__[:-1] if method in vars(one)]
-    found: dict[str, tuple[Parameter, Any]] = {}
+    collected: dict[str, tuple[Parameter, Any]] = {}
     for one in functions:
         try:
             hints = get_type_hints(one, include_extras=True)
-        except (AttributeError, NameError, TypeError):  # of imports for type checkers only
+        except (AttributeError, NameError, TypeError):  # names imported under TYPE_CHECKING only
             hints = {}
         own = inspect.signature(one).parameters
         named = {
             name: (parameter, hints.get(name))
             for name, parameter in own.items()
-            if parameter.kind not in _REST and name != "self"
+            if parameter.kind not in _VARIADIC and name != "self"
         }
-        found = {**named, **found}
+        collected = {**named, **collected}
         if not any(parameter.kind is Parameter.VAR_KEYWORD for parameter in own.values()):
             break
-    return found
+    return collected
 
 
 @cache
 def declared_fields(config: type) -> Mapping[str, DeclaredSetting]:
-    """Find the settings among the fields of a dataclass, in their order."""
+    """Return the settings among the fields of a dataclass, in order."""
     hints = get_type_hints(config, include_extras=True)
     return {
         f.name: declare(f.name, hints[f.name], REQUIRED if f.default is MISSING else f.default)
         for f in fields(config)
-        if _about(hints[f.name]) is not None
+        if _setting_of(hints[f.name]) is not None
     }
 
 
 def declare(name: str, annotation: Any, default: Any = REQUIRED) -> DeclaredSetting:
-    """Make a declared setting of a name and an annotation that includes a `Setting`."""
-    about = _about(annotation)
+    """Create a declared setting from a name and an annotation that includes a `Setting`."""
+    about = _setting_of(annotation)
     if about is None:
         raise TypeError(f"{name} has no Setting in its annotation")
     return DeclaredSetting(name, annotation, default, about)
 
 
 def required(setting: DeclaredSetting) -> DeclaredSetting:
-    """Return an optional setting of a function as one that must be given, and not as None."""
+    """Return a copy of an optional setting that is required and does not accept None."""
     kinds = get_args(setting.annotation) if _is_union(setting.annotation) else ()
     (own,) = [one for one in kinds if one is not NoneType] or [setting.annotation]
     return replace(setting, annotation=own, default=REQUIRED)
 
 
 class SettingValues(Mapping[str, V]):
-    """Values of settings by name: an immutable mapping with a hash, in its own order."""
+    """Values of settings by name: an immutable, hashable, ordered mapping."""
 
     def __init__(self, values: Mapping[str, V] = MappingProxyType({})) -> None:
-        """Keep a copy.
+        """Copy the values.
 
         Raises:
-            InvalidInput: if a name or a value is none.
+            InvalidInput: if a name is no identifier or a value is of another type.
         """
         for name, value in values.items():
             if not name.isidentifier() or len(name) > MAX_SETTING_NAME:
@@ -325,16 +325,16 @@ class SettingValues(Mapping[str, V]):
 def complete(
     settings: Mapping[str, DeclaredSetting], given: Mapping[str, Any], owner: str
 ) -> SettingValues[Value]:
-    """Check the values that are given, and add the defaults of the others.
+    """Validate given values, and add the defaults of the others.
 
     Args:
-        settings: the declarations, whose order the values take.
+        settings: the declarations by name, which determine the order of the values.
         given: values by name.
-        owner: of the settings, for the message.
+        owner: name of the owner of the settings, for error messages.
 
     Raises:
-        UnknownName: for a setting that there is not.
-        InvalidInput: for a value that is not valid, or is missing.
+        UnknownName: if a setting does not exist.
+        InvalidInput: if a value is invalid, or a required one is missing.
     """
     for name in given:
         if name not in settings:
@@ -352,8 +352,8 @@ def complete(
     )
 
 
-def _about(annotation: Any) -> Setting | None:
-    """Find the `Setting` of an annotation; that of an optional setting lies one level deeper."""
+def _setting_of(annotation: Any) -> Setting | None:
+    """Return the `Setting` in an annotation; in an optional one it is one level deeper."""
     parts = get_args(annotation) if _is_union(annotation) else (annotation,)
     metadata = (one for part in parts for one in getattr(part, "__metadata__", ()))
     return next((one for one in metadata if isinstance(one, Setting)), None)
@@ -385,7 +385,7 @@ def _kinds(annotation: Any) -> Iterator[type]:
     elif origin in (Union, UnionType):
         for one in get_args(annotation):
             yield from _kinds(one)
-    elif annotation in (None, *_KINDS):
+    elif annotation in (None, *_PLAIN_TYPES):
         yield NoneType if annotation is None else annotation
     elif origin is not Literal:
         raise TypeError(f"a setting is a number, text, boolean, choice or None, not {annotation}")
@@ -412,7 +412,7 @@ def _bound(limit: Limit) -> float:
     return bound  # type: ignore[no-any-return]
 
 
-def _holds(limit: Limit, value: float) -> bool:
+def _satisfies(limit: Limit, value: float) -> bool:
     bound = _bound(limit)
     if isinstance(limit, Gt):
         return value > bound
@@ -422,7 +422,7 @@ def _holds(limit: Limit, value: float) -> bool:
 
 
 def _parsed_number(text: str, is_whole: bool) -> Value:
-    """The number, or the text itself if it is none."""
+    """Parse a number; return the text itself if it is none."""
     try:
         return int(text) if is_whole else float(text)
     except ValueError:
