@@ -1,6 +1,6 @@
-"""From a config to concrete parts: which simulator, which agents, put together.
+"""Composition root of runs: builds simulators, learners and walkers from configs.
 
-The one place that knows all of them; loops and commands take what comes out of here.
+The only module that imports the concrete simulators; loops and commands use what it builds.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,11 +23,11 @@ from app.runs.walker import SimulatorExpand, Walker
 
 
 def build_simulator(walk: WalkingProblem, threads: int = 1) -> Simulator[Any]:
-    """The simulator that a config names.
+    """Create the simulator of a walking problem.
 
     Args:
         walk: the walking problem.
-        threads: of look-ahead in MuJoCo; 0 is one for each core.
+        threads: number of threads of look-ahead in MuJoCo; 0 for one per core.
 
     Raises:
         Unreachable: if the robot's legs cannot reach the grid.
@@ -41,16 +41,21 @@ def build_simulator(walk: WalkingProblem, threads: int = 1) -> Simulator[Any]:
 def build_learner(
     config: TrainingConfig, table: Checkpoint | None = None, threads: int = 1
 ) -> Learner:
-    """A learner at rest, with what `table` holds if one is given.
+    """Create a learner at rest, initialised from a table if one is given.
+
+    Args:
+        config: the training.
+        table: checkpoint whose values, visits and generator the learner continues from.
+        threads: number of threads of look-ahead in MuJoCo; 0 for one per core.
 
     Raises:
-        UnknownName, InvalidInput: if the agent cannot be had.
-        TableMismatch: if the table is of another problem, or of another agent.
+        UnknownName, InvalidInput: if the agent or one of its settings is invalid.
+        TableMismatch: if the table is of another walking problem or agent.
         Unreachable: if the robot's legs cannot reach the grid.
     """
     simulator = build_simulator(config, threads)
     declared = agent_settings(config.agent)
-    # Earlier versions kept those of Q-learning with every agent.
+    # Earlier versions stored the settings of Q-learning with every agent.
     own = {name: value for name, value in config.settings.items() if name in declared}
     settings = complete(declared, own, config.agent)
     fields = {name: value for name, value in vars(config).items() if name != "settings"}
@@ -60,17 +65,17 @@ def build_learner(
         simulator, config.agent, config.observation, rng=rng, offered=offered, explore=True
     )
 
-    def evaluator(chance: np.random.Generator) -> Walker:
+    def evaluator(evaluation_rng: np.random.Generator) -> Walker:
         copy = _walker(
             simulator,
             config.agent,
             config.observation,
-            rng=chance,
+            rng=evaluation_rng,
             offered=offered,
             explore=False,
         )
         if isinstance(copy.agent, Tabular):
-            # A large table, copied for every evaluation, would be most of the memory.
+            # Copying a large table for each evaluation would double the memory use.
             copy.agent.share_table(walker.agent)
         else:
             copy.agent.load(walker.agent.state())
@@ -89,26 +94,26 @@ def build_learner(
 def build_walkers(
     config: RaceConfig, tables: Sequence[Checkpoint | None], threads: int = 0
 ) -> list[Walker]:
-    """The lanes of a race, at rest.
+    """Create the walkers of a race, one per lane, at rest.
 
     Args:
         config: the race.
-        tables: for each lane what it has learned, or None.
-        threads: of look-ahead in MuJoCo; 0 is one for each core.
+        tables: checkpoint of the agent of each lane, or None.
+        threads: number of threads of look-ahead in MuJoCo; 0 for one per core.
 
     Raises:
-        TableMismatch: if a table is of another problem than the race, or of another agent.
+        TableMismatch: if a table is of another walking problem or agent.
     """
     simulator = build_simulator(config, threads)
     walkers = []
     for number, (lane, table) in enumerate(zip(config.lanes, tables, strict=True)):
-        practised: Mapping[str, Any] = {}
+        trained_config: Mapping[str, Any] = {}
         if table is not None:
             check_fits(table, config, lane.observation)
-            practised = table.meta["config"]
+            trained_config = table.meta["config"]
         rng = generator(config.seed, RACING, number)
         walker = _walker(
-            simulator, lane.agent, lane.observation, rng=rng, offered=practised, explore=False
+            simulator, lane.agent, lane.observation, rng=rng, offered=trained_config, explore=False
         )
         if table is not None:
             load_agent(walker.agent, table)
@@ -119,7 +124,7 @@ def build_walkers(
 def finish_training(
     learner: Learner, config: TrainingConfig, measure_reference: bool = True
 ) -> dict[str, Any]:
-    """The result of a training, as it stands: how far it walks now, and the table's hash.
+    """Return the result of a training: an evaluation, the baseline, and the hash of the Q-table.
 
     Without `measure_reference`, `greedy_distance_m` is None unless it was measured before.
     """
@@ -143,16 +148,16 @@ def _walker(
     offered: Mapping[str, Any],
     explore: bool,
 ) -> Walker:
-    """A walker whose agent gets what it asks for; one that does not ask for `expand` is blind."""
+    """Create a walker; its agent gets a simulator only if its constructor has `expand`."""
     agent_class = registry.find(agent_name)
-    foresight = None
-    if "expand" in registry.asks_for(agent_class):
-        foresight = SimulatorExpand(simulator, observation)
-    every = {
+    expand = None
+    if "expand" in registry.parameter_names(agent_class):
+        expand = SimulatorExpand(simulator, observation)
+    arguments = {
         **offered,
         "rng": rng,
         "problem": Problem(simulator.gait.pairs, simulator.grid.cells),
         "explore": explore,
-        "expand": foresight,
+        "expand": expand,
     }
-    return Walker(simulator, registry.build(agent_class, every), observation, foresight)
+    return Walker(simulator, registry.build(agent_class, arguments), observation, expand)

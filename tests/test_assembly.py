@@ -1,4 +1,4 @@
-"""From configs to simulators, learners and lanes."""
+"""Building of simulators, learners and walkers from configs."""
 
 from dataclasses import replace
 from typing import Any
@@ -40,7 +40,7 @@ def table() -> Checkpoint:
     return snapshot(learner, CONFIG)
 
 
-def test_a_config_names_its_simulator() -> None:
+def test_simulator_is_that_of_the_config() -> None:
     made = robot({"n_legs": 8})
     walk = WalkingProblem(gait="front-back-vertical", robot=made, divisions=3, grid_side_m=0.03)
     physics, law = build_simulator(walk), build_simulator(replace(walk, simulator="kinematic"))
@@ -55,14 +55,14 @@ def test_a_config_names_its_simulator() -> None:
 
 
 @pytest.mark.parametrize("simulator", ["mujoco", "kinematic"])
-def test_a_grid_out_of_reach_is_refused_with_leg_and_cell(simulator: Any) -> None:
+def test_unreachable_grid_is_refused_with_leg_and_cell(simulator: Any) -> None:
     with pytest.raises(Unreachable, match=r"leg 2 cannot reach cell 1 \(front left\)"):
         build_simulator(
             WalkingProblem(gait="left-right-origin", grid_side_m=0.2, simulator=simulator)
         )
 
 
-def test_a_learner_gets_its_rates_from_the_config() -> None:
+def test_learner_has_the_rates_of_the_config() -> None:
     learner = build_learner(
         replace(
             CONFIG, settings=CONFIG.settings | {"alpha": 0.2, "gamma": 0.5, "epsilon_start": 0.7}
@@ -73,7 +73,7 @@ def test_a_learner_gets_its_rates_from_the_config() -> None:
     assert learner.epsilon == 0.7
 
 
-def test_learning_evaluating_and_racing_draw_from_generators_of_their_own(
+def test_learning_evaluation_and_racing_have_independent_generators(
     table: Checkpoint,
 ) -> None:
     learner, *_ = build_walkers(RACE, [table, None, None])
@@ -91,7 +91,7 @@ def _walk(walker: Any) -> list[Any]:
     return [Taken() for _ in range(10)]
 
 
-def test_lanes_are_built_in_order_at_rest(table: Checkpoint) -> None:
+def test_walkers_are_in_lane_order_and_at_rest(table: Checkpoint) -> None:
     walkers = build_walkers(RACE, [table, None, None])
 
     assert [type(walker.agent) for walker in walkers] == [QLearning, Greedy, TwoStep]
@@ -99,7 +99,7 @@ def test_lanes_are_built_in_order_at_rest(table: Checkpoint) -> None:
     assert [walker.transitions for walker in walkers] == [0, 0, 0]
 
 
-def test_a_lane_that_learned_races_without_exploring(table: Checkpoint) -> None:
+def test_trained_lane_races_without_exploring(table: Checkpoint) -> None:
     learner = build_walkers(RACE, [table, None, None])[0]
     agent = learner.agent
 
@@ -108,7 +108,7 @@ def test_a_lane_that_learned_races_without_exploring(table: Checkpoint) -> None:
     assert agent.table.dump()["n"].astype(int).sum() == 150
 
 
-def test_a_table_of_another_problem_is_refused(table: Checkpoint) -> None:
+def test_table_of_another_walking_problem_is_refused(table: Checkpoint) -> None:
     with pytest.raises(TableMismatch, match="for divisions 2, this run has 3"):
         build_walkers(replace(RACE, divisions=3), [table, None, None])
     commanded = replace(
@@ -118,18 +118,18 @@ def test_a_table_of_another_problem_is_refused(table: Checkpoint) -> None:
         build_walkers(commanded, [table, None, None])
 
 
-def test_a_table_of_another_agent_is_refused(table: Checkpoint) -> None:
+def test_table_of_another_agent_is_refused(table: Checkpoint) -> None:
     lanes = (LaneConfig(agent="tests.own_agents:Restless"),)
     with pytest.raises(TableMismatch, match="Restless cannot load what q-learning has learned"):
         build_walkers(replace(RACE, lanes=lanes), [table])
 
 
-def test_every_lane_needs_its_table_or_none(table: Checkpoint) -> None:
+def test_number_of_tables_must_equal_the_number_of_lanes(table: Checkpoint) -> None:
     with pytest.raises(ValueError, match="zip"):
         build_walkers(RACE, [table])
 
 
-def test_an_agent_of_ones_own_trains_and_races() -> None:
+def test_user_supplied_agent_trains_and_races() -> None:
     config = replace(CONFIG, agent="tests.own_agents:Restless")
     learner = build_learner(config)
     race = replace(RACE, lanes=(LaneConfig(agent="tests.own_agents:Restless"),))
@@ -141,7 +141,7 @@ def test_an_agent_of_ones_own_trains_and_races() -> None:
     assert walker.agent.problem.cells_m.shape == (5, 2)
 
 
-def test_one_that_looks_ahead_is_given_a_simulator_and_counted() -> None:
+def test_user_supplied_look_ahead_agent_gets_a_simulator_that_counts() -> None:
     race = replace(RACE, lanes=(LaneConfig(agent="tests.own_agents:ThreeStep"),))
     (walker,) = build_walkers(race, [None])
     walker.decide()
@@ -149,15 +149,15 @@ def test_one_that_looks_ahead_is_given_a_simulator_and_counted() -> None:
     assert walker.transitions == 12 + 144 + 1728
 
 
-def test_an_agent_that_cannot_be_had_says_why() -> None:
+def test_unusable_agent_is_refused_with_the_reason() -> None:
     with pytest.raises(InvalidInput, match=r"asks for crystal_ball; on offer: .*problem.*rng"):
         build_learner(replace(CONFIG, agent="tests.own_agents:Needy"))
     with pytest.raises(UnknownName, match="unknown agent 'dijkstra'"):
         build_learner(replace(CONFIG, agent="dijkstra"))
 
 
-def test_a_gait_of_ones_own_walks() -> None:
-    """Hand-given pairs, forward between legs 6 and 1."""
+def test_user_defined_gait_walks() -> None:
+    """Explicit leg pairs; the forward direction is between legs 6 and 1."""
     gait = GaitSpec(6, 1, pairs=((6, 1), (5, 2), (4, 3)))
     race = replace(RACE, gait=gait, simulator="mujoco", lanes=(LaneConfig(agent="greedy"),))
     (walker,) = build_walkers(race, [None], threads=1)

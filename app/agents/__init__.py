@@ -1,7 +1,10 @@
-"""Agents: they choose the next step, and learners learn from it. None reaches into a simulator.
+"""Agents: choose actions, and may learn from transitions. They do not depend on a simulator.
 
-`protocol` is what an agent implements, ours and others; `registry` finds agents by name and builds
-them; `appearance` has their titles and colours. `tabular` is what learners with a Q-table have in
-common: `q_learning` is the paper's Algorithm 1, `sarsa_lambda` learns on-policy. `q_table` is the
-table, whose stored form `table_rows` reads. `lookahead` is the search of Algorithms 3 and 4.
+`protocol` defines the interface of agents, built-in and user-supplied.
+`registry` finds agent classes by name, lists their settings, and creates agents.
+`appearance` has their titles, descriptions and colours.
+`tabular` is the base class of learners with a Q-table and an ε-greedy policy; `q_learning`
+(paper, Algorithm 1) and `sarsa_lambda` (on-policy, eligibility traces) derive from it.
+`q_table` is the table; `table_rows` iterates over the rows of its sparse stored form.
+`lookahead` is exhaustive search over the next steps (paper, Algorithms 3 and 4).
 """

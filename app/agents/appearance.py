@@ -1,6 +1,6 @@
-"""Names and colours of agents, as the stage, the page and reports show them.
+"""Titles, descriptions and colours of agents for the stage, the page and reports.
 
-The colours are those of the Okabe–Ito palette, which is safe for colour blindness.
+The colours are those of the Okabe–Ito palette, which colour-blind viewers can distinguish.
 """
 
 import re
@@ -18,14 +18,14 @@ def title_of(agent: str) -> str:
 
 
 def description_of(agent: str) -> str:
-    """Return a sentence about a registered agent."""
+    """Return the description of a registered agent, one sentence."""
     return _attribute(agent, "description") or "An agent of an installed package."
 
 
 def colors_of(agents: Sequence[str]) -> list[str]:
-    """Return a distinct `#RRGGBB` for each of some agents as long as there are enough.
+    """Return a colour, `#RRGGBB`, for each agent; distinct until the palette is exhausted.
 
-    Each gets its own colour, or a spare one if that is taken or there is none.
+    An agent gets the colour of its class, or a free one if that is taken or there is none.
     """
     own = [_attribute(agent, "color") for agent in agents]
     others = (_attribute(agent, "color") for agent in OURS)
@@ -39,7 +39,7 @@ def colors_of(agents: Sequence[str]) -> list[str]:
 
 
 def _attribute(agent: str, name: str) -> str | None:
-    """An attribute of a registered agent's class; a module that is named is not imported."""
+    """Return an attribute of a registered agent's class; `my.module:Agent` is not imported."""
     if ":" in agent:
         return None
     found = getattr(OURS.get(agent) or registered().get(agent), name, None)

@@ -1,7 +1,7 @@
-"""Uninformed search over the next few steps (paper, Algorithms 3 and 4).
+"""Exhaustive look-ahead search over the next few steps (paper, Algorithms 3 and 4).
 
-Depth 1 is the greedy agent, depth 2 the two-steps-ahead agent. As in the paper nothing of one
-decision's tree is kept for the next.
+Depth 1 is the greedy agent, depth 2 the two-steps-ahead agent. As in the paper, the search tree
+of one decision is not reused for the next.
 """
 
 from collections.abc import Sequence
@@ -13,9 +13,10 @@ from app.domain.types import Action, Cells, FloatArray
 
 
 class LookAhead:
-    """Simulates every sequence of `depth` actions and takes the first action of the best one.
+    """Agent that simulates all sequences of `depth` actions, and takes the best one's first action.
 
-    Every layer is simulated by one call of `expand`. Of equals the first is taken.
+    Breadth-first: each level of the tree is simulated by one call of `expand`. Ties go to the
+    first action in the order of `legal`.
     """
 
     learns = False
@@ -24,12 +25,12 @@ class LookAhead:
         self._expand, self._depth = expand, depth
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
-        """The first action of the sequence with the highest sum of rewards."""
+        """Return the first action of the sequence with the highest sum of rewards."""
         best = self._best_sums([self._expand.here], self._depth)
         return self._expand.here.legal[best.first[0]]
 
     def learn(self, transition: Transition) -> None:
-        """Nothing: it knows the simulation."""
+        """Do nothing: the agent plans by simulation and does not learn."""
 
     def state(self) -> AgentState:
         return {}
@@ -38,10 +39,10 @@ class LookAhead:
         pass
 
     def _best_sums(self, nodes: Sequence[Node], depth: int) -> "_Best":
-        """For each node the highest sum of `depth` rewards from it, and which action starts it."""
+        """Return each node's highest sum of `depth` rewards, and the index of its first action."""
         legal = [node.legal for node in nodes]
-        origins = [node for node, actions in zip(nodes, legal, strict=True) for _ in actions]
-        children, sums = self._expand(origins, [a for actions in legal for a in actions])
+        parents = [node for node, actions in zip(nodes, legal, strict=True) for _ in actions]
+        children, sums = self._expand(parents, [a for actions in legal for a in actions])
         if depth > 1:
             sums = sums + self._best_sums(children, depth - 1).sums
         ends = np.cumsum([len(actions) for actions in legal])
@@ -49,19 +50,19 @@ class LookAhead:
 
 
 class _Best:
-    """The best child of each node: its sum and its place among the node's legal actions."""
+    """Best child of each node: its sum of rewards [m], and the index of its action in `legal`."""
 
     def __init__(self, sums: FloatArray, first: list[int]) -> None:
         self.sums, self.first = sums, first
 
     @classmethod
-    def of(cls, families: Sequence[FloatArray]) -> "_Best":
-        first = [int(sums.argmax()) for sums in families]
-        return cls(np.array([s[i] for s, i in zip(families, first, strict=True)]), first)
+    def of(cls, sums_by_node: Sequence[FloatArray]) -> "_Best":
+        first = [int(sums.argmax()) for sums in sums_by_node]
+        return cls(np.array([s[i] for s, i in zip(sums_by_node, first, strict=True)]), first)
 
 
 class Greedy(LookAhead):
-    """One step ahead (Algorithm 3): 12 simulated transitions a decision at two divisions."""
+    """One-step look-ahead (Algorithm 3): simulates 12 transitions per decision at two divisions."""
 
     title = "Greedy"
     description = "Simulates every possible step, and takes the best one."
@@ -72,7 +73,7 @@ class Greedy(LookAhead):
 
 
 class TwoStep(LookAhead):
-    """Two steps ahead (Algorithm 4): 156 simulated transitions a decision at two divisions."""
+    """Two-step look-ahead (Algorithm 4): simulates 156 transitions a decision at two divisions."""
 
     title = "Two-step"
     description = "Simulates every possible pair of steps, and takes the best one."

@@ -1,11 +1,11 @@
-"""The agent protocol, which our agents and a user's own implement.
+"""Agent protocol: the interface of all agents, built-in and user-supplied.
 
-A class whose constructor asks, by the names of its parameters, for what it needs:
+An agent is a class. Its constructor's parameters are passed by name (dependency injection):
 
-- `rng`: a `numpy.random.Generator`, the only source of chance;
-- `problem`: what the walking problem looks like (`Problem`);
-- `expand`: a simulator to look ahead with (`Expand`); who asks for it is not blind;
-- `explore`: False where the agent is evaluated or raced and should do its best;
+- `rng`: a `numpy.random.Generator`, the only source of randomness;
+- `problem`: the size and geometry of the walking problem (`Problem`);
+- `expand`: a simulator for look-ahead (`Expand`);
+- `explore`: False in evaluations and races, where the agent should not explore;
 - a field of the training's config by its name, such as `steps` or `steps_per_episode`.
 
 A parameter that is declared with its limits, title and help (`app.domain.settings`) is a setting:
@@ -13,15 +13,15 @@ REST, the command line, the page and sweeps offer it. So is one without a declar
 like a setting of `TabularLearner`, such as `alpha`. Any other keeps its default. Attributes of the
 class state the rest:
 
-- `title`, `description`, `color`: how it is shown;
+- `title`, `description`, `color`: its appearance;
 - `learns = False`: practice does not change it;
 - `needs_practice = True`: it races only with what it has learned;
 - `is_on_policy = True`: it chooses its next action before it learns from the last one, so that a
   changed exploration rate acts a step later.
 
-An agent may have more methods: those of `Tunable`, `Valuing` and `Tabular`, and
-`check_state(state)`, a static method that raises `ValueError` or `InvalidInput` for a state that
-`load` could not go on from, such as one in a file from elsewhere.
+Optional methods: those of `Tunable`, `Valuing` and `Tabular`, and `check_state(state)`, a static
+method that raises `ValueError` or `InvalidInput` for a state that `load` cannot restore, such as
+one in an untrusted file.
 """
 
 from collections.abc import Callable, Sequence
@@ -33,11 +33,11 @@ from app.agents.q_table import QTable
 from app.domain.types import Action, Cells, FloatArray
 
 AgentState = dict[str, NDArray[Any]]
-"""All that an agent needs to go on, as arrays, so that it fits a file."""
+"""Complete state of an agent as named arrays, for checkpoint files."""
 
 
 class Problem(NamedTuple):
-    """The shape of the walking problem that an agent is to solve."""
+    """Size and geometry of the walking problem."""
 
     pairs: tuple[tuple[int, int], ...]
     """(leader, partner) legs, counted from 1."""
@@ -46,7 +46,7 @@ class Problem(NamedTuple):
 
 
 class Transition(NamedTuple):
-    """One step as the agent observed it; learners learn from it."""
+    """Transition (s, a, r, s′) of one step, as observed by the agent."""
 
     observation: Cells
     action: Action
@@ -54,79 +54,79 @@ class Transition(NamedTuple):
     next_observation: Cells
     next_legal: Sequence[Action]
     next_action: Action | None = None
-    """The action that the agent has chosen to take next; only if it `is_on_policy`."""
+    """Next action that the agent has chosen; only if it `is_on_policy`."""
 
 
 @runtime_checkable
 class Agent(Protocol):
-    """Chooses actions and may learn from what comes of them."""
+    """Interface of an agent: chooses actions, and may learn from transitions."""
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
-        """The action to take now, one of `legal`."""
+        """Return the action to take, one of `legal`."""
 
     def learn(self, transition: Transition) -> None:
-        """Take in what came of the last action."""
+        """Learn from the transition of the last action."""
 
     def state(self) -> AgentState:
-        """A copy of all that was learned and is needed to go on learning."""
+        """Return a copy of the complete state, for a checkpoint."""
 
     def load(self, state: AgentState) -> None:
-        """Go on from what `state` returned."""
+        """Restore a state that `state` returned."""
 
 
 @runtime_checkable
 class Tunable(Protocol):
-    """An agent whose settings may be changed between two steps.
+    """Agent whose settings may be changed between two steps.
 
-    A parameter of `tune` that is none of the constructor is a setting too, such as an exploration
-    rate that replaces a schedule.
+    A parameter of `tune` that the constructor does not have is a setting too, such as an
+    exploration rate that replaces a schedule.
     """
 
     @property
     def tune(self) -> Callable[..., None]:
-        """Change the settings that are given by name, from the next step on."""
+        """Change settings, given by name, from the next step on."""
 
 
 @runtime_checkable
 class Valuing(Protocol):
-    """An agent that can say what it expects of each action."""
+    """Agent that exposes its action values and visit counts."""
 
     def values(self, observation: Cells) -> FloatArray:
-        """(pairs, cells) expected return of moving that pair to that cell; NaN where illegal."""
+        """Return action values [m], (pairs, cells): expected return; NaN where illegal."""
 
     def visits(self, observation: Cells) -> FloatArray:
-        """(pairs, cells) how often each was tried from here."""
+        """Return visit counts of the actions in this state, (pairs, cells)."""
 
 
 @runtime_checkable
 class Tabular(Protocol):
-    """An agent whose knowledge is a Q-table, all of it."""
+    """Agent whose learned state is a Q-table only."""
 
     table: QTable
 
     def share_table(self, other: Any) -> None:
-        """Use the table that another agent of this class writes, to evaluate it without a copy."""
+        """Share the table of another agent of this class, to evaluate it without a copy."""
 
     def continue_from(self, state: AgentState) -> None:
-        """Take over what was learned, but neither the settings nor the place in a schedule."""
+        """Load the values and visits of a state, but not its settings or schedule position."""
 
 
 class Node(Protocol):
-    """A future that `Expand` has simulated; opaque but for what can be done there."""
+    """Node of a search tree: an opaque simulated state with its legal actions."""
 
     @property
     def legal(self) -> Sequence[Action]:
-        """The actions that are legal there."""
+        """The legal actions in this state."""
 
 
 class Expand(Protocol):
-    """A simulator for an agent that looks ahead. It counts what it simulates."""
+    """Simulator for look-ahead, which counts the transitions that it simulates."""
 
     @property
     def here(self) -> Node:
-        """Where the robot is now."""
+        """Root node: the current state of the robot."""
 
     def __call__(
         self, nodes: Sequence[Node], actions: Sequence[Action]
     ) -> tuple[Sequence[Node], FloatArray]:
-        """Simulate one action from each node: the nodes it leads to, and the rewards [m], (n,)."""
+        """Simulate one action from each of n nodes; return new nodes and rewards [m], (n,)."""

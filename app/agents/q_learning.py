@@ -5,14 +5,14 @@ from app.agents.tabular import TabularLearner
 
 
 class QLearning(TabularLearner):
-    """Learns off-policy: from the best of the actions that it could take next."""
+    """Off-policy learner: the update uses the maximum action value of the next state."""
 
     title = "Q-learning"
     description = "Learns by trying, knows nothing beforehand, and then decides without thinking."
     color = "#E69F00"
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
-        """Q(s, a) ← (1 − α) Q(s, a) + α (r + γ max Q(s′, ·)). The walk never ends."""
+        """Q(s, a) ← (1 − α) Q(s, a) + α (r + γ max Q(s′, ·)). No state is terminal."""
         best = max(self.table.values_of(transition.next_observation, transition.next_legal))
         sample = transition.reward_m + self._gamma * best
         values, _ = self.table.row(state)

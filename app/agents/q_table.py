@@ -1,4 +1,4 @@
-"""The table of state-action values: one row per state, one column per (pair, cell)."""
+"""Q-table, sparse by rows: one row per state, one column per action (pair, cell)."""
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,7 +13,7 @@ from app.domain.errors import InvalidInput, TableMismatch
 from app.domain.types import Action, Cells, FloatArray
 
 MAX_VALUES = 64_000_000
-"""A table of six legs at eight divisions has 53,551,875."""
+"""Maximum number of values; a table of six legs at eight divisions has 53,551,875."""
 _ROWS_AT_ONCE = 1_000
 _VALUES_AT_ONCE = 100_000
 _NO_SLOT = -1
@@ -22,13 +22,13 @@ _NO_SLOT = -1
 class QTable:
     """Values and visit counts of all states of `pairs` leg pairs over `cells` cells.
 
-    A state's index reads its cells as digits, the first pair the highest; an action's column is
-    pair · cells + cell. A pair may not be sent to the cell that it is on: those columns are never
-    read, and are NaN in what leaves the table.
+    The index of a state is the number whose base-`cells` digits are its cells, the first pair the
+    most significant; the column of an action is pair · cells + cell. Moving a pair to its current
+    cell is illegal: those entries are never read, and are NaN in all output.
 
-    Sparse by rows: memory is taken by the states that were written to, 12 bytes a value, whatever
-    the table's size. The rows lie in the order in which they were first written, in arrays of the
-    full size of which the system commits only the pages that are used.
+    Sparse by rows: only states that were written to take memory, 12 bytes per value. Rows are
+    stored in the order of their first write, in arrays of the full size, of which the operating
+    system commits used pages only.
 
     Raises:
         InvalidInput: if the table would be larger than `MAX_VALUES`.
@@ -45,22 +45,22 @@ class QTable:
         self._q: FloatArray = np.zeros((self.states, self.actions))
         self._n: NDArray[np.uint32] = np.zeros((self.states, self.actions), np.uint32)
         self._slots = np.full(self.states, _NO_SLOT, np.int32)
-        """Of each state, which row of the arrays is its own."""
+        """Row of each state in the arrays; `_NO_SLOT` if it was never written to."""
         self._used = 0
 
     def index(self, observation: Cells) -> int:
-        """The row of a state."""
+        """Return the index of a state."""
         row: int = 0
         for cell in observation:
             row = row * self.cells + cell
         return row
 
     def column(self, action: Action) -> int:
-        """The column of an action."""
+        """Return the column of an action."""
         return action.pair * self.cells + action.cell
 
     def values_of(self, observation: Cells, actions: Sequence[Action]) -> list[float]:
-        """The values of some actions in this state, as plain floats."""
+        """Return the values of some actions in a state, as plain floats."""
         slot = self._slots[self.index(observation)]
         if slot == _NO_SLOT:
             return [0.0] * len(actions)
@@ -69,15 +69,15 @@ class QTable:
         return [row[pair * cells + cell] for pair, cell in actions]
 
     def values(self, observation: Cells) -> FloatArray:
-        """(pairs, cells) values of the actions in this state, NaN where illegal."""
+        """Return the action values in a state, (pairs, cells), NaN where illegal."""
         return self._row(self._q, observation)
 
     def visits(self, observation: Cells) -> FloatArray:
-        """(pairs, cells) visits of the actions in this state, NaN where illegal."""
+        """Return the visit counts in a state, (pairs, cells), NaN where illegal."""
         return self._row(self._n, observation)
 
     def row(self, state: int) -> tuple[FloatArray, NDArray[np.uint32]]:
-        """The values and visits of a state by its index, (actions,) each, to be written to."""
+        """Return writable views of a state's values and visits by its index, (actions,) each."""
         slot = self._slots[state]
         if slot == _NO_SLOT:
             slot = self._slots[state] = self._used
@@ -85,17 +85,17 @@ class QTable:
         return self._q[slot], self._n[slot]
 
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
-        """Every state in order with its values and visits, (pairs, cells), NaN where illegal."""
+        """Iterate over all states in order, with values and visits, (pairs, cells), NaN illegal."""
         for state in product(range(self.cells), repeat=self.pairs):
             yield state, self.values(state), self.visits(state)
 
     @property
     def size(self) -> int:
-        """How many state-action values there are: 1,500 at two divisions and three pairs."""
+        """Number of legal state-action values: 1,500 at two divisions and three pairs."""
         return self.states * (self.actions - self.pairs)
 
     def sha256(self) -> str:
-        """Hash of the values as little-endian float64, states then actions, illegal ones NaN."""
+        """Return the SHA-256 of the values as little-endian float64, row-major, NaN if illegal."""
         digest = hashlib.sha256()
         for first in range(0, self.states, _ROWS_AT_ONCE):
             slots = self._slots[first : first + _ROWS_AT_ONCE]
@@ -111,7 +111,7 @@ class QTable:
         return digest.hexdigest()
 
     def dump(self) -> dict[str, NDArray[np.generic]]:
-        """Only what was ever visited, so that a large table is a small file."""
+        """Return the visited entries in sparse form (see `table_rows`)."""
         visited = sum(np.count_nonzero(n) for n in self._in_parts(self._n))
         where = np.empty(visited, np.int64)
         q, n = np.empty(visited), np.empty(visited, np.uint32)
@@ -129,10 +129,10 @@ class QTable:
         return {"shape": np.array([self.pairs, self.cells]), "where": where, "q": q, "n": n}
 
     def load(self, arrays: dict[str, NDArray[np.generic]]) -> None:
-        """Replace all values and visits by those that `dump` returned.
+        """Replace all values and visits by the output of `dump`.
 
         Raises:
-            TableMismatch: if they are of a table of another shape, or do not fit together.
+            TableMismatch: if the arrays are inconsistent, or of a table of another shape.
         """
         check_arrays(arrays, self.pairs, self.cells)
         where, q, n = (arrays[name] for name in ("where", "q", "n"))
@@ -144,14 +144,14 @@ class QTable:
             self._q[slots, columns], self._n[slots, columns] = q[part], n[part]
 
     def _slots_of(self, states: NDArray[np.int64]) -> NDArray[np.int32]:
-        """The rows of some states, which have one from now on."""
+        """Return the rows of some states in the arrays; allocate those that are missing."""
         new = np.unique(states[self._slots[states] == _NO_SLOT])
         self._slots[new] = np.arange(self._used, self._used + len(new), dtype=np.int32)
         self._used += len(new)
         return self._slots[states]
 
     def _in_parts(self, table: NDArray[np.uint32]) -> Iterator[NDArray[np.uint32]]:
-        """The rows that are in use, some at a time."""
+        """Iterate over the rows in use, in blocks."""
         for first in range(0, self._used, _ROWS_AT_ONCE):
             yield table[first : min(first + _ROWS_AT_ONCE, self._used)]
 
@@ -164,7 +164,11 @@ class QTable:
 
 
 def check_size(pairs: int, cells: int) -> None:
-    """Raise `InvalidInput` if a table of this shape would be larger than `MAX_VALUES`."""
+    """Check that a table of this shape has at most `MAX_VALUES` values.
+
+    Raises:
+        InvalidInput: if it is larger.
+    """
     values: int = cells**pairs * pairs * cells
     if values > MAX_VALUES:
         raise InvalidInput(
@@ -174,10 +178,10 @@ def check_size(pairs: int, cells: int) -> None:
 
 
 def check_arrays(arrays: Mapping[str, NDArray[np.generic]], pairs: int, cells: int) -> None:
-    """Make sure that arrays are what `QTable.dump` returns for a table of this shape.
+    """Check that arrays are a valid output of `QTable.dump` for a table of this shape.
 
     Raises:
-        TableMismatch: if they are of a table of another shape, or do not fit together.
+        TableMismatch: if they are inconsistent, or of a table of another shape.
     """
     if missing := {"shape", "where", "q", "n"} - set(arrays):
         raise TableMismatch(f"this is no Q-table: it lacks {', '.join(sorted(missing))}")
@@ -187,8 +191,8 @@ def check_arrays(arrays: Mapping[str, NDArray[np.generic]], pairs: int, cells: i
             f"the table's leg pairs and cells are {shape.tolist()}, this problem's {[pairs, cells]}"
         )
     kinds = where.dtype.kind + q.dtype.kind + n.dtype.kind
-    is_whole = where.ndim == 1 and where.shape == q.shape == n.shape
-    if kinds != "ifu" or not is_whole or not np.isfinite(q).all():
+    has_equal_shapes = where.ndim == 1 and where.shape == q.shape == n.shape
+    if kinds != "ifu" or not has_equal_shapes or not np.isfinite(q).all():
         raise TableMismatch("the table's values, visits and places do not fit together")
     if where.size and not (where.min() >= 0 and where.max() < cells**pairs * pairs * cells):
         raise TableMismatch("the table has values for states that do not exist")

@@ -1,4 +1,4 @@
-"""Agents by name: ours, those of installed packages, and a class in any importable module."""
+"""Registry of agents: built-in ones, entry points of packages, and `my.module:Agent`."""
 
 import importlib
 import inspect
@@ -34,11 +34,11 @@ OURS: Mapping[str, AgentClass] = {
     "greedy": Greedy,
     "two-step": TwoStep,
 }
-_BY_HAND = re.compile(r"[\w.]+:\w+")
+_CLASS_PATH = re.compile(r"[\w.]+:\w+")
 
 
 def registered() -> dict[str, AgentClass]:
-    """Ours, and those that installed packages offer under the group `hexapods.agents`.
+    """Return the built-in agents and the entry points of group `hexapods.agents`, by name.
 
     A package cannot take the name of one of ours. One that cannot be loaded is left out, and the
     log says why.
@@ -54,19 +54,20 @@ def registered() -> dict[str, AgentClass]:
 
 
 def find(name: str) -> AgentClass:
-    """The class behind a registered name or `my.module:Agent`.
+    """Return the class of an agent by its registered name or as `my.module:Agent`.
 
     Raises:
-        UnknownName: if it is neither.
-        InvalidInput: if the module cannot be imported, or has no such agent.
+        UnknownName: if the name is neither.
+        InvalidInput: if the module cannot be imported, has no such class, or the class does not
+            implement the agent protocol.
     """
-    if name in OURS:  # before looking through the installed packages, which takes milliseconds
+    if name in OURS:  # first, because scanning entry points takes milliseconds
         return OURS[name]
-    known = registered()
-    if name in known:
-        return known[name]
-    if not _BY_HAND.fullmatch(name):
-        raise UnknownName("agent", name, [*known, "my.module:Agent"])
+    by_name = registered()
+    if name in by_name:
+        return by_name[name]
+    if not _CLASS_PATH.fullmatch(name):
+        raise UnknownName("agent", name, [*by_name, "my.module:Agent"])
     module_name, _, class_name = name.partition(":")
     try:
         module = importlib.import_module(module_name)
@@ -78,14 +79,14 @@ def find(name: str) -> AgentClass:
         raise InvalidInput(
             f"agent {name!r}: {module_name} has no {class_name}; its classes: {offers}"
         )
-    missing = [verb for verb in ("act", "learn", "state", "load") if not hasattr(agent, verb)]
+    missing = [method for method in ("act", "learn", "state", "load") if not hasattr(agent, method)]
     if missing:
         raise InvalidInput(f"agent {name!r} lacks {', '.join(missing)} of the agent protocol")
     return agent  # type: ignore[no-any-return]
 
 
 def learns(name: str) -> bool:
-    """Whether practice changes an agent; false only if it says so by `learns = False`.
+    """Whether practice changes an agent; False only if its class sets `learns = False`.
 
     Raises:
         UnknownName, InvalidInput: as `find`.
@@ -94,7 +95,7 @@ def learns(name: str) -> bool:
 
 
 def needs_practice(name: str) -> bool:
-    """Whether an agent races with what it has learned only: it says so by `needs_practice`.
+    """Whether an agent can race only after practice: its class sets `needs_practice = True`.
 
     Raises:
         UnknownName, InvalidInput: as `find`.
@@ -123,7 +124,7 @@ def settings_of(agent: AgentClass) -> Mapping[str, DeclaredSetting]:
 
 
 def live_settings_of(agent: AgentClass) -> Mapping[str, DeclaredSetting]:
-    """The settings that an agent's `tune` takes while it learns; none without a `tune`.
+    """Return the settings that an agent's `tune` can change while it learns; none without `tune`.
 
     They are those of its constructor that are declared `live`, as far as `tune` takes them, and
     what `tune` itself declares, or names like `TabularLearner.tune`.
@@ -143,22 +144,22 @@ def live_settings_of(agent: AgentClass) -> Mapping[str, DeclaredSetting]:
     return live
 
 
-def asks_for(agent: AgentClass) -> set[str]:
-    """The names of what an agent's constructor asks for."""
+def parameter_names(agent: AgentClass) -> set[str]:
+    """Return the names of the parameters of an agent's constructor."""
     return set(parameters_of(agent))
 
 
 def build(agent: AgentClass, offered: Mapping[str, Any]) -> Agent:
-    """An agent, given whatever of `offered` it asks for by name.
+    """Create an agent, with those arguments of `offered` that its constructor has parameters for.
 
     Raises:
-        InvalidInput: if it needs something that is not offered.
+        InvalidInput: if a required parameter is not in `offered`.
     """
     parameters = parameters_of(agent).values()
-    needs = {p.name for p in parameters if p.default is p.empty}
-    if needs - set(offered):
+    needed = {p.name for p in parameters if p.default is p.empty}
+    if needed - set(offered):
         raise InvalidInput(
-            f"an agent asks for {', '.join(sorted(needs - set(offered)))}; "
+            f"an agent asks for {', '.join(sorted(needed - set(offered)))}; "
             f"on offer: {', '.join(sorted(offered))}"
         )
     return agent(**{p.name: offered[p.name] for p in parameters if p.name in offered})

@@ -19,15 +19,15 @@ TraceDecay = Annotated[
     ),
 ]
 _MIN_TRACE = 1e-3
-"""A state and action is forgotten once it would count for less than this."""
+"""Cut-off: eligibility traces below it are dropped."""
 
 
 class SarsaLambda(TabularLearner):
-    """Learns on-policy, and credits a reward to the steps before it as well.
+    """On-policy learner with eligibility traces, which credit a reward to earlier steps as well.
 
     Args:
-        trace_decay: λ; a step counts (γλ)^k for a reward k steps later.
-        settings: as of `TabularLearner`.
+        trace_decay: λ; the eligibility of a step is (γλ)^k for a reward k steps later.
+        settings: as for `TabularLearner`.
     """
 
     title = "Sarsa(λ)"
@@ -39,14 +39,14 @@ class SarsaLambda(TabularLearner):
         super().__init__(*args, **settings)
         self._trace_decay = trace_decay
         self._traces: dict[tuple[int, int], float] = {}
-        """By row and column of the table, the newest last."""
+        """Eligibility traces by (row, column) of the table, the newest last."""
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Q ← Q + α δ e for every trace e, with δ = r + γ Q(s′, a′) − Q(s, a)."""
-        assert transition.next_action is not None  # noqa: S101 - it is on-policy
-        (after,) = self.table.values_of(transition.next_observation, [transition.next_action])
-        before = self.table.row(state)[0][column]
-        error = transition.reward_m + self._gamma * after - before
+        assert transition.next_action is not None  # noqa: S101 - is_on_policy
+        (next_value,) = self.table.values_of(transition.next_observation, [transition.next_action])
+        value = self.table.row(state)[0][column]
+        error = transition.reward_m + self._gamma * next_value - value
         self._traces.pop((state, column), None)
         self._traces[state, column] = 1.0
         decay, kept = self._gamma * self._trace_decay, {}
@@ -57,19 +57,19 @@ class SarsaLambda(TabularLearner):
         self._traces = kept
 
     def tune(self, *, trace_decay: TraceDecay | None = None, **changes: Any) -> None:
-        """Change rates from the next step on, as of `TabularLearner`."""
+        """Change rates from the next step on, as in `TabularLearner`."""
         super().tune(**changes)
         self._trace_decay = self._trace_decay if trace_decay is None else trace_decay
 
     def state(self) -> AgentState:
-        """As of `TabularLearner`, with the traces."""
+        """Return the state of `TabularLearner`, λ and the eligibility traces."""
         places = np.array(list(self._traces), np.int64).reshape(-1, 2)
         traces = np.array(list(self._traces.values()))
         own = {"trace_decay": np.array([self._trace_decay]), "places": places, "traces": traces}
         return super().state() | own
 
     def load(self, state: AgentState) -> None:
-        """Go on exactly where `state` was taken; the generator is the caller's."""
+        """Restore a state that `state` returned; the caller restores the generator."""
         super().load(state)
         (self._trace_decay,) = state["trace_decay"].tolist()
         places = ((row, column) for row, column in state["places"].tolist())
@@ -77,7 +77,7 @@ class SarsaLambda(TabularLearner):
 
     @staticmethod
     def check_state(state: AgentState) -> None:
-        """Check what `load` relies on beyond the table, as of `TabularLearner`."""
+        """Check what `load` relies on beyond the table, as in `TabularLearner`."""
         TabularLearner.check_state(state)
         declare("trace_decay", TraceDecay).check(*state["trace_decay"].tolist())
         (pairs, cells), traces = state["shape"].tolist(), state["traces"]

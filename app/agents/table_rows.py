@@ -1,7 +1,7 @@
-"""The rows of a Q-table out of its sparse form, a few at a time: no table is in memory as a whole.
+"""Streaming reader of a Q-table's sparse form: converts it to dense rows in constant memory.
 
-The sparse form is three arrays of one length: `where`, the rising places (state · actions + column)
-of the values that were ever visited, and their values `q` and visits `n`.
+The sparse form is three arrays of equal length: `where`, the flat indices (state · actions +
+column) of the visited entries in ascending order, and their values `q` and visits `n`.
 """
 
 import hashlib
@@ -17,28 +17,28 @@ from app.domain.types import Cells, FloatArray
 
 VALUES_AT_ONCE = 4096
 Part = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]
-"""Some of `where`, `q` and `n`."""
+"""A chunk of `where`, `q` and `n`."""
 
 
 class TableRows:
-    """The rows of a table of `pairs` leg pairs over `cells` cells, as those of a `QTable`."""
+    """Dense rows of a sparse table of `pairs` leg pairs over `cells` cells, as in `QTable`."""
 
     def __init__(self, pairs: int, cells: int, parts: Callable[[], Iterator[Part]]) -> None:
-        """Read nothing yet.
+        """Store the source; reading starts with the iteration.
 
         Args:
-            pairs: of legs.
-            cells: of the foot grid.
-            parts: begins to read the sparse form, in order.
+            pairs: number of leg pairs.
+            cells: number of cells of the foot grid.
+            parts: starts an iteration over the chunks of the sparse form, in order.
         """
         self.pairs, self.cells = pairs, cells
         self._parts = parts
 
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
-        """Every state in order with its values and visits, (pairs, cells), NaN where illegal.
+        """Iterate over all states in order, with values and visits, (pairs, cells), NaN illegal.
 
         Raises:
-            TableMismatch: once the places do not rise.
+            TableMismatch: if the indices are not ascending.
         """
         pairs = range(self.pairs)
         states = product(range(self.cells), repeat=self.pairs)
@@ -49,10 +49,10 @@ class TableRows:
                 yield state, values, visits
 
     def sha256(self) -> str:
-        """As of `QTable.sha256`.
+        """Return the same hash as `QTable.sha256`.
 
         Raises:
-            TableMismatch: if the places do not rise.
+            TableMismatch: if the indices are not ascending.
         """
         digest, first = hashlib.sha256(), 0
         for q, _ in self._dense(1000):
@@ -65,26 +65,26 @@ class TableRows:
         return digest.hexdigest()
 
     def _dense(self, at_once: int) -> Iterator[tuple[FloatArray, FloatArray]]:
-        """The values and visits of some rows at a time, (rows, pairs, cells) each."""
+        """Iterate over blocks of rows: values and visits, (rows, pairs, cells) each."""
         parts, actions = self._parts(), self.pairs * self.cells
-        where, q, n = next(parts, _NOTHING)
+        where, q, n = next(parts, _EMPTY_PART)
         states: int = self.cells**self.pairs
         for first in range(0, states, at_once):
             rows = min(at_once, states - first)
             values, visits = np.zeros(rows * actions), np.zeros(rows * actions)
             begin, end = first * actions, (first + rows) * actions
             while where.size:
-                here = int(np.searchsorted(where, end))
-                if (where[:here] < begin).any():
+                count = int(np.searchsorted(where, end))
+                if (where[:count] < begin).any():
                     raise TableMismatch(NOT_RISING)
-                values[where[:here] - begin], visits[where[:here] - begin] = q[:here], n[:here]
-                where, q, n = where[here:], q[here:], n[here:]
+                values[where[:count] - begin], visits[where[:count] - begin] = q[:count], n[:count]
+                where, q, n = where[count:], q[count:], n[count:]
                 if where.size:
                     break
-                where, q, n = next(parts, _NOTHING)
+                where, q, n = next(parts, _EMPTY_PART)
             shape = (rows, self.pairs, self.cells)
             yield values.reshape(shape), visits.reshape(shape)
 
 
 NOT_RISING = "the table's values are not in rising order of their states"
-_NOTHING: Part = (np.empty(0, np.int64), np.empty(0), np.empty(0))
+_EMPTY_PART: Part = (np.empty(0, np.int64), np.empty(0), np.empty(0))

@@ -1,4 +1,4 @@
-"""What learners with a Q-table and an ε-greedy policy have in common."""
+"""Base class of learners with a Q-table and an ε-greedy policy."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -71,32 +71,32 @@ EpsilonEnd = Annotated[
 
 @dataclass(frozen=True)
 class EpsilonSchedule:
-    """ε falls linearly over the episodes: start + (end − start) · e / max(1, n − 1)."""
+    """Linear decay of ε over the episodes: start + (end − start) · e / max(1, n − 1)."""
 
     start: float = 1.0
     end: float = 0.0
     episodes: int = 1
 
     def __call__(self, episode: int) -> float:
-        """The ε of an episode, counted from 0; episodes past the last keep its ε."""
+        """Return the ε of an episode, counted from 0; constant after the last episode."""
         last = self.episodes - 1
         return self.start + (self.end - self.start) * min(episode, last) / max(1, last)
 
 
 class TabularLearner(ABC):
-    """Learns the value of each action in each state from nothing but what it sees.
+    """Model-free learner of action values in a Q-table, with an ε-greedy policy.
 
-    A learner adds its update rule, `_update`, and its settings.
+    A subclass implements the update rule, `_update`, and may add settings.
 
     Args:
-        rng: decides when to explore, where to, and between equals.
-        problem: sizes the table.
-        explore: if False the policy is greedy in the table, whatever the schedule says.
-        alpha: learning rate.
-        gamma: discount.
-        epsilon_start, epsilon_end: of the schedule over the episodes.
-        steps: how many steps it will learn, which gives the number of episodes.
-        steps_per_episode: ε stays the same so long.
+        rng: random generator for exploration and for breaking ties.
+        problem: determines the size of the table.
+        explore: if False, the policy is greedy in the table (ε = 0).
+        alpha: learning rate α.
+        gamma: discount factor γ.
+        epsilon_start, epsilon_end: ε of the first and the last episode.
+        steps: planned number of steps, which gives the number of episodes.
+        steps_per_episode: number of steps for which ε is constant.
     """
 
     needs_practice = True
@@ -132,7 +132,7 @@ class TabularLearner(ABC):
         return self._schedule(self._learned // self._steps_per_episode)
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
-        """ε-greedy; ties are broken at random."""
+        """Return an ε-greedy action; ties are broken at random."""
         epsilon = self.epsilon
         if epsilon > 0 and self._rng.random() < epsilon:
             return legal[int(self._rng.integers(len(legal)))]
@@ -142,7 +142,7 @@ class TabularLearner(ABC):
         return best[0] if len(best) == 1 else best[int(self._rng.integers(len(best)))]
 
     def learn(self, transition: Transition) -> None:
-        """Update the table, and count the visit of the state and action."""
+        """Update the table, and the visit count of the state and action."""
         table = self.table
         state, column = table.index(transition.observation), table.column(transition.action)
         self._update(transition, state, column)
@@ -151,7 +151,7 @@ class TabularLearner(ABC):
 
     @abstractmethod
     def _update(self, transition: Transition, state: int, column: int) -> None:
-        """Update the values of the table, where the step began in `state` by action `column`."""
+        """Apply the update rule for a transition from row `state` by the action in `column`."""
 
     def tune(
         self,
@@ -166,33 +166,33 @@ class TabularLearner(ABC):
         self._fixed_epsilon = self._fixed_epsilon if epsilon is None else epsilon
 
     def values(self, observation: Cells) -> FloatArray:
-        """(pairs, cells) values of the actions in this state, NaN where illegal."""
+        """Return the action values in this state, (pairs, cells), NaN where illegal."""
         return self.table.values(observation)
 
     def visits(self, observation: Cells) -> FloatArray:
-        """(pairs, cells) visits of the actions in this state, NaN where illegal."""
+        """Return the visit counts in this state, (pairs, cells), NaN where illegal."""
         return self.table.visits(observation)
 
     def state(self) -> AgentState:
-        """Values, visits, rates and the place in the schedule."""
+        """Return values, visits, rates and the position in the ε schedule."""
         fixed = np.nan if self._fixed_epsilon is None else self._fixed_epsilon
         progress = np.array([self._learned], np.int64)
         rates = np.array([self._alpha, self._gamma, fixed])
         return {**self.table.dump(), "learned": progress, "rates": rates}
 
     def load(self, state: AgentState) -> None:
-        """Go on exactly where `state` was taken; the generator is the caller's."""
+        """Restore a state that `state` returned; the caller restores the generator."""
         self.table.load(state)
         self._learned = int(state["learned"][0])
         self._alpha, self._gamma, fixed = state["rates"].tolist()
         self._fixed_epsilon = None if np.isnan(fixed) else fixed
 
     def share_table(self, other: "TabularLearner") -> None:
-        """Use the table that another learner writes; for a policy that learns nothing."""
+        """Share the table of another learner, without a copy; for evaluation only."""
         self.table = other.table
 
     def continue_from(self, state: AgentState) -> None:
-        """Take over values and visits only: the rates are the new run's, ε restarts."""
+        """Load values and visits only; rates are those of this run, and the ε schedule restarts."""
         self.table.load(state)
 
     @staticmethod
@@ -201,12 +201,12 @@ class TabularLearner(ABC):
 
         Raises:
             InvalidInput: for a rate out of its limits.
-            KeyError, TypeError, ValueError: if `state` is none of this agent.
+            KeyError, TypeError, ValueError: if `state` is not a state of this agent.
         """
         alpha, gamma, epsilon = state["rates"].tolist()
         declare("alpha", Alpha).check(alpha)
         declare("gamma", Gamma).check(gamma)
-        # NaN as long as the schedule is in force.
+        # NaN while the schedule is in use.
         if not np.isnan(epsilon):
             declare("epsilon", Epsilon).check(epsilon)
         if state["learned"].dtype.kind != "i" or state["learned"][0] < 0:

@@ -1,4 +1,4 @@
-"""A run as the `run.json` of its archive: one strict shape, so that nothing else gets in."""
+"""Encode a run as the `run.json` of its archive, and parse it with strict validation."""
 
 from collections.abc import Collection, Mapping, Sequence
 from typing import Annotated, Any, Literal
@@ -42,10 +42,10 @@ from app.storage.run import (
 
 FORMAT = 1
 MAX_JSON_BYTES = 64_000_000
-_MAX_PART_BYTES = 256_000  # of what is not a curve
+_MAX_PART_BYTES = 256_000  # of a config or a result
 
 _Id = Annotated[str, Meta(pattern="^[0-9a-z]{1,32}$")]
-_Known = Metres | None  # null if it never came about; JSON has no NaN
+_OptionalMetres = Metres | None  # null if it was not measured; JSON has no NaN
 
 
 class _Evaluation(UntrustedInput, frozen=True):
@@ -55,8 +55,8 @@ class _Evaluation(UntrustedInput, frozen=True):
 
 
 class _TrainingResult(UntrustedInput, frozen=True):
-    distance_m: _Known
-    greedy_distance_m: _Known
+    distance_m: _OptionalMetres
+    greedy_distance_m: _OptionalMetres
     q_table_sha256: Annotated[str, Meta(pattern="^[0-9a-f]{64}$")] | None
 
 
@@ -72,7 +72,7 @@ class _LaneResult(UntrustedInput, frozen=True):
     training_id: _Id | None
     trained_robot: dict[str, Any] | None
     steps: Step
-    total_distance_m: _Known
+    total_distance_m: _OptionalMetres
     failure: PortableText | None
     decision_s: Seconds
     simulated_transitions: Large
@@ -84,8 +84,8 @@ class _RaceResult(UntrustedInput, frozen=True):
     shared_machine: bool
 
 
-class _Shape(UntrustedInput, frozen=True):
-    """A `Run` that has ended."""
+class _EndedRun(UntrustedInput, frozen=True):
+    """Fields of a `Run` that has ended."""
 
     id: _Id
     kind: Kind
@@ -97,7 +97,7 @@ class _Shape(UntrustedInput, frozen=True):
     done: Count
     total: Count
     changes: Annotated[list[dict[Name, float | int | str | bool]], Meta(max_length=10_000)]
-    greedy_distance_m: _Known
+    greedy_distance_m: _OptionalMetres
     result: Raw
     error: PortableText | None
     created_at: Moment
@@ -109,7 +109,7 @@ class _Shape(UntrustedInput, frozen=True):
 class _File(UntrustedInput, frozen=True):
     format: int
     version: Name
-    run: _Shape
+    run: _EndedRun
     curve: list[_Evaluation]
 
 
@@ -119,18 +119,18 @@ class _Head(msgspec.Struct):
 
 
 def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
-    """A run that has ended, and its curve.
+    """Encode an ended run and its learning curve as `run.json`.
 
     Raises:
         Conflict: if it has not ended.
-        InvalidInput: if it is too long.
+        InvalidInput: if the output would be too long to be imported.
     """
     if run.state in NOT_ENDED:
         raise Conflict(f"{run.kind} {run.id} is {run.state}; stop it first", run.state)
-    own = {name: getattr(run, name) for name in _Shape.__struct_fields__}
-    own["config"] = config_as_json(run.config)
-    written = {"format": FORMAT, "version": __version__, "run": own, "curve": list(curve)}
-    data = msgspec.json.format(msgspec.json.encode(written), indent=1)
+    run_fields = {name: getattr(run, name) for name in _EndedRun.__struct_fields__}
+    run_fields["config"] = config_as_json(run.config)
+    document = {"format": FORMAT, "version": __version__, "run": run_fields, "curve": list(curve)}
+    data = msgspec.json.format(msgspec.json.encode(document), indent=1)
     if len(data) > MAX_JSON_BYTES:
         raise InvalidInput(f"{run.kind} {run.id} has too long a curve for an archive")
     return data
@@ -139,16 +139,16 @@ def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
 def read_run_json(
     data: bytes, label: str, agents: Collection[str]
 ) -> tuple[Run, list[dict[str, Any]]]:
-    """The run and its curve.
+    """Parse and validate `run.json`; return the run and its learning curve.
 
     Args:
-        data: what `run_json` wrote.
-        label: what to call the file in messages.
-        agents: the names that are registered here.
+        data: as written by `run_json`.
+        label: name of the file for error messages.
+        agents: names of the registered agents.
 
     Raises:
-        DamagedFile: if `run_json` of this version did not write it.
-        InvalidInput: if it is of an agent, a robot or a gait that cannot be here.
+        DamagedFile: if it is malformed, inconsistent, or of another format version.
+        InvalidInput: if its agent, robot or gait is not supported here.
     """
     try:
         if len(data) > MAX_JSON_BYTES:
@@ -179,41 +179,41 @@ _RESULTS: Mapping[Kind, Any] = {
 }
 
 
-def _run(shape: _Shape, agents: Collection[str]) -> Run:
-    config = run_config_from_json(shape.kind, _part(shape.config, dict[str, Any]))
-    if not isinstance(config, CONFIGS[shape.kind]) or shape.done > shape.total:
+def _run(fields: _EndedRun, agents: Collection[str]) -> Run:
+    config = run_config_from_json(fields.kind, _decode(fields.config, dict[str, Any]))
+    if not isinstance(config, CONFIGS[fields.kind]) or fields.done > fields.total:
         raise ValueError("its kind, its config and its progress do not fit together")
-    # First of all: laying out an experiment imports its agents.
+    # Before `plan_of`, which imports the agents of an experiment.
     _check_agents(config, agents)
     if isinstance(config, TrainingConfig):
         check_settings(config)
     if isinstance(config, ExperimentConfig):
-        if plan_of(config).total != shape.total:
+        if plan_of(config).total != fields.total:
             raise ValueError("its total is not that of its trials")
     else:
         check_walk(config)
-    # Checked only: what was written is kept as it is.
-    _part(shape.result, _RESULTS[shape.kind] | None)
-    result = _part(shape.result, Any)
-    values = {name: getattr(shape, name) for name in shape.__struct_fields__}
-    lanes = tuple(shape.lane_training_ids)
+    # Validate the types, but store the result unchanged.
+    _decode(fields.result, _RESULTS[fields.kind] | None)
+    result = _decode(fields.result, Any)
+    values = {name: getattr(fields, name) for name in fields.__struct_fields__}
+    lanes = tuple(fields.lane_training_ids)
     values |= {
         "config": config,
         "result": result,
-        "changes": tuple(shape.changes),
+        "changes": tuple(fields.changes),
         "lane_training_ids": lanes,
     }
     return Run(**values)
 
 
-def _part(raw: Raw, kind: Any) -> Any:
+def _decode(raw: Raw, kind: Any) -> Any:
     if len(bytes(raw)) > _MAX_PART_BYTES:
         raise ValueError("it is too long")
     return msgspec.json.decode(raw, type=kind)
 
 
 def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
-    """Check what a run's fields must satisfy beyond their shape."""
+    """Check constraints on a run's fields beyond their types."""
     check_name(run.name)
     for name in ("created_at", "started_at", "ended_at"):
         check_moment(name, getattr(run, name))
@@ -249,7 +249,7 @@ def _check_lanes(run: Run) -> None:
 
 
 def _check_agents(config: Config, agents: Collection[str]) -> None:
-    """An agent named by module would be imported, and so run, when someone goes on with it."""
+    """Check that all agents are registered: resuming a run would import, so execute, others."""
     if isinstance(config, RaceConfig):
         used: Collection[str] = [lane.agent for lane in config.lanes]
     else:

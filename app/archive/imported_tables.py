@@ -1,4 +1,4 @@
-"""Tables and checkpoints from elsewhere: whole, finite, and fit to be gone on with."""
+"""Validation of untrusted tables and checkpoints, so that a training can continue from them."""
 
 from collections.abc import Collection, Mapping
 from typing import Any
@@ -32,17 +32,17 @@ class TableMeta(msgspec.Struct):
 def checked_table(
     data: bytes, label: str, agents: Collection[str]
 ) -> tuple[Checkpoint, TableMeta, TrainingConfig]:
-    """The table in a file, what it says of itself, and the training that it is of.
+    """Parse and validate a table file; return checkpoint, metadata and config of its training.
 
     Args:
-        data: all of the file.
-        label: what to call it in messages.
-        agents: the names that are registered; no other agent is imported.
+        data: content of the file.
+        label: name of the file for error messages.
+        agents: names of the registered agents; no other agent is imported.
 
     Raises:
-        UnknownName: if it is of an agent that is not registered.
-        DamagedFile: if it is no table, does not hold together, or has a number out of range.
-        TableMismatch: if it was learned for another problem than it says.
+        UnknownName: if its agent is not registered.
+        DamagedFile: if it is no table, is inconsistent, or has a number out of range.
+        TableMismatch: if its metadata and its config are of different walking problems.
     """
     checkpoint = tables.from_bytes(data, label)
     config = _training(checkpoint.meta.get("config"), label)
@@ -65,15 +65,15 @@ def checked_table(
         raise
     except KeyError as error:
         raise DamagedFile(f"{label} does not say its {error}") from error
-    except Exception as error:  # NumPy does not say all that strange arrays make it raise
+    except Exception as error:  # NumPy documents no complete list of exceptions
         raise DamagedFile(f"{label} does not hold together: {error}") from error
     return checkpoint, meta, config
 
 
 def check_settings(config: TrainingConfig) -> None:
-    """Make sure that the settings of a training of a registered agent are valid.
+    """Check that the settings of a training are valid; its agent must be registered.
 
-    Those of the default agent are ignored: earlier versions kept them with every agent.
+    Settings of the default agent are ignored: earlier versions stored them with every agent.
 
     Raises:
         UnknownName, InvalidInput: if they are not.
@@ -84,14 +84,14 @@ def check_settings(config: TrainingConfig) -> None:
 
 
 def check_change(change: Mapping[str, Any], agent: str) -> None:
-    """Make sure that a change of settings or pace is one that could have been asked for.
+    """Check that a recorded change of settings or pace during a training is valid.
 
     Args:
-        change: by name, and the `step`.
-        agent: a registered one.
+        change: new values by name, and the `step` of the change.
+        agent: name of a registered agent.
 
     Raises:
-        KeyError, TypeError, ValueError, InvalidInput: if it is none.
+        KeyError, TypeError, ValueError, InvalidInput: if it is not.
     """
     valid = changeable_settings(agent)
     if unknown := set(change) - {"step", *valid}:
@@ -101,11 +101,11 @@ def check_change(change: Mapping[str, Any], agent: str) -> None:
         valid[name].check(change[name])
 
 
-def _training(shown: Any, label: str) -> TrainingConfig:
-    if not isinstance(shown, Mapping):
+def _training(config_data: Any, label: str) -> TrainingConfig:
+    if not isinstance(config_data, Mapping):
         raise DamagedFile(f"{label} does not say what was trained")
     try:
-        config = config_from_json(shown)
+        config = config_from_json(config_data)
     except HexapodError as error:
         raise DamagedFile(f"{label} says of its training: {error}") from error
     except (KeyError, OverflowError, TypeError, ValueError, RecursionError) as error:

@@ -1,4 +1,4 @@
-"""Settings: values that a person may choose, each declared once, where it is used.
+"""Settings: values that a user may choose, each declared once, where it is used.
 
 A setting is a keyword parameter of an agent's constructor, or a field of a config dataclass, whose
 type is annotated with its limits and with a `Setting`:
@@ -6,8 +6,8 @@ type is annotated with its limits and with a `Setting`:
     alpha: Annotated[float, Gt(0), Le(1), Setting(title="Learning rate", help="…")] = 0.3
 
 `declared_parameters` and `declared_fields` find the declarations. From them follow validation,
-request fields and refusals, `GET /options`, options of the command line, controls on the page,
-the grid of a sweep, and what checkpoints and archives keep.
+request fields and error messages, `GET /options`, options of the command line, controls on the
+page, the grid of a sweep, and fields of checkpoints and archives.
 """
 
 import inspect
@@ -29,26 +29,26 @@ Value = float | int | str | bool | None
 V = TypeVar("V")
 Limit = Ge | Gt | Le | Lt
 REQUIRED = inspect.Parameter.empty
-"""The default of a setting that has none."""
-_REST = (Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD)
-_KINDS = (bool, int, float, str, NoneType)
+"""Default of a setting without a default."""
+_VARIADIC = (Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD)
+_PLAIN_TYPES = (bool, int, float, str, NoneType)
 MAX_SETTING_NAME = 60
 MAX_TEXT = 200
 
 
 @dataclass(frozen=True, kw_only=True)
 class Setting:
-    """Describes a setting to people, and says whether it may change during a run.
+    """Description of a setting for users, and whether it may change during a run.
 
     Attributes:
-        title: the label of its control.
-        help: one sentence.
-        symbol: the field's letter for it, such as α.
-        phrase: how a report says a value, a format string such as `{} divisions`; by default the
+        title: label of its control.
+        help: description, one sentence.
+        symbol: conventional symbol, such as α.
+        phrase: format string for a value in a report, such as `{} divisions`; by default the
             symbol or title, and the value.
-        unit: what a number counts or measures, such as m.
+        unit: unit of a number, such as m.
         live: whether it may change while a run is active; the agent's `tune` receives changes.
-        examples: values that a sweep might compare.
+        examples: example values for a sweep.
     """
 
     title: str
@@ -65,13 +65,13 @@ class Setting:
 
 @dataclass(frozen=True)
 class DeclaredSetting:
-    """A setting with its declaration.
+    """Declaration of a setting, with validation, parsing and formatting of its values.
 
     Attributes:
-        name: of the parameter or field.
-        annotation: its type with all metadata, as Pydantic and Hypothesis take it.
-        default: `REQUIRED` if it has none.
-        about: its description.
+        name: name of the parameter or field.
+        annotation: its type with all metadata, as Pydantic and Hypothesis accept it.
+        default: default value; `REQUIRED` if it has none.
+        about: description for users.
     """
 
     name: str
@@ -81,17 +81,17 @@ class DeclaredSetting:
 
     @cached_property
     def kinds(self) -> frozenset[type]:
-        """The plain types of valid values: of bool, int, float, str and NoneType."""
+        """Types of valid values, a subset of bool, int, float, str and NoneType."""
         return frozenset(_kinds(self.annotation))
 
     @cached_property
     def choices(self) -> tuple[str, ...]:
-        """The valid words, if only certain words are valid."""
-        return tuple(word for word in _literals(self.annotation) if isinstance(word, str))
+        """The valid strings of a `Literal` type; empty for other types."""
+        return tuple(literal for literal in _literals(self.annotation) if isinstance(literal, str))
 
     @cached_property
     def limits(self) -> tuple[Limit, ...]:
-        """The limits of valid numbers."""
+        """Limits of valid numbers."""
         return tuple(_limits(self.annotation))
 
     @property
@@ -101,35 +101,35 @@ class DeclaredSetting:
 
     @property
     def is_whole(self) -> bool:
-        """Whether of all numbers only whole ones are valid."""
+        """Whether integers are the only valid numbers."""
         return int in self.kinds and float not in self.kinds
 
     @property
     def low(self) -> float | None:
-        """The lower limit, whether it is itself valid or not."""
+        """Lower limit, inclusive or exclusive; None without one."""
         return next((_bound(x) for x in self.limits if isinstance(x, Ge | Gt)), None)
 
     @property
     def high(self) -> float | None:
-        """The upper limit, whether it is itself valid or not."""
+        """Upper limit, inclusive or exclusive; None without one."""
         return next((_bound(x) for x in self.limits if isinstance(x, Le | Lt)), None)
 
     @property
     def excludes_low(self) -> bool:
-        """Whether the lower limit itself is not valid."""
+        """Whether the lower limit is exclusive."""
         return any(isinstance(limit, Gt) for limit in self.limits)
 
     @property
     def excludes_high(self) -> bool:
-        """Whether the upper limit itself is not valid."""
+        """Whether the upper limit is exclusive."""
         return any(isinstance(limit, Lt) for limit in self.limits)
 
     @cached_property
     def valid(self) -> str:
-        """The valid values in words that follow "must be"."""
+        """Description of the valid values for error messages, to follow "must be"."""
         parts = list(self.choices)
         if self.is_whole:
-            # Of a count the unit is clear from its name.
+            # The unit of a count is clear from its name.
             parts.append(" ".join(["a whole number", *self._range()]))
         elif self.is_number:
             unit = [self.about.unit] if self.about.unit else []
@@ -147,15 +147,15 @@ class DeclaredSetting:
             InvalidInput: if it is not; the message names what is.
         """
         if not self._is_valid(value):
-            shown = f"{value:,}" if type(value) in (int, float) else repr(value)[:80]
-            raise InvalidInput(f"{self.name} must be {self.valid}, not {shown}")
+            formatted = f"{value:,}" if type(value) in (int, float) else repr(value)[:80]
+            raise InvalidInput(f"{self.name} must be {self.valid}, not {formatted}")
 
     def allows(self, value: Any) -> bool:
         """Whether a value is valid."""
         return self._is_valid(value)
 
     def normalized(self, value: Any) -> Any:
-        """Return a value as its own type: JSON and people write 2 for 2.0, and 2.0 for 2.
+        """Return a value converted to the type of the setting: 2 to 2.0, or 2.0 to 2.
 
         Raises:
             InvalidInput: if it is not valid.
@@ -168,13 +168,13 @@ class DeclaredSetting:
         return value
 
     def describe(self, value: Any) -> str:
-        """Describe a value for a report: `α 0.3`."""
+        """Format a value for a report: `α 0.3`."""
         name = self.about.symbol or self.about.title.lower()
         kind = {float: "g", int: ","}.get(type(value), "")
         return (self.about.phrase or name + "\u00a0{}").format(format(value, kind))
 
     def parse(self, text: str) -> Value:
-        """Parse a value as typed on a command line or in an address.
+        """Parse a value from a command line or a URL.
 
         Raises:
             InvalidInput: if it is not valid; the message names what is.
@@ -197,7 +197,7 @@ class DeclaredSetting:
             return False
         # No whole number that `float` cannot take either.
         is_of_kind = isinstance(value, int) if self.is_whole else abs(value) <= sys.float_info.max
-        return is_of_kind and all(_holds(limit, value) for limit in self.limits)
+        return is_of_kind and all(_satisfies(limit, value) for limit in self.limits)
 
     def _range(self) -> list[str]:
         low, high = (None if x is None else f"{x:,.15g}" for x in (self.low, self.high))
@@ -217,9 +217,9 @@ class DeclaredSetting:
 def parameters_of(
     function: Callable[..., Any], method: str = "__init__"
 ) -> Mapping[str, Parameter]:
-    """Find the named parameters of a function, or of a method of a class.
+    """Return the named parameters of a function, or of a method of a class.
 
-    Those of the base class are included where a method passes on any others by `**`.
+    Those of the base class are included if the method has a `**` parameter.
     """
     return {name: parameter for name, (parameter, _) in _parameters(function, method).items()}
 
@@ -245,7 +245,7 @@ def declared_parameters(
     return {
         name: declare(name, annotation, parameter.default)
         for name, (parameter, annotation) in _parameters(function, method).items()
-        if _about(annotation) is not None
+        if _setting_of(annotation) is not None
     }
 
 
@@ -262,7 +262,7 @@ def _parameters(function: Callable[..., Any], method: str) -> Mapping[str, tuple
         named = {
             name: (parameter, hints.get(name))
             for name, parameter in parameters.items()
-            if parameter.kind not in _REST and name != "self"
+            if parameter.kind not in _VARIADIC and name != "self"
         }
         found = {**named, **found}
         if not any(one.kind is Parameter.VAR_KEYWORD for one in parameters.values()):
@@ -285,18 +285,18 @@ def _hints(function: Callable[..., Any]) -> Mapping[str, Any]:
 
 @cache
 def declared_fields(config: type) -> Mapping[str, DeclaredSetting]:
-    """Find the settings among the fields of a dataclass, in their order."""
+    """Return the settings among the fields of a dataclass, in order."""
     hints = get_type_hints(config, include_extras=True)
     return {
         f.name: declare(f.name, hints[f.name], REQUIRED if f.default is MISSING else f.default)
         for f in fields(config)
-        if _about(hints[f.name]) is not None
+        if _setting_of(hints[f.name]) is not None
     }
 
 
 def declare(name: str, annotation: Any, default: Any = REQUIRED) -> DeclaredSetting:
-    """Make a declared setting of a name and an annotation that includes a `Setting`."""
-    about = _about(annotation)
+    """Create a declared setting from a name and an annotation that includes a `Setting`."""
+    about = _setting_of(annotation)
     if about is None:
         raise TypeError(f"{name} has no Setting in its annotation")
     return DeclaredSetting(name, annotation, default, about)
@@ -310,10 +310,10 @@ def required(setting: DeclaredSetting) -> DeclaredSetting:
 
 
 class SettingValues(Mapping[str, V]):
-    """Values of settings by name: an immutable mapping with a hash, in its own order."""
+    """Values of settings by name: an immutable, hashable, ordered mapping."""
 
     def __init__(self, values: Mapping[str, V] = MappingProxyType({})) -> None:
-        """Keep a copy.
+        """Copy the values.
 
         Raises:
             InvalidInput: if a name is no identifier, or a value is not plain.
@@ -347,12 +347,12 @@ class SettingValues(Mapping[str, V]):
 def complete(
     settings: Mapping[str, DeclaredSetting], given: Mapping[str, Any], owner: str
 ) -> SettingValues[Value]:
-    """Check the values that are given, and add the defaults of the others.
+    """Validate given values, and add the defaults of the others.
 
     Args:
-        settings: the declarations, whose order the values take.
+        settings: the declarations by name, which determine the order of the values.
         given: values by name.
-        owner: of the settings, for the message.
+        owner: name of the owner of the settings, for error messages.
 
     Raises:
         UnknownName: if a name is not one of the settings.
@@ -374,8 +374,8 @@ def complete(
     )
 
 
-def _about(annotation: Any) -> Setting | None:
-    """Find the `Setting` of an annotation; that of an optional setting lies one level deeper."""
+def _setting_of(annotation: Any) -> Setting | None:
+    """Return the `Setting` in an annotation; in an optional one it is one level deeper."""
     parts = get_args(annotation) if _is_union(annotation) else (annotation,)
     metadata = (one for part in parts for one in getattr(part, "__metadata__", ()))
     return next((one for one in metadata if isinstance(one, Setting)), None)
@@ -400,7 +400,7 @@ def _kinds(annotation: Any) -> Iterator[type]:
     elif origin in (Union, UnionType):
         for one in get_args(annotation):
             yield from _kinds(one)
-    elif annotation in (None, *_KINDS):
+    elif annotation in (None, *_PLAIN_TYPES):
         yield NoneType if annotation is None else annotation
     elif origin is not Literal:
         raise TypeError(f"a setting is a number, text, boolean, choice or None, not {annotation}")
@@ -427,7 +427,7 @@ def _bound(limit: Limit) -> float:
     return bound  # type: ignore[no-any-return]
 
 
-def _holds(limit: Limit, value: float) -> bool:
+def _satisfies(limit: Limit, value: float) -> bool:
     bound = _bound(limit)
     if isinstance(limit, Gt):
         return value > bound
@@ -437,7 +437,7 @@ def _holds(limit: Limit, value: float) -> bool:
 
 
 def _parsed_number(text: str, is_whole: bool) -> Value:
-    """The number, or the text itself if it is none."""
+    """Parse a number; return the text itself if it is none."""
     try:
         return int(text) if is_whole else float(text)
     except ValueError:

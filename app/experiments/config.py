@@ -1,4 +1,4 @@
-"""Configs of experiments: a grid of settings, each over many seeds."""
+"""Configs of experiments: a grid of settings, each repeated over many seeds."""
 
 import contextlib
 from collections.abc import Iterable, Mapping, Sequence
@@ -31,20 +31,24 @@ table1 and figure4 keep them at the paper's values."""
 
 @dataclass(frozen=True, kw_only=True)
 class ExperimentConfig:
-    """An experiment. `experiment_config` fills in what is not given.
+    """Config of an experiment. `experiment_config` adds the defaults of the experiment.
 
     Attributes:
         experiment: `table1`: the paper's Table 1; `figure4`: its Figure 4; `sweep`: any grid.
-        seeds: how many times each setting of an agent that learns is tried.
-        seed: from which the seeds of all trials are spawned.
-        agents: who learns; in a sweep also who looks ahead. Table 1 has its own.
+        seeds: number of seeds for each setting of an agent that learns.
+        seed: root seed, from which the seeds of all trials are spawned.
+        agents: the learners; in a sweep also look-ahead agents. Table 1 has a fixed list.
         gaits, observations, robots: every combination is a setting.
-        simulator: of all trials.
-        steps, steps_per_episode, divisions, grid_side_m: of the practice; every combination is a
-            setting.
+        simulator: simulator of all trials.
+        steps, steps_per_episode, divisions, grid_side_m: values of these fields of a training;
+            every combination is a setting.
         settings: values of the agents' settings by name; every combination is a setting of the
-            agents that have them, and others are left at an agent's default.
-        blocks: in how many blocks of `steps` is practised, the table saved and loaded in between.
+            agents that have them; the agent's default applies to others.
+        blocks: number of blocks of `steps` of practice; between blocks the table is saved and
+            loaded.
+
+    Raises:
+        UnknownName, InvalidInput: if a value is invalid, empty or repeated.
     """
 
     experiment: ExperimentName
@@ -67,7 +71,7 @@ class ExperimentConfig:
             raise UnknownName("experiment", self.experiment, EXPERIMENTS)
         check_whole("seeds", self.seeds, 1, MAX_SEEDS)
         check_whole("seed", self.seed, 0, None)
-        lists = {name: getattr(self, name) for name in (*_PLACES, *GRID)} | dict(self.settings)
+        lists = {name: getattr(self, name) for name in (*_LIST_FIELDS, *GRID)} | dict(self.settings)
         for name, values in lists.items():
             if not values:
                 raise InvalidInput(f"{name} must name at least one")
@@ -75,75 +79,77 @@ class ExperimentConfig:
                 raise InvalidInput(f"{name} names something twice")
 
 
-_PLACES = ("agents", "gaits", "observations", "robots")
-_OWN: Mapping[str, Mapping[str, Any]] = {
+_LIST_FIELDS = ("agents", "gaits", "observations", "robots")
+_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
     "table1": {"steps": (500, 1000), "robots": (robot("stiff"), robot("compliant"))},
     "figure4": {"steps": (250,), "blocks": FIGURE4_BLOCKS},
     "sweep": {"observations": ("measured",)},
 }
-_COMMON = ("seeds", "seed", "gaits", "observations", "robots", "simulator")
-_MAY_SAY: Mapping[str, tuple[str, ...]] = {
-    "table1": _COMMON,
-    "figure4": (*_COMMON, "agents"),
-    "sweep": (*_COMMON, "agents", *GRID),
+_COMMON_FIELDS = ("seeds", "seed", "gaits", "observations", "robots", "simulator")
+_ACCEPTED_FIELDS: Mapping[str, tuple[str, ...]] = {
+    "table1": _COMMON_FIELDS,
+    "figure4": (*_COMMON_FIELDS, "agents"),
+    "sweep": (*_COMMON_FIELDS, "agents", *GRID),
 }
 
 
 def fields_of(experiment: ExperimentName) -> tuple[str, ...]:
     """Return the fields that an experiment accepts; a sweep also takes its agents' settings."""
-    return _MAY_SAY[experiment]
+    return _ACCEPTED_FIELDS[experiment]
 
 
 def settings_of(agents: Iterable[str]) -> Mapping[str, Sequence[DeclaredSetting]]:
-    """The settings of some agents by name, each as the agents that have it declare it.
+    """Return the settings of some agents by name, each with the declarations of its agents.
 
     Raises:
         UnknownName, InvalidInput: if there is no such agent.
     """
-    found: dict[str, list[DeclaredSetting]] = {}
+    declarations: dict[str, list[DeclaredSetting]] = {}
     for agent in agents:
         for name, setting in agent_settings(agent).items():
-            found.setdefault(name, []).append(setting)
-    return found
+            declarations.setdefault(name, []).append(setting)
+    return declarations
 
 
 def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentConfig:
-    """An experiment with what is given, and its own defaults for the rest.
+    """Create the config of an experiment from given values and the experiment's defaults.
 
     Args:
-        experiment: its name.
-        given: by attribute of `ExperimentConfig`, and values of the agents' settings by their
-            names; None counts as not given.
+        experiment: name of the experiment.
+        given: values by attribute of `ExperimentConfig`, and lists of values of the agents'
+            settings by name; None counts as not given.
 
     Raises:
-        UnknownName: for an experiment, or a field, that there is not.
-        InvalidInput: for a value that cannot be.
+        UnknownName: if the experiment or a field does not exist.
+        InvalidInput: if a value is invalid.
     """
     if experiment not in EXPERIMENTS:
         raise UnknownName("experiment", experiment, EXPERIMENTS)
-    said = {name: value for name, value in given.items() if value is not None}
-    declared = settings_of(said.get("agents", ExperimentConfig.agents))
-    valid = [*_MAY_SAY[experiment], *(declared if experiment == "sweep" else ())]
-    for name in said:
+    specified = {name: value for name, value in given.items() if value is not None}
+    declared = settings_of(specified.get("agents", ExperimentConfig.agents))
+    valid = [*_ACCEPTED_FIELDS[experiment], *(declared if experiment == "sweep" else ())]
+    for name in specified:
         if name not in valid:
             raise UnknownName(f"field of {experiment}", name, valid)
     settings = {
-        name: tuple(_normalized(value, own) for value in said[name]) if name in said else default
+        name: tuple(_normalized(value, own) for value in specified[name])
+        if name in specified
+        else default
         for name, own in declared.items()
         for default in [tuple(dict.fromkeys(setting.default for setting in own))]
         # Agents of different defaults each keep their own.
-        if name in said or (len(default) == 1 and default[0] is not REQUIRED)
+        if name in specified or (len(default) == 1 and default[0] is not REQUIRED)
     }
-    own_fields = {name: value for name, value in said.items() if name not in declared}
+    own_fields = {name: value for name, value in specified.items() if name not in declared}
     return ExperimentConfig(
         experiment=experiment,
-        **{**_OWN[experiment], **own_fields},
+        **{**_DEFAULTS[experiment], **own_fields},
         settings=SettingValues(settings),
     )
 
 
 def _normalized(value: Value, own: Sequence[DeclaredSetting]) -> Value:
-    """A value as one of the agents that have the setting takes it; as the last of them refuses."""
+    """Normalise a value by the first declaration that accepts it; else raise the last error."""
     for setting in own[:-1]:
         with contextlib.suppress(InvalidInput):
             return setting.normalized(value)  # type: ignore[no-any-return]
@@ -151,31 +157,31 @@ def _normalized(value: Value, own: Sequence[DeclaredSetting]) -> Value:
 
 
 def as_json(config: ExperimentConfig) -> dict[str, Any]:
-    """In plain types, as the API shows it and files keep it."""
-    shown: dict[str, Any] = {}
+    """Convert a config to plain types, as in API responses and in files."""
+    data: dict[str, Any] = {}
     for one in fields(config):
         value = getattr(config, one.name)
-        shown |= value if isinstance(value, SettingValues) else {one.name: value}
-    shown["robots"] = [as_mapping(one) for one in config.robots]
-    shown["gaits"] = [
+        data |= value if isinstance(value, SettingValues) else {one.name: value}
+    data["robots"] = [as_mapping(one) for one in config.robots]
+    data["gaits"] = [
         {k: v for k, v in asdict(gait).items() if v is not None}
         if isinstance(gait, GaitSpec)
         else gait
         for gait in config.gaits
     ]
-    return {k: list(v) if isinstance(v, tuple) else v for k, v in shown.items()}
+    return {k: list(v) if isinstance(v, tuple) else v for k, v in data.items()}
 
 
-def from_json(shown: Mapping[str, Any]) -> ExperimentConfig:
-    """The config that `as_json` wrote; fields that no experiment has are settings of its agents.
+def from_json(data: Mapping[str, Any]) -> ExperimentConfig:
+    """Parse the output of `as_json`; keys that are no field are settings of the agents.
 
     Raises:
-        InvalidInput: if a value cannot be.
-        KeyError, TypeError, ValueError: if `as_json` did not write it.
+        InvalidInput: if a value is invalid.
+        KeyError, TypeError, ValueError: if it is not the output of `as_json`.
     """
-    values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in shown.items()}
-    values["robots"] = tuple(robot(one) for one in shown["robots"])
-    values["gaits"] = tuple(gait_from_json(one) for one in shown["gaits"])
+    values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in data.items()}
+    values["robots"] = tuple(robot(one) for one in data["robots"])
+    values["gaits"] = tuple(gait_from_json(one) for one in data["gaits"])
     own = {one.name for one in fields(ExperimentConfig)}
     settings = {name: values.pop(name) for name in list(values) if name not in own}
     if single := [name for name, value in settings.items() if not isinstance(value, tuple)]:

@@ -1,4 +1,4 @@
-"""From an experiment to its trials: every setting, every seed, in the order that fills a report."""
+"""Plan of an experiment: expands its config to settings and trials, in execution order."""
 
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -19,24 +19,24 @@ from app.experiments.trial import TrialConfig
 from app.runs.config import TrainingConfig, WalkingProblem, agent_settings, training_config
 
 Role = Literal["learner", "reference", "timed"]
-"""`learner`: once a seed; `reference`: an agent that looks ahead, and so once; `timed`:
-once and alone, for the wall clock."""
+"""`learner`: one trial per seed; `reference`: a deterministic look-ahead agent, one trial; `timed`:
+one trial that runs alone, for wall-clock times."""
 
 RIVALS = ("greedy", "two-step")
-_WALK = ("divisions", "grid_side_m")
+_GRID_FIELDS = ("divisions", "grid_side_m")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Setting:
-    """All that a trial's result depends on, but for its seed.
+    """Everything that determines a trial's result except its seed.
 
     Attributes:
-        key: names the setting in files, tables and on the page.
-        role: what it is there for.
-        robot: the robot's label in this experiment.
-        trial: with seed 0.
-        parameters: its values of all that the plan varies but place and agent, by name; None for
-            a setting that its agent does not have.
+        key: unique name in files, tables and on the page.
+        role: purpose in the plan.
+        robot: label of the robot in this experiment.
+        trial: config of its trials, with seed 0.
+        parameters: values by name of everything that the plan varies except scenario and agent;
+            None for a setting that the agent does not have.
     """
 
     key: str
@@ -47,12 +47,12 @@ class Setting:
 
     @property
     def training(self) -> TrainingConfig:
-        """The training of the trials."""
+        """Training config of the trials."""
         return self.trial.training
 
     @property
     def gait(self) -> str:
-        """The gait's name."""
+        """Name of the gait."""
         return self.training.resolved_gait.name
 
 
@@ -60,7 +60,7 @@ class Trial(NamedTuple):
     """One trial of a plan."""
 
     key: str
-    """The setting's key and the seed's number: `…#12`."""
+    """Key of the setting and number of the seed: `…#12`."""
     setting: Setting
     seed_number: int
     config: TrialConfig
@@ -70,10 +70,11 @@ class Plan:
     """The settings of an experiment, and their trials."""
 
     def __init__(self, config: ExperimentConfig) -> None:
-        """Lay out everything; nothing is run.
+        """Expand the config; nothing is run.
 
         Raises:
-            InvalidInput, UnknownName, Unreachable: if a setting cannot be, or they are too many.
+            InvalidInput, UnknownName, Unreachable: if a setting is invalid, or there are too many
+                trials.
         """
         self.config = config
         self.settings: Sequence[Setting] = _settings(config)
@@ -85,11 +86,11 @@ class Plan:
             )
 
     def count(self, setting: Setting) -> int:
-        """How many trials a setting has."""
+        """Return the number of trials of a setting."""
         return self.config.seeds if setting.role == "learner" else 1
 
     def trials(self) -> Iterator[Trial]:
-        """All trials: references first, then seed by seed, at last those that measure time."""
+        """Iterate over all trials: references, then learners by seed, then timed trials."""
         for role in ("reference", "learner", "timed"):
             numbered = [(i, s) for i, s in enumerate(self.settings) if s.role == role]
             for seed_number in range(max((self.count(s) for _, s in numbered), default=0)):
@@ -103,9 +104,9 @@ class Plan:
 
 
 def trial_seed(seed: int, setting: int, seed_number: int) -> int:
-    """The seed of a trial, as by `SeedSequence.spawn` of an experiment's, then of a setting's.
+    """Return the seed of a trial, as by `SeedSequence.spawn` per setting, then per seed number.
 
-    It has 53 bits, so that every JSON reader keeps it.
+    It has 53 bits, so that JSON parsers with float numbers preserve it.
     """
     sequence = np.random.SeedSequence(seed, spawn_key=(setting, seed_number))
     return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(11))
@@ -113,31 +114,31 @@ def trial_seed(seed: int, setting: int, seed_number: int) -> int:
 
 def _settings(config: ExperimentConfig) -> list[Setting]:
     learners, references, timed = [], [], []
-    # Earlier versions kept the settings of the default agent with every experiment.
+    # Earlier versions stored the settings of the default agent with every experiment.
     agents = (*config.agents, *RIVALS, TrainingConfig.agent)
     own = {agent: agent_settings(agent) for agent in agents}
     for name in config.settings:
         if not any(name in settings for settings in own.values()):
             raise UnknownName("setting", name, dict.fromkeys(chain.from_iterable(own.values())))
-    practised = {"steps": config.steps, **config.settings}
-    grid = _combinations({**practised, "steps_per_episode": config.steps_per_episode})
-    searched = _combinations(config.settings)
-    for place in _places(config):
+    lists = {"steps": config.steps, **config.settings}
+    grid = _combinations({**lists, "steps_per_episode": config.steps_per_episode})
+    reference_grid = _combinations(config.settings)
+    for place in _scenarios(config):
         references += [
             _setting(place, agent, 0, values)
-            for agent in _looking_ahead(config)
-            for values in dict.fromkeys(_pick(one, own[agent]) for one in searched)
+            for agent in _look_ahead_agents(config)
+            for values in dict.fromkeys(_subset(one, own[agent]) for one in reference_grid)
         ]
         practices = dict.fromkeys(
-            (agent, _pick(values, (*own[agent], "steps", "steps_per_episode")))
+            (agent, _subset(values, (*own[agent], "steps", "steps_per_episode")))
             for values in grid
             for agent in config.agents
             if learns(agent)
         )
-        here = [_setting(place, agent, config.blocks, values) for agent, values in practices]
-        learners += here
+        in_scenario = [_setting(place, agent, config.blocks, values) for agent, values in practices]
+        learners += in_scenario
         if config.experiment == "table1":
-            timed.append(_timed(here[0]))
+            timed.append(_timed(in_scenario[0]))
     settings = [*references, *learners, *timed]
     key, count = Counter(setting.key for setting in settings).most_common(1)[0]
     if count > 1:
@@ -145,18 +146,22 @@ def _settings(config: ExperimentConfig) -> list[Setting]:
     return _with_parameters(settings)
 
 
-class _Place(NamedTuple):
-    """Where agents are compared with each other: the walking problem and how it is observed."""
+class _Scenario(NamedTuple):
+    """Scenario in which agents are compared: walking problem and observation mode."""
 
     walk: WalkingProblem
     observation: Observation
     robot: str
-    """Its label."""
+    """Label of the robot."""
 
 
-def _places(config: ExperimentConfig) -> Iterator[_Place]:
+def _scenarios(config: ExperimentConfig) -> Iterator[_Scenario]:
     for gait, observation, (label, robot), divisions, side_m in product(
-        config.gaits, config.observations, _labelled(config), config.divisions, config.grid_side_m
+        config.gaits,
+        config.observations,
+        _labelled_robots(config),
+        config.divisions,
+        config.grid_side_m,
     ):
         walk = WalkingProblem(
             gait=gait,
@@ -166,11 +171,11 @@ def _places(config: ExperimentConfig) -> Iterator[_Place]:
             grid_side_m=side_m,
         )
         check_reach(robot, walk.resolved_gait, walk.grid)
-        yield _Place(walk, observation, label)
+        yield _Scenario(walk, observation, label)
 
 
-def _labelled(config: ExperimentConfig) -> list[tuple[str, Robot]]:
-    """Robots under names of their own: two that differ from one preset share its name."""
+def _labelled_robots(config: ExperimentConfig) -> list[tuple[str, Robot]]:
+    """Return robots with unique labels: those derived from one preset are numbered."""
     names = [robot.name for robot in config.robots]
     return [
         (name if names.count(name) == 1 else f"{name} {1 + names[:place].count(name)}", robot)
@@ -178,8 +183,8 @@ def _labelled(config: ExperimentConfig) -> list[tuple[str, Robot]]:
     ]
 
 
-def _looking_ahead(config: ExperimentConfig) -> list[str]:
-    """Greedy is what all are compared with, so that it is always there."""
+def _look_ahead_agents(config: ExperimentConfig) -> list[str]:
+    """Return the look-ahead agents; greedy is the reference, and so always included."""
     if config.experiment == "table1":
         return list(RIVALS)
     return ["greedy", *(a for a in config.agents if not learns(a) and a != "greedy")]
@@ -191,46 +196,46 @@ def _combinations(lists: Mapping[str, Sequence[Any]]) -> list[SettingValues[Valu
     ]
 
 
-def _pick(values: Mapping[str, Any], names: Collection[str]) -> SettingValues[Any]:
-    """The values of some names, as far as there are any."""
+def _subset(values: Mapping[str, Any], names: Collection[str]) -> SettingValues[Any]:
+    """Return the subset of values with these names."""
     return SettingValues({name: value for name, value in values.items() if name in names})
 
 
-def _setting(place: _Place, agent: str, blocks: int, values: Mapping[str, Value]) -> Setting:
+def _setting(place: _Scenario, agent: str, blocks: int, values: Mapping[str, Value]) -> Setting:
     training = training_config(
         **vars(place.walk), observation=place.observation, agent=agent, evaluate_every=0, **values
     )
     own = {name: one.default for name, one in agent_settings(agent).items()}
     defaults = {name: getattr(TrainingConfig, name) for name in GRID} | own
     parts = [training.resolved_gait.name, place.observation, place.robot]
-    parts += _differing({name: getattr(training, name) for name in _WALK}, defaults)
+    parts += _non_default({name: getattr(training, name) for name in _GRID_FIELDS}, defaults)
     parts.append(agent)
     if blocks:
         parts.append(f"{blocks}x{training.steps}" if blocks > 1 else f"{training.steps}")
-    parts += _differing({k: v for k, v in values.items() if k != "steps"}, defaults)
+    parts += _non_default({k: v for k, v in values.items() if k != "steps"}, defaults)
     role: Role = "learner" if blocks else "reference"
     trial = TrialConfig(training=training, blocks=blocks)
     return Setting(key="/".join(parts), role=role, robot=place.robot, trial=trial)
 
 
 def _with_parameters(settings: Sequence[Setting]) -> list[Setting]:
-    """Give each setting the parameters of all, in the same order."""
+    """Set the parameters of all settings: the same names in the same order."""
     names = dict.fromkeys(name for one in settings for name in one.training.settings)
-    found = []
+    completed = []
     for one in settings:
         training, practises = one.training, one.role != "reference"
         parameters: dict[str, Value] = {
             "steps": training.steps if practises else 0,
             **{name: training.settings.get(name) for name in names},
             "steps_per_episode": training.steps_per_episode if practises else None,
-            **{name: getattr(training, name) for name in _WALK},
+            **{name: getattr(training, name) for name in _GRID_FIELDS},
         }
-        found.append(replace(one, parameters=SettingValues(parameters)))
-    return found
+        completed.append(replace(one, parameters=SettingValues(parameters)))
+    return completed
 
 
-def _differing(values: Mapping[str, Value], defaults: Mapping[str, Value]) -> list[str]:
-    """Name the values that are not the default."""
+def _non_default(values: Mapping[str, Value], defaults: Mapping[str, Value]) -> list[str]:
+    """Format the values that differ from the defaults, for a key."""
     return [
         f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
         for name, value in values.items()

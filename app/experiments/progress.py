@@ -1,4 +1,4 @@
-"""An experiment's trials so far: run the remaining ones, collect outcomes, summarise them."""
+"""Progress of an experiment: run the remaining trials, and collect outcomes and cost."""
 
 import time
 from collections.abc import Callable, Generator, Iterable, Mapping
@@ -45,8 +45,8 @@ class Progress:
 
     def remaining(self, retry: bool = False) -> list[Trial]:
         """Return the trials without an outcome; with `retry` also those that were set aside."""
-        known = self.results.keys() if retry else self.results.keys() | self.set_aside.keys()
-        return [trial for trial in self.plan.trials() if trial.key not in known]
+        done_keys = self.results.keys() if retry else self.results.keys() | self.set_aside.keys()
+        return [trial for trial in self.plan.trials() if trial.key not in done_keys]
 
     def run(
         self, trials: Iterable[Trial], spec: ClusterSpec, may_continue: Callable[[], bool]

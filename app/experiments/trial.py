@@ -1,4 +1,4 @@
-"""One trial: an agent practises, walks 50 steps, and is timed; pure, and small enough to send."""
+"""One trial: practice, a walk of 50 steps, and timing. Deterministic; configs can be pickled."""
 
 import tempfile
 import time
@@ -23,11 +23,11 @@ class TrialConfig:
     """Config of one trial.
 
     Attributes:
-        training: a block of practice with its seed; of an agent that does not learn only the
-            agent, how it observes, and the walking problem count.
-        blocks: how many blocks are practised one after the other, the table saved to a file and
-            loaded between them, ε restarting in each (paper §5, Figure 4); 0 is no practice.
-        rivals: agents that it races, so that everyone's decisions are measured in wall time.
+        training: training of one block, with its seed; for an agent that does not learn, only
+            agent, observation mode and walking problem matter.
+        blocks: number of consecutive blocks of practice; between blocks the table is saved to a
+            file and loaded, and ε restarts (paper §5, Figure 4). 0 for no practice.
+        rivals: agents that race in further lanes, to measure decision times by the wall clock.
     """
 
     training: TrainingConfig
@@ -36,23 +36,23 @@ class TrialConfig:
 
     @property
     def must_be_alone(self) -> bool:
-        """Whether it measures time, so that nothing else may run meanwhile."""
+        """Whether it measures wall-clock time, so that no other trial may run concurrently."""
         return bool(self.rivals)
 
 
 @dataclass(frozen=True)
 class TrialResult:
-    """Result of a trial. All but `wall` is the same whenever and wherever it is run.
+    """Result of a trial; deterministic except for `wall`.
 
     Attributes:
-        distances_m: over 50 steps from rest after each block; one entry without practice.
-        finished_distance_m: where the agent is, under the paper clock, when one that decides at
-            once has taken its 50 steps; None where no race was walked.
-        elapsed_s: under the paper clock, for its 50 steps; None where no race was walked.
-        transitions: that it simulated to decide on its 50 steps.
+        distances_m: distance over 50 steps from rest after each block; one entry without practice.
+        finished_distance_m: distance under the paper clock when an agent without decision time
+            has taken its 50 steps; None without a race.
+        elapsed_s: duration of the 50 steps under the paper clock; None without a race.
+        transitions: number of transitions simulated to decide on the 50 steps.
         wall: with rivals, for each lane `agent`, `decision_s`, and under the wall clock
             `finished_distance_m`, `elapsed_s` and `rank`.
-        failure: why there are no distances, in a sentence.
+        failure: reason if there are no distances, one sentence.
     """
 
     distances_m: tuple[float, ...] = ()
@@ -63,35 +63,35 @@ class TrialResult:
     failure: str | None = None
 
     def as_json(self) -> dict[str, Any]:
-        """In plain types; `from_json` reads it back as the same."""
+        """Convert to plain types; inverse of `from_json`."""
         return asdict(self)
 
     @classmethod
-    def from_json(cls, shown: Mapping[str, Any]) -> "TrialResult":
+    def from_json(cls, lane_results: Mapping[str, Any]) -> "TrialResult":
         """Parse the output of `as_json`.
 
         Raises:
-            KeyError, TypeError, ValueError: if it did not.
+            KeyError, TypeError, ValueError: if it is not the output of `as_json`.
         """
-        wall = shown["wall"]
+        wall = lane_results["wall"]
         return cls(
             **{
-                **shown,
-                "distances_m": tuple(float(distance) for distance in shown["distances_m"]),
+                **lane_results,
+                "distances_m": tuple(float(distance) for distance in lane_results["distances_m"]),
                 "wall": None if wall is None else tuple(dict(lane) for lane in wall),
             }
         )
 
 
 def run_trial(config: TrialConfig, timer: Callable[[], float] = time.perf_counter) -> TrialResult:
-    """Do what a trial says; broken physics, or an agent that fails, is a result too.
+    """Run a trial; diverging physics, or an agent that fails in the race, is a result too.
 
     Args:
         config: the trial.
-        timer: seconds, to measure decisions with, where there are rivals.
+        timer: clock in seconds that measures decisions.
 
     Raises:
-        HexapodError: if the trial cannot be: an unknown agent, a grid out of reach.
+        HexapodError: if the config is invalid: an unknown agent, an unreachable grid.
     """
     try:
         table, distances = _practise(config)
@@ -103,11 +103,11 @@ def run_trial(config: TrialConfig, timer: Callable[[], float] = time.perf_counte
     failures = [f"{lane.agent}: {lane.failure}" for lane in lanes if lane.failure]
     if failures:
         return TrialResult(failure="; ".join(failures))
-    return _result(lanes, _wall(lanes) if config.rivals else None)
+    return _result(lanes, _wall_clock_results(lanes) if config.rivals else None)
 
 
 def _practise(config: TrialConfig) -> tuple[Checkpoint | None, tuple[float, ...]]:
-    """The table after all blocks, and the distance [m] after each if there are several."""
+    """Return the table after all blocks, and with several blocks the distance [m] after each."""
     table, distances = None, []
     for _ in range(config.blocks):
         learner = build_learner(config.training, table)
@@ -115,12 +115,12 @@ def _practise(config: TrialConfig) -> tuple[Checkpoint | None, tuple[float, ...]
             pass
         table = snapshot(learner, config.training)
         if config.blocks > 1:
-            table = _through_a_file(table)
+            table = _file_round_trip(table)
             distances.append(evaluate(learner, config.training, learner.epsilon).distance_m)
     return table, tuple(distances)
 
 
-def _through_a_file(table: Checkpoint) -> Checkpoint:
+def _file_round_trip(table: Checkpoint) -> Checkpoint:
     with tempfile.TemporaryDirectory(prefix="hexapods-") as folder:
         path = Path(folder) / "q.npz"
         path.write_bytes(to_bytes(table))
@@ -155,9 +155,9 @@ def _result(lanes: list[LaneRecording], wall: tuple[Mapping[str, Any], ...] | No
     )
 
 
-def _wall(lanes: list[LaneRecording]) -> tuple[Mapping[str, Any], ...]:
-    shown = []
+def _wall_clock_results(lanes: list[LaneRecording]) -> tuple[Mapping[str, Any], ...]:
+    lane_results = []
     for lane in race_result(lanes, RACE_STEPS)["lanes"]:
         timed = {k: lane["clocks"]["wall"][k] for k in ("finished_distance_m", "elapsed_s", "rank")}
-        shown.append({"agent": lane["agent"], "decision_s": lane["decision_s"], **timed})
-    return tuple(shown)
+        lane_results.append({"agent": lane["agent"], "decision_s": lane["decision_s"], **timed})
+    return tuple(lane_results)

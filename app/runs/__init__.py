@@ -1,7 +1,11 @@
-"""The two loops, training and race, and what they need; neither knows web, database or engine.
+"""Training loop and race loop; independent of web, database and job processes.
 
-`config` is what a user asks for. `training` and `racing` are the loops; both drive a `walker`, a
-robot with an agent on it, and yield `records`. `recording` keeps motion for drawing, `clocks` and
-`results` time a race, `tables` and `table_file` store what was learned, `seeding` spawns
-generators.
+`config` has the validated configs of trainings and races.
+`training` is the training loop with its evaluations, `racing` the race loop; both yield `records`.
+`walker` combines a simulator, its current state and an agent.
+`recording` stores motion for playback; `stored_practice` encodes a training's recording as arrays.
+`clocks` computes decision and motion times of a race, `results` its distances, times and ranks.
+`tables` takes, restores, encodes and validates checkpoints; `table_file` reads a Q-table from its
+file row by row.
+`seeding` spawns independent random generators from one seed.
 """

@@ -1,4 +1,4 @@
-"""One race, timed under three clocks. A lane's time is decision time plus motion time."""
+"""Three clocks that time a race; a lane's time is decision time plus motion time."""
 
 from bisect import bisect_left
 from collections.abc import Sequence
@@ -17,14 +17,19 @@ Clock = Literal["paper", "wall", "free"]
 CLOCKS: tuple[Clock, ...] = get_args(Clock)
 
 PAPER_MOTIONS_PER_TRANSITION = 0.03
-"""Fitted to the paper's Table 1: greedy made 71, 81, 74 and 68 % of its distance at the finish, so
-its step took 1.36 motions with 12 transitions. Fitted to greedy only."""
+"""Decision time per simulated transition, in durations of a motion. Fitted to the paper's Table 1:
+greedy made 71, 81, 74 and 68 % of its distance at the finish, so its step took 1.36 motions with
+12 transitions. Fitted to greedy only."""
 
 FINISH_LINE_M = 0.45
 
 
 def check_clock(name: str) -> None:
-    """Raise `UnknownName` unless this is a clock."""
+    """Check that a clock exists.
+
+    Raises:
+        UnknownName: if it does not.
+    """
     if name not in CLOCKS:
         raise UnknownName("clock", name, CLOCKS)
 
@@ -39,28 +44,28 @@ def decision_s(step: LaneStep, clock: Clock) -> float:
 
 
 def motion_s(step: LaneStep) -> float:
-    """How long a step's motion lasts [s]."""
+    """Return the duration of a step's motion [s]."""
     return float(step.motion.time_s[-1])
 
 
 class Moment(NamedTuple):
-    """Where a lane is in its own course at a time of the race."""
+    """Progress of a lane at a time of the race."""
 
     step: int
-    """The step it is in, counted from 0; the number of steps taken once it is done."""
+    """Index of the current step, from 0; the number of steps taken once the lane has finished."""
     thinking: float
-    """The share of the decision that is done; 1 once it moves."""
+    """Elapsed share of the decision time, 0 to 1; 1 during the motion."""
     motion_s: float
-    """How far into the motion it is [s]."""
+    """Elapsed time of the motion [s]."""
 
 
 @dataclass(frozen=True)
 class Timetable:
-    """When a lane thinks and moves, in race time [s].
+    """Times at which a lane's decisions and motions end, in race time [s].
 
     Attributes:
-        thought: when each step's decision is made, (steps,).
-        ends: when each step's motion is over, (steps,).
+        thought: end of each step's decision, (steps,).
+        ends: end of each step's motion, (steps,).
     """
 
     thought: tuple[float, ...]
@@ -68,46 +73,49 @@ class Timetable:
 
     @classmethod
     def of(cls, steps: Sequence[LaneStep], clock: Clock) -> "Timetable":
-        """The timetable of the steps taken so far."""
+        """Compute the timetable of the steps taken so far."""
         ends = tuple(accumulate(decision_s(s, clock) + motion_s(s) for s in steps))
         thought = tuple(end - motion_s(s) for end, s in zip(ends, steps, strict=True))
         return cls(thought, ends)
 
     @property
     def total_s(self) -> float:
-        """When the last step taken so far is over."""
+        """End of the last step taken so far [s]; 0 without steps."""
         return self.ends[-1] if self.ends else 0.0
 
     def at(self, time_s: float) -> Moment:
-        """Where the lane is at a time of the race."""
+        """Return the lane's progress at a time of the race [s], by binary search."""
         step = bisect_left(self.ends, time_s)
         if step == len(self.ends):
             return Moment(step, 0.0, 0.0)
-        began, thought = self.ends[step - 1] if step else 0.0, self.thought[step]
+        start_s, thought = self.ends[step - 1] if step else 0.0, self.thought[step]
         if time_s < thought:
-            return Moment(step, (time_s - began) / (thought - began), 0.0)
+            return Moment(step, (time_s - start_s) / (thought - start_s), 0.0)
         return Moment(step, 1.0, time_s - thought)
 
 
 def distance_at(lane: LaneRecording, timetable: Timetable, time_s: float) -> float:
-    """How far a lane is at a time of the race, in the middle of a motion if need be [m]."""
+    """Return a lane's distance at a time of the race [m], interpolated within a motion."""
     if time_s >= timetable.total_s:
         return lane.distance_m
-    step, _, into = timetable.at(time_s)
-    if into == 0.0:
+    step, _, elapsed_s = timetable.at(time_s)
+    if elapsed_s == 0.0:
         return lane.steps[step - 1].distance_m if step else 0.0
-    return float(pose_at(lane.start_qpos(step), lane.steps[step].motion, into)[1])
+    return float(pose_at(lane.start_qpos(step), lane.steps[step].motion, elapsed_s)[1])
 
 
 def crossing_s(lane: LaneRecording, timetable: Timetable) -> float | None:
-    """When a lane first crosses the red line [s]; None if it never does."""
-    for step, (taken, thought) in enumerate(zip(lane.steps, timetable.thought, strict=True)):
-        track = taken.motion.qpos[:, 1]
+    """Return the time at which a lane first crosses the finish line [s]; None if it never does.
+
+    Interpolates linearly between the two frames around the crossing.
+    """
+    for step, (lane_step, thought) in enumerate(zip(lane.steps, timetable.thought, strict=True)):
+        track = lane_step.motion.qpos[:, 1]
         if track.max() < FINISH_LINE_M:
             continue
         frame = int((track >= FINISH_LINE_M).argmax())
         before = lane.start_qpos(step)[1] if frame == 0 else track[frame - 1]
-        began = 0.0 if frame == 0 else float(taken.motion.time_s[frame - 1])
+        start_s = 0.0 if frame == 0 else float(lane_step.motion.time_s[frame - 1])
         share = float((FINISH_LINE_M - before) / (track[frame] - before))
-        return thought + began + share * (float(taken.motion.time_s[frame]) - began)
+        return thought + start_s + share * (float(lane_step.motion.time_s[frame]) - start_s)
     return None

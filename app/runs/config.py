@@ -1,6 +1,6 @@
-"""Configs of trainings and races: complete, checked, and immutable.
+"""Configs of trainings and races: complete, validated and immutable.
 
-Fields that a person may choose are declared as settings (`app.domain.settings`).
+Fields that a user may choose are declared as settings (`app.domain.settings`).
 """
 
 import logging
@@ -31,9 +31,9 @@ SIMULATORS: tuple[SimulatorName, ...] = get_args(SimulatorName)
 MAX_STEPS = 10_000_000
 MAX_LANES = 6
 RACE_STEPS = 50
-"""Steps of a race, and of an evaluation (paper §5)."""
+"""Default number of steps of a race, and number of steps of an evaluation (paper §5)."""
 MAX_RACE_STEPS = 300_000
-"""Of all lanes of a race together: every step is recorded, in about 3 kB."""
+"""Maximum of steps, summed over a race's lanes: every step is recorded, in about 3 kB."""
 
 Divisions = Annotated[
     int,
@@ -116,7 +116,19 @@ RaceSteps = Annotated[
 
 @dataclass(frozen=True, kw_only=True)
 class WalkingProblem:
-    """Which robot walks how, on which foot grid, in which simulator."""
+    """Walking problem: a robot, its gait and foot grid, and the simulator.
+
+    Attributes:
+        gait: a named gait, or a gait given by its leg pairs.
+        robot: geometry and actuators.
+        simulator: `mujoco` (physics) or `kinematic` (ideal, no slip).
+        divisions: points along each side of the foot grid.
+        grid_side_m: side of the foot grid [m].
+
+    Raises:
+        UnknownName: if the gait or the simulator is unknown.
+        InvalidInput: if a value is out of its limits, or the gait does not fit the robot.
+    """
 
     gait: str | GaitSpec
     robot: Robot = field(default_factory=Robot)
@@ -135,27 +147,27 @@ class WalkingProblem:
 
     @property
     def grid(self) -> FootGrid:
-        """The foot grid that was asked for."""
+        """The foot grid of this config."""
         return FootGrid(self.grid_side_m, self.divisions)
 
     @property
     def resolved_gait(self) -> Gait:
-        """The gait as this robot walks it."""
+        """The gait with its leg pairs for this robot."""
         return resolve(self.gait, self.robot.azimuths_deg)
 
 
 @dataclass(frozen=True, kw_only=True)
 class TrainingConfig(WalkingProblem):
-    """A training. The defaults are the paper's; `training_config` makes a complete one.
+    """Config of a training. The defaults are the paper's; `training_config` adds agent settings.
 
     Attributes:
         steps: number of learning steps.
-        seed: of every generator of the run.
-        observation: how the agent reads the state.
-        settings: of the agent by name; it has its own default for one that is left out.
-        steps_per_episode: exploration stays the same so long.
-        evaluate_every: steps between two evaluations; 0 is never.
-        pace: `max`, or how many times real time.
+        seed: seed of all random generators of the run.
+        observation: observation mode, `measured` or `commanded`.
+        settings: the agent's settings by name; the agent's default applies to a missing one.
+        steps_per_episode: number of steps for which ε is constant.
+        evaluate_every: steps between two evaluations; 0 for none.
+        pace: `max`, or a multiple of real time.
         agent: a registered name or `my.module:Agent`.
     """
 
@@ -173,7 +185,7 @@ class TrainingConfig(WalkingProblem):
         check_observation(self.observation)
 
 
-_OWN_FIELDS = frozenset(one.name for one in fields(TrainingConfig))
+_TRAINING_FIELDS = frozenset(one.name for one in fields(TrainingConfig))
 
 
 _RESERVED = """
@@ -200,7 +212,7 @@ def agent_settings(agent: str) -> Mapping[str, DeclaredSetting]:
                 f"agent {agent} declares a setting named {name!r}, which means something else in "
                 "requests and files; rename the parameter"
             )
-    return {name: one for name, one in found.items() if name not in _OWN_FIELDS}
+    return {name: one for name, one in found.items() if name not in _TRAINING_FIELDS}
 
 
 def usable_agents() -> tuple[str, ...]:
@@ -217,7 +229,7 @@ def usable_agents() -> tuple[str, ...]:
 
 
 def changeable_settings(agent: str) -> Mapping[str, DeclaredSetting]:
-    """The settings of a training that may change while it runs.
+    """Return the settings of a training that may change while it runs.
 
     Raises:
         UnknownName, InvalidInput: if there is no such agent.
@@ -227,28 +239,28 @@ def changeable_settings(agent: str) -> Mapping[str, DeclaredSetting]:
 
 
 def training_config(agent: str = TrainingConfig.agent, **given: Any) -> TrainingConfig:
-    """A training with the settings of its agent checked and complete.
+    """Create the config of a training, with its agent's settings validated and completed.
 
     Args:
         agent: a registered name or `my.module:Agent`.
-        given: fields of `TrainingConfig`, and settings of the agent by their names.
+        given: fields of `TrainingConfig`, and the agent's settings by name.
 
     Raises:
-        UnknownName, InvalidInput: for an agent, a setting or a value that cannot be.
+        UnknownName, InvalidInput: if the agent, a setting or a value is invalid.
     """
-    own = {name: value for name, value in given.items() if name in _OWN_FIELDS}
-    settings = {name: value for name, value in given.items() if name not in _OWN_FIELDS}
+    own = {name: value for name, value in given.items() if name in _TRAINING_FIELDS}
+    settings = {name: value for name, value in given.items() if name not in _TRAINING_FIELDS}
     config = TrainingConfig(agent=agent, **own)
     return replace(config, settings=complete(agent_settings(agent), settings, agent))
 
 
 @dataclass(frozen=True, kw_only=True)
 class LaneConfig:
-    """One lane of a race.
+    """Config of one lane of a race.
 
     Attributes:
         agent: a registered name or `my.module:Agent`.
-        observation: how it reads the state: its table's reading, for who has learned.
+        observation: observation mode; for a trained agent that of its table.
     """
 
     agent: str
@@ -260,7 +272,11 @@ class LaneConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class RaceConfig(WalkingProblem):
-    """A race of one to six lanes, 50 steps each by default."""
+    """Config of a race of one to six lanes, 50 steps each by default.
+
+    Raises:
+        InvalidInput: if there are no or too many lanes, or too many steps in all.
+    """
 
     lanes: tuple[LaneConfig, ...]
     steps: RaceSteps = RACE_STEPS
@@ -278,38 +294,38 @@ class RaceConfig(WalkingProblem):
 
 
 def as_json(config: WalkingProblem) -> dict[str, Any]:
-    """A config in plain types, as the API shows it and files keep it."""
-    shown: dict[str, Any] = {}
+    """Convert a config to plain types, as in API responses and in files."""
+    data: dict[str, Any] = {}
     for one in fields(config):
         value = getattr(config, one.name)
-        shown |= value if isinstance(value, SettingValues) else {one.name: value}
-    shown["robot"] = as_mapping(config.robot)
+        data |= value if isinstance(value, SettingValues) else {one.name: value}
+    data["robot"] = as_mapping(config.robot)
     if isinstance(config.gait, GaitSpec):
-        shown["gait"] = {k: v for k, v in asdict(config.gait).items() if v is not None}
+        data["gait"] = {k: v for k, v in asdict(config.gait).items() if v is not None}
     if isinstance(config, RaceConfig):
-        shown["lanes"] = [asdict(lane) for lane in config.lanes]
-    return shown
+        data["lanes"] = [asdict(lane) for lane in config.lanes]
+    return data
 
 
-def config_from_json(shown: Mapping[str, Any]) -> TrainingConfig | RaceConfig:
-    """The config that `as_json` wrote; only a race has lanes.
+def config_from_json(data: Mapping[str, Any]) -> TrainingConfig | RaceConfig:
+    """Parse the output of `as_json`; a config with lanes is that of a race.
 
-    Fields that no training has are settings of its agent, which is not looked for.
+    Keys that are no field of a training are its agent's settings; the agent is not imported.
 
     Raises:
-        InvalidInput: if a value cannot be.
-        KeyError, TypeError, ValueError: if `as_json` did not write it.
+        InvalidInput: if a value is invalid.
+        KeyError, TypeError, ValueError: if it is not the output of `as_json`.
     """
-    values = {**shown, "gait": gait_from_json(shown["gait"]), "robot": robot(shown["robot"])}
+    values = {**data, "gait": gait_from_json(data["gait"]), "robot": robot(data["robot"])}
     if "lanes" in values:
         lanes = tuple(LaneConfig(**lane) for lane in values.pop("lanes"))
         return RaceConfig(**values, lanes=lanes)
-    settings = {name: values.pop(name) for name in list(values) if name not in _OWN_FIELDS}
+    settings = {name: values.pop(name) for name in list(values) if name not in _TRAINING_FIELDS}
     return TrainingConfig(**values, settings=SettingValues(settings))
 
 
 def gait_from_json(value: str | Mapping[str, Any]) -> str | GaitSpec:
-    """The gait that `as_json` wrote."""
+    """Parse a gait from the output of `as_json`."""
     if isinstance(value, str):
         return value
     parts = dict(value)
@@ -319,7 +335,11 @@ def gait_from_json(value: str | Mapping[str, Any]) -> str | GaitSpec:
 
 
 def check_whole(name: str, value: int, low: int, high: int | None) -> None:
-    """Raise `InvalidInput` unless value is a whole number in these limits."""
+    """Check that a value is an integer from `low` to `high`; `high` None is no upper limit.
+
+    Raises:
+        InvalidInput: if it is not.
+    """
     if isinstance(value, bool) or not isinstance(value, int):
         raise InvalidInput(f"{name} must be a whole number, not {value!r}")
     if value < low or (high is not None and value > high):

@@ -1,4 +1,4 @@
-"""The race loop: every lane has its own physics, and no lane's motion depends on thinking time."""
+"""Race loop: every lane has its own simulation, independent of measured decision times."""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import cast
@@ -14,12 +14,15 @@ from app.runs.walker import Walker
 
 
 def race(walkers: Sequence[Walker], steps: int, timer: Callable[[], float]) -> Iterator[RaceRecord]:
-    """Walk every lane for `steps` steps, a step of each in turn.
+    """Run every lane for `steps` steps, one step of each in turn (round-robin).
+
+    A lane whose agent raises or whose physics diverges yields `LaneFailed` and stops; the others
+    continue.
 
     Args:
-        walkers: one for each lane, at rest.
-        steps: of each lane.
-        timer: seconds, to measure decisions with, such as `time.perf_counter`.
+        walkers: one per lane, at rest.
+        steps: number of steps of each lane.
+        timer: clock in seconds that measures decisions, such as `time.perf_counter`.
     """
     running = dict(enumerate(walkers))
     for step in range(1, steps + 1):
@@ -33,7 +36,7 @@ def race(walkers: Sequence[Walker], steps: int, timer: Callable[[], float]) -> I
 def record_race(
     walkers: Sequence[Walker], config: RaceConfig, timer: Callable[[], float]
 ) -> Iterator[list[LaneRecording]]:
-    """Race into a recording, and yield it, grown, after every step of a lane."""
+    """Run a race, append each record to a recording, and yield the recording after each step."""
     lanes = [
         LaneRecording(lane.agent, walker.simulator.pose(walker.state).astype(np.float32))
         for lane, walker in zip(config.lanes, walkers, strict=True)
@@ -47,29 +50,29 @@ def record_race(
 
 
 def _lane_step(lane: int, step: int, walker: Walker, timer: Callable[[], float]) -> RaceRecord:
-    seen, before = walker.seen, walker.transitions
+    observation, transitions_before = walker.observed, walker.transitions
     try:
         knowledge = walker.knowledge()
-        began = timer()
+        started_s = timer()
         action = walker.decide()
-        decision_s = timer() - began
+        decision_s = timer() - started_s
     except HexapodError as error:
         return LaneFailed(lane, step, str(error))
-    except Exception as error:  # an agent of the user's own may raise anything
+    except Exception as error:  # a user-supplied agent may raise anything
         return LaneFailed(lane, step, f"its agent failed: {type(error).__name__}: {error}")
     try:
-        done = walker.carry_out(action, record=True)
+        outcome = walker.carry_out(action, record=True)
     except Diverged as error:
         return LaneFailed(lane, step, str(error))
     return LaneStep(
         lane,
         step,
-        seen,
+        observation,
         action,
-        done.reward_m,
+        outcome.reward_m,
         walker.state.distance_m,
-        walker.transitions - before,
+        walker.transitions - transitions_before,
         decision_s,
-        cast(Motion, done.motion),
+        cast(Motion, outcome.motion),
         knowledge,
     )

@@ -1,7 +1,6 @@
-"""Recordings: joint positions against time, and what was decided, from which all is drawn.
+"""Recordings: joint positions over time, observations and actions, for live view and replay.
 
-A recording grows while a run goes on, and is immutable in what it already holds. Live is its
-tail, a replay is the same from its start.
+A recording is append-only. The live view shows its tail; a replay shows it from the start.
 """
 
 import json
@@ -23,13 +22,13 @@ Arrays = dict[str, NDArray[Any]]
 
 @dataclass
 class LaneRecording:
-    """One lane of a race.
+    """Recording of one lane of a race.
 
     Attributes:
-        agent: the name of the lane's agent.
-        rest_qpos: the pose on the start line, (7 + joints,).
-        steps: all that were taken so far.
-        failure: why the lane went no further, if it failed.
+        agent: name of the lane's agent.
+        rest_qpos: pose on the start line, (7 + joints,): position [m], quaternion, angles [rad].
+        steps: steps taken so far.
+        failure: reason if the lane failed.
     """
 
     agent: str
@@ -38,7 +37,7 @@ class LaneRecording:
     failure: str | None = None
 
     def start_qpos(self, step: int) -> NDArray[np.float32]:
-        """The pose in which a step began; steps count from 0 here."""
+        """Return the pose at the start of a step, (7 + joints,); steps are counted from 0 here."""
         if step == 0:
             return self.rest_qpos
         last: NDArray[np.float32] = self.steps[step - 1].motion.qpos[-1]
@@ -46,7 +45,7 @@ class LaneRecording:
 
     @property
     def distance_m(self) -> float:
-        """How far it came so far."""
+        """Distance covered so far [m]."""
         return self.steps[-1].distance_m if self.steps else 0.0
 
 
@@ -55,12 +54,12 @@ FIRST_STEPS, NEWEST_STEPS = 20, 500
 
 @dataclass
 class PracticeRecording:
-    """A training: its first steps, every evaluation, and its newest steps.
+    """Recording of a training: its first and its newest steps (ring buffer), and all evaluations.
 
-    One thread adds, others read; what is read is a copy, so they need no lock.
+    One thread appends, others read; the properties return copies, so no lock is needed.
 
     Attributes:
-        rest_qpos: the pose in which it began, (7 + joints,).
+        rest_qpos: pose at the start, (7 + joints,).
     """
 
     rest_qpos: NDArray[np.float32]
@@ -69,7 +68,7 @@ class PracticeRecording:
     _evaluations: list[Evaluated] = field(default_factory=list)
 
     def add(self, record: StepTaken | Evaluated) -> None:
-        """Take in the next step or evaluation."""
+        """Append a step or an evaluation."""
         if isinstance(record, Evaluated):
             self._evaluations.append(record)
         elif len(self._first) < FIRST_STEPS:
@@ -79,7 +78,7 @@ class PracticeRecording:
 
     @property
     def steps(self) -> list[StepTaken]:
-        """The steps that are kept, in order; after the first 20 some may be missing."""
+        """The stored steps, in order; there may be a gap after the first 20."""
         return [*self._first, *list(self._newest)]
 
     @property
@@ -89,7 +88,18 @@ class PracticeRecording:
 
 
 def pose_at(start: NDArray[np.float32], motion: Motion, time_s: float) -> FloatArray:
-    """The pose `time_s` into a motion that began from `start`, (7 + joints,)."""
+    """Interpolate the pose at a time within a motion.
+
+    Linear in position and angles; the quaternion is interpolated linearly and normalised (nlerp).
+
+    Args:
+        start: pose at the start of the motion, (7 + joints,).
+        motion: the motion.
+        time_s: time since its start [s], clamped to its duration.
+
+    Returns:
+        the pose, (7 + joints,).
+    """
     times = np.concatenate(([0.0], motion.time_s))
     upper = min(int(np.searchsorted(times, time_s, side="left")), len(times) - 1)
     if upper == 0:
@@ -104,7 +114,7 @@ def pose_at(start: NDArray[np.float32], motion: Motion, time_s: float) -> FloatA
 
 
 def race_arrays(lanes: Sequence[LaneRecording]) -> Arrays:
-    """A race's recording as arrays for a file: about 0.3 MB a minute and lane."""
+    """Encode a race's recording as arrays for a file: about 0.3 MB per minute and lane."""
     arrays: Arrays = {}
     meta = []
     for number, lane in enumerate(lanes):
@@ -121,20 +131,20 @@ def race_arrays(lanes: Sequence[LaneRecording]) -> Arrays:
         scalars = ("reward_m", "distance_m", "transitions", "decision_s")
         table = [[getattr(s, name) for name in scalars] for s in lane.steps]
         arrays[key + "scalars"] = np.array(table, float)
-        known = [s.knowledge for s in lane.steps if s.knowledge]
-        if known:
-            arrays[key + "values"] = np.array([k.values for k in known], np.float32)
-            arrays[key + "visits"] = np.array([k.visits for k in known], np.float32)
+        knowledge = [s.knowledge for s in lane.steps if s.knowledge]
+        if knowledge:
+            arrays[key + "values"] = np.array([k.values for k in knowledge], np.float32)
+            arrays[key + "visits"] = np.array([k.visits for k in knowledge], np.float32)
     arrays["meta"] = np.array(json.dumps(meta))
     return arrays
 
 
 def race_recording(arrays: Arrays) -> list[LaneRecording]:
-    """The recording that `race_arrays` wrote."""
+    """Decode the output of `race_arrays`."""
     lanes = []
-    for number, about in enumerate(json.loads(str(arrays["meta"]))):
+    for number, info in enumerate(json.loads(str(arrays["meta"]))):
         key = f"lane{number}."
-        lane = LaneRecording(about["agent"], arrays[key + "rest_qpos"], [], about["failure"])
+        lane = LaneRecording(info["agent"], arrays[key + "rest_qpos"], [], info["failure"])
         lanes.append(lane)
         if key + "frames" not in arrays:
             continue

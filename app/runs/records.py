@@ -1,4 +1,4 @@
-"""Records that the two loops yield: frozen, in the order of events."""
+"""Records that the training loop and the race loop yield: immutable, in chronological order."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ class ActionValues:
     values: FloatArray
     """(pairs, cells) expected return [m], NaN where illegal."""
     visits: FloatArray
-    """(pairs, cells) how often it tried, NaN where illegal."""
+    """(pairs, cells) visit counts, NaN where illegal."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class StepTaken:
 
 @dataclass(frozen=True)
 class EpisodeEnded:
-    """ε changes after this."""
+    """End of an episode, after which ε changes."""
 
     episode: int
     step: int
@@ -56,11 +56,11 @@ class Reference:
 
 @dataclass(frozen=True)
 class Evaluated:
-    """50 steps from rest at ε = 0, on a copy of what was learned after `step` steps."""
+    """Evaluation after `step` steps of practice: 50 steps from rest at ε = 0."""
 
     step: int
     epsilon: float
-    """Of the practice at that step."""
+    """ε of the practice at that step."""
     distance_m: float
     motion: Motion | None
 
@@ -77,20 +77,20 @@ class LaneStep:
     reward_m: float
     distance_m: float
     transitions: int
-    """Simulated to decide on this step; carrying it out does not count."""
+    """Number of transitions simulated for the decision; the step itself does not count."""
     decision_s: float
-    """Measured by the timer that the race was given."""
+    """Duration of the decision by the race's timer [s]."""
     motion: Motion
     knowledge: ActionValues | None
 
 
 @dataclass(frozen=True)
 class LaneFailed:
-    """A lane that cannot go on: its agent raised, or its physics diverged."""
+    """Failure of a lane: its agent raised, or its physics diverged."""
 
     lane: int
     step: int
-    """The step that could not be done, counted from 1."""
+    """The step that failed, counted from 1."""
     reason: str
 
 

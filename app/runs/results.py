@@ -8,16 +8,16 @@ from app.runs.recording import LaneRecording
 
 
 def race_result(lanes: Sequence[LaneRecording], steps: int) -> dict[str, Any]:
-    """The result of a race in plain types.
+    """Compute the result of a race, in plain types.
 
-    All but `decision_s` and what stands under the `wall` clock is deterministic. A lane that did
-    not take all its steps has no total distance and says why.
+    Deterministic except for `decision_s` and the values of the `wall` clock. A lane that did not
+    take all its steps has no total distance, and its failure as the reason.
 
     Args:
-        lanes: the whole recording.
-        steps: how many steps each lane was to take.
+        lanes: the complete recording.
+        steps: planned number of steps of each lane.
     """
-    under = {clock: _under(lanes, steps, clock) for clock in CLOCKS}
+    results_by_clock = {clock: _lane_results(lanes, steps, clock) for clock in CLOCKS}
     return {
         "lanes": [
             {
@@ -27,7 +27,7 @@ def race_result(lanes: Sequence[LaneRecording], steps: int) -> dict[str, Any]:
                 "failure": lane.failure,
                 "decision_s": sum(s.decision_s for s in lane.steps),
                 "simulated_transitions": sum(s.transitions for s in lane.steps),
-                "clocks": {clock: under[clock][number] for clock in CLOCKS},
+                "clocks": {clock: results_by_clock[clock][number] for clock in CLOCKS},
             }
             for number, lane in enumerate(lanes)
         ]
@@ -35,13 +35,13 @@ def race_result(lanes: Sequence[LaneRecording], steps: int) -> dict[str, Any]:
 
 
 def finish_s(lanes: Sequence[LaneRecording], steps: int, clock: Clock) -> float | None:
-    """When the first lane has used all its steps [s]; None while none has."""
+    """Return the time-out: when the first lane has used all its steps [s]; None if none has."""
     totals = [Timetable.of(lane.steps, clock).total_s for lane in lanes if len(lane.steps) == steps]
     return min(totals, default=None)
 
 
-def _under(lanes: Sequence[LaneRecording], steps: int, clock: Clock) -> list[dict[str, Any]]:
-    """Each lane's figures under one clock; the distance at time-out ranks the race."""
+def _lane_results(lanes: Sequence[LaneRecording], steps: int, clock: Clock) -> list[dict[str, Any]]:
+    """Compute each lane's values under one clock; lanes are ranked by distance at time-out."""
     tables = [Timetable.of(lane.steps, clock) for lane in lanes]
     finish = finish_s(lanes, steps, clock)
     finished = [

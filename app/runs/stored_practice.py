@@ -1,6 +1,6 @@
-"""A training's recording as arrays for files: its steps in one, its evaluations in several.
+"""Encode and decode a training's recording as arrays: steps in one file, evaluations in several.
 
-Evaluations are many and never change, so that a file of them is written once, when it is full.
+Evaluations are many and immutable, so each of their files is written once, when it is full.
 """
 
 from collections.abc import Iterable, Sequence
@@ -18,7 +18,7 @@ _SCALARS = ("step", "episode", "epsilon", "reward_m", "distance_m")
 
 
 def practice_arrays(recording: PracticeRecording) -> Arrays:
-    """The steps that are kept, and how many evaluations go with them; up to about 1 MB."""
+    """Encode the stored steps, and the number of evaluations so far; up to about 1 MB."""
     steps = recording.steps
     arrays: Arrays = {
         "rest_qpos": recording.rest_qpos,
@@ -29,26 +29,26 @@ def practice_arrays(recording: PracticeRecording) -> Arrays:
         "is_known": np.array([s.knowledge is not None for s in steps]),
         **_motion_arrays([s.motion for s in steps]),
     }
-    known = [s.knowledge for s in steps if s.knowledge]
-    if known:
-        arrays["values"] = np.array([k.values for k in known], np.float32)
-        arrays["visits"] = np.array([k.visits for k in known], np.float32)
+    knowledge = [s.knowledge for s in steps if s.knowledge]
+    if knowledge:
+        arrays["values"] = np.array([k.values for k in knowledge], np.float32)
+        arrays["visits"] = np.array([k.visits for k in knowledge], np.float32)
     return arrays
 
 
 def evaluation_arrays(evaluations: Sequence[Evaluated]) -> Arrays:
-    """Some evaluations with their motion; about 0.1 MB each."""
+    """Encode evaluations with their motion; about 0.1 MB each."""
     scalars = [(e.step, e.epsilon, e.distance_m) for e in evaluations]
     return {"scalars": np.array(scalars, float), **_motion_arrays([e.motion for e in evaluations])}
 
 
 def practice_recording(arrays: Arrays, evaluations: Iterable[Arrays]) -> PracticeRecording:
-    """The recording that `practice_arrays` and, in order, `evaluation_arrays` wrote."""
+    """Decode the output of `practice_arrays` and, in order, of `evaluation_arrays`."""
     recording = PracticeRecording(arrays["rest_qpos"])
     for step in _steps(arrays):
         recording.add(step)
     evaluated = [e for one in evaluations for e in _evaluations(one)]
-    # There may be more of them than had been when the steps were last written.
+    # Evaluation files are written separately, and may be newer than the file of steps.
     for evaluation in evaluated[: int(arrays["evaluations"])]:
         recording.add(evaluation)
     return recording
@@ -66,7 +66,7 @@ def rewound(recording: PracticeRecording, step: int) -> PracticeRecording:
 
 def _steps(arrays: Arrays) -> list[StepTaken]:
     motions = _motions(arrays)
-    known = iter(_knowledge(arrays))
+    knowledge = iter(_knowledge(arrays))
     steps = []
     for number, row in enumerate(arrays["scalars"].tolist()):
         step, episode, epsilon, reward, distance = row
@@ -80,7 +80,7 @@ def _steps(arrays: Arrays) -> list[StepTaken]:
                 reward,
                 distance,
                 motions[number],
-                next(known) if arrays["is_known"][number] else None,
+                next(knowledge) if arrays["is_known"][number] else None,
             )
         )
     return steps
@@ -99,13 +99,13 @@ def _evaluations(arrays: Arrays) -> list[Evaluated]:
 
 
 def _motion_arrays(motions: Sequence[Motion | None]) -> Arrays:
-    """All motions after each other, with the number of frames of each; 0 where there is none."""
-    shown = [motion for motion in motions if motion is not None]
+    """Concatenate motions, with the number of frames of each; 0 for a missing motion."""
+    present = [motion for motion in motions if motion is not None]
     frames = [0 if motion is None else len(motion.time_s) for motion in motions]
     arrays: Arrays = {"frames": np.array(frames, int)}
-    if shown:
-        arrays["time_s"] = np.concatenate([motion.time_s for motion in shown])
-        arrays["qpos"] = np.concatenate([motion.qpos for motion in shown])
+    if present:
+        arrays["time_s"] = np.concatenate([motion.time_s for motion in present])
+        arrays["qpos"] = np.concatenate([motion.qpos for motion in present])
     return arrays
 
 

@@ -1,4 +1,4 @@
-"""A Q-table in its file, read row by row: no reader takes the memory of a whole table."""
+"""Random-access reader of a Q-table file: reads row by row, in constant memory."""
 
 import io
 import json
@@ -18,36 +18,36 @@ from app.domain.types import Cells, FloatArray
 from app.runs.tables import FORMAT
 
 _LOCAL_HEADER = struct.Struct("<26xHH")
-"""Of a zip's member: where it says how long its name and its extra field are."""
+"""Lengths of the name and of the extra field in the local header of a zip member."""
 
 
-class Pieces(Protocol):
-    """A file that can be read anywhere, from any thread."""
+class RandomAccessFile(Protocol):
+    """File with thread-safe random access (as `pread`)."""
 
     def read_at(self, offset: int, length: int) -> bytes:
-        """The bytes from an offset on; fewer than asked for at the end only."""
+        """Return `length` bytes from an offset; fewer only at the end of the file."""
 
 
 class TableFile:
-    """The table in an `.npz` file that `app.runs.tables` wrote.
+    """Q-table in an `.npz` file written by `app.runs.tables`.
 
     Attributes:
-        meta: as of the `Checkpoint` in the file.
-        pairs, cells: the table's.
+        meta: metadata as in `Checkpoint.meta`.
+        pairs, cells: number of leg pairs and of cells of the foot grid.
     """
 
-    def __init__(self, file: Pieces, readable: BinaryIO, said: str) -> None:
-        """Read what the file is about, and where its arrays lie.
+    def __init__(self, file: RandomAccessFile, readable: BinaryIO, label: str) -> None:
+        """Read the metadata and the offsets of the arrays.
 
         Args:
-            file: the whole file, found to be what was written.
-            readable: the same, from its start; used here only.
-            said: what to call it in messages.
+            file: the file, whose checksum was verified.
+            readable: the same file from its start; used by the constructor only.
+            label: name of the file for error messages.
 
         Raises:
-            TableMismatch: if the agent that learned keeps no table, or its values do not fit.
-            DamagedFile: if it is no table.
-            InvalidInput: if it is too large.
+            TableMismatch: if the agent has no Q-table, or the lengths of the arrays differ.
+            DamagedFile: if it is no valid table file.
+            InvalidInput: if the table is too large.
         """
         self._file = file
         try:
@@ -66,8 +66,8 @@ class TableFile:
             self.pairs, self.cells = len(self.meta["pairs"]), len(grid)
         except TableMismatch:
             raise
-        except Exception as error:  # zipfile and NumPy do not say all that damage makes them raise
-            raise DamagedFile(f"{said} is not a Q-table of this product: {error}") from error
+        except Exception as error:  # zipfile and NumPy document no complete list of exceptions
+            raise DamagedFile(f"{label} is not a Q-table of this product: {error}") from error
         kinds = self._where.dtype.kind + self._q.dtype.kind + self._n.dtype.kind
         if kinds != "ifu" or not self._where.length == self._q.length == self._n.length:
             raise TableMismatch("the table's values, visits and places do not fit together")
@@ -75,7 +75,7 @@ class TableFile:
         check_size(self.pairs, self.cells)
 
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
-        """Every state in order with its values and visits, (pairs, cells), NaN where illegal."""
+        """Iterate over all states in order, with values and visits, (pairs, cells), NaN illegal."""
         return TableRows(self.pairs, self.cells, self._parts).rows()
 
     def _parts(self) -> Iterator[Part]:
@@ -87,20 +87,20 @@ class TableFile:
 
 
 class _Column(NamedTuple):
-    """Where an array of one dimension lies in a file."""
+    """Location of a one-dimensional array in a file."""
 
     offset: int
     dtype: np.dtype[Any]
     length: int
 
-    def read(self, file: Pieces, first: int) -> NDArray[Any]:
-        """Some of its elements."""
+    def read(self, file: RandomAccessFile, first: int) -> NDArray[Any]:
+        """Read up to `VALUES_AT_ONCE` elements from index `first`."""
         count = min(VALUES_AT_ONCE, self.length - first)
         size = self.dtype.itemsize
         return np.frombuffer(file.read_at(self.offset + first * size, count * size), self.dtype)
 
 
-def _column(file: Pieces, archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> _Column:
+def _column(file: RandomAccessFile, archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> _Column:
     if member.compress_type != zipfile.ZIP_STORED:
         raise ValueError("its members are compressed")
     name, extra = _LOCAL_HEADER.unpack(file.read_at(member.header_offset, _LOCAL_HEADER.size))

@@ -1,8 +1,8 @@
-"""Checkpoints: all that is needed to continue learning, as one `.npz` file.
+"""Checkpoints: all that is needed to resume a training, as one `.npz` file.
 
-Values, visits, rates, the learning generator's state, the whole state of the simulator, counters,
-and what the table was learned for. No pickle, and nothing compressed, so that a file unpacks to
-no more than its own size.
+It holds values, visit counts, rates, the state of the learning generator, the complete state of
+the simulator, counters and the config. No pickle and no compression, so that loading a file runs
+no code and takes no more memory than its size (no zip bombs).
 """
 
 import hashlib
@@ -32,24 +32,24 @@ _AGENT, _STATE = "agent.", "state."
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """A training at one moment between two steps.
+    """State of a training between two steps.
 
     Attributes:
         meta: in plain types: `gait`, `azimuths_deg`, `pairs`, `legs`, `divisions`, `grid_side_m`,
-            `observation`, `agent`, `step`, `config`, and what else the writer adds.
-        arrays: `agent.…` is the agent's state, `state.…` the simulator's.
+            `observation`, `agent`, `step`, `config`, and fields that the writer adds.
+        arrays: the agent's state under the prefix `agent.`, the simulator's under `state.`.
     """
 
     meta: Mapping[str, Any]
     arrays: Arrays
 
     def part(self, prefix: str) -> Arrays:
-        """The arrays under a prefix, without it."""
+        """Return the arrays whose names have a prefix, by their names without it."""
         return {k.removeprefix(prefix): v for k, v in self.arrays.items() if k.startswith(prefix)}
 
 
 def snapshot(learner: Learner, config: TrainingConfig, **more: Any) -> Checkpoint:
-    """The learner as it is now; `more` goes into the meta data."""
+    """Create a checkpoint of a learner; `more` is added to its metadata."""
     walker, gait = learner.walker, config.resolved_gait
     agent = {_AGENT + k: v for k, v in walker.agent.state().items()}
     state = {_STATE + k: v for k, v in walker.simulator.dump(walker.state).items()}
@@ -82,10 +82,10 @@ def _next_step(learner: Learner) -> dict[str, Any]:
 
 
 def restore(learner: Learner, checkpoint: Checkpoint) -> None:
-    """Put a fresh learner of the same config exactly where the snapshot was taken.
+    """Restore the complete state of a new learner of the same config from a checkpoint.
 
     Raises:
-        IllegalAction: if the action that comes next is not legal there.
+        IllegalAction: if the stored next action is not legal in the restored state.
     """
     walker, meta = learner.walker, checkpoint.meta
     walker.agent.load(checkpoint.part(_AGENT))
@@ -101,13 +101,13 @@ def restore(learner: Learner, checkpoint: Checkpoint) -> None:
 
 
 def continue_from(learner: Learner, checkpoint: Checkpoint) -> None:
-    """Let a fresh learner go on with what was learned: values, visits and the generator.
+    """Initialise a new learner from a checkpoint: values, visits and the generator only.
 
-    Its rates are its own, ε restarts, and the robot starts from rest.
+    Rates come from its own config, the ε schedule restarts, and the robot starts from rest.
 
     Raises:
-        TableMismatch: if another agent learned it.
-        DamagedFile: if the generator's state is none.
+        TableMismatch: if the checkpoint is of another agent.
+        DamagedFile: if the generator's state is missing or invalid.
     """
     agent = learner.walker.agent
     if isinstance(agent, Tabular):
@@ -121,15 +121,15 @@ def continue_from(learner: Learner, checkpoint: Checkpoint) -> None:
 
 
 def agent_state(checkpoint: Checkpoint) -> Arrays:
-    """Return the agent's state."""
+    """Return the agent's state in a checkpoint."""
     return checkpoint.part(_AGENT)
 
 
 def load_agent(agent: Agent, checkpoint: Checkpoint) -> None:
-    """Let an agent go on from what one of its kind had learned.
+    """Load the agent's state in a checkpoint into an agent of the same class.
 
     Raises:
-        TableMismatch: if another agent learned it.
+        TableMismatch: if the checkpoint is of another agent.
     """
     try:
         agent.load(agent_state(checkpoint))
@@ -141,10 +141,10 @@ def load_agent(agent: Agent, checkpoint: Checkpoint) -> None:
 
 
 def table_of(checkpoint: Checkpoint) -> TableRows:
-    """The Q-table inside.
+    """Return the Q-table in a checkpoint.
 
     Raises:
-        TableMismatch: if the agent that learned keeps none, or it is of another problem.
+        TableMismatch: if its agent has no Q-table, or the arrays do not fit the metadata.
         InvalidInput: if it is too large.
     """
     state, meta = agent_state(checkpoint), checkpoint.meta
@@ -167,10 +167,15 @@ def table_of(checkpoint: Checkpoint) -> TableRows:
 def check_fits(
     checkpoint: Checkpoint, walk: WalkingProblem, observation: str | None = None
 ) -> None:
-    """Make sure that a table was learned for this walking problem; its robot may differ.
+    """Check that a table was learned for this walking problem; robot and simulator may differ.
+
+    Args:
+        checkpoint: the table.
+        walk: the walking problem.
+        observation: required observation mode; None for any.
 
     Raises:
-        TableMismatch: naming what differs, and what would fit.
+        TableMismatch: at the first difference; the message names it.
     """
     gait, meta = walk.resolved_gait, checkpoint.meta
     wanted: dict[str, Any] = {
@@ -186,18 +191,18 @@ def check_fits(
     for name, value in wanted.items():
         if meta[name] != value:
             raise TableMismatch(
-                f"the table was learned for {name} {_said(meta[name])}, this run has "
-                f"{_said(value)}; choose a table of the same gait, legs, divisions, grid and "
+                f"the table was learned for {name} {_as_text(meta[name])}, this run has "
+                f"{_as_text(value)}; choose a table of the same gait, legs, divisions, grid and "
                 "observation, or train one"
             )
 
 
-def _said(value: object) -> str:
+def _as_text(value: object) -> str:
     return value if isinstance(value, str) else json.dumps(value)
 
 
 def to_bytes(checkpoint: Checkpoint) -> bytes:
-    """The file."""
+    """Encode a checkpoint as an `.npz` file with a SHA-256 digest."""
     meta = json.dumps(dict(checkpoint.meta))
     members = {**checkpoint.arrays, "meta": np.array(meta)}
     buffer = io.BytesIO()
@@ -206,36 +211,37 @@ def to_bytes(checkpoint: Checkpoint) -> bytes:
 
 
 def from_bytes(data: bytes, name: str) -> Checkpoint:
-    """The checkpoint in a file.
+    """Decode the checkpoint in a file, and verify its digest.
 
     Args:
-        data: all of the file.
-        name: of the file, for the message.
+        data: content of the file.
+        name: name of the file for error messages.
 
     Raises:
-        DamagedFile: if it is no table, was changed since it was written, or could unpack to more
-            than it is.
+        DamagedFile: if it is no table, was changed since it was written, is compressed, or is of
+            another format version.
     """
     try:
         members = read_arrays(data)
         digest = str(members.pop("digest"))
-        whole = digest == _digest(members)
+        is_intact = digest == _digest(members)
         meta = json.loads(str(members.pop("meta")))
-        known = meta["format"] == FORMAT
-    except Exception as error:  # zipfile and NumPy do not say all that damage makes them raise
+        is_supported = meta["format"] == FORMAT
+    except Exception as error:  # zipfile and NumPy document no complete list of exceptions
         raise DamagedFile(f"{name} is not a Q-table of this product: {error}") from error
-    if not whole:
+    if not is_intact:
         raise DamagedFile(f"{name} is damaged: its contents do not match its checksum")
-    if not known:
+    if not is_supported:
         raise DamagedFile(f"{name} has format {meta['format']}; this version reads {FORMAT}")
     return Checkpoint(meta, members)
 
 
 def read_arrays(data: bytes) -> Arrays:
-    """The arrays of an `.npz` file, which cannot unpack to more than it is.
+    """Decode the arrays of an `.npz` file; rejects compressed and overlapping members.
 
     Raises:
-        ValueError: if it could; and whatever zipfile and NumPy make of damage.
+        ValueError: if it could unpack to more than its size. zipfile and NumPy raise other
+            exceptions for a damaged file.
     """
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         members = archive.infolist()
@@ -252,6 +258,6 @@ def _digest(members: Arrays) -> str:
     for key in sorted(members):
         array = np.ascontiguousarray(members[key])
         digest.update(f"{key} {array.dtype.str} {array.shape}".encode())
-        # A view where there can be one: a large table is not copied to be hashed.
+        # Hash a view where possible: `tobytes` would copy a large table.
         digest.update(array.tobytes() if array.dtype.kind == "U" else array.data)
     return digest.hexdigest()

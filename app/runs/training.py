@@ -1,4 +1,4 @@
-"""The training loop (paper, Algorithm 1), and the evaluation of what was learned."""
+"""Training loop (paper, Algorithm 1), and evaluation of the learned policy."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from app.runs.walker import Walker
 
 @dataclass
 class Learner:
-    """All that a training changes. Between two records it may be saved, tuned, or left.
+    """Mutable state of a training. Between two records it may be saved, tuned or discarded.
 
     Attributes:
         walker: the robot that practises, with its agent.
@@ -55,21 +55,25 @@ class Learner:
 def train(
     learner: Learner, config: TrainingConfig, record: bool = False
 ) -> Iterator[TrainingRecord]:
-    """Practise until `config.steps` steps are learned, from wherever the learner is.
+    """Continue a training until `config.steps` steps are learned, and yield its records.
 
-    With `record`, steps and evaluations carry their motion and what the agent knew.
-    The last record but one is the reference if it has not come before, the last an evaluation,
-    unless `config.evaluate_every` is 0.
+    The last record is an evaluation unless `config.evaluate_every` is 0; the reference is yielded
+    once, before the first evaluation.
+
+    Args:
+        learner: the training's state, which is updated.
+        config: the training's config.
+        record: whether steps and evaluations include their motion, and steps the action values.
 
     Raises:
-        Diverged: if the physics breaks.
+        Diverged: if the physics diverges.
     """
     yield from _evaluate_if_due(learner, config, record)
     while learner.step < config.steps:
         epsilon, episode = learner.epsilon, learner.step // config.steps_per_episode
         taken, earned_m = _practise(learner, episode, epsilon, record), learner.episode_reward_m
         has_ended = learner.step % config.steps_per_episode == 0 or learner.step == config.steps
-        # All before the yield, after which the learner may be saved.
+        # Complete the state before the yield: the caller may checkpoint the learner there.
         learner.due_epsilon = epsilon if _is_due(learner.step, config) else None
         if has_ended:
             learner.episode_reward_m = 0.0
@@ -92,16 +96,23 @@ def _evaluate_if_due(
 
 
 def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> StepTaken:
-    """One step: act, see what comes of it, learn."""
+    """Take one step: choose an action, carry it out, learn from the transition."""
     walker = learner.walker
-    seen, knowledge = walker.seen, walker.knowledge() if record else None
+    observation, knowledge = walker.observed, walker.knowledge() if record else None
     action = walker.decide() if learner.next_action is None else learner.next_action
     step = walker.carry_out(action, record)
     learner.next_action = None
     if getattr(walker.agent, "is_on_policy", False):
         learner.next_epsilon, learner.next_action = learner.epsilon, walker.decide()
     walker.agent.learn(
-        Transition(seen, action, step.reward_m, walker.seen, walker.legal, learner.next_action)
+        Transition(
+            observation,
+            action,
+            step.reward_m,
+            walker.observed,
+            walker.legal,
+            learner.next_action,
+        )
     )
     learner.step += 1
     learner.episode_reward_m += step.reward_m
@@ -110,7 +121,7 @@ def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> S
         learner.step,
         episode,
         epsilon,
-        seen,
+        observation,
         action,
         step.reward_m,
         distance,
@@ -120,7 +131,7 @@ def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> S
 
 
 def measure_baseline(learner: Learner) -> Reference:
-    """Walk the one-step look-ahead agent once, and remember how far it came."""
+    """Run the baseline (one-step look-ahead) once, and store its distance in the learner."""
     distance, _ = walk(learner.baseline(), record=False)
     learner.greedy_distance_m = distance
     return Reference(distance)
@@ -129,10 +140,16 @@ def measure_baseline(learner: Learner) -> Reference:
 def evaluate(
     learner: Learner, config: TrainingConfig, epsilon: float, record: bool = False
 ) -> Evaluated:
-    """50 steps from rest at ε = 0 on a copy of the table; the learner is not disturbed.
+    """Evaluate the policy learned so far: 50 steps from rest at ε = 0; the learner is unchanged.
 
-    Chance comes from a generator of this step's own, so a result does not depend on how many
-    evaluations came before it.
+    The random generator is derived from seed and step, so a result does not depend on the number
+    of earlier evaluations.
+
+    Args:
+        learner: the training's state.
+        config: the training's config.
+        epsilon: ε of the practice, for the record.
+        record: whether to include the motion.
     """
     evaluator = learner.evaluator(generator(config.seed, EVALUATION, learner.step))
     distance, motion = walk(evaluator, record)
@@ -140,18 +157,18 @@ def evaluate(
 
 
 def walk(walker: Walker, record: bool) -> tuple[float, Motion | None]:
-    """Take 50 steps: the distance [m], and the whole motion where it was asked for."""
+    """Take 50 steps; return the distance [m], and the motion if `record` is set, else None."""
     motions: list[Motion] = []
-    for taken in range(RACE_STEPS):
+    for number in range(RACE_STEPS):
         step = walker.carry_out(walker.decide(), record)
         if step.motion:
-            start = taken * walker.simulator.robot.step_s
+            start = number * walker.simulator.robot.step_s
             motions.append(Motion(step.motion.time_s + np.float32(start), step.motion.qpos))
     distance: float = walker.state.distance_m
-    return distance, _joined(motions) if motions else None
+    return distance, _concatenate(motions) if motions else None
 
 
-def _joined(motions: list[Motion]) -> Motion:
+def _concatenate(motions: list[Motion]) -> Motion:
     columns: tuple[Any, ...] = tuple(zip(*motions, strict=True))
     return Motion(*(np.concatenate(column) for column in columns))
 

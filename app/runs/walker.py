@@ -1,4 +1,4 @@
-"""A robot with an agent on it: sees, decides, acts. Both loops drive walkers."""
+"""Walker: a simulator, its current state and an agent, as driven by both loops."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -13,19 +13,24 @@ from app.runs.records import ActionValues
 
 
 class FutureNode:
-    """A simulated future; what is legal there is found only when asked for."""
+    """Node of a search tree: a simulated future state, with lazily computed legal actions."""
 
-    def __init__(self, foresight: "SimulatorExpand", state: WalkState) -> None:
-        self.state, self._foresight = state, foresight
+    def __init__(self, expand: "SimulatorExpand", state: WalkState) -> None:
+        self.state, self._expand = state, expand
 
     @cached_property
     def legal(self) -> Sequence[Action]:
-        """The actions that are legal in this future, by this walker's observation."""
-        return self._foresight.legal(self.state)
+        """The legal actions in this state, by the walker's observation mode."""
+        return self._expand.legal(self.state)
 
 
 class SimulatorExpand:
-    """Implements `Expand` for one walker: its simulator, its way to observe, and a count."""
+    """Implements the `Expand` protocol by simulation, and counts simulated transitions.
+
+    Attributes:
+        transitions: number of transitions simulated so far.
+        here: root node, the current state of the robot.
+    """
 
     def __init__(self, simulator: Simulator[Any], observation: Observation) -> None:
         self._simulator, self._observation = simulator, observation
@@ -35,62 +40,79 @@ class SimulatorExpand:
     def __call__(
         self, nodes: Sequence[Node], actions: Sequence[Action]
     ) -> tuple[Sequence[Node], FloatArray]:
-        """Simulate one action from each node."""
+        """Simulate one action from each node, in one batch.
+
+        Args:
+            nodes: n nodes.
+            actions: one action for each.
+
+        Returns:
+            the resulting nodes, and the rewards [m], (n,).
+        """
         states = [cast(FutureNode, node).state for node in nodes]
         expansion = self._simulator.expand(states, actions)
         self.transitions += len(actions)
         return [FutureNode(self, state) for state in expansion.states], expansion.rewards_m
 
     def at(self, state: WalkState) -> None:
-        """The robot is here now."""
+        """Set the current state of the robot, the root of the search."""
         self.here = FutureNode(self, state)
 
     def legal(self, state: WalkState) -> Sequence[Action]:
         """Return the legal actions in a state."""
-        seen = observe(self._simulator, state, self._observation)
-        return legal_actions(seen, len(self._simulator.grid))
+        observed = observe(self._simulator, state, self._observation)
+        return legal_actions(observed, len(self._simulator.grid))
 
 
 class Walker:
-    """One robot, where it is, and the agent that walks it."""
+    """A simulated robot, its current state, and the agent that controls it.
+
+    Attributes:
+        simulator: simulates steps.
+        agent: chooses actions.
+        observation: observation mode.
+        state: current state of the simulation.
+        observed: current observation, the cell of each leg pair.
+        legal: legal actions in the current state.
+    """
 
     def __init__(
         self,
         simulator: Simulator[Any],
         agent: Agent,
         observation: Observation,
-        foresight: SimulatorExpand | None = None,
+        expand: SimulatorExpand | None = None,
     ) -> None:
         self.simulator, self.agent, self.observation = simulator, agent, observation
-        self._foresight = foresight
+        self._expand = expand
         self.place(simulator.rest())
 
     def place(self, state: WalkState) -> None:
-        """Put the robot into a state."""
+        """Set the current state, and update the observation and the legal actions."""
         self.state = state
-        self.seen: Cells = observe(self.simulator, state, self.observation)
-        self.legal = legal_actions(self.seen, len(self.simulator.grid))
-        if self._foresight:
-            self._foresight.at(state)
+        self.observed: Cells = observe(self.simulator, state, self.observation)
+        self.legal = legal_actions(self.observed, len(self.simulator.grid))
+        if self._expand:
+            self._expand.at(state)
 
     @property
     def transitions(self) -> int:
-        """How many transitions the agent has simulated so far."""
-        return self._foresight.transitions if self._foresight else 0
+        """Number of transitions that the agent has simulated so far."""
+        return self._expand.transitions if self._expand else 0
 
     def decide(self) -> Action:
-        """Ask the agent what to do now.
+        """Return the action that the agent chooses in the current state.
 
         Raises:
-            IllegalAction: if that is none of the legal actions.
+            IllegalAction: if it is not legal.
         """
-        return self.legal_action(self.agent.act(self.seen, self.legal))
+        return self.legal_action(self.agent.act(self.observed, self.legal))
 
     def legal_action(self, chosen: Sequence[int]) -> Action:
-        """Find an action among the legal ones.
+        """Return an action given as (pair, cell) after checking that it is legal.
 
         Raises:
-            IllegalAction: if it is none of them.
+            IllegalAction: if it is not legal in the current state.
         """
         try:
             return self.legal[self.legal.index(Action(*chosen))]
@@ -101,13 +123,13 @@ class Walker:
             ) from error
 
     def carry_out(self, action: Action, record: bool = False) -> Step[Any]:
-        """Do it, and be where it leads."""
+        """Simulate an action, and make the resulting state the current one."""
         step = self.simulator.step(self.state, action, record)
         self.place(step.state)
         return step
 
     def knowledge(self) -> ActionValues | None:
-        """Return the action values of the current state; None for agents without."""
+        """Return the action values of the current state; None if the agent has none."""
         if not isinstance(self.agent, Valuing):
             return None
-        return ActionValues(self.agent.values(self.seen), self.agent.visits(self.seen))
+        return ActionValues(self.agent.values(self.observed), self.agent.visits(self.observed))

@@ -1,4 +1,6 @@
-"""Quick trials for the form: 30 kinematic seeds of its settings beside 30 of the defaults.
+"""What-if service: estimates the effect of a form's settings by quick kinematic trials.
 
-`what_if` answers and caches; `trial_pool` keeps the processes that run the trials.
+`what_if` runs 30 seeds with the chosen settings and 30 with the defaults, limits the number of
+waiting requests, and caches results.
+`trial_pool` is the pool of worker processes that run the trials; it shuts down when idle.
 """

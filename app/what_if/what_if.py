@@ -1,4 +1,4 @@
-"""The what-if service: many seeds of a training, beside as many at the default values."""
+"""What-if service: distances over many seeds of a training, and over as many at its defaults."""
 
 import threading
 import time
@@ -22,43 +22,43 @@ from app.what_if.trial_pool import TrialPool
 SEEDS = 30
 MAX_STEPS = 2_000
 MAX_VALUES = 1_200_000
-"""Of a table: each trial has one, and writes it to a file."""
+"""Maximum number of values of a Q-table: each trial holds one, and writes it to a file."""
 MAX_WAITING = 4
 MAX_CACHED = 512
 
 
 class WhatIf:
-    """Answers by kinematic trials, one question at a time. Safe to use from any thread."""
+    """Answers what-if requests by kinematic trials, one at a time; bounded cache. Thread-safe."""
 
     def __init__(self, pool: TrialPool) -> None:
-        """Create the service; no process is started yet.
+        """Create the service with an empty cache.
 
         Args:
             pool: runs the trials.
         """
         self._pool = pool
-        self._known: OrderedDict[TrialConfig, tuple[float, ...]] = OrderedDict()
-        """By what is tried, with seed 0: how far each seed came [m]."""
-        self._turn = threading.Lock()
-        self._guard = threading.Lock()
+        self._cache: OrderedDict[TrialConfig, tuple[float, ...]] = OrderedDict()
+        """Cached distances of all seeds [m], by the trial with seed 0; oldest evicted first."""
+        self._pool_lock = threading.Lock()
+        self._state_lock = threading.Lock()
         self._waiting = 0
 
     def ask(self, training: TrainingConfig) -> dict[str, Any]:
-        """How far the learner comes after this practice, and after that of the default values.
+        """Compute distances after this training, and after the same one with default settings.
 
         Args:
-            training: its simulator, its seed, and what it shows meanwhile do not count.
+            training: the training; its simulator, seed, evaluations and pace are ignored.
 
         Returns:
             `seeds`, `greedy_m`, `chosen` and `default` with `distances_m`, `walkers` (the share
-            that covers at least half of greedy's distance), `iqm_m`, the agent's settings and
-            `steps_per_episode`; `compute_s`.
+            of seeds with at least half of greedy's distance), `iqm_m` (interquartile mean), the
+            agent's settings and `steps_per_episode`; `compute_s`.
 
         Raises:
-            InvalidInput, UnknownName, Unreachable: if it cannot be tried.
-            Busy: if too many are waiting.
+            InvalidInput, UnknownName, Unreachable: if the training is invalid or too large.
+            Busy: if too many requests are waiting, or the pool fails.
         """
-        _check(training)
+        _check_limits(training)
         began_s = time.perf_counter()
         chosen = replace(training, simulator="kinematic", seed=0, evaluate_every=0, pace="max")
         default = replace(
@@ -66,64 +66,66 @@ class WhatIf:
             settings=training_config(gait=chosen.gait, agent=chosen.agent).settings,
             steps_per_episode=TrainingConfig.steps_per_episode,
         )
-        walked = replace(default, agent="greedy", settings=SettingValues(), steps=1)
-        greedy = TrialConfig(training=walked, blocks=0)
-        halves = [TrialConfig(training=half) for half in (chosen, default)]
-        found = self._distances([greedy, *halves])
-        greedy_m = found[greedy][0]
+        greedy_training = replace(default, agent="greedy", settings=SettingValues(), steps=1)
+        greedy = TrialConfig(training=greedy_training, blocks=0)
+        trials = [TrialConfig(training=variant) for variant in (chosen, default)]
+        distances = self._distances([greedy, *trials])
+        greedy_m = distances[greedy][0]
         return {
             "seeds": SEEDS,
             "greedy_m": greedy_m,
-            "chosen": _half(chosen, found[halves[0]], greedy_m),
-            "default": _half(default, found[halves[1]], greedy_m),
+            "chosen": _summarize(chosen, distances[trials[0]], greedy_m),
+            "default": _summarize(default, distances[trials[1]], greedy_m),
             "compute_s": round(time.perf_counter() - began_s, 3),
         }
 
     def close(self) -> None:
-        """Let its processes go."""
+        """Shut down the pool."""
         self._pool.close()
 
-    def _distances(self, wanted: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
-        found = self._cached(wanted)
-        if len(found) == len(set(wanted)):
-            return found
-        with self._guard:
+    def _distances(self, trials: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
+        distances = self._cached(trials)
+        if len(distances) == len(set(trials)):
+            return distances
+        with self._state_lock:
             if self._waiting >= MAX_WAITING:
                 raise Busy(f"{MAX_WAITING} questions are waiting; ask again later", 2)
             self._waiting += 1
         try:
-            with self._turn:
-                # An earlier request may have tried the same.
-                found = self._cached(wanted)
-                found |= self._tried([one for one in dict.fromkeys(wanted) if one not in found])
+            with self._pool_lock:
+                # A request that was served meanwhile may have cached the same trials.
+                distances = self._cached(trials)
+                distances |= self._run_trials(
+                    [one for one in dict.fromkeys(trials) if one not in distances]
+                )
         finally:
-            with self._guard:
+            with self._state_lock:
                 self._waiting -= 1
-        self._remember(found)
-        return found
+        self._store(distances)
+        return distances
 
-    def _tried(self, missing: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
-        trials = [(one, seeded) for one in missing for seeded in _seeded(one)]
+    def _run_trials(self, missing: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
+        trials = [(one, seeded) for one in missing for seeded in _with_seeds(one)]
         results = self._pool.run([seeded for _, seeded in trials])
-        found: dict[TrialConfig, tuple[float, ...]] = dict.fromkeys(missing, ())
+        distances: dict[TrialConfig, tuple[float, ...]] = dict.fromkeys(missing, ())
         for (one, _), result in zip(trials, results, strict=True):
-            found[one] += (_distance_m(result),)
-        return found
+            distances[one] += (_distance_m(result),)
+        return distances
 
-    def _cached(self, wanted: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
-        with self._guard:
-            return {one: self._known[one] for one in wanted if one in self._known}
+    def _cached(self, trials: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
+        with self._state_lock:
+            return {one: self._cache[one] for one in trials if one in self._cache}
 
-    def _remember(self, found: dict[TrialConfig, tuple[float, ...]]) -> None:
-        with self._guard:
-            for one, distances in found.items():
-                self._known[one] = distances
-                self._known.move_to_end(one)
-            while len(self._known) > MAX_CACHED:
-                self._known.popitem(last=False)
+    def _store(self, distances: dict[TrialConfig, tuple[float, ...]]) -> None:
+        with self._state_lock:
+            for one, of_seeds in distances.items():
+                self._cache[one] = of_seeds
+                self._cache.move_to_end(one)
+            while len(self._cache) > MAX_CACHED:
+                self._cache.popitem(last=False)
 
 
-def _check(training: TrainingConfig) -> None:
+def _check_limits(training: TrainingConfig) -> None:
     if not learns(training.agent):
         raise InvalidInput(f"{training.agent} does not learn, so nothing can be changed about it")
     if training.steps > MAX_STEPS:
@@ -140,8 +142,8 @@ def _check(training: TrainingConfig) -> None:
         )
 
 
-def _seeded(config: TrialConfig) -> list[TrialConfig]:
-    """Once a seed, or once if there is no practice."""
+def _with_seeds(config: TrialConfig) -> list[TrialConfig]:
+    """Return a copy of a trial for each seed; a single one without practice."""
     numbers = range(SEEDS if config.blocks else 1)
     return [
         replace(config, training=replace(config.training, seed=trial_seed(0, 0, number)))
@@ -155,7 +157,7 @@ def _distance_m(result: TrialResult) -> float:
     return result.distances_m[-1]
 
 
-def _half(
+def _summarize(
     config: TrainingConfig, distances_m: tuple[float, ...], greedy_m: float
 ) -> dict[str, Any]:
     walkers = sum(distance >= greedy_m / 2 for distance in distances_m)
@@ -169,6 +171,9 @@ def _half(
 
 
 def _interquartile_mean(values: Sequence[float]) -> float:
-    """As `scipy.stats.trim_mean(values, 0.25)`, without SciPy in the server."""
+    """Return the interquartile mean, as `scipy.stats.trim_mean(values, 0.25)`.
+
+    The server does not import SciPy.
+    """
     cut, ordered = int(0.25 * len(values)), np.sort(values)
     return float(ordered[cut : len(values) - cut].mean())

@@ -1,4 +1,4 @@
-"""Look-ahead: what it chooses, and how many transitions it simulates for it."""
+"""Look-ahead agents: chosen actions, and number of simulated transitions."""
 
 from collections.abc import Sequence
 from itertools import product
@@ -24,38 +24,38 @@ def walker(
     simulator = KinematicSimulator(
         Robot(), resolve(gait, Robot().azimuths_deg), FootGrid(divisions=divisions)
     )
-    foresight = SimulatorExpand(simulator, "measured")
-    return Walker(simulator, LookAhead(foresight, depth), "measured", foresight), foresight
+    expand = SimulatorExpand(simulator, "measured")
+    return Walker(simulator, LookAhead(expand, depth), "measured", expand), expand
 
 
 @pytest.mark.parametrize(("depth", "transitions"), [(1, 12), (2, 156), (3, 1884)])
-def test_a_decision_simulates_every_sequence_once(depth: int, transitions: int) -> None:
-    robot, foresight = walker(depth)
+def test_decision_simulates_every_sequence_once(depth: int, transitions: int) -> None:
+    robot, expand = walker(depth)
     robot.decide()
 
-    assert foresight.transitions == transitions
+    assert expand.transitions == transitions
     assert transitions == sum(12**d for d in range(1, depth + 1))
 
 
 def test_at_three_divisions_there_are_24_actions() -> None:
-    robot, foresight = walker(2, divisions=3)
+    robot, expand = walker(2, divisions=3)
     robot.decide()
 
-    assert foresight.transitions == 24 + 24 * 24
+    assert expand.transitions == 24 + 24 * 24
 
 
 @pytest.mark.parametrize(("depth", "transitions"), [(1, 600), (2, 7_800)])
-def test_depth_is_kept_to_the_last_of_fifty_steps(depth: int, transitions: int) -> None:
-    robot, foresight = walker(depth)
+def test_search_depth_is_constant_over_fifty_steps(depth: int, transitions: int) -> None:
+    robot, expand = walker(depth)
     for _ in range(50):
         robot.carry_out(robot.decide())
 
-    assert foresight.transitions == robot.transitions == transitions
+    assert expand.transitions == robot.transitions == transitions
 
 
 @pytest.mark.parametrize("gait", NAMED_GAITS)
-def test_greedy_takes_turns_to_the_front(gait: str) -> None:
-    """The first of equals: pair 1 before pair 2, left before right; then whoever is hindmost."""
+def test_greedy_moves_the_pairs_to_the_front_in_turn(gait: str) -> None:
+    """Ties go to the first: pair 1 before 2, left before right; then to the rearmost pair."""
     robot, _ = walker(1, gait)
     chosen = []
     for _ in range(9):
@@ -68,8 +68,8 @@ def test_greedy_takes_turns_to_the_front(gait: str) -> None:
 
 
 @pytest.mark.parametrize("depth", [1, 2, 3])
-def test_the_first_action_of_the_best_sequence_is_chosen(depth: int) -> None:
-    """Against trying all sequences one by one, along a walk that chance leads off the best way."""
+def test_first_action_of_the_best_sequence_is_chosen(depth: int) -> None:
+    """Compare with a recursive search over all sequences, from states along a random walk."""
     robot, _ = walker(depth)
     simulator, rng = robot.simulator, np.random.default_rng(depth)
 
@@ -95,7 +95,7 @@ def test_the_first_action_of_the_best_sequence_is_chosen(depth: int) -> None:
 
 
 class TrapDoor:
-    """Implements `Expand` on a little world: from A the best step leads to where all is bad."""
+    """`Expand` on a small graph: the best step from A leads to a node with low rewards only."""
 
     class Place:
         def __init__(self, name: str) -> None:
@@ -128,18 +128,18 @@ WORLD: dict[str, list[tuple[str, float]]] = {
 }
 
 
-def test_greedy_steps_into_the_trap() -> None:
+def test_greedy_takes_the_best_first_step_even_if_it_is_worse_later() -> None:
     assert Greedy(TrapDoor()).act((0,), ()) == (0, 0)
 
 
-def test_two_steps_avoid_it_and_of_equals_take_the_first() -> None:
+def test_two_step_maximises_the_sum_and_ties_go_to_the_first() -> None:
     world = TrapDoor()
 
     assert TwoStep(world).act((0,), ()) == (0, 2)
     assert world.calls == [4, 1 + 2 + 3 + 3]  # a layer a call, and a family may have any size
 
 
-def test_every_gait_and_depth_gives_each_pair_its_turn() -> None:
+def test_every_pair_moves_at_each_gait_and_depth() -> None:
     for gait, depth in product(NAMED_GAITS, (1, 2)):
         robot, _ = walker(depth, gait)
         moved = set()

@@ -1,4 +1,4 @@
-"""The agent protocol, tested on all our agents and on users' own."""
+"""Conformance tests of the agent protocol, on built-in and user-supplied agents."""
 
 import pytest
 
@@ -35,12 +35,12 @@ def learner(agent: str, seed: int = 0, observation: Observation = "measured") ->
 
 
 def walk(learner: Learner, steps: int) -> list[tuple[Action, float]]:
-    """Act, and learn from what comes of it."""
+    """Take and learn some steps; return the actions and rewards."""
     walker, done = learner.walker, []
     for _ in range(steps):
-        seen, action = walker.seen, walker.decide()
+        observed, action = walker.observed, walker.decide()
         reward = walker.carry_out(action).reward_m
-        walker.agent.learn(Transition(seen, action, reward, walker.seen, walker.legal))
+        walker.agent.learn(Transition(observed, action, reward, walker.observed, walker.legal))
         done.append((action, reward))
     return done
 
@@ -59,30 +59,32 @@ def steps_for(agent: str) -> int:
     return 6 if agent.endswith("ThreeStep") else 25
 
 
-def test_it_keeps_to_the_protocol(agent: str) -> None:
+def test_agent_implements_the_protocol(agent: str) -> None:
     assert isinstance(learner(agent).walker.agent, Agent)
 
 
 @pytest.mark.parametrize("observation", OBSERVATIONS)
-def test_it_takes_legal_actions_by_what_it_sees(agent: str, observation: Observation) -> None:
+def test_agent_chooses_legal_actions_in_each_observation_mode(
+    agent: str, observation: Observation
+) -> None:
     walker = learner(agent, observation=observation).walker
     for _ in range(steps_for(agent)):
-        seen = observe(walker.simulator, walker.state, observation)
+        observed = observe(walker.simulator, walker.state, observation)
         action = walker.decide()
         assert action in walker.legal
-        assert seen[action.pair] != action.cell
+        assert observed[action.pair] != action.cell
         assert [type(part) for part in action] == [int, int]
         walker.carry_out(action)
 
 
-def test_the_same_seed_acts_and_learns_the_same(agent: str) -> None:
+def test_agent_is_deterministic_for_a_seed(agent: str) -> None:
     one, other = learner(agent, seed=5), learner(agent, seed=5)
 
     assert walk(one, steps_for(agent)) == walk(other, steps_for(agent))
     assert written(one) == written(other)
 
 
-def test_from_a_state_it_goes_on_identically(agent: str) -> None:
+def test_agent_continues_identically_from_a_loaded_state(agent: str) -> None:
     original, copy = learner(agent, seed=1), learner(agent, seed=2)
     walk(original, steps_for(agent))
     copy.walker.agent.load(original.walker.agent.state())
@@ -94,7 +96,7 @@ def test_from_a_state_it_goes_on_identically(agent: str) -> None:
     assert written(copy) == written(original)
 
 
-def test_its_state_is_a_copy(agent: str) -> None:
+def test_state_is_a_copy(agent: str) -> None:
     original = learner(agent)
     walk(original, 5)
     before = written(original)
@@ -104,7 +106,7 @@ def test_its_state_is_a_copy(agent: str) -> None:
     assert written(original) == before
 
 
-def test_only_who_asks_for_it_is_shown_the_future() -> None:
+def test_only_agents_with_an_expand_parameter_simulate_transitions() -> None:
     blind, seeing = learner("q-learning"), learner("two-step")
     walk(blind, 10)
     walk(seeing, 2)
@@ -113,5 +115,5 @@ def test_only_who_asks_for_it_is_shown_the_future() -> None:
     assert seeing.walker.transitions == 2 * 156
 
 
-def test_other_seeds_act_otherwise() -> None:
+def test_different_seeds_give_different_actions() -> None:
     assert walk(learner("q-learning", seed=1), 10) != walk(learner("q-learning", seed=2), 10)

@@ -37,7 +37,7 @@ def test_the_defaults_are_the_papers() -> None:
     assert not learner().table.dump()["where"].size
 
 
-def test_the_update_of_algorithm_1_by_hand() -> None:
+def test_update_equals_algorithm_1_by_hand() -> None:
     agent = learner(alpha=0.3, gamma=0.9)
     agent.learn(transition())  # 0.7 · 0 + 0.3 · (0.01 + 0.9 · 0)
     assert agent.values((0, 0, 0))[1, 2] == pytest.approx(0.003)
@@ -52,7 +52,7 @@ def test_the_update_of_algorithm_1_by_hand() -> None:
     assert np.isnan(visits[range(3), 0]).all()
 
 
-def test_what_is_illegal_next_does_not_count() -> None:
+def test_illegal_next_actions_are_not_in_the_maximum() -> None:
     agent = learner(alpha=1, gamma=0.9)
     agent.table.row(agent.table.index((0, 2, 0)))[0][agent.table.column(Action(1, 2))] = 9
     agent.learn(transition())
@@ -60,7 +60,7 @@ def test_what_is_illegal_next_does_not_count() -> None:
     assert agent.values((0, 0, 0))[1, 2] == 0.01
 
 
-def test_without_exploration_the_best_is_taken() -> None:
+def test_without_exploration_the_best_action_is_chosen() -> None:
     agent = learner(explore=False)
     agent.table.row(0)[0][agent.table.column(Action(2, 3))] = 0.1
     legal = legal_actions((0, 0, 0), 5)
@@ -109,13 +109,13 @@ def test_epsilon_falls_linearly_over_the_episodes_and_stays(
     assert [schedule(e) for e in range(len(epsilons))] == pytest.approx(epsilons)
 
 
-def test_epsilon_may_run_between_any_two_numbers() -> None:
+def test_epsilon_schedule_has_configurable_ends() -> None:
     schedule = EpsilonSchedule(0.2, 0.8, 4)
 
     assert [schedule(e) for e in range(4)] == pytest.approx([0.2, 0.4, 0.6, 0.8])
 
 
-def test_a_last_partial_episode_counts() -> None:
+def test_last_partial_episode_counts() -> None:
     agent = learner(steps=120, steps_per_episode=50)
     epsilons = []
     for _ in range(120):
@@ -138,7 +138,7 @@ def test_rates_can_be_changed_between_two_steps() -> None:
     assert agent.epsilon == 0.3
 
 
-def test_a_state_holds_the_rates_and_the_place_in_the_schedule() -> None:
+def test_state_has_the_rates_and_the_position_in_the_schedule() -> None:
     agent, copy = learner(steps=100), learner(steps=100)
     agent.tune(alpha=0.5)
     for _ in range(70):
@@ -152,7 +152,7 @@ def test_a_state_holds_the_rates_and_the_place_in_the_schedule() -> None:
     assert copy.epsilon == 0.1
 
 
-def test_going_on_from_a_state_restarts_the_schedule_and_keeps_own_rates() -> None:
+def test_continue_from_restarts_the_schedule_and_does_not_load_rates() -> None:
     agent, successor = learner(), learner(alpha=0.1)
     for _ in range(500):
         agent.learn(transition())
@@ -164,6 +164,6 @@ def test_going_on_from_a_state_restarts_the_schedule_and_keeps_own_rates() -> No
     assert successor.state()["rates"][0] == 0.1
 
 
-def test_it_can_be_tuned_and_say_what_it_expects() -> None:
+def test_q_learning_is_tunable_and_valuing() -> None:
     assert isinstance(learner(), Tunable)
     assert isinstance(learner(), Valuing)

@@ -1,4 +1,4 @@
-"""The table of state-action values: its size, its order, its hash."""
+"""Q-table: size, order of states and actions, hash, sparse dump."""
 
 import hashlib
 import math
@@ -21,7 +21,7 @@ def legal_values(table: QTable) -> int:
     return sum(int(np.isfinite(values).sum()) for _, values, _ in table.rows())
 
 
-def test_two_divisions_make_the_papers_1500_values() -> None:
+def test_two_divisions_give_the_papers_1500_values() -> None:
     cells = len(FootGrid(divisions=2))
     table = QTable(pairs=3, cells=cells)
 
@@ -30,20 +30,20 @@ def test_two_divisions_make_the_papers_1500_values() -> None:
     assert table.size == legal_values(table) == 1500
 
 
-def test_three_divisions_make_nine_cells() -> None:
+def test_three_divisions_give_nine_cells() -> None:
     table = QTable(pairs=3, cells=len(FootGrid(divisions=3)))
 
     assert (table.cells, table.states, legal_values(table)) == (9, 729, 729 * 24)
 
 
-def test_a_state_reads_its_cells_as_digits_the_first_pair_the_highest() -> None:
+def test_index_has_the_cells_as_digits_the_first_pair_most_significant() -> None:
     table = QTable(3, 5)
 
     assert [table.index(s) for s in product(range(5), repeat=3)] == list(range(125))
     assert [table.column(Action(p, c)) for p in range(3) for c in range(5)] == list(range(15))
 
 
-def test_values_and_visits_of_a_state_are_not_a_number_where_illegal() -> None:
+def test_values_and_visits_are_nan_where_illegal() -> None:
     table = QTable(2, 3)
     (q, n), column = table.row(table.index((1, 2))), table.column(Action(1, 0))
     q[column], n[column] = 0.5, 7
@@ -53,7 +53,7 @@ def test_values_and_visits_of_a_state_are_not_a_number_where_illegal() -> None:
     assert [state for state, _, _ in table.rows()] == list(product(range(3), repeat=2))
 
 
-def test_the_hash_is_of_values_alone_states_then_actions_illegal_ones_nan() -> None:
+def test_hash_covers_values_in_row_major_order_with_nan_where_illegal() -> None:
     table = QTable(2, 3)
     for state in reversed(range(9)):  # the order in which states are met does not matter
         q, n = table.row(state)
@@ -72,7 +72,7 @@ def test_the_hash_is_of_values_alone_states_then_actions_illegal_ones_nan() -> N
     assert table.sha256() != hashlib.sha256(written).hexdigest()
 
 
-def test_the_hash_of_a_table_of_many_states_is_that_of_its_rows() -> None:
+def test_hash_of_a_large_table_equals_that_of_its_rows() -> None:
     table = QTable(3, 22)
     chance = np.random.default_rng(1)
     for state in chance.permutation(table.states)[::2]:
@@ -84,7 +84,7 @@ def test_the_hash_of_a_table_of_many_states_is_that_of_its_rows() -> None:
     assert table.sha256() == digest.hexdigest()
 
 
-def test_a_dump_holds_what_was_visited_and_loads_the_same() -> None:
+def test_dump_has_visited_entries_and_round_trips() -> None:
     table, copy = QTable(3, 5), QTable(3, 5)
     table.row(124)[1][14] = 1  # visited, and worth nothing
     table.row(7)[0][3], table.row(7)[1][3] = -0.25, 2
@@ -98,7 +98,7 @@ def test_a_dump_holds_what_was_visited_and_loads_the_same() -> None:
     assert copy.sha256() == table.sha256()
 
 
-def test_reading_a_state_that_was_never_met_writes_nothing() -> None:
+def test_reading_an_unvisited_state_allocates_no_row() -> None:
     table, legal = QTable(3, 5), legal_actions((0, 1, 2), 5)
 
     assert table.values_of((0, 1, 2), legal) == [0.0] * 12
@@ -106,7 +106,7 @@ def test_reading_a_state_that_was_never_met_writes_nothing() -> None:
     assert not table.dump()["where"].size
 
 
-def test_a_large_table_takes_the_memory_of_what_was_met() -> None:
+def test_memory_is_proportional_to_visited_states() -> None:
     table = QTable(3, 65)
     chance = np.random.default_rng(1)
     before = psutil.Process().memory_info().rss
@@ -152,11 +152,11 @@ def broken(**changes: Any) -> dict[str, Any]:
         ),
     ],
 )
-def test_what_is_no_table_of_this_shape_is_refused(arrays: dict[str, Any], message: str) -> None:
+def test_invalid_arrays_are_refused(arrays: dict[str, Any], message: str) -> None:
     with pytest.raises(TableMismatch, match=message):
         QTable(3, 5).load(arrays)
 
 
-def test_a_table_too_large_says_how_large_it_may_be() -> None:
+def test_too_large_table_is_refused_with_the_maximum() -> None:
     with pytest.raises(InvalidInput, match=f"the most is {MAX_VALUES:,}: choose fewer divisions"):
         QTable(pairs=4, cells=65)

@@ -1,4 +1,4 @@
-"""Agents by name: ours, those of installed packages, and a class in any module."""
+"""Registry of agents: built-in ones, entry points of packages, classes in any module."""
 
 from pathlib import Path
 
@@ -15,19 +15,19 @@ from tests import own_agents
 PROBLEM = Problem(((1, 4), (2, 5), (3, 6)), np.zeros((5, 2)))
 
 
-def test_ours_go_by_their_names() -> None:
+def test_built_in_agents_are_found_by_name() -> None:
     assert registry.find("q-learning") is QLearning
     assert registry.find("greedy") is Greedy
     assert registry.find("two-step") is TwoStep
 
 
-def test_a_class_in_any_module() -> None:
+def test_agent_in_any_module_is_found() -> None:
     assert registry.find("tests.own_agents:Restless") is own_agents.Restless
 
 
 @pytest.fixture
 def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A package in the environment that offers two agents, one under a name of ours."""
+    """Install a package with two entry points, one of them named as a built-in agent."""
     about = tmp_path / "roaming-1.0.dist-info"
     about.mkdir()
     (about / "METADATA").write_text("Metadata-Version: 2.1\nName: roaming\nVersion: 1.0\n")
@@ -40,13 +40,13 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("installed")
-def test_an_installed_package_offers_its_agents() -> None:
+def test_entry_points_of_packages_are_registered() -> None:
     assert registry.find("roaming") is own_agents.Restless
     assert set(registry.registered()) == {*registry.OURS, "roaming"}
 
 
 @pytest.mark.usefixtures("installed")
-def test_but_cannot_take_a_name_of_ours() -> None:
+def test_package_cannot_replace_a_built_in_agent() -> None:
     assert registry.find("greedy") is Greedy
 
 
@@ -62,7 +62,7 @@ def test_but_cannot_take_a_name_of_ours() -> None:
         ("tests.own_agents.Restless", "unknown agent"),
     ],
 )
-def test_an_unknown_name_names_the_known_ones(name: str, message: str) -> None:
+def test_unknown_name_is_refused_with_the_valid_names(name: str, message: str) -> None:
     with pytest.raises(UnknownName, match=message):
         registry.find(name)
 
@@ -75,12 +75,12 @@ def test_an_unknown_name_names_the_known_ones(name: str, message: str) -> None:
         ("tests.own_agents:Forgetful", "lacks state, load of the agent protocol"),
     ],
 )
-def test_what_cannot_be_had_says_why(name: str, message: str) -> None:
+def test_unusable_agent_is_refused_with_the_reason(name: str, message: str) -> None:
     with pytest.raises(InvalidInput, match=message):
         registry.find(name)
 
 
-def test_a_module_that_breaks_on_import_says_so(
+def test_module_that_fails_on_import_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "broken_agent.py").write_text("1 / 0\n")
@@ -89,7 +89,7 @@ def test_a_module_that_breaks_on_import_says_so(
         registry.find("broken_agent:Agent")
 
 
-def test_an_agent_gets_what_it_asks_for_and_no_more() -> None:
+def test_constructor_gets_only_the_arguments_it_has_parameters_for() -> None:
     rng = np.random.default_rng(0)
     offered = {"rng": rng, "problem": PROBLEM, "alpha": 0.1, "steps": 7, "robot": "stiff"}
     agent = registry.build(own_agents.Restless, offered)
@@ -98,21 +98,21 @@ def test_an_agent_gets_what_it_asks_for_and_no_more() -> None:
     assert isinstance(agent, own_agents.Restless)
     assert agent.problem is PROBLEM
     assert learner.state()["rates"][0] == 0.1
-    assert registry.asks_for(own_agents.Restless) == {"rng", "problem"}
-    assert registry.asks_for(Greedy) == {"expand"}
+    assert registry.parameter_names(own_agents.Restless) == {"rng", "problem"}
+    assert registry.parameter_names(Greedy) == {"expand"}
 
 
-def test_asking_for_what_is_not_offered_names_what_is() -> None:
+def test_unknown_required_parameter_is_refused_with_the_available_ones() -> None:
     with pytest.raises(InvalidInput, match="asks for crystal_ball; on offer: problem, rng"):
         registry.build(own_agents.Needy, {"rng": np.random.default_rng(0), "problem": PROBLEM})
 
 
-def test_look_ahead_does_not_learn_and_others_do() -> None:
+def test_learns_is_false_for_look_ahead_only() -> None:
     names = ("q-learning", "greedy", "tests.own_agents:ThreeStep", "tests.own_agents:Restless")
     assert [registry.learns(name) for name in names] == [True, False, False, True]
 
 
-def test_a_factory_may_stand_for_a_class(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_factory_function_may_replace_a_class(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(registry, "OURS", {"made": lambda rng: own_agents.Plain(rng, PROBLEM)})
     assert registry.learns("made")
     agent = registry.build(registry.find("made"), {"rng": np.random.default_rng(0)})

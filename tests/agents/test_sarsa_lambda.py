@@ -1,4 +1,4 @@
-"""Sarsa(λ): its update by hand, its limits, and that it goes on exactly where it was."""
+"""Sarsa(λ): update by hand, validation of states, and bit-exact resume."""
 
 from typing import Any
 
@@ -33,7 +33,7 @@ def value(agent: TabularLearner, observation: Cells, action: Action) -> float:
     return float(agent.values(observation)[action])
 
 
-def test_a_reward_counts_for_the_steps_before_it_by_gamma_lambda() -> None:
+def test_reward_is_credited_to_earlier_steps_by_gamma_lambda() -> None:
     agent = learner(alpha=0.5, gamma=0.9, trace_decay=0.8)
     agent.learn(step(A, FIRST, 0.0, B, SECOND))
     agent.learn(step(B, SECOND, 1.0, C, THIRD))
@@ -42,7 +42,7 @@ def test_a_reward_counts_for_the_steps_before_it_by_gamma_lambda() -> None:
     assert value(agent, A, FIRST) == pytest.approx(0.5 * 0.9 * 0.8)
 
 
-def test_it_learns_from_the_action_that_it_takes_next_not_from_the_best() -> None:
+def test_update_uses_the_next_action_and_not_the_best() -> None:
     agent = learner(alpha=1, gamma=0.5, trace_decay=0)
     agent.learn(step(B, SECOND, 2.0, C, THIRD))
     agent.learn(step(A, FIRST, 0.0, B, Action(2, 4)))
@@ -51,14 +51,14 @@ def test_it_learns_from_the_action_that_it_takes_next_not_from_the_best() -> Non
     assert value(agent, A, FIRST) == pytest.approx(0.5 * 2)
 
 
-def test_a_trace_of_an_action_that_is_taken_again_is_replaced() -> None:
+def test_repeated_action_replaces_its_trace() -> None:
     agent = learner(alpha=1, gamma=0, trace_decay=1)
     agent.learn(step(A, FIRST, 1.0, A, FIRST))
     agent.learn(step(A, FIRST, 3.0, B, SECOND))
     assert value(agent, A, FIRST) == pytest.approx(3)
 
 
-def test_lambda_changes_while_it_learns() -> None:
+def test_lambda_can_be_tuned_during_practice() -> None:
     agent = learner(alpha=0.5, gamma=0.9, trace_decay=0.8)
     agent.learn(step(A, FIRST, 0.0, B, SECOND))
     agent.tune(trace_decay=0.0, alpha=1.0)
@@ -69,7 +69,7 @@ def test_lambda_changes_while_it_learns() -> None:
     assert value(agent, B, SECOND) == pytest.approx(1)
 
 
-def test_a_training_goes_on_from_its_checkpoint_to_the_last_bit() -> None:
+def test_training_resumes_bit_exactly_from_a_checkpoint() -> None:
     config = training_config(
         "sarsa-lambda", gait="left-right-origin", simulator="kinematic", steps=120, seed=4
     )
@@ -91,7 +91,7 @@ def test_a_training_goes_on_from_its_checkpoint_to_the_last_bit() -> None:
         np.testing.assert_array_equal(resumed.arrays[name], array, name)
 
 
-def test_it_walks_as_far_as_practice_allows() -> None:
+def test_learned_policy_reaches_the_expected_distance() -> None:
     config = training_config(
         "sarsa-lambda", gait="left-right-origin", simulator="kinematic", steps=1000, seed=1
     )
@@ -111,7 +111,7 @@ def test_it_walks_as_far_as_practice_allows() -> None:
         ("learned", np.array([-1])),
     ],
 )
-def test_a_state_that_it_could_not_go_on_from_is_refused(name: str, array: Any) -> None:
+def test_check_state_refuses_an_invalid_state(name: str, array: Any) -> None:
     agent = learner()
     agent.learn(step(A, FIRST, 0.0, B, SECOND))
     SarsaLambda.check_state(agent.state())
@@ -119,6 +119,6 @@ def test_a_state_that_it_could_not_go_on_from_is_refused(name: str, array: Any) 
         SarsaLambda.check_state({**agent.state(), name: array})
 
 
-def test_it_has_what_learners_with_a_table_have() -> None:
+def test_sarsa_lambda_is_tunable_and_tabular() -> None:
     assert isinstance(learner(), Tunable)
     assert isinstance(learner(), Tabular)

@@ -1,4 +1,4 @@
-"""Declared settings: found in signatures and dataclasses, checked, parsed, and put in words."""
+"""Declared settings: discovery in signatures and dataclasses, validation, parsing, formatting."""
 
 import math
 import pickle
@@ -127,7 +127,7 @@ def test_values_that_are_not_plain_are_refused(values: dict[str, Any]) -> None:
         (Annotated[float | None, Ge(0), Le(1)], "a number from 0 to 1"),
     ],
 )
-def test_valid_values_in_words(annotation: Any, words: str) -> None:
+def test_valid_values_are_described(annotation: Any, words: str) -> None:
     assert declare("x", Annotated[annotation, ABOUT]).valid == words
 
 
@@ -173,7 +173,7 @@ def test_valid_values_pass(setting: Any, value: Any) -> None:
         (SWITCH, 1),
     ],
 )
-def test_others_are_refused_by_name_with_what_is_valid(setting: Any, value: Any) -> None:
+def test_invalid_values_are_refused_with_name_and_valid_values(setting: Any, value: Any) -> None:
     with pytest.raises(InvalidInput) as error:
         setting.check(value)
     assert str(error.value).startswith(f"{setting.name} must be {setting.valid}, not ")
@@ -197,6 +197,6 @@ def test_text_is_parsed_to_the_type_of_the_setting(setting: Any, text: str, valu
 @pytest.mark.parametrize(
     ("setting", "text"), [(RATE, "a"), (RATE, "nan"), (COUNT, "1.5"), (PACE, ""), (SWITCH, "1")]
 )
-def test_text_that_is_no_valid_value_is_refused(setting: Any, text: str) -> None:
+def test_invalid_text_is_refused(setting: Any, text: str) -> None:
     with pytest.raises(InvalidInput, match=f"{setting.name} must be"):
         setting.parse(text)

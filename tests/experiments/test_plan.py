@@ -86,7 +86,7 @@ def test_references_come_first_and_timed_trials_last() -> None:
         assert trial.config.must_be_alone == (trial.setting.role == "timed")
 
 
-def test_greedy_is_always_included_as_a_reference() -> None:
+def test_greedy_is_always_a_reference() -> None:
     agents = ("tests.own_agents:Restless", "tests.own_agents:ThreeStep")
     gaits = ("front-back-origin",)
     settings = plan("sweep", gaits=gaits, agents=agents, steps=(40, 80)).settings
@@ -118,7 +118,7 @@ def test_two_robots_of_one_preset_have_different_labels() -> None:
         ({"alpha": (0.1, 0.1 + 1e-9)}, "is there twice"),
     ],
 )
-def test_a_setting_that_cannot_be_is_refused_before_anything_runs(
+def test_invalid_setting_is_refused_before_any_trial_runs(
     given: dict[str, Any], names: str
 ) -> None:
     with pytest.raises(HexapodError) as refused:
@@ -126,7 +126,7 @@ def test_a_setting_that_cannot_be_is_refused_before_anything_runs(
     assert names in str(refused.value)
 
 
-def test_a_trials_seed_is_all_that_tells_it_from_its_setting() -> None:
+def test_a_trial_differs_from_its_setting_in_the_seed_only() -> None:
     for trial in plan("figure4", seeds=2).trials():
         seedless = replace(trial.config.training, seed=0)
         assert replace(trial.config, training=seedless) == trial.setting.trial

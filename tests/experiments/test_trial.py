@@ -73,7 +73,7 @@ def test_a_result_is_the_same_after_json() -> None:
 
 @pytest.mark.parametrize(("agent", "transitions"), [("greedy", 600), ("two-step", 7800)])
 @pytest.mark.parametrize("gait", ["left-right-origin", "front-back-vertical"])
-def test_search_agents_walk_the_greatest_possible_distance(
+def test_look_ahead_agents_reach_the_greatest_possible_distance(
     agent: str, transitions: int, gait: str
 ) -> None:
     result = run_trial(TrialConfig(training=practice(agent=agent, gait=gait), blocks=0))
@@ -92,7 +92,7 @@ def test_the_paper_clock_charges_for_simulated_transitions() -> None:
     assert greedy.finished_distance_m / greedy.distances_m[0] == pytest.approx(0.72, abs=0.02)
 
 
-def test_practice_agrees_with_the_specification() -> None:
+def test_distances_after_practice_agree_with_the_specification() -> None:
     seeds = 80
     found = distances_h(trials("sweep", seeds=seeds, steps=(250, 500), observations=("measured",)))
     shares = [100 * interquartile_mean(row) / GREEDY_H for row in found.reshape(seeds, 2).T]
@@ -119,7 +119,7 @@ def test_rivals_are_timed_by_the_wall_clock() -> None:
     assert result.distances_m == alone.distances_m, "the other lanes do not affect a walk"
 
 
-def test_an_agent_that_fails_on_its_walk_is_a_result() -> None:
+def test_failing_agent_gives_a_result_with_the_failure() -> None:
     clumsy = practice(agent="tests.own_agents:Clumsy", steps=1)
     result = run_trial(TrialConfig(training=clumsy, blocks=0))
     assert result.distances_m == ()

@@ -1,4 +1,4 @@
-"""Lanes made up by hand, small enough to do the arithmetic in the head."""
+"""Builders of small hand-made lanes, for expected values that are easy to compute."""
 
 from collections.abc import Sequence
 
@@ -11,7 +11,7 @@ from app.runs.records import LaneStep
 
 
 def qpos(y: float) -> list[float]:
-    """A pose y along the track: upright, with one joint that turns as it goes."""
+    """Return a pose at y [m] along the track: upright, with one joint whose angle depends on y."""
     return [0, y, 0.1, 1, 0, 0, 0, 10 * y]
 
 
@@ -23,7 +23,7 @@ def step(
     decision_s: float = 0.0,
     frame_s: float = 0.5,
 ) -> LaneStep:
-    """A step that is at ys[0], ys[1], … after frame_s, 2 frame_s, …"""
+    """Return a step whose position is ys[0], ys[1], … [m] after frame_s, 2 frame_s, … [s]."""
     times = np.arange(1, len(ys) + 1) * frame_s
     motion = Motion(times.astype(np.float32), np.array([qpos(y) for y in ys], np.float32))
     return LaneStep(

@@ -1,4 +1,4 @@
-"""One race under three clocks, by hand on tiny examples."""
+"""Decision, motion and crossing times under the three clocks, on small hand-made lanes."""
 
 import pytest
 
@@ -23,7 +23,7 @@ WALK = lane(
 )
 
 
-def test_a_step_is_decision_plus_motion() -> None:
+def test_step_time_is_decision_plus_motion() -> None:
     first, second = WALK.steps
 
     assert motion_s(first) == 1
@@ -33,7 +33,7 @@ def test_a_step_is_decision_plus_motion() -> None:
     assert [decision_s(s, "paper") for s in (first, second)] == pytest.approx([0.3, 0.6])
 
 
-def test_the_paper_clock_scales_with_the_motion() -> None:
+def test_paper_clock_scales_with_the_duration_of_the_motion() -> None:
     assert decision_s(step(1, [0.1], transitions=12, frame_s=0.32), "paper") == pytest.approx(
         0.03 * 12 * 0.32
     )
@@ -47,7 +47,7 @@ def test_the_paper_clock_scales_with_the_motion() -> None:
         ("paper", (0.3, 1.9), (1.3, 2.9)),
     ],
 )
-def test_a_timetable_says_when_it_thinks_and_when_it_moves(
+def test_timetable_has_the_ends_of_decisions_and_motions(
     clock: str, thought: tuple[float, ...], ends: tuple[float, ...]
 ) -> None:
     table = Timetable.of(WALK.steps, next(c for c in CLOCKS if c == clock))
@@ -71,13 +71,13 @@ def test_a_timetable_says_when_it_thinks_and_when_it_moves(
         (99, (2, 0, 0)),
     ],
 )
-def test_at_any_time_it_thinks_moves_or_is_done(
+def test_moment_is_in_a_decision_a_motion_or_after_the_last_step(
     time_s: float, moment: tuple[int, float, float]
 ) -> None:
     assert Timetable.of(WALK.steps, "paper").at(time_s) == pytest.approx(Moment(*moment))
 
 
-def test_without_thought_it_moves_from_the_start() -> None:
+def test_without_decision_time_the_motion_starts_at_zero() -> None:
     table = Timetable.of(WALK.steps, "free")
 
     assert table.at(0.25) == Moment(0, 1, 0.25)
@@ -100,20 +100,20 @@ def test_without_thought_it_moves_from_the_start() -> None:
         (50, 0.3),
     ],
 )
-def test_the_distance_in_the_middle_of_a_motion(time_s: float, distance_m: float) -> None:
+def test_distance_is_interpolated_within_a_motion(time_s: float, distance_m: float) -> None:
     table = Timetable.of(WALK.steps, "paper")
 
     assert distance_at(WALK, table, time_s) == pytest.approx(distance_m, abs=1e-7)
 
 
-def test_at_its_end_a_lane_is_exactly_where_it_ended() -> None:
-    """Not where a pose in single precision says."""
+def test_final_distance_is_exact() -> None:
+    """It is the step's distance, not the single-precision pose."""
     for clock in CLOCKS:
         table = Timetable.of(WALK.steps, clock)
         assert distance_at(WALK, table, table.total_s) == WALK.distance_m
 
 
-def test_a_lane_that_has_not_begun_is_on_the_start_line() -> None:
+def test_lane_without_steps_has_distance_zero() -> None:
     table = Timetable.of([], "paper")
 
     assert table.total_s == 0
@@ -121,7 +121,7 @@ def test_a_lane_that_has_not_begun_is_on_the_start_line() -> None:
     assert crossing_s(lane(), table) is None
 
 
-def test_the_red_line_is_crossed_between_two_frames() -> None:
+def test_crossing_of_the_finish_line_is_interpolated_between_frames() -> None:
     runner = lane(
         step(1, [0.1, 0.2], transitions=10),  # 0.3 s of thought, then a second
         step(2, [0.4, 0.5], transitions=10),  # over 0.45 three quarters into its motion
@@ -133,17 +133,17 @@ def test_the_red_line_is_crossed_between_two_frames() -> None:
     assert crossing_s(runner, Timetable.of(runner.steps, "paper")) == pytest.approx(2.35)
 
 
-def test_the_red_line_may_be_crossed_before_a_steps_first_frame() -> None:
+def test_crossing_before_the_first_frame_of_a_step_is_found() -> None:
     runner = lane(step(1, [0.1, 0.4]), step(2, [0.5, 0.5]))
 
     assert crossing_s(runner, Timetable.of(runner.steps, "free")) == pytest.approx(1.25)
 
 
-def test_who_never_reaches_the_red_line_has_no_crossing() -> None:
+def test_lane_short_of_the_finish_line_has_no_crossing() -> None:
     assert crossing_s(WALK, Timetable.of(WALK.steps, "paper")) is None
 
 
-def test_an_unknown_clock_names_the_three() -> None:
+def test_unknown_clock_is_refused_with_the_valid_names() -> None:
     check_clock("paper")
     with pytest.raises(UnknownName, match="unknown clock 'sun'; choose one of: paper, wall, free"):
         check_clock("sun")

@@ -79,7 +79,9 @@ def test_the_defaults_are_the_papers() -> None:
         ({"pace": math.inf}, "pace must be max, or a number from"),
     ],
 )
-def test_a_wrong_training_says_what_is_valid(asked: dict[str, Any], message: str) -> None:
+def test_invalid_training_is_refused_with_the_valid_values(
+    asked: dict[str, Any], message: str
+) -> None:
     with pytest.raises(InvalidInput, match=message):
         training_config(**{"gait": GAIT, **asked})
 
@@ -93,30 +95,30 @@ def test_a_wrong_training_says_what_is_valid(asked: dict[str, Any], message: str
         ({"seed": -3}, "seed must be a whole number of at least 0"),
     ],
 )
-def test_a_wrong_race_says_what_is_valid(asked: dict[str, Any], message: str) -> None:
+def test_invalid_race_is_refused_with_the_valid_values(asked: dict[str, Any], message: str) -> None:
     with pytest.raises(InvalidInput, match=message):
         RaceConfig(**{"gait": GAIT, "lanes": LANES, **asked})
 
 
-def test_a_gait_that_the_robot_has_no_legs_for_is_refused() -> None:
+def test_gait_with_legs_that_the_robot_lacks_is_refused() -> None:
     with pytest.raises(InvalidInput, match="no leg 6; this robot has legs 1 to 4"):
         WalkingProblem(gait=GaitSpec(6, 1, "origin"), robot=robot({"n_legs": 4}))
 
 
-def test_a_lane_reads_its_state_in_a_known_way() -> None:
+def test_unknown_observation_mode_of_a_lane_is_refused() -> None:
     with pytest.raises(UnknownName, match="observation"):
         LaneConfig(agent="greedy", observation="guessed")  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("pace", ["max", 0.01, 1, 1000])
-def test_a_pace_is_max_or_a_number_of_times_real_time(pace: float | str) -> None:
+def test_pace_is_max_or_a_multiple_of_real_time(pace: float | str) -> None:
     assert training_config(gait=GAIT, pace=pace).pace == pace
 
 
 @pytest.mark.parametrize(
     "gait", [GAIT, GaitSpec(6, 1, "vertical"), GaitSpec(1, 2, pairs=((1, 6), (2, 3), (4, 5)))]
 )
-def test_a_config_in_plain_types_is_fit_for_json_and_names_the_same_gait(
+def test_config_in_plain_types_is_valid_json_and_has_the_same_gait(
     gait: str | GaitSpec,
 ) -> None:
     made = robot({"preset": "compliant", "n_legs": 6, "friction": 0.5})
@@ -146,7 +148,7 @@ def test_a_config_in_plain_types_is_fit_for_json_and_names_the_same_gait(
         RaceConfig(gait=GAIT, lanes=(*LANES, LaneConfig(agent="x", observation="commanded"))),
     ],
 )
-def test_what_a_file_keeps_is_read_back(config: TrainingConfig | RaceConfig) -> None:
+def test_config_round_trips_through_json(config: TrainingConfig | RaceConfig) -> None:
     assert config_from_json(json.loads(json.dumps(as_json(config)))) == config
 
 

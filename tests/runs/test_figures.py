@@ -28,30 +28,32 @@ pytestmark = pytest.mark.timeout(1800)
 
 @pytest.fixture(scope="module")
 def rows() -> Rows:
-    """For every row the distances of all seeds [h]."""
+    """Compute the distances of all seeds for every row [h]."""
     found = in_a_pool(kinematic_rows, range(SEEDS), chunk=20)
     return {name: np.array([one[name] for one in found]) for name in found[0]}
 
 
 def share(values: FloatArray) -> float:
-    """Interquartile mean as a share of greedy [%]."""
+    """Return the interquartile mean as a share of greedy's distance [%]."""
     return 100 * interquartile_mean(values) / GREEDY_H
 
 
 @pytest.mark.parametrize("gait", NAMED_GAITS)
 @pytest.mark.parametrize("agent", ["greedy", "two-step", "tests.own_agents:ThreeStep"])
-def test_looking_further_than_a_step_buys_nothing(agent: str, gait: str) -> None:
+def test_two_step_look_ahead_is_no_better_than_greedy(agent: str, gait: str) -> None:
     distance_m = look_ahead((agent, gait, "kinematic", {}))
 
     assert distance_m / H_M == pytest.approx(24.833, abs=0.001)
 
 
 @pytest.mark.parametrize(("steps", "percent"), [(250, 60), (500, 74), (1000, 83)])
-def test_measured_q_learning(rows: Rows, steps: int, percent: float) -> None:
+def test_measured_q_learning_reaches_the_specified_share_of_greedy(
+    rows: Rows, steps: int, percent: float
+) -> None:
     assert share(rows[f"measured {steps}"]) == pytest.approx(percent, rel=0.05)
 
 
-def test_measured_q_learning_seed_by_seed(rows: Rows) -> None:
+def test_measured_q_learning_by_seed(rows: Rows) -> None:
     after_500 = 100 * rows["measured 500"] / GREEDY_H
 
     assert np.percentile(after_500, [25, 75]) == pytest.approx([65, 81], rel=0.05)
@@ -73,7 +75,7 @@ def test_commanded_q_learning(rows: Rows) -> None:
 
 
 def test_commanded_q_learning_is_heavy_tailed(rows: Rows) -> None:
-    """Most shuffle on the spot, a few walk."""
+    """Most seeds hardly move, a few walk."""
     shares = rows["commanded 1000"] / GREEDY_H
 
     assert (shares < 0.25).mean() > 0.5

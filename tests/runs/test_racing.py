@@ -1,4 +1,4 @@
-"""The race loop: lanes do not disturb each other, and a lane that fails fails alone."""
+"""Race loop: lanes are independent, and a failing lane does not affect the others."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -18,7 +18,7 @@ from app.runs.results import race_result
 
 
 def ticking(tick_s: float = 1.0) -> Callable[[], float]:
-    """A timer that goes on by a tick whenever it is read."""
+    """Fake timer that advances by a tick at each call."""
     ticks = count()
     return lambda: next(ticks) * tick_s
 
@@ -42,14 +42,14 @@ def of_lane(records: list[RaceRecord], lane: int) -> list[RaceRecord]:
     return [r for r in records if r.lane == lane]
 
 
-def test_every_lane_takes_its_steps_in_turn() -> None:
+def test_lanes_take_steps_round_robin() -> None:
     records = run(config("greedy", "two-step", steps=4))
 
     assert [(r.lane, r.step) for r in records] == [(n % 2, 1 + n // 2) for n in range(8)]
     assert all(isinstance(r, LaneStep) for r in records)
 
 
-def test_a_step_says_what_was_seen_done_and_earned() -> None:
+def test_step_records_observation_action_and_reward() -> None:
     records = of_lane(run(config("greedy")), 0)
     total = 0.0
     for record in records:
@@ -64,7 +64,7 @@ def test_a_step_says_what_was_seen_done_and_earned() -> None:
     assert (first.observation, first.action) == ((0, 0, 0), (0, 1))
 
 
-def test_a_lane_walks_the_same_whoever_runs_beside_it() -> None:
+def test_a_lane_is_independent_of_the_other_lanes() -> None:
     alone = of_lane(run(config("greedy", simulator="mujoco", steps=3)), 0)
     beside = of_lane(run(config("greedy", "greedy", "two-step", simulator="mujoco", steps=3)), 0)
 
@@ -75,7 +75,7 @@ def test_a_lane_walks_the_same_whoever_runs_beside_it() -> None:
         assert (one.action, one.reward_m) == (other.action, other.reward_m)
 
 
-def test_how_long_a_decision_takes_changes_no_motion() -> None:
+def test_decision_time_does_not_affect_motion() -> None:
     asked = config("greedy", "two-step")
     slow, quick = (
         list(race(build_walkers(asked, [None, None]), asked.steps, ticking(tick)))
@@ -89,7 +89,7 @@ def test_how_long_a_decision_takes_changes_no_motion() -> None:
         assert one.motion.qpos.tobytes() == other.motion.qpos.tobytes()
 
 
-def test_lanes_of_the_same_agent_draw_their_own_chance() -> None:
+def test_lanes_of_the_same_agent_have_independent_generators() -> None:
     records = run(config("tests.own_agents:Restless", "tests.own_agents:Restless", steps=8))
     one, other = (
         [r.action for r in of_lane(records, n) if isinstance(r, LaneStep)] for n in (0, 1)
@@ -98,7 +98,7 @@ def test_lanes_of_the_same_agent_draw_their_own_chance() -> None:
     assert one != other
 
 
-def test_the_same_race_again_is_the_same_to_the_last_bit() -> None:
+def test_race_is_deterministic() -> None:
     asked = config("tests.own_agents:Restless", "greedy", seed=3, simulator="mujoco", steps=3)
 
     def bits() -> list[bytes]:
@@ -119,7 +119,7 @@ def test_the_same_race_again_is_the_same_to_the_last_bit() -> None:
         ),
     ],
 )
-def test_an_agent_that_fails_ends_its_own_lane_only(agent: str, step: int, reason: str) -> None:
+def test_failing_agent_ends_its_own_lane_only(agent: str, step: int, reason: str) -> None:
     records = run(config(agent, "greedy"))
     *before, failed = of_lane(records, 0)
 
@@ -131,8 +131,8 @@ def test_an_agent_that_fails_ends_its_own_lane_only(agent: str, step: int, reaso
 
 
 @pytest.mark.parametrize("agent", ["tests.own_agents:Restless", "greedy"])
-def test_physics_that_breaks_ends_its_lane_and_names_the_step(agent: str) -> None:
-    """In the step itself, or already in look-ahead, where it is not the agent's fault."""
+def test_diverging_physics_ends_the_lane_and_names_the_step(agent: str) -> None:
+    """Both in the step itself and in look-ahead, where the agent is not at fault."""
     asked = config(agent, "greedy", simulator="mujoco", steps=4)
     walkers = build_walkers(asked, [None, None], threads=1)
     records = []
@@ -155,7 +155,7 @@ def with_a_broken_joint(state: WalkState) -> MujocoState:
     return replace(state, row=row)
 
 
-def test_a_recording_grows_by_every_step_and_keeps_why_a_lane_failed() -> None:
+def test_recording_has_every_step_and_the_reason_of_a_failure() -> None:
     asked = config("tests.own_agents:Clumsy", "greedy", steps=3)
     walkers = build_walkers(asked, [None, None])
     grown = [
@@ -169,8 +169,8 @@ def test_a_recording_grows_by_every_step_and_keeps_why_a_lane_failed() -> None:
     assert [lane.agent for lane in lanes] == ["tests.own_agents:Clumsy", "greedy"]
 
 
-def test_at_paper_time_three_lanes_end_after_16_22_and_91_seconds() -> None:
-    """At 0.32 s a motion; a lane that does not look ahead thinks for nothing."""
+def test_paper_clock_ends_three_lanes_after_16_22_and_91_seconds() -> None:
+    """At 0.32 s per motion; decisions without look-ahead take no time."""
     asked = config("tests.own_agents:Restless", "greedy", "two-step", steps=50)
     *_, lanes = record_race(build_walkers(asked, [None] * 3), asked, ticking())
     result = race_result(lanes, 50)["lanes"]

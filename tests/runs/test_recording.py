@@ -1,4 +1,4 @@
-"""Recordings: what is kept of a run, and how it goes into a file."""
+"""Recordings: stored steps, interpolation of poses, and encoding as a file."""
 
 import io
 from itertools import count
@@ -30,7 +30,7 @@ START = np.array(qpos(0), np.float32)
 
 
 def a_race(steps: int) -> list[LaneRecording]:
-    """The paper's three lanes on MuJoCo; the learner has practised a little."""
+    """Record the paper's three lanes on MuJoCo, with a briefly trained learner."""
     practice = training_config(gait="left-right-origin", simulator="kinematic", steps=200)
     learner = build_learner(practice)
     for _ in train(learner, practice):
@@ -69,7 +69,7 @@ def assert_same(one: LaneStep, other: LaneStep) -> None:
         assert np.array_equal(one.knowledge.visits, other.knowledge.visits, equal_nan=True)
 
 
-def test_a_race_goes_into_a_file_without_pickle_and_comes_back_the_same(
+def test_race_round_trips_through_a_file_without_pickle(
     race: list[LaneRecording],
 ) -> None:
     with np.load(io.BytesIO(as_file(race)), allow_pickle=False) as file:
@@ -86,7 +86,7 @@ def test_a_race_goes_into_a_file_without_pickle_and_comes_back_the_same(
     assert [s.knowledge is not None for s in (lane.steps[0] for lane in back)] == [1, 0, 0]
 
 
-def test_a_lane_that_failed_or_never_began_comes_back_too() -> None:
+def test_failed_and_empty_lanes_round_trip() -> None:
     before = [lane(step(1, [0.1, 0.2]), failure="it fell"), lane(failure="its agent failed")]
     back = race_recording(race_arrays(before))
 
@@ -95,8 +95,8 @@ def test_a_lane_that_failed_or_never_began_comes_back_too() -> None:
     assert_same(back[0].steps[0], before[0].steps[0])
 
 
-def test_a_minute_of_a_race_of_three_is_under_two_megabytes(race: list[LaneRecording]) -> None:
-    """Counted by the clock that packs most motion into a minute."""
+def test_one_minute_of_a_race_of_three_takes_under_two_megabytes(race: list[LaneRecording]) -> None:
+    """By the clock that puts most motion into a minute."""
     seconds = max(Timetable.of(lane.steps, "free").total_s for lane in race)
 
     assert seconds == pytest.approx(6 * 0.32)
@@ -109,7 +109,7 @@ def test_a_recording_has_fifty_poses_a_second(race: list[LaneRecording]) -> None
             assert taken.motion.time_s == pytest.approx(np.arange(1, 17) * 0.02)
 
 
-def test_each_step_begins_where_the_last_one_ended(race: list[LaneRecording]) -> None:
+def test_each_step_starts_at_the_pose_where_the_last_ended(race: list[LaneRecording]) -> None:
     recorded = race[1]
 
     assert recorded.start_qpos(0) is recorded.rest_qpos
@@ -124,13 +124,13 @@ def test_each_step_begins_where_the_last_one_ended(race: list[LaneRecording]) ->
 @pytest.mark.parametrize(
     ("time_s", "y"), [(0, 0), (0.25, 0.1), (0.5, 0.2), (0.75, 0.25), (1, 0.3), (1.2, 0.3), (-1, 0)]
 )
-def test_a_pose_between_two_frames_is_between_them(time_s: float, y: float) -> None:
+def test_pose_between_two_frames_is_interpolated(time_s: float, y: float) -> None:
     motion = step(1, [0.2, 0.3]).motion
 
     assert pose_at(START, motion, time_s) == pytest.approx(qpos(y), abs=1e-6)
 
 
-def test_an_attitude_between_two_frames_is_a_rotation() -> None:
+def test_interpolated_quaternion_has_unit_length() -> None:
     turned = np.array([0, 0, 0.1, np.sqrt(0.5), 0, 0, np.sqrt(0.5), 0], np.float32)
     motion = Motion(np.array([1], np.float32), turned[None])
     pose = pose_at(START, motion, 0.5)
@@ -139,7 +139,7 @@ def test_an_attitude_between_two_frames_is_a_rotation() -> None:
     assert pose[3:7] == pytest.approx((np.cos(np.pi / 8), 0, 0, np.sin(np.pi / 8)), abs=1e-6)
 
 
-def test_reading_a_pose_leaves_the_recording_as_it_is() -> None:
+def test_interpolation_does_not_modify_the_recording() -> None:
     motion = step(1, [0.2, 0.3]).motion
     before = motion.qpos.copy()
     for time_s in (0.0, 0.3, 2.0):
@@ -153,7 +153,7 @@ def taken(number: int) -> StepTaken:
     return StepTaken(number, 0, 0.0, (0, 0, 0), Action(0, 1), 0.0, 0.0, None, None)
 
 
-def test_of_practice_the_first_20_and_the_newest_500_steps_are_kept() -> None:
+def test_practice_recording_stores_the_first_20_and_newest_500_steps() -> None:
     recording = PracticeRecording(START)
     for number in range(1, 701):
         recording.add(taken(number))
@@ -166,7 +166,7 @@ def test_of_practice_the_first_20_and_the_newest_500_steps_are_kept() -> None:
     assert [e.step for e in recording.evaluations] == [100, 200, 300, 400, 500, 600, 700]
 
 
-def test_short_practice_is_kept_whole() -> None:
+def test_short_practice_is_stored_completely() -> None:
     recording = PracticeRecording(START)
     for number in range(1, 101):
         recording.add(taken(number))

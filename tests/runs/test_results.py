@@ -1,4 +1,4 @@
-"""Distances, times and ranks."""
+"""Results of a race: distances, times and ranks."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from tests.runs.made_up import lane, step
 
 
 def hare() -> LaneRecording:
-    """Far steps after long thought: at paper time each takes 1 s + 1.5 s."""
+    """Return a lane of long steps and slow decisions: 1 s + 1.5 s each under the paper clock."""
     return lane(
         step(1, [0.1, 0.2], transitions=50, decision_s=0.25),
         step(2, [0.3, 0.5], transitions=50, decision_s=0.25),
@@ -26,8 +26,8 @@ def under(result: dict[str, Any], clock: str, name: str) -> list[Any]:
     return [lane["clocks"][clock][name] for lane in result["lanes"]]
 
 
-def test_the_race_is_ranked_when_the_first_lane_has_used_its_steps() -> None:
-    """At two seconds the hare is half a second into its first motion."""
+def test_lanes_are_ranked_by_distance_at_time_out() -> None:
+    """At the time-out, 2 s, the faster walker is 0.5 s into its first motion."""
     result = race_result([hare(), tortoise()], steps=2)
 
     assert under(result, "paper", "elapsed_s") == pytest.approx([5, 2])
@@ -41,7 +41,7 @@ def test_the_race_is_ranked_when_the_first_lane_has_used_its_steps() -> None:
     assert under(result, "wall", "rank") == [1, 2]
 
 
-def test_a_lane_says_what_it_did() -> None:
+def test_result_of_a_lane_has_its_totals() -> None:
     first, second = race_result([hare(), tortoise()], steps=2)["lanes"]
 
     assert first.pop("clocks")["paper"]["crossed_s"] == pytest.approx(4.875)
@@ -57,19 +57,19 @@ def test_a_lane_says_what_it_did() -> None:
     assert second["clocks"]["paper"]["crossed_s"] is None
 
 
-def test_who_finishes_first_stands_exactly_at_its_total_distance() -> None:
+def test_first_lane_to_finish_is_at_its_total_distance() -> None:
     result = race_result([tortoise(), hare()], steps=2)
 
     assert under(result, "paper", "finished_distance_m")[0] == 0.2
 
 
-def test_equals_share_a_rank_and_the_next_one_is_left_out() -> None:
+def test_ties_share_a_rank_and_the_next_rank_is_skipped() -> None:
     result = race_result([tortoise(), hare(), tortoise(), lane(step(1, [0.0, 0.0]))], steps=2)
 
     assert under(result, "free", "rank") == [2, 1, 2, 4]
 
 
-def test_a_lane_that_failed_has_no_total_distance_and_says_why() -> None:
+def test_failed_lane_has_no_total_distance_and_a_reason() -> None:
     fallen = lane(step(1, [0.3, 0.4]), agent="clumsy", failure="it tripped")
     result = race_result([fallen, tortoise()], steps=2)
 
@@ -81,7 +81,7 @@ def test_a_lane_that_failed_has_no_total_distance_and_says_why() -> None:
     assert under(result, "free", "elapsed_s") == pytest.approx([1, 2])
 
 
-def test_while_nobody_has_finished_a_lane_is_where_it_is() -> None:
+def test_without_a_time_out_the_current_distance_counts() -> None:
     lanes = [lane(step(1, [0.1, 0.2])), lane()]
     result = race_result(lanes, steps=2)
 

@@ -1,4 +1,4 @@
-"""A training's recording goes into files and comes back, and goes on from where it was."""
+"""Encoding of a training's recording: round trip, and truncation at a checkpoint."""
 
 import io
 from dataclasses import replace
@@ -21,7 +21,7 @@ from app.runs.training import train
 
 
 def practise(steps: int, simulator: str = "kinematic") -> PracticeRecording:
-    """A recording as a job makes it, with an evaluation every 10 steps."""
+    """Record a training as a job does, with an evaluation every 10 steps."""
     config = training_config(
         gait="left-right-origin",
         simulator=simulator,
@@ -78,14 +78,14 @@ def assert_same_motion(one: Motion | None, other: Motion | None) -> None:
 
 
 @pytest.mark.parametrize(("steps", "simulator"), [(35, "mujoco"), (700, "kinematic")])
-def test_all_that_was_shown_live_comes_back(steps: int, simulator: str) -> None:
+def test_recording_round_trips_through_arrays(steps: int, simulator: str) -> None:
     recording = practise(steps, simulator)
     assert recording.steps[0].knowledge is not None
     assert recording.evaluations[0].motion is not None
     assert_same(stored(recording), recording)
 
 
-def test_what_has_no_motion_or_knowledge_comes_back_without() -> None:
+def test_records_without_motion_or_action_values_round_trip() -> None:
     whole = practise(30)
     bare = PracticeRecording(whole.rest_qpos)
     for number, step in enumerate(whole.steps):
@@ -101,19 +101,19 @@ def test_what_has_no_motion_or_knowledge_comes_back_without() -> None:
     assert_same(stored(bare), bare)
 
 
-def test_nothing_yet_comes_back_as_nothing_yet() -> None:
+def test_empty_recording_round_trips() -> None:
     empty = PracticeRecording(np.zeros(25, np.float32))
     assert_same(stored(empty), empty)
 
 
-def test_evaluations_that_came_after_the_steps_were_written_are_left_out() -> None:
+def test_evaluations_newer_than_the_file_of_steps_are_dropped() -> None:
     early, late = practise(40), practise(80)
     files = [through_a_file(evaluation_arrays(late.evaluations))]
     assert_same(practice_recording(through_a_file(practice_arrays(early)), files), early)
 
 
 @pytest.mark.parametrize("step", [5, 45, 60])
-def test_it_can_go_on_from_a_checkpoint(step: int) -> None:
+def test_recording_is_truncated_at_a_checkpoint(step: int) -> None:
     whole = practise(100)
     again = rewound(whole, step)
     assert [s.step for s in again.steps] == list(range(1, step + 1))

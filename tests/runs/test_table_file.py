@@ -1,4 +1,4 @@
-"""A table read from its file row by row is the table that was written."""
+"""Reading a Q-table from its file by row: equals the table; invalid files are refused."""
 
 import io
 import json
@@ -38,7 +38,7 @@ def with_values(table: QTable, config: TrainingConfig) -> Checkpoint:
 
 
 def filled(divisions: int, states: float, seed: int = 0) -> tuple[QTable, Checkpoint]:
-    """A table with values in a share of its states, and its file."""
+    """Create a table with values in a share of its states, and its file."""
     config = replace(CONFIG, divisions=divisions)
     table, chance = QTable(3, len(config.grid)), np.random.default_rng(seed)
     for state in chance.permutation(table.states)[: int(states * table.states)].tolist():
@@ -51,7 +51,7 @@ def filled(divisions: int, states: float, seed: int = 0) -> tuple[QTable, Checkp
 @pytest.mark.parametrize(
     ("divisions", "states"), [(2, 0.0), (2, 0.4), (2, 1.0), (3, 0.01), (3, 0.5), (3, 1.0)]
 )
-def test_its_rows_are_the_tables(divisions: int, states: float) -> None:
+def test_rows_equal_those_of_the_table(divisions: int, states: float) -> None:
     table, checkpoint = filled(divisions, states)
     read = opened(to_bytes(checkpoint))
 
@@ -65,7 +65,7 @@ def test_its_rows_are_the_tables(divisions: int, states: float) -> None:
         assert np.array_equal(visits, counts, equal_nan=True)
 
 
-def test_reading_the_largest_table_takes_no_memory() -> None:
+def test_reading_the_largest_table_takes_constant_memory() -> None:
     table, checkpoint = filled(8, 0.05)
     data = to_bytes(checkpoint)
     rows = opened(data).rows()
@@ -93,7 +93,7 @@ def changed(**changes: Any) -> bytes:
         ({"n": np.zeros((2, 2), np.uint32)}, DamagedFile, "another shape"),
     ],
 )
-def test_what_is_no_table_is_refused(
+def test_invalid_file_is_refused(
     changes: dict[str, Any], error: type[Exception], message: str
 ) -> None:
     with pytest.raises(error, match=message):
@@ -101,12 +101,12 @@ def test_what_is_no_table_is_refused(
 
 
 @pytest.mark.parametrize("kept", [0, 10, 100, -30])
-def test_a_file_cut_short_is_refused(kept: int) -> None:
+def test_truncated_file_is_refused(kept: int) -> None:
     with pytest.raises(DamagedFile, match="not a Q-table"):
         opened(changed()[:kept])
 
 
-def test_values_out_of_order_are_found() -> None:
+def test_values_out_of_order_are_refused() -> None:
     table, checkpoint = filled(3, 1.0)
     where = np.sort(np.concatenate([table.dump()["where"]])).copy()
     where[-1] = 0
@@ -116,7 +116,7 @@ def test_values_out_of_order_are_found() -> None:
         list(opened(to_bytes(Checkpoint(checkpoint.meta, arrays))).rows())
 
 
-def test_another_format_is_refused() -> None:
+def test_another_format_version_is_refused() -> None:
     _, checkpoint = filled(2, 0.4)
     meta = {**json.loads(json.dumps(dict(checkpoint.meta))), "format": 2}
 

@@ -1,4 +1,4 @@
-"""Checkpoint files: whole, checked, and for one problem only."""
+"""Checkpoints: round trip, rejection of invalid files, and fit to the walking problem."""
 
 import io
 import json
@@ -58,12 +58,12 @@ def same(one: Checkpoint, other: Checkpoint) -> bool:
     )
 
 
-def test_a_table_goes_into_a_file_and_comes_back_the_same() -> None:
+def test_checkpoint_round_trips_through_a_file() -> None:
     assert same(from_bytes(FILE, "q.npz"), TABLE)
     assert to_bytes(from_bytes(FILE, "q.npz")) == FILE
 
 
-def test_the_file_holds_all_that_is_needed_to_go_on() -> None:
+def test_checkpoint_has_everything_needed_to_resume() -> None:
     meta, arrays = TABLE.meta, set(TABLE.arrays)
 
     assert {"agent.q", "agent.n", "agent.where", "agent.learned", "agent.rates"} <= arrays
@@ -75,7 +75,7 @@ def test_the_file_holds_all_that_is_needed_to_go_on() -> None:
     assert meta["observation"] == "measured"
 
 
-def test_on_mujoco_the_whole_state_vector_is_in_it() -> None:
+def test_checkpoint_on_mujoco_has_the_full_state_vector() -> None:
     config = replace(CONFIG, simulator="mujoco", steps=2)
     learner = build_learner(config)
     for _ in train(learner, config):
@@ -85,13 +85,13 @@ def test_on_mujoco_the_whole_state_vector_is_in_it() -> None:
     assert row.tobytes() == learner.walker.state.row.tobytes()  # type: ignore[attr-defined]
 
 
-def test_any_numpy_reads_it_without_pickle() -> None:
+def test_numpy_loads_the_file_without_pickle() -> None:
     with np.load(io.BytesIO(FILE), allow_pickle=False) as file:
         assert json.loads(str(file["meta"]))["format"] == 1
         assert np.isfinite(file["agent.q"]).all()
 
 
-def test_the_table_inside_has_the_values_that_were_learned() -> None:
+def test_table_of_a_checkpoint_has_the_learned_values() -> None:
     learner = build_learner(CONFIG)
     for _ in train(learner, CONFIG):
         pass
@@ -124,7 +124,7 @@ def test_the_table_inside_has_the_values_that_were_learned() -> None:
         ({"observation": "commanded"}, "for observation measured, this run has commanded"),
     ],
 )
-def test_a_table_of_another_problem_is_refused(changes: dict[str, Any], message: str) -> None:
+def test_table_of_another_walking_problem_is_refused(changes: dict[str, Any], message: str) -> None:
     config = replace(CONFIG, **changes)
     with pytest.raises(TableMismatch, match=message + ".*; choose a table of the same gait"):
         check_fits(TABLE, config, config.observation)
@@ -132,14 +132,14 @@ def test_a_table_of_another_problem_is_refused(changes: dict[str, Any], message:
         build_learner(config, TABLE)
 
 
-def test_its_robot_and_its_simulator_may_differ() -> None:
+def test_table_fits_another_robot_and_simulator() -> None:
     config = replace(CONFIG, robot=robot("slippery"), simulator="mujoco")
 
     check_fits(TABLE, config, config.observation)
     check_fits(TABLE, replace(config, observation="commanded"))  # a race takes the table's own
 
 
-def test_a_table_of_another_agent_is_refused() -> None:
+def test_table_of_another_agent_is_refused() -> None:
     wanderer = replace(CONFIG, agent="tests.own_agents:Restless")
     foreign = trained(wanderer)
 
@@ -183,20 +183,20 @@ def without(name: str) -> dict[str, Any]:
         (npz(members(), compressed=True), "its members are compressed; write it with numpy.savez"),
     ],
 )
-def test_what_is_no_table_of_ours_is_refused_by_name(data: bytes, message: str) -> None:
+def test_invalid_file_is_refused_with_its_name(data: bytes, message: str) -> None:
     with pytest.raises(DamagedFile, match=message):
         from_bytes(data, "worn.npz")
 
 
 @given(st.integers(0, len(FILE) - 1))
-def test_a_truncated_file_is_refused(length: int) -> None:
+def test_truncated_file_is_refused(length: int) -> None:
     with pytest.raises(DamagedFile, match=r"worn.npz is"):
         from_bytes(FILE[:length], "worn.npz")
 
 
 @given(st.integers(0, 8 * len(FILE) - 1))
-def test_a_flipped_bit_is_found_or_harmless(bit: int) -> None:
-    """Harmless is one in what the archive says beside its contents, such as a date."""
+def test_flipped_bit_is_detected_or_irrelevant(bit: int) -> None:
+    """Irrelevant bits are in metadata of the zip, such as a date."""
     data = bytearray(FILE)
     data[bit // 8] ^= 1 << bit % 8
     try:
@@ -207,7 +207,7 @@ def test_a_flipped_bit_is_found_or_harmless(bit: int) -> None:
         assert same(read, TABLE)
 
 
-def test_a_flipped_bit_in_a_value_is_found() -> None:
+def test_flipped_bit_in_a_value_is_detected() -> None:
     value = TABLE.arrays["agent.q"].tobytes()
     data = bytearray(FILE)
     data[FILE.index(value) + 3] ^= 16
@@ -215,15 +215,15 @@ def test_a_flipped_bit_in_a_value_is_found() -> None:
         from_bytes(bytes(data), "worn.npz")
 
 
-def test_a_bomb_is_refused_before_it_is_unpacked() -> None:
+def test_zip_bomb_is_refused_before_unpacking() -> None:
     bomb = npz({"q": np.zeros(20_000_000)}, compressed=True)  # 160 MB in 160 kB
     assert len(bomb) < 1_000_000
     with pytest.raises(DamagedFile, match=r"boom.npz .* compressed"):
         from_bytes(bomb, "boom.npz")
 
 
-def test_members_that_claim_more_than_the_file_holds_are_refused() -> None:
-    """Many entries of an archive's directory may point at the same bytes."""
+def test_overlapping_members_are_refused() -> None:
+    """Several entries of a zip's central directory may refer to the same bytes."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
         archive.writestr("a.npy", np.zeros(2000).tobytes())
@@ -236,7 +236,7 @@ def test_members_that_claim_more_than_the_file_holds_are_refused() -> None:
 
 
 class Bomb:
-    """Writes a file when it is unpickled."""
+    """Object that writes a file when it is unpickled."""
 
     def __init__(self, target: Path) -> None:
         self._target = target
@@ -245,7 +245,7 @@ class Bomb:
         return Path.write_text, (self._target, "boom")
 
 
-def test_a_pickle_inside_is_refused_and_never_run(tmp_path: Path) -> None:
+def test_pickle_in_a_file_is_refused_and_not_executed(tmp_path: Path) -> None:
     target = tmp_path / "boom"
     data = npz({**members(), "agent.q": np.array([Bomb(target)], object)})
     with pytest.raises(DamagedFile, match=r"worn.npz is not a Q-table"):
@@ -254,20 +254,20 @@ def test_a_pickle_inside_is_refused_and_never_run(tmp_path: Path) -> None:
     assert not target.exists()
 
 
-def test_a_newer_format_names_the_one_that_is_read() -> None:
+def test_newer_format_is_refused_with_the_supported_one() -> None:
     newer = to_bytes(Checkpoint({**TABLE.meta, "format": 2}, TABLE.arrays))
     with pytest.raises(DamagedFile, match=r"q\.npz has format 2; this version reads 1"):
         from_bytes(newer, "q.npz")
 
 
 @pytest.mark.parametrize("state", ["", "[]", "{}", '{"bit_generator": "MT19937"}', 3])
-def test_a_well_formed_file_with_a_worthless_generator_is_refused(state: object) -> None:
+def test_invalid_generator_state_is_refused(state: object) -> None:
     checkpoint = Checkpoint({**TABLE.meta, "rng": state}, TABLE.arrays)
     with pytest.raises(DamagedFile, match="does not hold its generator's state"):
         continue_from(build_learner(CONFIG), checkpoint)
 
 
-def test_a_well_formed_file_with_a_worthless_table_is_refused() -> None:
+def test_invalid_table_in_a_well_formed_file_is_refused() -> None:
     huge = Checkpoint(TABLE.meta, {**TABLE.arrays, "agent.shape": np.array([10**9, 5])})
     with pytest.raises(TableMismatch, match="this problem's"):
         table_of(huge)

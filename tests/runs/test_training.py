@@ -1,4 +1,4 @@
-"""The training loop: its schedule, its records, and that it repeats and goes on to the last bit."""
+"""Training loop: schedule, records, determinism, and bit-exact resume from a checkpoint."""
 
 from dataclasses import replace
 from typing import Any
@@ -35,7 +35,7 @@ def table_hash(learner: Learner) -> str:
 
 
 def everything(learner: Learner) -> tuple[Any, ...]:
-    """All that a training changes, to the last bit."""
+    """Return the complete state of a training, for exact comparison."""
     walker = learner.walker
     return (
         table_hash(learner),
@@ -76,7 +76,7 @@ def test_epsilon_falls_linearly_over_the_episodes(
     )
 
 
-def test_epsilon_may_run_between_other_numbers() -> None:
+def test_epsilon_schedule_has_configurable_ends() -> None:
     config = replace(
         CONFIG,
         steps=150,
@@ -98,7 +98,7 @@ def test_episodes_end_every_50_steps_and_at_the_end() -> None:
     assert ended[2].reward_m == pytest.approx(sum(s.reward_m for s in taken[100:]))
 
 
-def test_within_a_training_the_robot_is_never_put_back() -> None:
+def test_robot_is_not_reset_during_a_training() -> None:
     _, records = run(replace(CONFIG, evaluate_every=0))
     total = 0.0
     for taken in steps(records):
@@ -106,7 +106,7 @@ def test_within_a_training_the_robot_is_never_put_back() -> None:
         assert taken.distance_m == pytest.approx(total)
 
 
-def test_a_step_says_what_was_seen_and_known() -> None:
+def test_step_records_observation_and_action_values() -> None:
     learner = build_learner(CONFIG)
     first, *_, last = [
         r
@@ -125,7 +125,7 @@ def test_a_step_says_what_was_seen_and_known() -> None:
     assert steps(unrecorded)[0].motion is None
 
 
-def test_the_line_to_beat_comes_once_before_the_first_evaluation() -> None:
+def test_reference_is_yielded_once_before_the_first_evaluation() -> None:
     _, records = run(replace(CONFIG, steps=120))
     told = [r for r in records if isinstance(r, Reference | Evaluated)]
 
@@ -136,7 +136,7 @@ def test_the_line_to_beat_comes_once_before_the_first_evaluation() -> None:
 
 
 @on_both
-def test_evaluating_leaves_the_learner_undisturbed(simulator: SimulatorName) -> None:
+def test_evaluation_does_not_change_the_learner(simulator: SimulatorName) -> None:
     config = replace(CONFIG, simulator=simulator, steps=70)
 
     def learned(every: int) -> tuple[Any, ...]:
@@ -149,7 +149,7 @@ def test_evaluating_leaves_the_learner_undisturbed(simulator: SimulatorName) -> 
     assert learned(50) == learned(0)
 
 
-def test_an_evaluation_does_not_depend_on_those_before_it() -> None:
+def test_evaluation_is_independent_of_earlier_ones() -> None:
     def last(every: int) -> Evaluated:
         record = run(replace(CONFIG, evaluate_every=every))[1][-1]
         assert isinstance(record, Evaluated)
@@ -158,7 +158,7 @@ def test_an_evaluation_does_not_depend_on_those_before_it() -> None:
     assert last(7).distance_m == last(50).distance_m == last(200).distance_m
 
 
-def test_an_evaluation_walks_fifty_steps_from_rest() -> None:
+def test_evaluation_takes_fifty_steps_from_rest() -> None:
     learner = build_learner(CONFIG)
     evaluated = [r for r in train(learner, CONFIG, record=True) if isinstance(r, Evaluated)][-1]
 
@@ -176,7 +176,7 @@ def test_the_same_config_and_seed_give_the_same_table(simulator: SimulatorName) 
     assert table_hash(run(config)[0]) != table_hash(run(replace(config, seed=4))[0])
 
 
-def test_and_at_any_thread_count() -> None:
+def test_the_table_is_the_same_at_any_thread_count() -> None:
     config = replace(CONFIG, simulator="mujoco", steps=40, evaluate_every=40)
     runs = [run(config, threads) for threads in (1, 2, 4)]
 
@@ -187,7 +187,7 @@ def test_and_at_any_thread_count() -> None:
 
 @on_both
 @pytest.mark.parametrize("broken_at", [13, 50, 77])
-def test_saved_midway_and_loaded_it_equals_the_unbroken_run(
+def test_training_resumed_from_a_checkpoint_equals_the_unbroken_run(
     simulator: SimulatorName, broken_at: int
 ) -> None:
     config = replace(CONFIG, simulator=simulator, steps=90, evaluate_every=45)
@@ -208,7 +208,7 @@ def test_saved_midway_and_loaded_it_equals_the_unbroken_run(
     assert after == told[-len(after) :]
 
 
-def test_saved_in_the_middle_of_an_evaluation_it_makes_that_again() -> None:
+def test_pending_evaluation_is_repeated_after_resume() -> None:
     config = replace(CONFIG, steps=150, steps_per_episode=50, evaluate_every=50)
     unbroken, records = run(config)
     saved = []
@@ -231,7 +231,7 @@ def test_saved_in_the_middle_of_an_evaluation_it_makes_that_again() -> None:
         ][number:]
 
 
-def test_changed_rates_survive_being_saved() -> None:
+def test_checkpoint_preserves_tuned_rates() -> None:
     config = replace(CONFIG, evaluate_every=0)
     first = build_learner(config)
     agent = first.walker.agent
@@ -246,7 +246,7 @@ def test_changed_rates_survive_being_saved() -> None:
     assert [r.epsilon for r in train(second, config) if isinstance(r, StepTaken)] == [0.4] * 100
 
 
-def test_going_on_from_a_table_takes_what_was_learned_and_nothing_else() -> None:
+def test_continue_from_a_table_takes_values_visits_and_generator_only() -> None:
     first, _ = run(CONFIG)
     table = snapshot(first, CONFIG)
     onward = build_learner(
@@ -265,10 +265,10 @@ def test_going_on_from_a_table_takes_what_was_learned_and_nothing_else() -> None
     assert successor.state()["rates"][0] == 0.1
     assert onward.step == 0
     assert (onward.walker.state.distance_m, onward.walker.state.steps) == (0, 0)
-    assert onward.walker.seen == (0, 0, 0)
+    assert onward.walker.observed == (0, 0, 0)
 
 
-def test_blocks_restart_the_schedule_and_keep_learning() -> None:
+def test_blocks_restart_the_schedule_and_keep_the_table() -> None:
     config = replace(CONFIG, steps=250, evaluate_every=0)
     table, visits, epsilons = None, [], []
     for _ in range(3):
@@ -282,8 +282,8 @@ def test_blocks_restart_the_schedule_and_keep_learning() -> None:
     assert visits == [250, 500, 750]
 
 
-def test_the_blocks_differ_from_each_other() -> None:
-    """The generator goes on, so the second block explores elsewhere."""
+def test_blocks_draw_different_random_numbers() -> None:
+    """The generator's state carries over, so the second block explores differently."""
     config = replace(CONFIG, evaluate_every=0, settings=CONFIG.settings | {"epsilon_end": 1.0})
     first, records = run(config)
     onward = build_learner(config, snapshot(first, config))
@@ -292,7 +292,7 @@ def test_the_blocks_differ_from_each_other() -> None:
     assert [s.action for s in steps(records)] != [s.action for s in steps(again)]
 
 
-def test_the_result_names_distance_greedy_and_hash() -> None:
+def test_result_has_distance_greedy_distance_and_hash() -> None:
     learner, records = run(CONFIG)
     result = finish_training(learner, CONFIG)
     last = records[-1]
@@ -305,13 +305,13 @@ def test_the_result_names_distance_greedy_and_hash() -> None:
     }
 
 
-def test_without_evaluations_the_result_is_the_same() -> None:
+def test_result_is_the_same_without_evaluations() -> None:
     quiet = replace(CONFIG, evaluate_every=0)
 
     assert finish_training(run(quiet)[0], quiet) == finish_training(run(CONFIG)[0], CONFIG)
 
 
-def test_an_agent_of_ones_own_trains_saves_and_goes_on() -> None:
+def test_user_supplied_agent_trains_and_resumes() -> None:
     config = replace(CONFIG, agent="tests.own_agents:Restless", steps=40)
     learner, _ = run(config)
     state = learner.walker.agent.state()
@@ -322,6 +322,6 @@ def test_an_agent_of_ones_own_trains_saves_and_goes_on() -> None:
     assert finish_training(learner, config)["q_table_sha256"] is None
 
 
-def test_in_practice_an_illegal_action_is_an_error_that_names_agent_and_action() -> None:
+def test_illegal_action_raises_an_error_that_names_agent_and_action() -> None:
     with pytest.raises(IllegalAction, match=r"Cheat chose Action\(pair=0, cell=0\).*in legal"):
         run(replace(CONFIG, agent="tests.own_agents:Cheat"))

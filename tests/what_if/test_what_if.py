@@ -1,4 +1,4 @@
-"""What-ifs: the trials behind an answer, and the processes that run them."""
+"""What-if service: trials, cache, limits, and the pool of worker processes."""
 
 import os
 import signal
@@ -26,7 +26,7 @@ LONG_S = 60.0
 
 
 def changed(settings: dict[str, float], **fields: Any) -> TrainingConfig:
-    """The training with other settings of its agent."""
+    """Return the training with other settings of its agent."""
     return replace(SHORT, **fields, settings=SHORT.settings | settings)
 
 
@@ -43,14 +43,14 @@ def what_if(pool: TrialPool) -> WhatIf:
 
 
 def distances(training: TrainingConfig) -> list[float]:
-    """The same by a plain loop."""
+    """Compute the expected distances in a plain loop."""
     kinematic = replace(training, simulator="kinematic", evaluate_every=0)
     seeds = [trial_seed(0, 0, number) for number in range(SEEDS)]
     trials = [TrialConfig(training=replace(kinematic, seed=seed)) for seed in seeds]
     return [run_trial(trial).distances_m[0] for trial in trials]
 
 
-def test_it_is_thirty_kinematic_seeds_of_each(what_if: WhatIf) -> None:
+def test_thirty_kinematic_seeds_run_of_each_variant(what_if: WhatIf) -> None:
     chosen = changed({"alpha": 0.9, "epsilon_end": 0.2})
     answer = what_if.ask(chosen)
     assert answer["seeds"] == 30
@@ -63,14 +63,14 @@ def test_it_is_thirty_kinematic_seeds_of_each(what_if: WhatIf) -> None:
         assert half["walkers"] == len(far) / 30
 
 
-def test_the_rest_of_the_training_is_the_same_in_both(what_if: WhatIf) -> None:
+def test_variants_differ_in_settings_only(what_if: WhatIf) -> None:
     answer = what_if.ask(replace(SHORT, observation="commanded"))
     commanded = replace(SHORT, observation="commanded")
     assert answer["default"]["distances_m"] == distances(commanded)
     assert answer["chosen"] == answer["default"]
 
 
-def test_what_is_known_is_not_tried_again(what_if: WhatIf, pool: TrialPool) -> None:
+def test_cached_trials_are_not_run_again(what_if: WhatIf, pool: TrialPool) -> None:
     first = what_if.ask(SHORT)
     pids = pool.pids
     # Neither seed, pace nor simulator counts.
@@ -81,7 +81,7 @@ def test_what_is_known_is_not_tried_again(what_if: WhatIf, pool: TrialPool) -> N
     assert all(psutil.Process(pid).nice() == 10 for pid in pids)
 
 
-def test_the_middle_half_is_scipys() -> None:
+def test_interquartile_mean_equals_scipys() -> None:
     values = np.random.default_rng(1).normal(size=31)
     for count in (1, 2, 3, 5, 30, 31):
         ours = _interquartile_mean(tuple(values[:count]))
@@ -99,13 +99,15 @@ def test_the_middle_half_is_scipys() -> None:
         ({"agent": "tests.own_agents:Clumsy"}, "I tripped"),
     ],
 )
-def test_what_cannot_be_tried_is_said(what_if: WhatIf, more: dict[str, Any], words: str) -> None:
+def test_invalid_training_is_refused_with_the_reason(
+    what_if: WhatIf, more: dict[str, Any], words: str
+) -> None:
     with pytest.raises(InvalidInput, match=words):
         what_if.ask(replace(SHORT, **more))
     assert what_if.ask(SHORT)["seeds"] == 30
 
 
-def test_a_process_that_dies_costs_one_question(what_if: WhatIf, pool: TrialPool) -> None:
+def test_killed_worker_fails_one_request_only(what_if: WhatIf, pool: TrialPool) -> None:
     what_if.ask(changed({"alpha": 0.31}))
     for pid in pool.pids:
         os.kill(pid, signal.SIGKILL)
@@ -114,7 +116,7 @@ def test_a_process_that_dies_costs_one_question(what_if: WhatIf, pool: TrialPool
     assert what_if.ask(changed({"alpha": 0.32}))["chosen"]["alpha"] == 0.32
 
 
-def test_few_wait_and_the_others_are_told(what_if: WhatIf) -> None:
+def test_too_many_waiting_requests_are_refused_as_busy(what_if: WhatIf) -> None:
     answers: list[Any] = []
 
     def ask(number: int) -> None:
@@ -138,7 +140,7 @@ def test_few_wait_and_the_others_are_told(what_if: WhatIf) -> None:
     assert all(busy.retry_after_s > 0 for busy in told)
 
 
-def test_processes_end_when_nobody_asks_and_when_they_are_let_go() -> None:
+def test_workers_exit_when_idle_and_when_closed() -> None:
     pool = TrialPool(count=1, idle_s=0.3)
     trial = TrialConfig(training=replace(SHORT, simulator="kinematic", evaluate_every=0))
     assert pool.pids == [], "nobody has asked"
