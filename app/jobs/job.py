@@ -168,8 +168,11 @@ class Job:
             NotFound: if there is no such run.
             Conflict: if its state is not in `from_states`.
         """
+        # Without the lock, which the messages of a process need that ends meanwhile.
+        self._store.change(self.run_id, from_states, to_state)
         with self._publish_lock:
-            self._store.change(self.run_id, from_states, to_state)
+            if self.ended.is_set():
+                return self.last
             return self.publish(state=to_state, eta_s=None)
 
     def publish(self, **changed: Any) -> Run:
