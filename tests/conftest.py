@@ -89,8 +89,11 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture
 def page(browser: Browser) -> Iterator[Page]:
-    """An empty tab with cookies and storage of its own."""
-    with browser.new_context() as context:
+    """An empty tab with cookies and storage of its own.
+
+    It has half as many pixels as it says: WebGL in software takes most of the time of these tests.
+    """
+    with browser.new_context(device_scale_factor=0.5) as context:
         yield context.new_page()
 
 

@@ -8,7 +8,7 @@ import { limitsOf } from "./limits.js";
 import {
   isActive, isOperator, isRaceRun, laneTables, liveTraining, markAsMine, myWork, presetOf, shownRun, work,
 } from "./selectors.js";
-import { forgetRun, options, rates, requestRun, requestStage, runs, scene, setEntry, stage } from "./store.js";
+import { markDeleted, options, rates, requestRun, requestStage, runs, scene, setEntry, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
@@ -218,7 +218,7 @@ export const resumeRun = (run) =>
 export const deleteRun = (run) =>
   attempt(run.id, async () => {
     await api.deleteRun(run);
-    forgetRun(run.id);
+    markDeleted(run.id);
   });
 
 /**

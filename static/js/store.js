@@ -73,12 +73,13 @@ const handlers = {
   },
   run(data) {
     newestEvents.set(data.id, eventCount);
+    // A deleted run may have been imported again.
+    deletedIds.delete(data.id);
     upsertRun(data);
   },
   "run-deleted"({ id }) {
     newestEvents.set(id, eventCount);
-    deletedIds.add(id);
-    forgetRun(id);
+    markDeleted(id);
   },
   evaluation({ run_id, ...evaluation }) {
     setEntry(evaluations, run_id, [...(evaluations.value[run_id] ?? []), evaluation]);
@@ -161,10 +162,16 @@ const upsertRun = (run) =>
   });
 
 /**
- * Remove a run that was deleted.
+ * Remove a run that was deleted, and request it no more.
  * @param {string} id
  */
-export const forgetRun = (id) =>
+export const markDeleted = (id) => {
+  deletedIds.add(id);
+  forgetRun(id);
+};
+
+/** @param {string} id */
+const forgetRun = (id) =>
   batch(() => {
     if (runs.value.has(id)) runs.value = without(runs.value, id);
     if (damagedRuns.value.has(id)) damagedRuns.value = without(damagedRuns.value, id);

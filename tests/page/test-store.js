@@ -8,8 +8,8 @@ import {
   offStage, raceInView, simulatedPerDecision, trainingInView, work,
 } from "../../static/js/selectors.js";
 import {
-  applyEvent, damagedRuns, evaluations, isDeleted, options, rates, requestRun, requestRuns, requestStage, role, runs,
-  stage,
+  applyEvent, damagedRuns, evaluations, isDeleted, markDeleted, options, rates, requestRun, requestRuns,
+  requestStage, role, runs, stage,
 } from "../../static/js/store.js";
 import { shownTime } from "../../static/js/timeline.js";
 import { makeRun, OPTIONS } from "./options.js";
@@ -76,6 +76,15 @@ test("an answer does not undo the events that overtook it", async () => {
   assert.deepEqual([...runs.value.values()].map(({ state }) => state), ["finished"]);
   await requestStage(answerAfter(meanwhile, STAGE));
   assert.equal(stage.value?.run_id, run.id);
+});
+
+test("a deleted run is marked before its event comes, until it is imported again", () => {
+  const run = makeRun({});
+  applyEvent("run", run);
+  markDeleted(run.id);
+  assert.deepEqual([isDeleted(run.id), runs.value.has(run.id)], [true, false]);
+  applyEvent("run", run);
+  assert.deepEqual([isDeleted(run.id), runs.value.has(run.id)], [false, true]);
 });
 
 test("an answer does not undo a snapshot, but tells of runs that the snapshot had no room for", async () => {

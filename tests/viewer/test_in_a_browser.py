@@ -263,7 +263,8 @@ def test_messages_of_foreign_pages_are_ignored(page: Page, served: ServedHub) ->
     # Messages arrive in order, so once this one has arrived, so has the other.
     other.evaluate("addEventListener('message', () => { window.told = true; })")
     page.evaluate("other.postMessage(0, '*')")
-    other.wait_for_function("window.told")
+    # Its content policy forbids the evaluation by which `wait_for_function` polls.
+    wait_until(lambda: other.evaluate("window.told === true"))
 
     assert other.evaluate("document.documentElement.dataset.theme") is None
 
