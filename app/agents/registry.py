@@ -6,6 +6,7 @@ import logging
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache
 from importlib.metadata import entry_points
 from typing import Any
 
@@ -16,7 +17,6 @@ from app.agents.sarsa_lambda import SarsaLambda
 from app.agents.tabular import TabularLearner
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.settings import (
-    REQUIRED,
     DeclaredSetting,
     declared_parameters,
     parameters_of,
@@ -37,11 +37,12 @@ OURS: Mapping[str, AgentClass] = {
 _CLASS_PATH = re.compile(r"[\w.]+:\w+")
 
 
-def registered() -> dict[str, AgentClass]:
+@cache
+def registered() -> Mapping[str, AgentClass]:
     """Return the built-in agents and the entry points of group `hexapods.agents`, by name.
 
-    A package cannot take the name of one of ours. One that cannot be loaded is left out, and the
-    log says why.
+    A package cannot replace a built-in agent. One that cannot be loaded is left out, with a
+    warning in the log. Cached, because loading entry points takes milliseconds and more.
     """
     found = dict(OURS)
     for point in entry_points(group=ENTRY_POINT_GROUP):
@@ -61,7 +62,7 @@ def find(name: str) -> AgentClass:
         InvalidInput: if the module cannot be imported, has no such class, or the class does not
             implement the agent protocol.
     """
-    if name in OURS:  # first, because scanning entry points takes milliseconds
+    if name in OURS:  # first, so that no package is loaded for a built-in agent
         return OURS[name]
     by_name = registered()
     if name in by_name:
@@ -104,44 +105,39 @@ def needs_practice(name: str) -> bool:
 
 
 def settings_of(agent: AgentClass) -> Mapping[str, DeclaredSetting]:
-    """The settings that an agent's constructor declares.
+    """Return the settings that an agent's constructor declares.
 
     A parameter without a declaration that is named like one of `TabularLearner` is that setting.
     """
     declared, usual = declared_parameters(agent), declared_parameters(TabularLearner)
-    found = {}
+    settings = {}
     for name, parameter in parameters_of(agent).items():
         if name in declared:
-            found[name] = declared[name]
+            settings[name] = declared[name]
         elif name in usual:
-            has_default = parameter.default is not REQUIRED and usual[name].allows(
-                parameter.default
-            )
-            found[name] = (
-                replace(usual[name], default=parameter.default) if has_default else usual[name]
-            )
-    return found
+            has_default = usual[name].allows(parameter.default)
+            default = parameter.default if has_default else usual[name].default
+            settings[name] = replace(usual[name], default=default)
+    return settings
 
 
 def live_settings_of(agent: AgentClass) -> Mapping[str, DeclaredSetting]:
     """Return the settings that an agent's `tune` can change while it learns; none without `tune`.
 
-    They are those of its constructor that are declared `live`, as far as `tune` takes them, and
-    what `tune` itself declares, or names like `TabularLearner.tune`.
+    These are the constructor's settings that are parameters of `tune` as well, or are declared
+    `live` if `tune` takes any, and what `tune` alone declares, or names like `TabularLearner.tune`.
     """
     if not isinstance(agent, type) or not hasattr(agent, "tune"):
         return {}
-    taken, own = parameters_of(agent, "tune"), settings_of(agent)
-    declared, usual = (declared_parameters(one, "tune") for one in (agent, TabularLearner))
+    accepted, own = parameters_of(agent, "tune"), settings_of(agent)
+    declared = {**declared_parameters(TabularLearner, "tune"), **declared_parameters(agent, "tune")}
     live = {
         name: setting
         for name, setting in own.items()
-        if setting.about.live and (name in taken or takes_any(agent, "tune"))
+        if name in accepted or (setting.about.live and takes_any(agent, "tune"))
     }
-    for name in taken:
-        if name not in live and name in {**usual, **declared}:
-            live[name] = own[name] if name in own else required({**usual, **declared}[name])
-    return live
+    replacing = [name for name in accepted if name not in own and name in declared]
+    return live | {name: required(declared[name]) for name in replacing}
 
 
 def parameter_names(agent: AgentClass) -> set[str]:

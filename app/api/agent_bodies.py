@@ -14,7 +14,7 @@ from app.api.fields import Declared
 from app.api.schemas import ChangeBody, LaneBody, PracticeBody, RaceBody, TrainingBody
 from app.domain.errors import UnknownName
 from app.domain.settings import REQUIRED, DeclaredSetting
-from app.experiments.config import settings_of
+from app.experiments.config import settings_by_name
 from app.runs.config import MAX_LANES, TrainingConfig, agent_settings, changeable_settings
 from app.stage.scene_spec import PAPERS_LANES
 
@@ -135,7 +135,7 @@ def _race_body(lanes: Mapping[str, type[LaneBody]]) -> type[RaceBody]:
 def _experiment_body(agents: Sequence[str]) -> type[ExperimentBody]:
     fields: dict[str, Any] = {
         name: (one_or_more(_field(declared)), None)
-        for name, declared in settings_of(agents).items()
+        for name, declared in settings_by_name(agents).items()
     }
     doc = ExperimentBody.__doc__
     return create_model("ExperimentBody", __base__=ExperimentBody, __doc__=doc, **fields)

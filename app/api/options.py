@@ -23,7 +23,7 @@ from app.experiments.config import (
     MAX_TRIALS,
     experiment_config,
     fields_of,
-    settings_of,
+    settings_by_name,
 )
 from app.experiments.config import as_json as experiment_as_json
 from app.jobs.submissions import MAX_SETTINGS, TITLES
@@ -206,7 +206,7 @@ def _agents(names: Collection[str]) -> list[dict[str, Any]]:
 
 def _experiments(agents: Collection[str]) -> list[dict[str, Any]]:
     """Return the experiments, each with title, description, defaults and fields."""
-    settings = settings_of(agents)
+    settings = settings_by_name(agents)
     options = []
     for name in EXPERIMENTS:
         defaults = experiment_as_json(experiment_config(name, {}))

@@ -13,7 +13,7 @@ from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS, Robot, robot
 from app.domain.settings import REQUIRED, DeclaredSetting, Value, declared_fields
-from app.experiments.config import settings_of
+from app.experiments.config import settings_by_name
 from app.runs.config import (
     SIMULATORS,
     TrainingConfig,
@@ -77,8 +77,8 @@ class CommandParser(argparse.ArgumentParser):
             named = [name for text in given.agent for name in split(text)]
             own: Mapping[str, Sequence[DeclaredSetting]] = {}
             with contextlib.suppress(HexapodError):  # the command reports the unknown agent
-                own = settings_of(named or [TrainingConfig.agent])
-            self._add_settings(own, settings_of(usable_agents()))
+                own = settings_by_name(named or [TrainingConfig.agent])
+            self._add_settings(own, settings_by_name(usable_agents()))
         return super().parse_known_args(args, namespace)
 
     def _add_settings(

@@ -146,13 +146,21 @@ class DeclaredSetting:
         Raises:
             InvalidInput: if it is not; the message names what is.
         """
-        if not self._is_valid(value):
+        if not self.allows(value):
             formatted = f"{value:,}" if type(value) in (int, float) else repr(value)[:80]
             raise InvalidInput(f"{self.name} must be {self.valid}, not {formatted}")
 
     def allows(self, value: Any) -> bool:
         """Whether a value is valid."""
-        return self._is_valid(value)
+        if value is None or isinstance(value, bool):
+            return type(value) in self.kinds
+        if isinstance(value, str):
+            return value in self.choices or (str in self.kinds and len(value) <= MAX_TEXT)
+        if not isinstance(value, int | float) or not self.is_number:
+            return False
+        # No whole number that `float` cannot take either.
+        is_of_kind = isinstance(value, int) if self.is_whole else abs(value) <= sys.float_info.max
+        return is_of_kind and all(_satisfies(limit, value) for limit in self.limits)
 
     def normalized(self, value: Any) -> Any:
         """Return a value converted to the type of the setting: 2 to 2.0, or 2.0 to 2.
@@ -188,17 +196,6 @@ class DeclaredSetting:
         self.check(value)
         return value
 
-    def _is_valid(self, value: Any) -> bool:
-        if value is None or isinstance(value, bool):
-            return type(value) in self.kinds
-        if isinstance(value, str):
-            return value in self.choices or (str in self.kinds and len(value) <= MAX_TEXT)
-        if not isinstance(value, int | float) or not self.is_number:
-            return False
-        # No whole number that `float` cannot take either.
-        is_of_kind = isinstance(value, int) if self.is_whole else abs(value) <= sys.float_info.max
-        return is_of_kind and all(_satisfies(limit, value) for limit in self.limits)
-
     def _range(self) -> list[str]:
         low, high = (None if x is None else f"{x:,.15g}" for x in (self.low, self.high))
         if low is None and high is None:
@@ -225,23 +222,15 @@ def parameters_of(
 
 
 def takes_any(function: Callable[..., Any], method: str = "__init__") -> bool:
-    """Whether a method takes any keyword: no class of the inheritance that it reaches ends that."""
-    functions = [function]
-    if isinstance(function, type):
-        functions = [vars(base)[method] for base in function.__mro__[:-1] if method in vars(base)]
-    return bool(functions) and all(
-        any(
-            one.kind is Parameter.VAR_KEYWORD for one in inspect.signature(each).parameters.values()
-        )
-        for each in functions
-    )
+    """Whether a function, or a method of a class, takes any keyword argument."""
+    return _has_rest(_call_chain(function, method)[-1])
 
 
 @cache
 def declared_parameters(
     function: Callable[..., Any], method: str = "__init__"
 ) -> Mapping[str, DeclaredSetting]:
-    """Find the settings among the parameters that `parameters_of` finds, in their order."""
+    """Return the settings among the parameters that `parameters_of` returns, in order."""
     return {
         name: declare(name, annotation, parameter.default)
         for name, (parameter, annotation) in _parameters(function, method).items()
@@ -250,24 +239,38 @@ def declared_parameters(
 
 
 def _parameters(function: Callable[..., Any], method: str) -> Mapping[str, tuple[Parameter, Any]]:
-    """Find the parameters with their annotations: first those of the base classes."""
-    functions: list[Callable[..., Any]] = [function]
-    if isinstance(function, type):
-        own = [vars(base)[method] for base in function.__mro__[:-1] if method in vars(base)]
-        functions = own or functions
+    """Return the parameters with their annotations, those of base classes first."""
     found: dict[str, tuple[Parameter, Any]] = {}
-    for one in functions:
-        parameters = inspect.signature(one).parameters
+    for one in _call_chain(function, method):
         hints = _hints(one)
         named = {
             name: (parameter, hints.get(name))
-            for name, parameter in parameters.items()
+            for name, parameter in inspect.signature(one).parameters.items()
             if parameter.kind not in _VARIADIC and name != "self"
         }
         found = {**named, **found}
-        if not any(one.kind is Parameter.VAR_KEYWORD for one in parameters.values()):
-            break
     return found
+
+
+def _call_chain(function: Callable[..., Any], method: str) -> list[Callable[..., Any]]:
+    """Return the functions that a call passes through, each handing on `**` to the next.
+
+    For a class these are its method and those of the bases; otherwise the function alone.
+    """
+    if not isinstance(function, type):
+        return [function]
+    chain: list[Callable[..., Any]] = []
+    for base in function.__mro__[:-1]:
+        if method in vars(base):
+            chain.append(vars(base)[method])
+            if not _has_rest(chain[-1]):
+                break
+    return chain or [function]
+
+
+def _has_rest(function: Callable[..., Any]) -> bool:
+    parameters = inspect.signature(function).parameters.values()
+    return any(one.kind is Parameter.VAR_KEYWORD for one in parameters)
 
 
 def _hints(function: Callable[..., Any]) -> Mapping[str, Any]:

@@ -98,7 +98,7 @@ def fields_of(experiment: ExperimentName) -> tuple[str, ...]:
     return _ACCEPTED_FIELDS[experiment]
 
 
-def settings_of(agents: Iterable[str]) -> Mapping[str, Sequence[DeclaredSetting]]:
+def settings_by_name(agents: Iterable[str]) -> Mapping[str, Sequence[DeclaredSetting]]:
     """Return the settings of some agents by name, each with the declarations of its agents.
 
     Raises:
@@ -126,7 +126,7 @@ def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentCo
     if experiment not in EXPERIMENTS:
         raise UnknownName("experiment", experiment, EXPERIMENTS)
     specified = {name: value for name, value in given.items() if value is not None}
-    declared = settings_of(specified.get("agents", ExperimentConfig.agents))
+    declared = settings_by_name(specified.get("agents", ExperimentConfig.agents))
     valid = [*_ACCEPTED_FIELDS[experiment], *(declared if experiment == "sweep" else ())]
     for name in specified:
         if name not in valid:

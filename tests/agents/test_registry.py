@@ -1,5 +1,6 @@
 """Registry of agents: built-in ones, entry points of packages, classes in any module."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,7 @@ def test_agent_in_any_module_is_found() -> None:
 
 
 @pytest.fixture
-def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Install a package with two entry points, one of them named as a built-in agent."""
     about = tmp_path / "roaming-1.0.dist-info"
     about.mkdir()
@@ -35,8 +36,12 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         "[hexapods.agents]\n"
         "roaming = tests.own_agents:Restless\n"
         "greedy = tests.own_agents:Restless\n"
+        "broken = tests.no_such_module:Agent\n"
     )
     monkeypatch.syspath_prepend(tmp_path)
+    registry.registered.cache_clear()
+    yield
+    registry.registered.cache_clear()
 
 
 @pytest.mark.usefixtures("installed")

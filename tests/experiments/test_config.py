@@ -16,7 +16,7 @@ from app.experiments.config import (
     as_json,
     experiment_config,
     from_json,
-    settings_of,
+    settings_by_name,
 )
 
 
@@ -46,7 +46,7 @@ def test_a_sweep_can_vary_every_grid_parameter() -> None:
         "divisions": (2, 3),
         "grid_side_m": (0.03, 0.04),
     }
-    assert set(grid) == {*GRID, *settings_of(["q-learning"])}
+    assert set(grid) == {*GRID, *settings_by_name(["q-learning"])}
     shown = as_json(experiment_config("sweep", grid))
     assert {name: tuple(shown[name]) for name in grid} == grid
     assert shown["observations"] == ["measured"]
