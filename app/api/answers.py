@@ -1,11 +1,13 @@
-"""Response models: the schema of every JSON response, for the OpenAPI document and the tests.
+"""Response models: the schemas of JSON responses, for the OpenAPI document and the tests.
+
+Those of experiments and of `/options` are in `experiment_answers` and `option_answers`.
 
 Services build responses from plain types, which are sent unvalidated; these models are used at run
 time only to describe them. Tests validate real responses against the models.
 """
 
 from datetime import datetime
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -400,95 +402,6 @@ class WhatIfView(Answer):
     chosen: WhatIfHalf
     default: WhatIfHalf
     compute_s: float
-
-
-class Described(Answer):
-    """An option of a form, with a one-sentence description."""
-
-    name: str
-    description: str
-
-
-class GaitOption(Described):
-    """A gait, with the directions of its legs [°] and the pairs of legs that move together."""
-
-    title: str
-    forward_deg: float
-    azimuths_deg: list[float]
-    pairs: list[tuple[int, int]]
-
-
-class RobotOption(Described):
-    """A robot preset."""
-
-    robot: RobotView
-
-
-class ExperimentOption(Described):
-    """An experiment, with the fields of its request body and their defaults."""
-
-    title: str
-    fields: list[str]
-    grid: list[str]
-    defaults: dict[str, Any]
-
-
-class DefaultsView(Answer):
-    """Default request bodies of a training and of a race, and the number of seeds of a what-if."""
-
-    training: dict[str, Any]
-    race: dict[str, Any]
-    what_if: dict[str, int]
-
-
-class SettingOption(Answer):
-    """Declaration of a setting: the labels, limits and default of its form control."""
-
-    title: str
-    symbol: str | None
-    unit: str | None
-    help: str
-    valid: str = Field(description="the valid values, in words")
-    minimum: float | None
-    maximum: float | None
-    excludes_minimum: bool = Field(description="whether the minimum itself is not valid")
-    excludes_maximum: bool = Field(description="whether the maximum itself is not valid")
-    is_number: bool
-    is_boolean: bool
-    is_whole: bool
-    choices: list[str] = Field(description="the valid words, if only certain words are valid")
-    default: Value
-    is_live: bool = Field(description="whether it may change while a training runs")
-
-
-class AgentOption(Described):
-    """An agent, with its constructor's settings and those that can change during a training."""
-
-    title: str
-    learns: bool
-    needs_practice: bool
-    color: str
-    settings: dict[str, SettingOption]
-    live_settings: dict[str, SettingOption]
-
-
-class OptionsView(Answer):
-    """Options, defaults, limits and help texts of all forms."""
-
-    version: str
-    gaits: list[GaitOption]
-    robots: list[RobotOption]
-    agents: list[AgentOption]
-    simulators: list[Described]
-    observations: list[Described]
-    clocks: list[Described]
-    experiments: list[ExperimentOption]
-    defaults: DefaultsView
-    settings: dict[str, SettingOption]
-    limits: dict[str, tuple[float | None, float | None]] = Field(
-        description="[lowest, highest]; `settings` says which of them are not valid themselves"
-    )
-    help: dict[str, str]
 
 
 class HealthView(Answer):

@@ -10,8 +10,8 @@ from starlette.responses import JSONResponse, Response
 from app import __version__
 from app.agents.appearance import colors_of, description_of, title_of
 from app.agents.registry import OURS, learns, needs_practice
-from app.api.answers import OptionsView
 from app.api.deps import ServicesDep
+from app.api.option_answers import OptionsView
 from app.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
 from app.domain.robot import PRESETS, Robot, as_mapping
 from app.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields

@@ -117,9 +117,21 @@ def _existing_cluster(spec: ClusterSpec) -> "Iterator[Client]":
         raise InvalidInput(
             f"no scheduler answers at {address} ({_first_line(error)}); {_HOW_TO_START}"
         ) from error
-    with client:
+    try:
         _check_workers(client, address)
         yield client
+    finally:
+        _close(client)
+
+
+def _close(client: "Client") -> None:
+    try:
+        client.close()
+    except (OSError, ValueError):
+        # Its task that reads from a scheduler that died could not reconnect, and ended with an
+        # error that `close` raises again (Tornado: "IOStream is not idle; cannot convert to SSL").
+        client._handle_report_task = None  # noqa: SLF001 - so that `close` does not wait for it
+        client.close()
 
 
 def _probe(address: str, security: "Security") -> None:

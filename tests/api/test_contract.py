@@ -12,7 +12,6 @@ from pydantic import TypeAdapter
 from app.api.answers import (
     CurveView,
     ExperimentView,
-    OptionsView,
     QTableView,
     RaceView,
     RecordingView,
@@ -24,6 +23,7 @@ from app.api.answers import (
 )
 from app.api.contract import operations, problems_of
 from app.api.experiment_answers import SummaryView, TrialsView
+from app.api.option_answers import OptionsView
 from app.api.problems import STATUSES
 from app.domain.errors import HexapodError
 from app.server import create_app

@@ -14,6 +14,10 @@ PATIENCE_MS = 60_000
 expect.set_options(timeout=PATIENCE_MS)
 
 _AXE = Path(__file__).with_name("vendor") / "axe.min.js"
+# Those that end: a colour on its way to another is no colour of the page.
+_TRANSITIONS_HAVE_ENDED = """() => Promise.all(document.getAnimations()
+    .filter(({effect}) => effect.getComputedTiming().endTime !== Infinity)
+    .map(animation => animation.finished.catch(() => {})))"""
 _METRES = re.compile(r"−?\d+\.\d\d\sm")
 
 
@@ -83,6 +87,7 @@ class Dashboard:
     def violations(self) -> list[str]:
         """Return axe's violations on the page, without viser's own page in the frame."""
         self.page.evaluate(_AXE.read_text("utf-8"))
+        self.page.evaluate(_TRANSITIONS_HAVE_ENDED)
         found = self.page.evaluate("axe.run(document, {iframes: false})")
         return [f"{v['id']}: {n['html']}" for v in found["violations"] for n in v["nodes"]]
 

@@ -109,6 +109,30 @@ def test_an_existing_cluster_gives_the_same_results_until_its_scheduler_dies(
             list(running)
 
 
+def test_a_scheduler_that_dies_as_the_client_reconnects_is_lost(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def connection_that_closed_meanwhile(*_: object, **__: object) -> None:
+        raise ValueError("IOStream is not idle; cannot convert to SSL")
+
+    with scheduler(tmp_path, tls=True) as foreign:
+        foreign.worker()
+        running = run_trials(trials_of(small(seeds=20)), foreign.where)
+        next(running)
+        # Tornado raises this if the connection is closed between connecting and the handshake.
+        monkeypatch.setattr(
+            "tornado.tcpclient.IOStream.start_tls", connection_that_closed_meanwhile
+        )
+        foreign.process.kill()
+        foreign.process.wait()
+        port = int(str(foreign.where.scheduler).rpartition(":")[2])
+        with (
+            socket.create_server(("127.0.0.1", port)),
+            pytest.raises(ClusterLost, match="what was done is kept"),
+        ):
+            list(running)
+
+
 def test_a_worker_with_other_versions_is_refused_by_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

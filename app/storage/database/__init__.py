@@ -1,7 +1,8 @@
 """The run store in a database: SQLite in the data folder, or PostgreSQL.
 
 Start reading at `opening`, which opens the store of a server; `read_only` opens it for commands.
-`store` is the `RunStore`; its parts are `curves`, `trials`, `keys` and `progress`.
+`store` is the `RunStore`; its parts are `artifact_rows`, `curves`, `trials`, `keys`
+and `progress`.
 `schema` defines the tables, `columns` their types, `migration` and `migrations` upgrade them.
 `queries` and `rows` read and decode rows of runs, tolerating damaged ones.
 `engine` runs transactions, retries them, and translates driver errors; `fair_semaphore` queues

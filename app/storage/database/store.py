@@ -3,7 +3,7 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
-from typing import Any, TypeVar
+from typing import Any
 
 from sqlalchemy import (
     ColumnElement,
@@ -18,9 +18,9 @@ from sqlalchemy import (
     update,
 )
 
-from app.domain.errors import DamagedFile
 from app.storage.artifact_file import ArtifactFile
 from app.storage.artifacts import ArtifactFiles, StoredFile
+from app.storage.database.artifact_rows import Artifacts
 from app.storage.database.columns import UtcTime
 from app.storage.database.curves import Curves
 from app.storage.database.engine import Database
@@ -37,7 +37,7 @@ from app.storage.database.queries import (
     sorts_before,
 )
 from app.storage.database.rows import decode_run, encode_fields, encode_run, try_decode_run
-from app.storage.database.schema import ARTIFACTS, RUNS
+from app.storage.database.schema import RUNS
 from app.storage.database.trials import Trials
 from app.storage.disk_space import START_BYTES
 from app.storage.errors import Conflict, Damaged, StorageFailed
@@ -58,9 +58,7 @@ from app.storage.run import (
 )
 from app.storage.sessions import SessionRows
 
-T = TypeVar("T")
 _INTERRUPTED_ERROR = "The server ended before the run did."
-_FILE = (ARTIFACTS.c.file, ARTIFACTS.c.size, ARTIFACTS.c.sha256)
 
 
 class RunStore:
@@ -77,6 +75,7 @@ class RunStore:
     def __init__(self, database: Database, files: ArtifactFiles) -> None:
         self._database, self._files = database, files
         self._progress = ProgressCache()
+        self._artifacts = Artifacts(database, files)
         self._curves, self._trials, self._keys = Curves(database), Trials(database), Keys(database)
         self.sessions = SessionRows(database)
 
@@ -136,8 +135,7 @@ class RunStore:
             connection.execute(insert(RUNS), [encode_run(added)])
             self._curves.insert(connection, added.id, content.evaluations)
             self._trials.insert(connection, added.id, content.trials)
-            if stored:
-                connection.execute(insert(ARTIFACTS), _artifact_rows(added.id, stored))
+            self._artifacts.insert(connection, added.id, stored)
             self._keys.insert(connection, key, added.id)
             # Decoded again, so that a run that could not be read later is rejected now.
             return decode_run(fetch_run_row(connection, added.id))
@@ -173,13 +171,13 @@ class RunStore:
         return run
 
     def find(self, run_id: str) -> AnyRun:
-        # Read before the row: an entry is dropped only after its row was written, so that the
-        # progress seen by a reader never decreases.
         """Return the run with its newest progress, or a `DamagedRun` if it cannot be decoded.
 
         Raises:
             NotFound: if there is no such run.
         """
+        # Read before the row: an entry is dropped only after its row was written, so that the
+        # progress seen by a reader never decreases.
         progress = self._progress.get(run_id)
         row = self._database.read(lambda connection: fetch_run_row(connection, run_id))
         return try_decode_run(_with_progress(row, progress))
@@ -316,10 +314,7 @@ class RunStore:
             if state in NOT_ENDED:
                 raise Conflict(f"{row['kind']} {run_id} is {state}; stop it first", state)
             is_this_run = has_public_id(connection, run_id)
-            files = select(ARTIFACTS.c.file).where(
-                ARTIFACTS.c.run_id.in_(select(RUNS.c.id).where(is_this_run))
-            )
-            names = connection.execute(files).scalars().all()
+            names = self._artifacts.file_names(connection, is_this_run)
             connection.execute(delete(RUNS).where(is_this_run))
             return names
 
@@ -379,57 +374,19 @@ class RunStore:
             StorageFull: if there is too little disk space.
         """
         self.get(run_id)
-        columns = encode_fields(fields)
-        stored = self._files.write(data)
-        of_this_name = ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name
-
-        def work(connection: Connection) -> Sequence[str]:
-            fetch_run_row(connection, run_id, for_update=True)
-            former = select(ARTIFACTS.c.file).where(*of_this_name)
-            names = connection.execute(former).scalars().all()
-            connection.execute(delete(ARTIFACTS).where(*of_this_name))
-            connection.execute(insert(ARTIFACTS), _artifact_rows(run_id, {name: stored}))
-            if columns:
-                of_run = RUNS.c.id == run_id
-                connection.execute(update(RUNS).where(of_run).values(columns))
-            return names
-
-        try:
-            former = self._database.write(work)
-        except BaseException as error:
-            # As in `add`: after an outage the transaction may have been committed.
-            if not isinstance(error, StorageFailed):
-                self._files.remove(stored.file)
-            raise
+        self._artifacts.put(run_id, name, data, encode_fields(fields))
         self._invalidate_progress(run_id, fields)
-        # After a retried commit the new file itself is among the former ones.
-        self._files.remove(*(name for name in former if name != stored.file))
 
     def artifact(self, run_id: str, name: str) -> bytes | None:
         """Return the content of a file of the run; None if it has no file of this name."""
-        return self._read_artifact(run_id, name, self._files.read)
+        return self._artifacts.read(run_id, name, self._files.read)
 
     def open_artifact(self, run_id: str, name: str) -> ArtifactFile | None:
         """Open a file of the run for reading in chunks; None if it has no file of this name.
 
         The caller closes it.
         """
-        return self._read_artifact(run_id, name, self._files.open)
-
-    def _read_artifact(
-        self, run_id: str, name: str, read: Callable[[StoredFile, str], T]
-    ) -> T | None:
-        label = f"{name} of run {run_id}"
-        missing: StoredFile | None = None
-        while (stored := self._artifact_row(run_id, name)) is not None:
-            try:
-                return read(stored, label)
-            except FileNotFoundError as error:
-                # A concurrent `put_artifact` may have replaced it since the query: look again.
-                if stored == missing:
-                    raise DamagedFile(f"{label} is missing from the data folder") from error
-                missing = stored
-        return None
+        return self._artifacts.read(run_id, name, self._files.open)
 
     def interrupt_all(self) -> Sequence[str]:
         """Mark every unended run as interrupted, after the server that ran it crashed.
@@ -462,23 +419,11 @@ class RunStore:
         Returns:
             the number of deleted files.
         """
-        names = select(ARTIFACTS.c.file)
-        files = self._database.read(lambda connection: connection.execute(names).scalars().all())
-        return self._files.delete_orphans(files)
+        return self._artifacts.delete_orphans()
 
     def _invalidate_progress(self, run_id: str, fields: Mapping[str, Any]) -> None:
         if "done" in fields:
             self._progress.drop(run_id)
-
-    def _artifact_row(self, run_id: str, name: str) -> StoredFile | None:
-        query = select(*_FILE).where(ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name)
-
-        def work(connection: Connection) -> Sequence[Row]:
-            fetch_run_row(connection, run_id)
-            return fetch_rows(connection, query)
-
-        rows = self._database.read(work)
-        return StoredFile(**rows[0]) if rows else None
 
 
 def _is_of_kind(connection: Connection, kind: Kind) -> ColumnElement[bool]:
@@ -489,14 +434,6 @@ def _is_of_kind(connection: Connection, kind: Kind) -> ColumnElement[bool]:
     is_unknown = RUNS.c.kind.not_in(KINDS)
     unknown = connection.execute(select(RUNS.c.id).where(is_unknown)).scalars().all()
     return or_(RUNS.c.kind == kind, is_unknown) if unknown else RUNS.c.kind == kind
-
-
-def _artifact_rows(run_id: str, stored: Mapping[str, StoredFile]) -> list[Row]:
-    now = datetime.now(UTC)
-    return [
-        {"run_id": run_id, "name": name, "written_at": now, **one._asdict()}
-        for name, one in stored.items()
-    ]
 
 
 def _with_progress(row: Row, progress: Mapping[str, Any]) -> Row:
