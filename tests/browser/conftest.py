@@ -25,8 +25,11 @@ def server(tmp_path: Path) -> Iterator[Serving]:
 
 
 @pytest.fixture
-def dashboard(page: Page) -> Iterator[Dashboard]:
-    """A page that fails its test if it complained: on the console, or about an answer."""
-    watched = Dashboard(page)
+def dashboard(page: Page, request: pytest.FixtureRequest) -> Iterator[Dashboard]:
+    """A page that fails its test if it complained: on the console, or about an answer.
+
+    Its 3D view loads only in tests marked `looks_at_3d`.
+    """
+    watched = Dashboard(page, has_3d=request.node.get_closest_marker("looks_at_3d") is not None)
     yield watched
     assert watched.complaints == []

@@ -24,9 +24,18 @@ _METRES = re.compile(r"−?\d+\.\d\d\sm")
 class Dashboard:
     """A page of it, and what went wrong on it."""
 
-    def __init__(self, page: Page) -> None:
-        """Listen to what the page complains about; nothing is opened."""
+    def __init__(self, page: Page, *, has_3d: bool = True) -> None:
+        """Listen to what the page complains about; nothing is opened.
+
+        Args:
+            page: an empty tab.
+            has_3d: whether its 3D view loads. Most tests do not look at it, and drawn in software
+                it takes more time than all the rest of the page.
+        """
         self.page = page
+        self._has_3d = has_3d
+        if not has_3d:
+            page.route("**/viewer/**", lambda route: route.abort())
         self.complaints: list[str] = []
         page.set_default_timeout(PATIENCE_MS)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
@@ -34,10 +43,11 @@ class Dashboard:
         page.on("response", self._answered)
 
     def open(self, address: str) -> None:
-        """Open it, and wait until it is live and the stage has a picture."""
+        """Open it, and wait until it is live and the stage has a picture, if it is to have one."""
         self.page.goto(address)
         expect(self.page.locator(".live")).to_contain_text("live")
-        self.wait_for_stage()
+        if self._has_3d:
+            self.wait_for_stage()
 
     def wait_for_stage(self) -> None:
         """Wait until the 3D client has its stream."""

@@ -11,6 +11,7 @@ from tests.browser.serving import Serving, serving
 pytestmark = pytest.mark.timeout(300)
 
 
+@pytest.mark.looks_at_3d
 def test_the_last_picture_stays_until_it_is_back(dashboard: Dashboard, tmp_path: Path) -> None:
     page = dashboard.page
     first = Serving(tmp_path)

@@ -93,8 +93,11 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
         dashboard.button("Run Sweep: 5001 trials").click()
         expect(head(dashboard)).to_contain_text("a second")
         expect(page.get_by_role("img", name=re.compile(r"^\d+ seeds, typically"))).to_be_visible()
-        page.goto("about:blank")
         server.kill()
+        expect(page.locator(".cut-off-note")).to_be_visible()
+        assert dashboard.violations() == []
+        page.goto("about:blank")
+        dashboard.complaints.clear()
     with serving(tmp_path) as server:
         visit(dashboard, server)
         expect(head(dashboard).locator(".state")).to_have_text("interrupted")
@@ -146,7 +149,7 @@ def test_links_carry_the_form_and_mistakes_hold_it_back(
 def test_reports_fit_a_phone(browser: Browser, small_runs: list[str], theme: str) -> None:
     scheme: Literal["light", "dark"] = "light" if theme == "light" else "dark"
     with browser.new_context(viewport=PHONE, color_scheme=scheme) as context:
-        dashboard = Dashboard(context.new_page())
+        dashboard = Dashboard(context.new_page(), has_3d=False)
         page = dashboard.page
         for address in small_runs:
             page.goto(address)
@@ -191,7 +194,7 @@ def test_spectators_see_the_report_without_controls(
         expect(page.get_by_text("No experiment has been run here.")).to_be_visible()
 
         with browser.new_context() as context:
-            operator = Dashboard(context.new_page())
+            operator = Dashboard(context.new_page(), has_3d=False)
             operator.page.goto(f"{guarded.address}?token=for-the-operator")
             expect(operator.primary).to_be_visible()
             visit(operator, guarded, **SMALL)

@@ -14,6 +14,7 @@ pytestmark = pytest.mark.timeout(300)
 PHONE = {"width": 390, "height": 844}
 
 
+@pytest.mark.looks_at_3d
 def test_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
     dashboard.open(server.address)
@@ -62,6 +63,7 @@ def test_a_number_that_is_none_holds_the_button_back(
     expect(dashboard.primary).not_to_have_attribute("aria-disabled", "true")
 
 
+@pytest.mark.looks_at_3d
 def test_keys(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
     dashboard.open(f"{server.address}?steps=100000&pace=8")
@@ -91,7 +93,7 @@ def test_a_phone_needs_no_scrolling_sideways(
 ) -> None:
     scheme = "light" if theme == "light" else "dark"
     with browser.new_context(viewport=PHONE, color_scheme=scheme) as context:  # type: ignore[arg-type]
-        dashboard = Dashboard(context.new_page())
+        dashboard = Dashboard(context.new_page(), has_3d=False)
         dashboard.open(shared_server.address)
         page = dashboard.page
         stage = page.locator(".stage")
@@ -123,6 +125,7 @@ def test_axe_finds_nothing(dashboard: Dashboard, shared_server: Serving, theme: 
     assert dashboard.violations() == []
 
 
+@pytest.mark.looks_at_3d
 def test_the_theme_is_chosen_and_remembered(dashboard: Dashboard, shared_server: Serving) -> None:
     page = dashboard.page
     dashboard.open(shared_server.address)

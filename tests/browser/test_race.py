@@ -15,6 +15,7 @@ SHORT = urlencode({"steps": 40, "evaluate_every": 20, "race_steps": 6})
 LONG = urlencode({"steps": 100_000, "pace": 8})
 
 
+@pytest.mark.looks_at_3d
 def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
     dashboard.open(f"{server.address}?{SHORT}")
@@ -135,7 +136,7 @@ def test_two_operators_and_one_stage(
     held = dashboard.get("/api/v1/stage")["run_id"]
 
     with browser.new_context() as context:
-        other = Dashboard(context.new_page())
+        other = Dashboard(context.new_page(), has_3d=False)
         other.open(f"{server.address}?{LONG}")
         other.button("Train only").click()
         expect(other.page.get_by_text("Another run is live on the stage")).to_be_visible()
