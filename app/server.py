@@ -23,6 +23,7 @@ from app.api import (
     pages,
     problems,
     races,
+    runs,
     stage,
     trainings,
     transfer,
@@ -134,7 +135,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
 def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) -> None:
     versioned = APIRouter(prefix="/api/v1")
     # First, so that no other route matches `import` as a run's id.
-    for module in (transfer, trainings, races, experiments, stage, events, options):
+    for module in (transfer, trainings, races, experiments, runs, stage, events, options):
         versioned.include_router(module.router)
     versioned.include_router(start_routes(AgentBodies(agents)))
     app.include_router(versioned)

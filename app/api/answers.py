@@ -277,6 +277,12 @@ class ExperimentPage(Page):
     items: list[ExperimentView]
 
 
+class RunPage(Page):
+    """Page of runs of every kind."""
+
+    items: list[TrainingView | RaceView | ExperimentView]
+
+
 class Evaluation(Answer):
     """Evaluation of a training: the distance walked [m] after `step` steps of practice."""
 

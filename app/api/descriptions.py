@@ -7,13 +7,14 @@ from app.domain.gait import NAMED_GAITS
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS
 from app.domain.settings import declared_fields
-from app.domain.text import NAMES
+from app.domain.text import MAX_NAME, NAMES
 from app.experiments.config import EXPERIMENTS, MAX_SEEDS
 from app.runs.clocks import CLOCKS
 from app.runs.config import MAX_LANES, SIMULATORS, TrainingConfig
-from app.storage.run import STATES
+from app.storage.run import KINDS, STATES
 
 MAX_PAGE = 100
+MAX_SEARCH = MAX_NAME
 
 
 def _one_of(names: Iterable[str]) -> str:
@@ -48,7 +49,9 @@ VALID: Mapping[str, str] = {
     "playing": "true or false",
     "speed": "a number from 0.25 to 64, or time-lapse",
     "clock": _one_of(CLOCKS),
+    "kind": _one_of(KINDS),
     "state": _one_of(STATES),
+    "search": f"a part of the name or the id, of at most {MAX_SEARCH} characters",
     "limit": f"a whole number from 1 to {MAX_PAGE}",
     "cursor": "the next_cursor of the page before",
     "idempotency-key": "1 to 200 printable ASCII characters without spaces",

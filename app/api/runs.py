@@ -1,9 +1,12 @@
-"""Routes common to all kinds of runs: list, get, stop, pause, resume, delete."""
+"""Routes common to all kinds of runs: list, get, stop, pause, resume, delete.
+
+`/runs` lists and finds runs of every kind; the other routes are of one kind each.
+"""
 
 from collections.abc import Callable, Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
-from fastapi import APIRouter, Path, Query, Request
+from fastapi import APIRouter, Depends, Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import (
@@ -12,17 +15,39 @@ from app.api.answers import (
     Page,
     RacePage,
     RaceView,
+    RunPage,
     RunView,
     TrainingPage,
     TrainingView,
 )
 from app.api.deps import Services, ServicesDep
-from app.api.descriptions import MAX_PAGE, VALID
+from app.api.descriptions import MAX_PAGE, MAX_SEARCH, VALID
 from app.jobs.jobs import Jobs
 from app.storage.errors import Damaged, NotFound
 from app.storage.run import AnyRun, DamagedRun, Kind, Run, State
 
 RunPath = Annotated[str, Path(description="of the run")]
+
+
+class Listing(NamedTuple):
+    """Which runs a list has, and which page of it."""
+
+    state: State | None
+    search: str | None
+    limit: int
+    cursor: str | None
+
+
+def _listing(
+    state: Annotated[State | None, Query(description=VALID["state"])] = None,
+    search: Annotated[str | None, Query(max_length=MAX_SEARCH, description=VALID["search"])] = None,
+    limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 50,
+    cursor: Annotated[str | None, Query(max_length=64, description=VALID["cursor"])] = None,
+) -> Listing:
+    return Listing(state, search, limit, cursor)
+
+
+ListingDep = Annotated[Listing, Depends(_listing)]
 
 
 def find(services: Services, kind: Kind, run_id: str) -> Run:
@@ -59,21 +84,43 @@ def accepted(request: Request, view: dict[str, Any]) -> Response:
     return JSONResponse(view, 202, {"Location": location})
 
 
+router = APIRouter(prefix="/runs", tags=["runs"])
+
+
+@router.get("", summary="The runs of every kind, newest first", response_model=RunPage)
+def list_runs(
+    services: ServicesDep,
+    listing: ListingDep,
+    kind: Annotated[Kind | None, Query(description=VALID["kind"])] = None,
+) -> Response:
+    """List runs, filtered by kind, state, and a part of the name or id."""
+    return _page(services, kind, listing)
+
+
+@router.get(
+    "/{run_id}",
+    summary="Get a run of any kind",
+    response_model=TrainingView | RaceView | ExperimentView,
+)
+def get_any_run(services: ServicesDep, run_id: RunPath) -> Response:
+    """Return a run whose kind is not known."""
+    return JSONResponse(services.jobs.view(services.store.find(run_id)))
+
+
+def _page(services: Services, kind: Kind | None, listing: Listing) -> Response:
+    page = services.store.list(kind, **listing._asdict())
+    items = [services.jobs.view(run) for run in page.items]
+    return JSONResponse({"items": items, "next_cursor": page.next_cursor})
+
+
 def run_routes(kind: Kind) -> APIRouter:
     """Create the routes common to all kinds of runs, for one kind."""
     router = APIRouter(prefix=f"/{kind}s", tags=[f"{kind}s"])
     view, page = _VIEWS[kind]
 
     @router.get("", summary=f"The {kind}s, newest first", name=f"list_{kind}s", response_model=page)
-    def list_runs(
-        services: ServicesDep,
-        state: Annotated[State | None, Query(description=VALID["state"])] = None,
-        limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 50,
-        cursor: Annotated[str | None, Query(max_length=64, description=VALID["cursor"])] = None,
-    ) -> Response:
-        page = services.store.list(kind, state, limit, cursor)
-        items = [services.jobs.view(run) for run in page.items]
-        return JSONResponse({"items": items, "next_cursor": page.next_cursor})
+    def list_runs(services: ServicesDep, listing: ListingDep) -> Response:
+        return _page(services, kind, listing)
 
     @router.get("/{run_id}", summary=phrase("{}", kind), name=f"get_{kind}", response_model=view)
     def get_run(services: ServicesDep, run_id: RunPath) -> Response:

@@ -15,6 +15,7 @@ from app.api.answers import (
     QTableView,
     RaceView,
     RecordingView,
+    RunPage,
     StageView,
     TimelineView,
     TrainingPage,
@@ -173,6 +174,7 @@ def real_responses(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, An
     yield TrainingView, api.tell(changed, "stop").json()
     yield TrainingView, training
     yield TrainingPage, api.get("/trainings")
+    yield RunPage, api.get("/runs")
     yield CurveView, api.get(f"/trainings/{training['id']}/curve")
     yield QTableView, api.get(f"/trainings/{training['id']}/q-table")
     yield RecordingView, api.get(f"/races/{race['id']}/recording")

@@ -119,6 +119,29 @@ def test_list_filters_by_kind_and_state_and_paginates(store: RunStore) -> None:
     assert store.list(kind="race", limit=2, cursor=page.next_cursor).next_cursor is None
 
 
+def test_list_finds_a_part_of_a_name_or_id_literally(store: RunStore) -> None:
+    runs = [
+        training(f"0{number}", name=name)
+        for number, name in enumerate(["Slow tripod", "ripple 100%", "ripple 100 steps", "a_b"])
+    ]
+    store.create(*runs)
+
+    def found(search: str) -> list[str]:
+        return [run.name for run in store.list(search=search).runs]
+
+    assert found("TRIPOD") == ["Slow tripod"]
+    assert found("100%") == ["ripple 100%"], "% is no wildcard"
+    assert found("a_b") == ["a_b"], "_ is no wildcard"
+    assert found("02") == ["ripple 100 steps"], "by id"
+    assert found("\\") == []
+    assert found("") == found("0") == [run.name for run in reversed(runs)]
+    page = store.list(kind="training", search="ripple", limit=1)
+    assert [run.name for run in page.runs] == ["ripple 100 steps"]
+    page = store.list(kind="training", search="ripple", limit=1, cursor=page.next_cursor)
+    assert [run.name for run in page.runs] == ["ripple 100%"]
+    assert page.next_cursor is None
+
+
 def test_progress_is_visible_at_once_and_survives_changes(store: RunStore) -> None:
     run = queued_run(store)
     store.change(run.id, QUEUED, "running")

@@ -188,6 +188,7 @@ class RunStore:
         state: State | None = None,
         limit: int = 50,
         cursor: str | None = None,
+        search: str | None = None,
     ) -> Page:
         """Return one page of runs, newest first (keyset pagination by id).
 
@@ -199,10 +200,16 @@ class RunStore:
             state: only runs in this state; None for all.
             limit: items per page.
             cursor: `Page.next_cursor` of the page before; None for the first page.
+            search: only runs with this text in their name or id, in upper or lower case.
         """
         newest_first = select_runs().order_by(RUNS.c.id.desc()).limit(limit + 1)
         if state is not None:
             newest_first = newest_first.where(RUNS.c.state == state)
+        if search:
+            is_found = [
+                column.icontains(search, autoescape=True) for column in (RUNS.c.name, RUNS.c.id)
+            ]
+            newest_first = newest_first.where(or_(*is_found))
 
         def work(connection: Connection) -> Sequence[Row]:
             query = newest_first
