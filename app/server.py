@@ -35,6 +35,7 @@ from app.api.deps import Services
 from app.api.disconnects import Disconnects
 from app.api.host_check import HostGuard
 from app.api.memory_limit import BodyLimit, HeldBodies
+from app.api.problem_pages import ProblemPages
 from app.api.rate_limit import RateLimit
 from app.api.security_headers import SecurityHeaders
 from app.api.starts import start_routes
@@ -128,6 +129,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     app.add_middleware(TokenGuard, settings=settings, sessions=sessions)
     app.add_middleware(HostGuard, settings=settings)
     app.add_middleware(WellFormed)
+    app.add_middleware(ProblemPages)
     app.add_middleware(SecurityHeaders)
     return app
 

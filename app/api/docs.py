@@ -2,13 +2,12 @@
 
 import json
 from collections.abc import Iterator, Mapping
-from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
 from fastapi import APIRouter, Request
-from jinja2 import Environment, FileSystemLoader, select_autoescape
 from starlette.responses import HTMLResponse, Response
+
+from app.api.templates import render as render_template
 
 router = APIRouter(include_in_schema=False)
 
@@ -33,16 +32,7 @@ def render(schema: Mapping[str, Any], base: str) -> str:
         for verb in (v for v in _METHODS if v in verbs):
             tag = (verbs[verb].get("tags") or ["other"])[0]
             groups.setdefault(tag, []).append(_operation(verb, path, verbs[verb], schema, base))
-    return _environment().get_template("docs.html").render(info=schema["info"], groups=groups)
-
-
-@lru_cache(maxsize=1)
-def _environment() -> Environment:
-    return Environment(
-        loader=FileSystemLoader(Path(__file__).parent / "templates"),
-        autoescape=select_autoescape(),
-        trim_blocks=True,
-    )
+    return render_template("docs.html", info=schema["info"], groups=groups)
 
 
 def _operation(

@@ -188,6 +188,9 @@ def test_token_link_sets_a_cookie_and_redirects_without_the_token(serve: Serve) 
     assert TOKEN not in cookie
     assert client.put("/api/v1/stage", json={"playing": True}).status_code == 200
     refused(client.get("/?token=wrong"), 401, "not the server's token")
+    page = client.get("/?token=wrong", headers={"Accept": "text/html,*/*;q=0.8"})
+    assert (page.status_code, page.headers["content-type"]) == (401, "text/html; charset=utf-8")
+    assert "This is not the server&#39;s token" in page.text
     secure = serve(token=TOKEN, public_url="https://hexapods.example").client
     shown = {"Host": "hexapods.example"}
     cookie = secure.get(f"/?token={TOKEN}", headers=shown).headers["set-cookie"]

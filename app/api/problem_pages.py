@@ -1,0 +1,66 @@
+"""Problem documents as web pages, for people whose browser opened an address that is refused."""
+
+import json
+from http import HTTPStatus
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import HTMLResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.api.problems import MEDIA_TYPE
+from app.api.templates import render
+
+
+class ProblemPages:
+    """Middleware that sends a problem document as a page where the request prefers HTML.
+
+    Browsers ask for `text/html` first when a person opens an address, and never in a script's
+    request. Status and headers stay.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Call the app, and rewrite its answer if it is a problem document."""
+        if scope["type"] != "http" or not _prefers_html(Headers(scope=scope)):
+            await self._app(scope, receive, send)
+            return
+        start: Message | None = None
+        body = b""
+
+        async def send_page(message: Message) -> None:
+            nonlocal start, body
+            if message["type"] == "http.response.start":
+                headers = Headers(scope=message)
+                if headers.get("content-type") != MEDIA_TYPE:
+                    await send(message)
+                    return
+                start = message
+            elif start is None:
+                await send(message)
+            else:
+                body += message.get("body", b"")
+                if not message.get("more_body", False):
+                    await _page(start, body, scope)(scope, receive, send)
+
+        await self._app(scope, receive, send_page)
+
+
+def _prefers_html(headers: Headers) -> bool:
+    return headers.get("accept", "").lstrip().startswith("text/html")
+
+
+def _page(start: Message, body: bytes, scope: Scope) -> HTMLResponse:
+    """Render a problem document; the answer to a HEAD request has no body to read it from."""
+    status = HTTPStatus(start["status"])
+    detail = json.loads(body)["detail"] if body else ""
+    # Relative, so that it is valid behind a proxy that serves the app under a prefix.
+    home = "../" * max(scope["path"].count("/") - 1, 0) or "./"
+    page = render("problem.html", title=status.phrase, detail=detail, home=home)
+    response = HTMLResponse(page, status)
+    for name, value in MutableHeaders(scope=start).items():
+        if name not in ("content-type", "content-length"):
+            response.headers.append(name, value)
+    response.headers.add_vary_header("Accept")
+    return response
