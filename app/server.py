@@ -5,7 +5,7 @@ import contextlib
 import socket
 import sys
 import threading
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from types import FrameType
 
 import uvicorn
@@ -172,8 +172,12 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
             await asyncio.to_thread(services.jobs.close)
 
 
-def serve(settings: Settings) -> None:
+def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> None:
     """Serve until SIGINT or SIGTERM.
+
+    Args:
+        settings: settings of the server.
+        on_ready: called once the server accepts connections, with its port.
 
     Raises:
         InvalidInput: if the data folder cannot be written or is locked by another server, or the
@@ -205,7 +209,9 @@ def serve(settings: Settings) -> None:
             backlog=ACCEPTS_AT_ONCE,
             **websocket_options(),
         )
-        _Server(config, app, settings, listener, lost).run(sockets=[listener])
+        server = _Server(config, app, settings, listener, lost)
+        server.on_ready = on_ready
+        server.run(sockets=[listener])
     if lost.is_set():
         raise OwnershipLost("another server has taken the database over, so this one has ended")
 
@@ -224,6 +230,7 @@ class _Server(uvicorn.Server):
         super().__init__(config)
         self._app, self._settings, self._listener = app, settings, listener
         self._lost = lost
+        self.on_ready: Callable[[int], None] | None = None
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
@@ -233,6 +240,8 @@ class _Server(uvicorn.Server):
             address = self._settings.public_url or _local_address(self._listener, "localhost")
             sys.stdout.write(f"Racing Hexapods is at {address} (Ctrl-C stops it)\n")
             sys.stdout.flush()
+            if self.on_ready is not None:
+                self.on_ready(self._listener.getsockname()[1])
 
     async def on_tick(self, counter: int) -> bool:
         if counter % _TICKS_PER_S == 0:

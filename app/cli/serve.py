@@ -5,6 +5,7 @@ import os
 import secrets
 import socket
 import sys
+from functools import partial
 from typing import Any
 
 import segno
@@ -41,9 +42,8 @@ def run(options: argparse.Namespace) -> int:
         given["host"] = options.host or "0.0.0.0"  # noqa: S104 - that is what --share is for
         given["token"] = read_token() or secrets.token_urlsafe(24)
     settings = read_settings(**given)
-    if options.share:
-        show_links(settings)
-    serve(settings)
+    # A link that is opened before the server answers looks broken.
+    serve(settings, on_ready=partial(show_links, settings) if options.share else None)
     return 0
 
 
@@ -52,9 +52,9 @@ def read_token() -> str | None:
     return os.environ.get("HEXAPODS_TOKEN") or None
 
 
-def show_links(settings: Settings) -> None:
+def show_links(settings: Settings, port: int) -> None:
     """Print the links of operators and spectators, the latter also as a QR code."""
-    base = settings.public_url or f"http://{local_address()}:{settings.port}"
+    base = settings.public_url or f"http://{local_address()}:{port}"
     print(f"Operator (may start and stop):  {base}/?token={settings.token}")
     print(f"Spectators (may watch):         {base}/")
     segno.make(f"{base}/", micro=False).terminal(out=sys.stdout, compact=True)
