@@ -11,7 +11,7 @@ export default [
     languageOptions: { globals: globals.browser },
   },
   {
-    files: ["static/js/first-theme.js", "static/viewer/*.js"],
+    files: ["static/viewer/*.js"],
     languageOptions: { sourceType: "script" },
   },
   {

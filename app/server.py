@@ -97,6 +97,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         version=__version__,
         description=_DESCRIPTION,
         lifespan=_lifespan,
+        openapi_url=None,
         docs_url=None,
         redoc_url=None,
     )

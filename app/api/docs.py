@@ -1,4 +1,4 @@
-"""API documentation as an HTML page without scripts, rendered from the OpenAPI document."""
+"""The OpenAPI document, and an HTML page without scripts that is rendered from it."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -7,11 +7,23 @@ from typing import Any
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
 
+from app.api.compression import CompressedContent
 from app.api.templates import render as render_template
 
 router = APIRouter(include_in_schema=False)
 
 _METHODS = ("get", "post", "put", "patch", "delete")
+
+
+@router.get("/openapi.json")
+def get_openapi(request: Request) -> Response:
+    """Return the OpenAPI document."""
+    state = request.app.state
+    if not hasattr(state, "openapi_document"):
+        document = json.dumps(request.app.openapi(), ensure_ascii=False, separators=(",", ":"))
+        state.openapi_document = CompressedContent(document.encode(), "application/json")
+    content: CompressedContent = state.openapi_document
+    return content.response(request.scope)
 
 
 @router.get("/docs")

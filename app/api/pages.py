@@ -1,42 +1,50 @@
-"""Static files of the dashboard, with cache and content security headers."""
+"""The dashboard: its page and static files, compressed, with a content security policy."""
 
 import base64
 import hashlib
+import json
+import mimetypes
+import os
+import posixpath
 import re
 from pathlib import Path
 
 from starlette.requests import Request
-from starlette.responses import FileResponse, Response
+from starlette.responses import Response
 from starlette.routing import BaseRoute, Mount, Route
-from starlette.staticfiles import StaticFiles
+from starlette.staticfiles import PathLike, StaticFiles
 from starlette.types import Scope
 
+from app.api.compression import CompressedContent
+
 _INLINE_SCRIPT = re.compile(r"<script(?![^>]*\ssrc=)[^>]*>(.*?)</script>", re.DOTALL)
-# Revalidate at each use (304): a page and its scripts are then of the same version.
-_REVALIDATE = {"Cache-Control": "no-cache"}
+_IMPORT_MAP = re.compile(r'<script type="importmap">(.*?)</script>', re.DOTALL)
+_ENTRY = re.compile(r'<script type="module" src="([^"]+)"></script>')
+# As all modules write it: at the start of a line, with a relative path in double quotes.
+_IMPORT = re.compile(r'^import [^"]*"(\.[^"]+)";', re.MULTILINE)
 
 
 def page_routes(folder: Path) -> list[BaseRoute]:
-    """Return the routes of the page at `/` and its files under `/static/`.
+    """Return the routes of the page at `/`, as it is now, and of its files under `/static/`.
 
     Args:
         folder: folder of the dashboard, with its `index.html`.
     """
-    index = folder / "index.html"
+    page = with_preloads((folder / "index.html").read_text("utf-8"), folder)
+    policy = {"Content-Security-Policy": content_policy(page)}
+    index = CompressedContent(page.encode(), "text/html", policy)
+    files = _Files(directory=folder)
 
     async def show(request: Request) -> Response:
-        del request
-        policy = content_policy(index.read_text("utf-8"))
-        return FileResponse(index, headers={**_REVALIDATE, "Content-Security-Policy": policy})
+        return index.response(request.scope)
 
     async def favicon(request: Request) -> Response:
-        del request
-        return FileResponse(folder / "favicon.svg", headers=_REVALIDATE)
+        return await files.get_response("favicon.svg", request.scope)
 
     return [
         Route("/", show, name="dashboard"),
         Route("/favicon.ico", favicon, name="favicon"),
-        Mount("/static", _Files(directory=folder), name="static"),
+        Mount("/static", files, name="static"),
     ]
 
 
@@ -51,8 +59,59 @@ def content_policy(page: str) -> str:
     )
 
 
+def with_preloads(page: str, folder: Path) -> str:
+    """Add a preload for each module, so that none waits until another imports it.
+
+    Args:
+        page: the page's HTML, with an import map and one module as entry point.
+        folder: folder of the dashboard, which the page knows as `static`.
+    """
+    entry = _ENTRY.search(page)
+    packages = _IMPORT_MAP.search(page)
+    if entry is None or packages is None:
+        raise ValueError("The page has no import map, or no module as its entry point.")
+    modules = [posixpath.normpath(path) for path in json.loads(packages[1])["imports"].values()]
+    modules += imported_modules(entry[1], folder)
+    links = "".join(f'<link rel="modulepreload" href="{path}">\n' for path in modules)
+    return page[: entry.start()] + links + page[entry.start() :]
+
+
+def imported_modules(entry: str, folder: Path) -> list[str]:
+    """Return a module and all that it imports by relative paths, the nearest first.
+
+    Args:
+        entry: the module's path, which begins with `static/`.
+        folder: the folder that `static` stands for.
+    """
+    found = [entry]
+    for module in found:
+        source = (folder / module.removeprefix("static/")).read_text("utf-8")
+        for path in _IMPORT.findall(source):
+            imported = posixpath.normpath(posixpath.join(posixpath.dirname(module), path))
+            if imported not in found:
+                found.append(imported)
+    return found
+
+
 class _Files(StaticFiles):
-    async def get_response(self, path: str, scope: Scope) -> Response:
-        response = await super().get_response(path, scope)
-        response.headers.update(_REVALIDATE)
-        return response
+    """Static files, each held in memory and compressed once per version."""
+
+    def __init__(self, directory: Path) -> None:
+        super().__init__(directory=directory)
+        self._contents: dict[str, tuple[tuple[int, int], CompressedContent]] = {}
+
+    def file_response(
+        self,
+        full_path: PathLike,
+        stat_result: os.stat_result,
+        scope: Scope,
+        status_code: int = 200,
+    ) -> Response:
+        del status_code
+        path, version = str(full_path), (stat_result.st_mtime_ns, stat_result.st_size)
+        known = self._contents.get(path)
+        if known is None or known[0] != version:
+            media_type = mimetypes.guess_type(path)[0] or "text/plain"
+            known = (version, CompressedContent(Path(path).read_bytes(), media_type))
+            self._contents[path] = known
+        return known[1].response(scope)

@@ -1,13 +1,12 @@
 // The user's actions. Each keeps its own error, which is shown beside the control that caused it.
 import { computed, signal } from "@preact/signals";
 import * as api from "./api.js";
-import { agentOf, learns, settingsOf } from "./agents.js";
 import { chooseLearner, form, link, mistakes, raceBody, setField, setFields, trainingBody } from "./form.js";
 import { count, listed, whole } from "./format.js";
-import { limitsOf } from "./limits.js";
 import {
   isActive, isOperator, isRaceRun, laneTables, liveTraining, markAsMine, myWork, presetOf, shownRun, work,
 } from "./selectors.js";
+import { agentOf, learns, limitsOf, settingsOf } from "./settings.js";
 import { markDeleted, options, rates, requestRun, requestStage, runs, scene, setEntry, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */

@@ -1,7 +1,6 @@
 // The form's values, their query string, and the request bodies that they make.
 import { computed, signal } from "@preact/signals";
-import { learners, learns, settingsOf } from "./agents.js";
-import { valueOf } from "./settings.js";
+import { learners, learns, settingsOf, valueOf } from "./settings.js";
 import { options, served } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */

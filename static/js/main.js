@@ -1,21 +1,15 @@
 // Entry point: loads the options, opens the event stream, renders the page.
 import { effect } from "@preact/signals";
 import { render } from "preact";
-import { getOptions, RequestError } from "./api.js";
-import { App } from "./components/app.js";
-import { followCurves } from "./curves.js";
-import { openEvents } from "./events.js";
-import { announceExperiments } from "./experiments/announce.js";
-import { followAddress } from "./experiments/address.js";
-import { followExperiments } from "./experiments/selection.js";
-import { followSummary } from "./experiments/summaries.js";
+import { getOptions, openEvents, RequestError } from "./api.js";
+import { App, listenForKeys } from "./components/app.js";
+import { html } from "./components/elements.js";
+import { announceExperiments, followAddress, followExperiments, followSummary } from "./experiments/runs.js";
 import { readAddress, writeAddress } from "./form.js";
-import { html } from "./html.js";
-import { listenForKeys } from "./keys.js";
-import { announceOutcomes } from "./outcome.js";
+import { followTheme } from "./page.js";
+import { announceOutcomes, followTimeline } from "./race.js";
 import { applyEvent, connection, isLockedOut, options, version } from "./store.js";
-import { followTheme } from "./theme.js";
-import { followTimeline } from "./timeline.js";
+import { followCurves } from "./training.js";
 import { followWhatIf } from "./what-if.js";
 
 const FIRST_RETRY_MS = 500;

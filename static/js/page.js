@@ -1,5 +1,5 @@
-// State of this page alone: the open view, the camera, the help dialog, the layout.
-import { signal } from "@preact/signals";
+// State of this page alone: the open view, the camera, the help dialog, the layout, the colour theme.
+import { computed, effect, signal } from "@preact/signals";
 
 /** What the camera follows: "leader", "free", or the number of a lane, from "1". */
 export const view = signal("leader");
@@ -41,3 +41,40 @@ const narrowScreen = matchMedia("(max-width: 1080px)");
 /** Whether the page has one column. */
 export const isNarrow = signal(narrowScreen.matches);
 narrowScreen.addEventListener("change", ({ matches }) => (isNarrow.value = matches));
+
+// ---- the colour theme: light, dark, or the system's; the stage follows it
+
+const KEY = "hexapods:theme";
+const systemDark = matchMedia("(prefers-color-scheme: dark)");
+const systemIsDark = signal(systemDark.matches);
+
+/** The choice: "auto", "light" or "dark". */
+export const theme = signal(document.documentElement.dataset.theme ?? "auto");
+
+/** The theme that is shown: "light" or "dark". */
+export const shownTheme = computed(() =>
+  theme.value === "auto" ? (systemIsDark.value ? "dark" : "light") : theme.value,
+);
+
+export const nextTheme = () => {
+  const order = ["auto", "light", "dark"];
+  theme.value = order[(order.indexOf(theme.value) + 1) % order.length];
+};
+
+export function followTheme() {
+  systemDark.addEventListener("change", ({ matches }) => (systemIsDark.value = matches));
+  effect(() => {
+    if (theme.value === "auto") delete document.documentElement.dataset.theme;
+    else document.documentElement.dataset.theme = theme.value;
+    store(theme.value);
+  });
+}
+
+/** @param {string} value */
+function store(value) {
+  try {
+    localStorage.setItem(KEY, value);
+  } catch {
+    // Storage is forbidden: kept until the page is closed.
+  }
+}

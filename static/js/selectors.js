@@ -1,11 +1,12 @@
-// Values derived from the store: rights, and the runs that the panels are about.
+// Values derived from the store: rights, the runs that the panels are about, and their progress.
 import { computed, signal } from "@preact/signals";
-import { learns } from "./agents.js";
 import { form } from "./form.js";
+import { count, duration, whole } from "./format.js";
+import { learns } from "./settings.js";
 import { options, role, runs, scene, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { FormValues, RobotConfig, Run, State } from "./types.js" */
+/** @import { FormValues, RobotConfig, Run, Scene, State } from "./types.js" */
 
 /** @type {Set<State>} */
 const ACTIVE = new Set(["queued", "running", "paused"]);
@@ -201,4 +202,54 @@ export function simulatedPerDecision(depth, { gait, divisions }) {
   let total = 0;
   for (let level = 1; level <= depth; level += 1) total += moves ** level;
   return total;
+}
+
+// ---- the progress of the running work, or of the playback
+
+/** Run id → when this page first saw it, for an estimate of its own. @type {Map<string, {at: number, done: number}>} */
+const firstSeen = new Map();
+
+/** @param {Run} run */
+function secondsLeft(run) {
+  if (Number.isFinite(run.eta_s)) return run.eta_s ?? null;
+  const { done, total } = run.progress;
+  const now = performance.now() / 1000;
+  const first = firstSeen.get(run.id) ?? { at: now, done };
+  firstSeen.set(run.id, first);
+  return done > first.done ? ((total - done) * (now - first.at)) / (done - first.done) : null;
+}
+
+/** @type {Record<string, string>} */
+const VERBS = { training: "Practising", race: "Simulating the race" };
+
+/** {label, left, share} of the work, else of the playback; null while there is neither. */
+export const progress = computed(() => (work.value ? ofWork(work.value) : ofPlayback(scene.value)));
+
+/** @param {{ requested: Run, current: Run }} work */
+function ofWork({ requested, current }) {
+  const { done, total } = current.progress;
+  const share = total ? done / total : 0;
+  const then = requested === current ? "" : ", then the race";
+  if (current.state === "queued") return { label: `Waiting in the queue${then}`, left: "", share: 0 };
+  const steps = `${whole(done)} of ${count(total, "step")}`;
+  if (current.state === "paused") return { label: `Paused at ${steps}${then}`, left: "", share };
+  const seconds = secondsLeft(current);
+  const left = seconds === null ? "" : `${duration(seconds)} left`;
+  return { label: `${VERBS[current.kind] ?? "Running"}, ${steps}${then}`, left, share };
+}
+
+/** @param {Scene | null} shown */
+function ofPlayback(shown) {
+  if (!shown || shown.kind === "idle" || !shown.duration_s) return null;
+  if (["finished", "waiting", "start-line"].includes(shown.phase)) return null;
+  const speed = shown.shown_speed || 1;
+  const rest = Math.max(0, shown.duration_s - shown.time_s) / speed;
+  const verb = shown.replay ? "Replaying" : "Showing";
+  const isTimeLapse = shown.kind === "training" && stage.value?.speed === "time-lapse";
+  const isPaused = stage.value?.playing === false;
+  return {
+    label: isPaused ? "The playback is paused" : `${verb} the ${shown.kind}`,
+    left: isPaused || isTimeLapse ? "" : `${duration(rest)} left`,
+    share: shown.time_s / shown.duration_s,
+  };
 }

@@ -1,6 +1,9 @@
-// Settings as the server declares them: the kind of their control, their names, and values as text.
+// Settings as the server declares them: their controls, names and limits, and those of each agent.
+import { computed } from "@preact/signals";
+import { whole } from "./format.js";
+import { options, served } from "./store.js";
 
-/** @import { SettingOption, SettingValue } from "./types.js" */
+/** @import { Agent, Limits, SettingOption, SettingValue } from "./types.js" */
 
 /**
  * The kind of control that a setting needs.
@@ -62,3 +65,181 @@ export const fullTitle = ({ title, symbol, unit }) => withUnit(symbol ? `${title
 
 /** @type {(title: string, unit: string | null) => string} */
 const withUnit = (title, unit) => (unit ? `${title} (${unit})` : title);
+
+// ---- limits
+
+/** @type {(value: number) => string} */
+const formatted = (value) => (Number.isInteger(value) ? whole(value) : String(value));
+
+/**
+ * The declaration of a setting, for components: they are formatted once the server has answered.
+ * @type {(field: string) => SettingOption}
+ */
+export const settingOf = (field) => served().settings[field];
+
+/**
+ * The limits of a field; none where the server states none.
+ * @param {string} field
+ * @returns {Limits}
+ */
+export function limitsOf(field) {
+  const setting = options.value?.settings[field];
+  if (setting) return setting;
+  const [minimum, maximum] = options.value?.limits[field] ?? [null, null];
+  return { minimum, maximum, excludes_minimum: false, excludes_maximum: false };
+}
+
+/**
+ * Limits in words: "from 0 to 1", "over 0 and at most 1", "at least 0"; empty without limits.
+ * @param {Limits} limits
+ */
+export function rangeOf({ minimum, maximum, excludes_minimum, excludes_maximum }) {
+  const lower = minimum === null ? "" : `${excludes_minimum ? "over" : "at least"} ${formatted(minimum)}`;
+  const upper = maximum === null ? "" : `${excludes_maximum ? "under" : "at most"} ${formatted(maximum)}`;
+  if (minimum === null || maximum === null) return lower || upper;
+  if (excludes_minimum) return `${lower} and ${upper}`;
+  return `from ${formatted(minimum)} to ${excludes_maximum ? "under " : ""}${formatted(maximum)}`;
+}
+
+/** @type {(value: number, limits: Limits) => boolean} */
+const isWithin = (value, { minimum, maximum, excludes_minimum, excludes_maximum }) =>
+  (minimum === null || value > minimum || (value === minimum && !excludes_minimum)) &&
+  (maximum === null || value < maximum || (value === maximum && !excludes_maximum));
+
+/**
+ * The reason why a number is not valid; null if it is.
+ * @param {number} value
+ * @param {Limits} limits
+ * @param {boolean} isInteger
+ */
+export function mistakeIn(value, limits, isInteger) {
+  const range = rangeOf(limits);
+  const said = range && `, ${range}`;
+  if (!Number.isFinite(value)) return `Enter a number${said}`;
+  if (isInteger && !Number.isInteger(value)) return `Enter a whole number${said}`;
+  return isWithin(value, limits) ? null : `Must be ${range}`;
+}
+
+/**
+ * The numbers of a list with commas, or why it is none.
+ * @param {string} typed
+ * @param {Limits} limits of each number
+ * @param {boolean} isInteger
+ * @returns {{ value?: number[], mistake?: string }}
+ */
+export function parseNumbers(typed, limits, isInteger) {
+  const found = typed.split(",").map((part) => (part.trim() === "" ? NaN : Number(part)));
+  if (!found.every(Number.isFinite)) return { mistake: "Enter numbers separated by commas" };
+  if (isInteger && !found.every(Number.isInteger)) return { mistake: "Enter whole numbers" };
+  if (!found.every((one) => isWithin(one, limits))) return { mistake: `Each must be ${rangeOf(limits)}` };
+  if (new Set(found).size < found.length) return { mistake: "Enter each number once" };
+  return { value: found };
+}
+
+/**
+ * The values of a list with commas, or why it is none.
+ * @param {string} typed
+ * @param {SettingOption} setting
+ * @returns {{ value?: SettingValue[], mistake?: string }}
+ */
+export function parseValues(typed, setting) {
+  if (kindOf(setting) === "number") return parseNumbers(typed, setting, setting.is_whole);
+  const found = typed.split(",").map((part) => valueOf(part.trim(), setting));
+  if (found.includes(undefined)) return { mistake: `Each must be ${setting.valid}` };
+  if (new Set(found).size < found.length) return { mistake: "Enter each value once" };
+  return { value: /** @type {SettingValue[]} */ (found) };
+}
+
+// ---- agents, with the settings that each declares
+
+/** For an agent that a run names and the server no longer has. */
+const REMOVED_AGENT = {
+  description: "", color: "#888888", learns: false, needs_practice: false, settings: {}, live_settings: {},
+};
+
+/** @type {(name: string) => Agent} */
+export const agentOf = (name) =>
+  options.value?.agents.find((agent) => agent.name === name) ?? { name, title: name, ...REMOVED_AGENT };
+
+/** @param {string} name */
+export const learns = (name) => agentOf(name).learns;
+
+/** The agents that learn. */
+export const learners = computed(() => (options.value?.agents ?? []).filter((agent) => agent.learns));
+
+/**
+ * The settings of some agents by name, each as the first agent that has it declares it.
+ * @param {string[]} names
+ * @returns {Record<string, SettingOption>}
+ */
+export function settingsOf(names) {
+  const each = names.map((name) => agentOf(name).settings);
+  // The first pass gives the order, the second lets the first agent's declarations win.
+  return Object.assign({}, ...each, ...each.reverse());
+}
+
+/**
+ * The settings that an agent shows first: those that may change while it learns, those with which such a one
+ * begins, and the first that it declares. Settings of one symbol are values of one quantity: the second ends
+ * what the first begins, and a live setting beside them replaces both while it learns.
+ * @typedef {object} MainSetting
+ * @property {string} name
+ * @property {SettingOption} setting
+ * @property {string | null} live the live setting that acts on its quantity
+ * @property {string | null} end the setting that its quantity ends with
+ */
+
+/** @type {(symbol: string | null, entries: [string, SettingOption][]) => string[]} */
+const namesOfSymbol = (symbol, entries) =>
+  symbol === null ? [] : entries.filter(([, setting]) => setting.symbol === symbol).map(([name]) => name);
+
+/**
+ * @param {string} agent
+ * @returns {MainSetting[]}
+ */
+export function mainSettings(agent) {
+  const { settings, live_settings } = agentOf(agent);
+  const own = Object.entries(settings);
+  const liveOnly = Object.entries(live_settings).filter(([name]) => !(name in settings));
+  return own.flatMap(([name, setting], number) => {
+    /** @type {(live: string | null, end: string | null) => MainSetting[]} */
+    const main = (live, end) => [{ name, setting, live, end }];
+    if (name in live_settings) return main(name, null);
+    const [first, end = null] = namesOfSymbol(setting.symbol, own);
+    const [live = null] = namesOfSymbol(setting.symbol, liveOnly);
+    if (live !== null && first === name) return main(live, end);
+    return number === 0 ? main(null, null) : [];
+  });
+}
+
+/**
+ * The settings that `mainSettings` leaves for further down.
+ * @param {string} agent
+ */
+export function furtherSettings(agent) {
+  const main = mainSettings(agent).map(({ name }) => name);
+  return Object.entries(agentOf(agent).settings).filter(([name]) => !main.includes(name));
+}
+
+/**
+ * The values of a run's main settings in short: "α 0.3". Without those that cannot change while it learns.
+ * @param {string} agent
+ * @param {{ [name: string]: any }} values
+ */
+export const ratesInWords = (agent, values) =>
+  mainSettings(agent)
+    .filter(({ name, live }) => live === name && values[name] !== undefined)
+    .map(({ name, setting }) => `${setting.symbol ?? setting.title}\u00a0${values[name]}`);
+
+/**
+ * The value of an agent's live setting that no setting of its name begins: where its quantity begins.
+ * @param {string} agent
+ * @param {string} name
+ * @param {{ [name: string]: any }} values
+ * @returns {SettingValue}
+ */
+export function beginningOf(agent, name, values) {
+  const { settings, live_settings } = agentOf(agent);
+  const [first] = namesOfSymbol(live_settings[name].symbol, Object.entries(settings));
+  return values[name] ?? values[first ?? ""] ?? null;
+}

@@ -2,8 +2,8 @@
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "./api.js";
 import { form, mistakes, whatIfBody } from "./form.js";
-import { limitsOf } from "./limits.js";
 import { isOperator } from "./selectors.js";
+import { limitsOf } from "./settings.js";
 import { options } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */

@@ -2,14 +2,15 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
+  bare, factorOf, gaitsOf, greedyTotals, inUnit, placesOf, shown, unit,
+} from "../../static/js/experiments/distances.js";
+import {
   agentSettings, chooseExperiment, chosenExperiment, parse, readQuery, requestBody, setField, takesField, toQuery,
   trials, values,
 } from "../../static/js/experiments/form.js";
-import { paceOf } from "../../static/js/experiments/pace.js";
-import { gaitsOf, greedyTotals, placesOf } from "../../static/js/experiments/places.js";
-import { describeRun, fieldTitle, variedFields } from "../../static/js/experiments/titles.js";
-import { bare, factorOf, inUnit, shown, unit } from "../../static/js/experiments/units.js";
+import { paceOf } from "../../static/js/experiments/runs.js";
 import { options } from "../../static/js/store.js";
+import { describeRun, fieldTitle, variedFields } from "../../static/js/titles.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 /** @import { Setting } from "../../static/js/types.js" */

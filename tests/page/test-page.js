@@ -2,10 +2,10 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { downloads, fileAddress, refusal } from "../../static/js/api.js";
-import { bestMove, placeName } from "../../static/js/knowledge.js";
 import { viewOf } from "../../static/js/page.js";
 import { options } from "../../static/js/store.js";
 import { choicesOf, clockTitle, gaitTitle, observationTitle, simulatorTitle } from "../../static/js/titles.js";
+import { bestMove, placeName } from "../../static/js/training.js";
 import { OPTIONS } from "./options.js";
 
 beforeEach(() => (options.value = OPTIONS));

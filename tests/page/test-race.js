@@ -1,11 +1,9 @@
 // The race at the moment that is shown: timeline, standings, headline, learning curve.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { curve, practisedSteps } from "../../static/js/curves.js";
-import { headline } from "../../static/js/outcome.js";
-import { isTimedOut, standings } from "../../static/js/standings.js";
+import { clipped, distanceAt, headline, isTimedOut, shownTime, standings, timeSpent } from "../../static/js/race.js";
 import { applyEvent, options } from "../../static/js/store.js";
-import { clipped, distanceAt, shownTime, timeSpent } from "../../static/js/timeline.js";
+import { curve, practisedSteps } from "../../static/js/training.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 /** @import { TimelinePoint } from "../../static/js/types.js" */

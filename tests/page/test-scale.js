@@ -1,8 +1,7 @@
 // Positions on an axis, ticks, thinning, and points that make room for each other.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { largest, percent, shareOf, spread, swarm, thinned, ticks } from "../../static/js/scale.js";
-import { valueColours } from "../../static/js/colormap.js";
+import { largest, percent, shareOf, spread, swarm, thinned, ticks, valueColours } from "../../static/js/scale.js";
 
 test("positions stay on the axis, also where it has no length", () => {
   assert.deepEqual([-1, 0, 1, 3, 9].map((value) => shareOf(value, 0, 4)), [0, 0, 0.25, 0.75, 1]);

@@ -1,17 +1,17 @@
 // Server-sent events change the store, and the selectors follow.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { learns } from "../../static/js/agents.js";
 import { form, overrides, setField, setFields } from "../../static/js/form.js";
+import { shownTime } from "../../static/js/race.js";
 import {
-  everyRun, hasTable, interruptedRun, isRaceRun, laneTables, liveTraining, markAsMine, matchingTable, myWork,
-  offStage, raceInView, simulatedPerDecision, trainingInView, work,
+  everyRun, hasTable, interruptedRun, isRaceRun, laneTables, liveTraining, markAsMine, matchingTable, myWork, offStage,
+  raceInView, simulatedPerDecision, trainingInView, work,
 } from "../../static/js/selectors.js";
+import { learns } from "../../static/js/settings.js";
 import {
-  applyEvent, damagedRuns, evaluations, isDeleted, markDeleted, options, rates, requestRun, requestRuns,
-  requestStage, role, runs, stage,
+  applyEvent, damagedRuns, evaluations, isDeleted, markDeleted, options, rates, requestRun, requestRuns, requestStage,
+  role, runs, stage,
 } from "../../static/js/store.js";
-import { shownTime } from "../../static/js/timeline.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };

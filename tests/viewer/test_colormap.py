@@ -10,7 +10,7 @@ from app.viewer.colormap import VIRIDIS, rgb, value_colors
 
 
 def test_page_and_stage_use_the_same_scale() -> None:
-    script = (assets.static_dir() / "js" / "colormap.js").read_text("utf-8")
+    script = (assets.static_dir() / "js" / "scale.js").read_text("utf-8")
     match = re.search(r"STOPS = (\[.*?\]);", script, re.DOTALL)
     assert match is not None
     stops = json.loads(re.sub(r",\s*\]", "]", match[1]))

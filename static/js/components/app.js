@@ -1,14 +1,18 @@
-// The page: header, the three views, dialogs and messages.
-import { announcement } from "../outcome.js";
-import { html } from "../html.js";
-import { place } from "../page.js";
-import { isLockedOut, options } from "../store.js";
+// The page: header, the three views, keyboard shortcuts, the help dialog and messages.
+import { useEffect, useRef } from "preact/hooks";
+import { runPrimaryAction, share, toastMessage, togglePause } from "../actions.js";
+import { helpIsOpen, isNarrow, nextTheme, place, setShortcuts, shortcuts, theme, view } from "../page.js";
+import { announcement } from "../race.js";
+import { isOperator } from "../selectors.js";
+import { connection, isLockedOut, options, viewers } from "../store.js";
+import { Controls } from "./controls.js";
+import { html, Icon } from "./elements.js";
 import { Experiments } from "./experiments/experiments.js";
-import { Header } from "./header.js";
-import { HelpDialog } from "./help.js";
-import { RaceView } from "./race-view.js";
+import { Knowledge, LearningChart } from "./learning.js";
+import { RaceChart, Scoreboard } from "./race.js";
 import { Runs } from "./runs.js";
-import { Toast } from "./toast.js";
+import { SharedChoices, Stage } from "./stage.js";
+import { WhatIf } from "./what-if.js";
 
 export const App = () => html`
   <a class="skip" href="#main" onClick=${focusMain}>Skip to the page</a>
@@ -47,3 +51,147 @@ function focusMain(event) {
   event.preventDefault();
   document.getElementById("main")?.focus();
 }
+
+// ---- the race view
+
+/** Hidden, not removed, while another view is open, so that the stage does not load again. */
+export const RaceView = ({ isHidden }) => html`
+  <div class="race-view" hidden=${isHidden}>
+    <${Stage} />
+    ${isNarrow.value && isOperator.value && html`<div class="shared-choices"><${SharedChoices} /></div>`}
+    <div class="side">
+      <${Controls} />
+      <${WhatIf} />
+      <${Scoreboard} />
+    </div>
+    <div class="below">
+      <${LearningChart} />
+      <${RaceChart} />
+      <${Knowledge} />
+    </div>
+  </div>
+`;
+
+// ---- the header: navigation, connection state, sharing, theme and help
+
+const VIEWS = [["race", "Race", "#"], ["experiments", "Experiments", "#experiments"], ["runs", "Runs", "#runs"]];
+
+export const Header = () => html`
+  <header class="header">
+    <h1 class="brand"><img src="static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</h1>
+    <nav class="nav" aria-label="Views">
+      ${VIEWS.map(([name, title, href]) => html`
+        <a href=${href} aria-current=${place.value === name ? "page" : undefined}>${title}</a>
+      `)}
+    </nav>
+    <${Connection} />
+    <div class="switches">
+      <button class="quiet" onClick=${share} title="Copy a link that contains every setting">
+        <${Icon} name="link" /><span class="wide-only">Share</span>
+        <span class="sr-only narrow-only">Share</span>
+      </button>
+      <button class="quiet square" onClick=${nextTheme} title="Light, dark, or the system's theme"
+        aria-label=${`Theme: ${theme.value}. Change it`}>
+        <${Icon} name=${theme.value} />
+      </button>
+      <button class="quiet square" onClick=${() => (helpIsOpen.value = true)}
+        title="Keys and help" aria-label="Keys and help">?</button>
+    </div>
+  </header>
+`;
+
+function Connection() {
+  const state = connection.value;
+  const watching = viewers.value ? html` · ${viewers.value}<span class="roomy"> watching</span>` : "";
+  return html`
+    <p class=${`live ${state}`}>
+      <span class="dot" aria-hidden="true"></span>
+      <span>${state === "live" ? html`live${watching}` : state}</span>
+    </p>
+  `;
+}
+
+// ---- keyboard shortcuts, pressed on the page or forwarded by the stage's frame
+
+/** [key, what it does] */
+export const KEYS = [
+  ["Space", "pause and resume"],
+  ["R", "press the main button: train and race"],
+  ["1 – 8", "follow the robot in that lane"],
+  ["0", "free the camera"],
+  ["?", "show this list"],
+];
+
+const TEXT = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable]";
+const PRESSED_BY_SPACE = "button:not([aria-disabled=true]), a, summary, input:not([type=range])";
+
+/**
+ * Perform the action of a key; false if it has none.
+ * @param {string} key
+ */
+function press(key) {
+  // Keys act on the race view only while it can be seen.
+  if (place.value === "experiments" && key !== "?") return false;
+  if (key === " ") togglePause();
+  else if (key === "r" || key === "R") runPrimaryAction();
+  else if (/^[1-8]$/.test(key)) view.value = key;
+  else if (key === "0") view.value = "free";
+  else if (key === "?") helpIsOpen.value = !helpIsOpen.value;
+  else return false;
+  return true;
+}
+
+export function listenForKeys() {
+  addEventListener("keydown", (event) => {
+    const { key, target, repeat } = event;
+    if (event.ctrlKey || event.altKey || event.metaKey || repeat || !shortcuts.value) return;
+    const isIn = (/** @type {string} */ selector) => target instanceof Element && target.closest(selector);
+    if (isIn(TEXT)) return;
+    if (key === " " && isIn(PRESSED_BY_SPACE)) return;
+    if (helpIsOpen.value && key !== "?") return;
+    if (press(key)) event.preventDefault();
+  });
+  addEventListener("message", ({ origin, data }) => {
+    if (origin !== location.origin || data?.type !== "hexapods:key" || !shortcuts.value) return;
+    press(data.key);
+  });
+}
+
+// ---- the help dialog: keys, and what the page shows
+
+export function HelpDialog() {
+  const dialog = useRef(/** @type {HTMLDialogElement | null} */ (null));
+  const isOpen = helpIsOpen.value;
+  useEffect(() => {
+    if (isOpen && !dialog.current?.open) dialog.current?.showModal();
+    if (!isOpen) dialog.current?.close();
+  }, [isOpen]);
+  const close = () => (helpIsOpen.value = false);
+  const onBackdrop = (event) => event.target === dialog.current && close();
+  return html`
+    <dialog class="help" ref=${dialog} onClose=${close} onClick=${onBackdrop} aria-labelledby="help-title">
+      <div class="help-body">
+        <h2 id="help-title">Keys</h2>
+        <dl class="keys">
+          ${KEYS.map(([key, does]) => html`<div><dt><kbd>${key}</kbd></dt><dd>${does}</dd></div>`)}
+        </dl>
+        <label class="check">
+          <input type="checkbox" checked=${shortcuts.value} onChange=${(e) => setShortcuts(e.target.checked)} />
+          Use single keys
+        </label>
+        <h2>What you see</h2>
+        <p>
+          A hexapod learns by trial and error: it moves two legs at a time, measures how far that took it, and
+          keeps in a table what each move is worth. Then it races against two robots that simulate their moves
+          before they make one: greedy looks one step ahead, two-step looks two. The race ends at time-out, when
+          the first robot has used its steps; the robot that is furthest then wins. Thinking costs time.
+        </p>
+        <form method="dialog"><button class="secondary" autofocus>Close</button></form>
+      </div>
+    </dialog>
+  `;
+}
+
+export const Toast = () => html`
+  <div class="toast" role="status">${toastMessage.value && html`<p>${toastMessage.value}</p>`}</div>
+`;

@@ -4,18 +4,14 @@ import {
   canStart, missingLane, pause, pending, primaryAction, resume, resumeRun, runPrimaryAction, secondaryActions,
   showOnStage, stop,
 } from "../actions.js";
-import { agentOf, ratesInWords } from "../agents.js";
 import { form } from "../form.js";
 import { count, whole } from "../format.js";
-import { html } from "../html.js";
 import { isNarrow } from "../page.js";
-import { progress } from "../progress.js";
-import { interruptedRun, isOperator, myWork, offStage, shownRun, work } from "../selectors.js";
+import { interruptedRun, isOperator, myWork, offStage, progress, shownRun, work } from "../selectors.js";
+import { agentOf, ratesInWords } from "../settings.js";
 import { scene } from "../store.js";
 import { gaitTitle } from "../titles.js";
-import { Icon } from "./icon.js";
-import { Problem } from "./problem.js";
-import { ProgressBar } from "./progress-bar.js";
+import { html, Icon, Problem, ProgressBar } from "./elements.js";
 import { Settings } from "./settings.js";
 
 export function Controls() {

@@ -1,13 +1,14 @@
 // The list of all runs with its filters.
 import { useState } from "preact/hooks";
-import { listRuns } from "../api.js";
-import { html } from "../html.js";
-import { everyRun } from "../selectors.js";
-import { damagedRuns, requestRuns } from "../store.js";
-import { DamagedRunRow } from "./damaged-run-row.js";
-import { ExperimentRunRow } from "./experiments/experiment-run-row.js";
-import { RunRow } from "./run-row.js";
-import { Segments } from "./segments.js";
+import { copySettings, deleteRun, isShown, pending, resumeRun, showOnStage } from "../actions.js";
+import { downloads, listRuns } from "../api.js";
+import { paceOf } from "../experiments/runs.js";
+import { ago, count, listed, metres, sentence, whole } from "../format.js";
+import { everyRun, hasTable, isActive, isOperator, presetOf } from "../selectors.js";
+import { agentOf, ratesInWords } from "../settings.js";
+import { damagedRuns, requestRuns, served } from "../store.js";
+import { describeRun, gaitTitle, observationTitle, robotTitle, runTitle, simulatorTitle } from "../titles.js";
+import { html, Problem, Segments } from "./elements.js";
 
 /** @import { RequestError } from "../api.js" */
 /** @import { Kind } from "../types.js" */
@@ -40,7 +41,7 @@ export function Runs() {
       ${shown.length === 0
         ? html`<${NoRuns} isFiltered=${all.length > 0} />`
         : html`<ul>${shown.map((run) => html`<${rowOf(run)} key=${run.id} run=${run} />`)}</ul>`}
-      <${Older} count=${all.length} />
+      <${Older} shown=${all.length} />
     </section>
   `;
 }
@@ -65,14 +66,14 @@ const FirstVisit = () => html`
 /** @type {Kind[]} */
 const LISTED_KINDS = ["training", "race", "experiment"];
 
-function Older({ count }) {
+function Older({ shown }) {
   /** Where each kind continues; null after its last page. */
   const [cursors, setCursors] = useState(/** @type {Record<Kind, string | null>} */ (
     { training: "", race: "", experiment: "" }
   ));
   const [note, setNote] = useState("");
   const [isLoading, setIsLoading] = useState(false);
-  if (count < SNAPSHOT_RUNS || Object.values(cursors).every((cursor) => cursor === null)) return null;
+  if (shown < SNAPSHOT_RUNS || Object.values(cursors).every((cursor) => cursor === null)) return null;
   const load = async () => {
     // A second click would request the same pages again.
     if (isLoading) return;
@@ -96,5 +97,163 @@ function Older({ count }) {
       <button class="secondary" aria-disabled=${isLoading ? "true" : undefined} onClick=${load}>Show older runs</button>
       <p role="alert">${note}</p>
     </div>
+  `;
+}
+
+// ---- a training or race
+
+export function RunRow({ run }) {
+  const title = run.name || sentence(run.kind);
+  return html`
+    <li class="run">
+      <${StateOf} run=${run} />
+      <div class="what">
+        <p><b>${title}</b> ${!title.includes(run.config.gait) && html`<span class="dim">${gaitOf(run)}</span>`}</p>
+        <p class="dim">${summaryOf(run)}</p>
+        ${run.error && html`<p class="bad">${run.error}</p>`}
+      </div>
+      <p class="outcome num"><${Outcome} run=${run} /></p>
+      <p class="when dim"><time datetime=${run.created_at}>${ago(run.created_at)}</time></p>
+      <${Actions} run=${run} />
+      <${Problem} at=${run.id} />
+    </li>
+  `;
+}
+
+const StateOf = ({ run: { state, queue_position } }) => html`
+  <p class=${`state ${state}`}>
+    <span class="dot" aria-hidden="true"></span>${state}${queue_position
+      ? html` <span class="dim">no. ${queue_position}</span>`
+      : ""}
+  </p>
+`;
+
+const gaitOf = ({ config: { gait } }) => (typeof gait === "string" ? gaitTitle(gait) : "own gait");
+
+function summaryOf(run) {
+  const { config } = run;
+  const { robot, simulator, agent } = served().defaults.training;
+  const name = presetOf(config.robot);
+  // What is as by default is not named.
+  const learner = [undefined, agent].includes(config.agent) ? "" : agentOf(config.agent).title;
+  const place = [
+    name === robot ? "" : robotTitle(name ?? config.robot.name ?? "own robot"),
+    config.simulator === simulator ? "" : simulatorTitle(config.simulator),
+  ];
+  const own = run.kind === "race" ? ofRace(config) : ofTraining(run);
+  return [learner, ...own, ...place].filter(Boolean).join(" · ");
+}
+
+const ofRace = ({ lanes, steps }) => [listed(lanes.map(({ agent }) => agentOf(agent).title)), count(steps, "step")];
+
+function ofTraining({ config, progress, state }) {
+  const total = count(config.steps, "step");
+  return [
+    state === "finished" ? total : `${whole(progress.done)} of ${total}`,
+    config.continue_from ? "continues an earlier one" : `seed ${config.seed}`,
+    ...ratesInWords(config.agent, config), observationTitle(config.observation),
+  ];
+}
+
+function Outcome({ run: { kind, result } }) {
+  if (!result) return null;
+  if (kind === "training") {
+    const greedy = metres(result.greedy_distance_m);
+    return html`<b>${metres(result.distance_m)}</b> <span class="dim">of greedy’s ${greedy}</span>`;
+  }
+  const lanes = result.lanes.map((lane) => ({ ...lane, ...lane.clocks.paper }));
+  const first = lanes.find(({ rank }) => rank === 1);
+  if (!first) return null;
+  const { title, color } = agentOf(first.agent);
+  const distance = metres(first.finished_distance_m);
+  return html`
+    <span class="swatch" style=${{ "--agent": color }}></span><b>${title}</b> <span class="dim">${distance}</span>
+  `;
+}
+
+function Actions({ run }) {
+  const isPending = pending.value[run.id];
+  const canResume = run.can_resume && run.state !== "paused";
+  return html`
+    <div class="run-actions">
+      ${isOperator.value && canResume && html`
+        <button class="secondary compact" disabled=${isPending} onClick=${() => resumeRun(run)}>Resume</button>
+      `}
+      ${isOperator.value && html`
+        <button class="secondary compact" disabled=${isPending || run.state === "queued"}
+          onClick=${() => showOnStage(run)}>
+          ${isShown(run) ? "On stage" : "Show"}
+        </button>
+      `}
+      <${Menu} run=${run} />
+    </div>
+  `;
+}
+
+function Menu({ run }) {
+  const [isSure, setSure] = useState(false);
+  return html`
+    <details class="menu">
+      <summary class="quiet square" aria-label=${`More for this ${run.kind}`}>⋯</summary>
+      <div class="menu-body">
+        <${Downloads} run=${run} />
+        ${isOperator.value && html`<a href="#" onClick=${() => copySettings(run)}>Use its settings</a>`}
+        ${isOperator.value && !isActive(run) && html`
+          <button class="bad" onClick=${() => (isSure ? deleteRun(run) : setSure(true))}>
+            ${isSure ? "Delete for good?" : "Delete"}
+          </button>
+        `}
+      </div>
+    </details>
+  `;
+}
+
+function Downloads({ run }) {
+  const hasFiles = run.kind === "race" ? run.state === "finished" : hasTable(run);
+  if (!hasFiles) return html`<p class="dim">Nothing to download.</p>`;
+  return downloads(run).map(([label, href]) => html`<a href=${href} download>${label}</a>`);
+}
+
+// ---- an experiment, with a link to its report
+
+export const ExperimentRunRow = ({ run }) => html`
+  <li class="run">
+    <p class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${run.state}</p>
+    <div class="what">
+      <p><b>${runTitle(run)}</b></p>
+      <p class="dim">${describeRun(run)}</p>
+      ${run.error && html`<p class="bad">${run.error}</p>`}
+    </div>
+    <p class="outcome num dim">${paceOf(run).label}</p>
+    <p class="when dim"><time datetime=${run.created_at}>${ago(run.created_at)}</time></p>
+    <div class="run-actions">
+      <a class="to-report" href=${`#experiments?run=${encodeURIComponent(run.id)}`}>Report</a>
+    </div>
+  </li>
+`;
+
+// ---- a run that the server cannot read: what is known of it, the reason, and its deletion
+
+export const DamagedRunRow = ({ run }) => html`
+  <li class="run">
+    <p class="state failed"><span class="dot" aria-hidden="true"></span>damaged</p>
+    <div class="what">
+      <p><b>${run.name || `A ${run.kind ?? "run"} that cannot be read`}</b> <span class="dim">${run.id}</span></p>
+      <p class="bad">${run.damaged}</p>
+    </div>
+    <p class="outcome num"></p>
+    <p class="when dim">${run.created_at && html`<time datetime=${run.created_at}>${ago(run.created_at)}</time>`}</p>
+    <div class="run-actions">${isOperator.value && html`<${DeleteButton} run=${run} />`}</div>
+    <${Problem} at=${run.id} />
+  </li>
+`;
+
+function DeleteButton({ run }) {
+  const [isSure, setSure] = useState(false);
+  const onClick = () => (isSure ? deleteRun(run) : setSure(true));
+  return html`
+    <button class="secondary compact bad" disabled=${pending.value[run.id]} onClick=${onClick}>
+      ${isSure ? "Delete for good?" : "Delete"}
+    </button>
   `;
 }

@@ -1,12 +1,15 @@
 // The 3D stage in its frame, with labels over it and the transport below.
 import { useEffect, useRef, useState } from "preact/hooks";
-import { html } from "../html.js";
-import { view } from "../page.js";
-import { connection } from "../store.js";
-import { shownTheme } from "../theme.js";
-import { StageLabels } from "./stage-labels.js";
-import { isRefused, StagePlaceholder } from "./stage-placeholder.js";
-import { Transport } from "./transport.js";
+import { setStage, skipToEnd, togglePlaying } from "../actions.js";
+import { form } from "../form.js";
+import { clockTime, sentence, times, whole } from "../format.js";
+import { isNarrow, shownTheme, view } from "../page.js";
+import { raceScene, standings } from "../race.js";
+import { clock, isActive, isOperator, shownRun } from "../selectors.js";
+import { agentOf } from "../settings.js";
+import { connection, options, scene, stage } from "../store.js";
+import { choicesOf, clockTitle } from "../titles.js";
+import { html, Icon, Problem } from "./elements.js";
 
 /** A frame that has not reported its status for so long is shown as it is. */
 const STATUS_TIMEOUT_MS = 12_000;
@@ -53,5 +56,192 @@ export function Stage() {
       </div>
       <${Transport} />
     </section>
+  `;
+}
+
+// ---- a drawing of the robots on the start line, shown until the stage has a picture
+
+const LANES_X = [-150, 0, 150];
+const LEGS = ["M-16 0-44-14-56 18", "M-10 6-34 0-42 34", "M-6 8-16 12-20 42"];
+
+const LOADING = "The robots walk to the start line…";
+const LATER = "The picture comes when there is room; numbers and charts are live.";
+/** Status of the frame that has no place → the reason. */
+const REFUSALS = {
+  "full": `Many are watching already. ${LATER}`,
+  "address full": `Many are watching from this network already. ${LATER}`,
+  "place taken": `Someone else was given this place. ${LATER}`,
+};
+
+/** Whether a status of the frame says that it has no place. */
+export const isRefused = (status) => status in REFUSALS;
+
+const Robot = ({ x, color }) => html`
+  <g transform=${`translate(${x} 0)`} style=${{ color }}>
+    <ellipse class="shadow" cx="0" cy="40" rx="62" ry="9" />
+    ${LEGS.map((d) => html`<path class="limb" d=${d} /><path class="limb" d=${d} transform="scale(-1 1)" />`)}
+    <path class="torso" d="M-24-6 -12-16 H12 L24-6 12 12 H-12z" />
+  </g>
+`;
+
+export function StagePlaceholder({ status }) {
+  const robots = form.value.lanes.slice(0, LANES_X.length);
+  return html`
+    <div class="placeholder">
+      <svg viewBox="-320 -130 640 260" aria-hidden="true">
+        <path class="track" d="M-300 110-90-110M-100 110-30-110M100 110 30-110M300 110 90-110" />
+        <path class="track" d="M-270 78H270M-212 18H212M-158-38H158M-118-80H118" />
+        <path class="finish" d="M-118-80H118" /><path class="start" d="M-270 78H270" />
+        <g transform="translate(0 38)">
+          ${robots.map((agent, lane) => html`<${Robot} x=${LANES_X[lane]} color=${agentOf(agent).color} />`)}
+        </g>
+      </svg>
+      <p>${REFUSALS[status] ?? LOADING}</p>
+    </div>
+  `;
+}
+
+// ---- labels: the run, the speed, the lanes that think, the colours of the foot grid
+
+export function StageLabels() {
+  const thinking = (raceScene.value && standings.value?.filter((row) => row.isThinking)) || [];
+  return html`
+    <div class="labels">
+      <${SceneChips} />
+      <div class="chips">
+        ${thinking.map((row) => html`
+          <p class="chip thinker" style=${{ "--agent": row.color }} key=${row.lane}>
+            <span class="swatch"></span>${row.title} is thinking: ${whole(row.futures)} of ${whole(row.futuresTotal)}
+          </p>
+        `)}
+      </div>
+      ${scene.value?.knowledge && html`
+        <p class="chip legend" aria-label="Colours of the foot grid: dark is worth less, light is worth more">
+          worth less<span class="ramp" aria-hidden="true"></span>more
+        </p>
+      `}
+    </div>
+  `;
+}
+
+function SceneChips() {
+  const now = scene.value;
+  return html`
+    <div class="chips">
+      <p class="chip strong">${now?.label || "On the start line"}</p>
+      ${now?.phase === "photo-finish" && html`<p class="chip accent">Photo finish</p>`}
+      ${now?.phase === "waiting" && html`<p class="chip">Waiting for a robot that still thinks</p>`}
+      ${now?.replay && html`<p class="chip">Replay</p>`}
+      <${SpeedChip} now=${now} />
+    </div>
+  `;
+}
+
+function SpeedChip({ now }) {
+  if (stage.value?.playing === false && now?.kind !== "idle") return html`<p class="chip">Paused</p>`;
+  if (!now || now.kind === "idle" || !(now.shown_speed > 0)) return null;
+  return html`<p class="chip num" title="Times real time">${times(now.shown_speed)}</p>`;
+}
+
+// ---- the playback; the camera is this page's own, all else is shared by every page
+
+const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 64];
+
+export function Transport() {
+  const now = scene.value;
+  return html`
+    <div class="transport">
+      ${isOperator.value && html`<${PlayButton} />`}
+      <${Seek} now=${now} />
+      ${isOneLaneLeft(now) && isOperator.value && html`
+        <button class="secondary compact" onClick=${skipToEnd}><${Icon} name="skip" />Skip</button>
+      `}
+      <${Follow} />
+      ${!isNarrow.value && html`<${SharedChoices} />`}
+      <${Problem} at="stage" />
+    </div>
+  `;
+}
+
+function PlayButton() {
+  const isPlaying = stage.value?.playing;
+  return html`
+    <button class="quiet square" disabled=${!stage.value?.run_id} onClick=${togglePlaying}
+      aria-label=${isPlaying ? "Pause the playback" : "Play"} title="Pause or play, on every page">
+      <${Icon} name=${isPlaying ? "pause" : "play"} />
+    </button>
+  `;
+}
+
+/** Speed and clock; on a phone in a row of their own, which may scroll away. */
+export const SharedChoices = () => isOperator.value && html`<${Speed} /><${ClockChoice} />`;
+
+const isOneLaneLeft = (now) =>
+  now?.kind === "race" && now.phase !== "finished" && now.lanes?.length > 1 && now.duration_s &&
+  now.lanes.filter(({ done }) => !done).length === 1;
+
+function Seek({ now }) {
+  if (!now || now.kind === "idle") return html`<span class="seek"></span>`;
+  const { time_s, duration_s } = now;
+  if (!duration_s) {
+    return html`
+      <span class="seek">
+        <span class="num">${clockTime(time_s)}</span>
+        <span class="dim">${isActive(shownRun.value) ? "still being simulated" : ""}</span>
+      </span>
+    `;
+  }
+  const words = `${clockTime(time_s)} of ${clockTime(duration_s)}`;
+  const seek = ({ target }) => setStage({ time_s: Number(target.value) });
+  return html`
+    <span class="seek">
+      <span class="num">${clockTime(time_s)}</span>
+      <input type="range" min="0" max=${duration_s} step="0.1" value=${time_s} disabled=${!isOperator.value}
+        style=${{ "--share": `${(100 * time_s) / duration_s}%` }}
+        aria-label="Moment that is shown" aria-valuetext=${words} onChange=${seek} />
+      <span class="num dim">${clockTime(duration_s)}</span>
+    </span>
+  `;
+}
+
+const Choice = ({ label, name, value, choices, onValue, title }) => html`
+  <label class="choice" title=${title}>
+    <span>${label}</span>
+    <select name=${name} onChange=${({ target }) => onValue(target.value)}>
+      ${choices.map(([one, words]) => html`
+        <option value=${String(one)} selected=${String(one) === String(value)}>${words}</option>
+      `)}
+    </select>
+  </label>
+`;
+
+function Follow() {
+  const lanes = scene.value?.lanes ?? shownRun.value?.config?.lanes ?? [];
+  const robots = lanes.map((lane, n) => [String(n + 1), lane.name ?? agentOf(lane.agent).title]);
+  const choices = [["leader", "leader"], ...robots, ["free", "free camera"]];
+  if (!choices.some(([one]) => one === view.value)) choices.push([view.value, `lane ${view.value}`]);
+  return html`
+    <${Choice} label="Follow" name="follow" value=${view.value} choices=${choices}
+      title="The robot that your camera follows; keys 1 to 8, 0 for a free camera"
+      onValue=${(value) => (view.value = value)} />
+  `;
+}
+
+function Speed() {
+  const speed = stage.value?.speed ?? 1;
+  const isOther = typeof speed === "number" && !SPEEDS.includes(speed);
+  const numbers = isOther ? [...SPEEDS, speed].sort((a, b) => a - b) : SPEEDS;
+  const choices = [["time-lapse", "auto"], ...numbers.map((n) => [n, `×${n}`])];
+  return html`
+    <${Choice} label="Speed" name="speed" value=${speed} choices=${choices} title="For every page"
+      onValue=${(value) => setStage({ speed: value === "time-lapse" ? value : Number(value) })} />
+  `;
+}
+
+function ClockChoice() {
+  const about = options.value?.clocks.find(({ name }) => name === clock.value)?.description ?? "";
+  return html`
+    <${Choice} label="Clock" name="clock" value=${clock.value} title=${`${sentence(clockTitle(clock.value))}. ${about}`}
+      choices=${choicesOf(options.value?.clocks, clockTitle)} onValue=${(value) => setStage({ clock: value })} />
   `;
 }

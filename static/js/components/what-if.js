@@ -1,16 +1,16 @@
 // What-if: distances of kinematic robots that practise with these settings, and with the defaults.
 import { useEffect, useState } from "preact/hooks";
 import { canStart, continueTraining } from "../actions.js";
-import { agentOf, learns } from "../agents.js";
 import { form } from "../form.js";
 import { count, metres, whole } from "../format.js";
-import { html } from "../html.js";
 import { isNarrow } from "../page.js";
 import { isOperator, matchingTable, work } from "../selectors.js";
+import { agentOf, learns } from "../settings.js";
 import {
   answer, error, evaluateSettings, isComputing, isCurrent, isPanelOpen, isTooLong, mostSteps, seeds,
 } from "../what-if.js";
-import { DotStrip } from "./dot-strip.js";
+import { DotStrip } from "./charts.js";
+import { html } from "./elements.js";
 
 const HEADROOM = 1.06;
 

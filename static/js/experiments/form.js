@@ -1,14 +1,56 @@
 // The form of a new experiment. Only values that differ from the experiment's defaults are kept and sent.
 import { computed, signal } from "@preact/signals";
-import { settingsOf } from "../agents.js";
 import { withMistake } from "../form.js";
-import { valueOf } from "../settings.js";
+import { presetOf } from "../selectors.js";
+import { learns, settingsOf, valueOf } from "../settings.js";
 import { options } from "../store.js";
-import { experimentOf, experiments } from "./catalogue.js";
-import { countTrials } from "./trials.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { ExperimentValue, ExperimentValues, SettingOption, SettingValue } from "../types.js" */
+/** @import { ExperimentKind, ExperimentValue, ExperimentValues, SettingOption, SettingValue } from "../types.js" */
+
+// ---- the experiments that the server offers
+
+/** Every kind of experiment, robots by the names of their presets. @type {{ value: ExperimentKind[] }} */
+export const experiments = computed(() =>
+  (options.value?.experiments ?? []).map((kind) => {
+    const robots = kind.defaults.robots.map((robot) => presetOf(robot) ?? "");
+    return { ...kind, defaults: { ...kind.defaults, name: "", robots } };
+  }),
+);
+
+/** The kind of a name, else the first. @type {(name: string) => ExperimentKind} */
+export const experimentOf = (name) =>
+  experiments.value.find((one) => one.name === name) ?? experiments.value[0];
+
+// ---- the number of trials, counted before they are started
+
+const PLACE_FIELDS = ["gaits", "observations", "robots", "divisions", "grid_side_m"];
+const PRACTICE_FIELDS = ["steps", "steps_per_episode"];
+
+/**
+ * Fields without a value, where each agent has its own default, count once.
+ * @type {(values: ExperimentValues, fields: string[]) => number}
+ */
+const combinations = (values, fields) =>
+  fields.reduce((total, field) => total * Math.max(1, /** @type {unknown[]} */ (values[field] ?? []).length), 1);
+
+/**
+ * Learners have one trial per seed, agents that look ahead one in all; greedy is always tried for comparison.
+ * Table 1 has two-step and a race that measures decision times besides.
+ * @param {string} experiment
+ * @param {ExperimentValues} values
+ */
+export function countTrials(experiment, values) {
+  const places = combinations(values, PLACE_FIELDS);
+  if (experiment === "table1") return places * (2 + values.steps.length * values.seeds + 1);
+  const perPlace = [...new Set(["greedy", ...values.agents])].map((agent) => {
+    const own = combinations(values, Object.keys(settingsOf([agent])));
+    return learns(agent) ? own * combinations(values, PRACTICE_FIELDS) * values.seeds : own;
+  });
+  return places * perPlace.reduce((total, one) => total + one, 0);
+}
+
+// ---- the form
 
 /** Empty: the first one that the server offers. */
 const chosenName = signal("");

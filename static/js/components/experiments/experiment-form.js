@@ -1,23 +1,21 @@
 // The form of a new experiment.
+import { signal } from "@preact/signals";
 import { useState } from "preact/hooks";
-import { pending } from "../../actions.js";
-import { listed, sentence, whole } from "../../format.js";
-import { html } from "../../html.js";
-import { limitsOf, settingOf } from "../../limits.js";
-import { isNarrow } from "../../page.js";
-import { options } from "../../store.js";
-import { choicesOf, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../../titles.js";
-import { canStart, start, startLabel } from "../../experiments/actions.js";
+import { pending, refusedFields } from "../../actions.js";
 import {
-  agentSettings, chosenExperiment, chooseExperiment, setField, takesField, values,
+  agentSettings, chooseExperiment, chosenExperiment, defaults, experiments, mistakes, setField, setMistake, takesField,
+  values,
 } from "../../experiments/form.js";
-import { experiments } from "../../experiments/catalogue.js";
-import { agentTitle } from "../../experiments/titles.js";
-import { Icon } from "../icon.js";
-import { Problem } from "../problem.js";
-import { CheckList } from "./check-list.js";
-import { Help, help } from "./experiment-help.js";
-import { CountField, ValuesField } from "./typed-field.js";
+import { canStart, start, startLabel } from "../../experiments/runs.js";
+import { listed, sentence, whole } from "../../format.js";
+import { isNarrow } from "../../page.js";
+import { limitsOf, mistakeIn, parseValues, settingOf, shortTitle } from "../../settings.js";
+import { options } from "../../store.js";
+import { agentTitle, choicesOf, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../../titles.js";
+import { html, Icon, Problem } from "../elements.js";
+import { helpFor } from "../fields.js";
+
+/** @import { SettingValue } from "../../types.js" */
 
 /** Folded on a phone once there is a report. */
 export function ExperimentForm({ isFirst }) {
@@ -139,3 +137,92 @@ const NameField = () => html`
       value=${values.value.name} onInput=${({ target }) => setField("name", target.value.trim())} />
   </div>
 `;
+
+// ---- help: the sentence of the field in use
+
+const helpField = signal("seeds");
+
+export const help = (field) => () => (helpField.value = field);
+
+export const Help = () => html`<p class="setting-help" aria-hidden="true">${helpFor(helpField.value)}</p>`;
+
+// ---- a choice of several out of a few; at least one stays chosen
+
+/** `choices`: [value, title]. */
+export function CheckList({ field, label, choices }) {
+  const chosen = /** @type {string[]} */ (values.value[field]);
+  const toggle = (event, name) => {
+    const isChosen = (one) => (one === name ? !chosen.includes(one) : chosen.includes(one));
+    const next = choices.map(([one]) => one).filter(isChosen);
+    if (next.length) setField(field, next);
+    else event.target.checked = true;
+  };
+  return html`
+    <fieldset class="field" onFocusIn=${help(field)} onPointerEnter=${help(field)}>
+      <legend>${label}</legend>
+      <div class="checks">
+        ${choices.map(([name, title]) => html`
+          <label class="check" key=${name}>
+            <input type="checkbox" checked=${chosen.includes(name)} onChange=${(event) => toggle(event, name)} />
+            ${title}
+          </label>
+        `)}
+      </div>
+    </fieldset>
+  `;
+}
+
+// ---- text fields: a whole number, or values with commas; a mistake disables the start
+
+function TypedField({ field, label, text, parse, inputmode, placeholder = undefined }) {
+  const [draft, setDraft] = useState(null);
+  const mistake = mistakes.value[field];
+  const isRefused = refusedFields("experiment").includes(field);
+  const onInput = ({ target }) => {
+    setDraft(target.value);
+    const parsed = parse(target.value);
+    setMistake(field, parsed.mistake ?? null);
+    if (!parsed.mistake) setField(field, parsed.value);
+  };
+  const onBlur = () => {
+    setDraft(null);
+    setMistake(field, null);
+  };
+  return html`
+    <div class="field" onFocusIn=${help(field)} onPointerEnter=${help(field)}>
+      <label for=${`experiment-${field}`}>${label}</label>
+      <span class="number">
+        <input type="text" inputmode=${inputmode} id=${`experiment-${field}`} value=${draft ?? text}
+          placeholder=${placeholder}
+          aria-invalid=${mistake || isRefused ? "true" : undefined}
+          aria-describedby=${mistake ? `wrong-${field}` : `about-${field}`} onInput=${onInput} onBlur=${onBlur} />
+        ${mistake && html`<span class="mistake" role="alert" id=${`wrong-${field}`}>${mistake}</span>`}
+      </span>
+      <span class="sr-only" id=${`about-${field}`}>${helpFor(field)}</span>
+    </div>
+  `;
+}
+
+/** One whole number. */
+export function CountField({ field, label }) {
+  const parse = (typed) => {
+    const value = /^\d+$/.test(typed.trim()) ? Number(typed) : NaN;
+    const mistake = mistakeIn(value, limitsOf(field), true);
+    return mistake ? { mistake } : { value };
+  };
+  const text = String(values.value[field]);
+  return html`<${TypedField} field=${field} label=${label} text=${text} parse=${parse} inputmode="numeric" />`;
+}
+
+const joined = (list) => /** @type {SettingValue[]} */ (list).join(", ");
+
+/** One value of a setting, or several with commas between; none where each agent has its own default. */
+export function ValuesField({ field, setting }) {
+  const standard = defaults.value[field];
+  const isOwn = joined(standard) === "";
+  const parse = (typed) => (isOwn && typed.trim() === "" ? { value: standard } : parseValues(typed, setting));
+  return html`
+    <${TypedField} field=${field} label=${shortTitle(setting)} text=${joined(values.value[field])} parse=${parse}
+      inputmode=${setting.is_number ? "decimal" : "text"} placeholder=${isOwn ? "by default" : undefined} />
+  `;
+}

@@ -1,11 +1,13 @@
 // The experiments view: form and list on one side, the report on the other.
-import { html } from "../../html.js";
-import { isOperator } from "../../selectors.js";
-import { connection } from "../../store.js";
-import { chosenRun, isListed } from "../../experiments/selection.js";
+import { chosenRun, experimentRuns, hasOlder, isListed, loadOlder, paceOf, wantedRun } from "../../experiments/runs.js";
+import { ago } from "../../format.js";
+import { isActive, isOperator } from "../../selectors.js";
+import { agentOf } from "../../settings.js";
+import { connection, served } from "../../store.js";
+import { describeRun, runTitle } from "../../titles.js";
+import { html, ProgressBar } from "../elements.js";
 import { ExperimentForm } from "./experiment-form.js";
-import { ExperimentList } from "./experiment-list.js";
-import { Invitation } from "./invitation.js";
+import { StripKey } from "./report-tools.js";
 import { Report } from "./report.js";
 
 export function Experiments() {
@@ -30,3 +32,87 @@ const OfflineNote = () => html`
     <span class="spinner" aria-hidden="true"></span>Reconnecting. This is the last known state.
   </p>
 `;
+
+// ---- the list, with progress and links to reports
+
+export function ExperimentList() {
+  const all = experimentRuns.value;
+  if (!all.length) return null;
+  return html`
+    <section class="panel experiment-list" aria-labelledby="experiment-list">
+      <h2 id="experiment-list">Experiments</h2>
+      <ul>${all.map((run) => html`<${Row} key=${run.id} run=${run} />`)}</ul>
+      ${hasOlder.value && html`<${Older} />`}
+    </section>
+  `;
+}
+
+const Older = () => html`
+  <div class="older"><button class="secondary" onClick=${loadOlder}>Show older experiments</button></div>
+`;
+
+function Row({ run }) {
+  const isChosen = chosenRun.value?.id === run.id;
+  const pace = paceOf(run);
+  const choose = (event) => {
+    event.preventDefault();
+    wantedRun.value = run.id;
+  };
+  return html`
+    <li>
+      <a class="experiment-row" href=${`#experiments?run=${encodeURIComponent(run.id)}`}
+        aria-current=${isChosen ? "true" : undefined} onClick=${choose}>
+        <span class="row-title">
+          <b>${runTitle(run)}</b> <time class="dim" datetime=${run.created_at}>${ago(run.created_at)}</time>
+        </span>
+        <span class="dim about">${describeRun(run)}</span>
+        <span class="row-state">
+          <span class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${run.state}</span>
+          <span class="dim num">${run.state === "finished" ? "" : pace.label}</span>
+        </span>
+        ${isActive(run) && html`<${ProgressBar} label=${runTitle(run)} share=${pace.share} />`}
+        ${pace.left && html`<span class="dim num">${pace.left}</span>`}
+      </a>
+    </li>
+  `;
+}
+
+// ---- before the first experiment: what one is for, with a sketch of its dots
+
+/** A sketch, not measured: positions of the seeds and of the published value, in percent. */
+const ROWS = [
+  [[8, 62, 66, 69, 70, 72, 73, 75, 76, 78, 80, 83], 50],
+  [[30, 68, 72, 75, 78, 79, 80, 82, 84, 85, 87, 88], 66],
+];
+const SCATTER_PX = [0, -7, 6];
+
+const OPERATOR_WORDS =
+  "Choose an experiment and press the button. Its report fills here while trials end; it can be paused and resumed.";
+const SPECTATOR_WORDS = "No experiment has been run here. The report of the first one will fill here.";
+
+const Sketch = ({ points, published, y }) => html`
+  <line class="rule" x1="0" x2="100%" y1=${y} y2=${y} />
+  ${points.map((x, n) => html`<circle cx=${`${x}%`} cy=${y + SCATTER_PX[n % 3]} r="4" />`)}
+  <svg x=${`${published}%`} y=${y} overflow="visible"><path d="M0-8 7 0 0 8-7 0z" /></svg>
+`;
+
+export function Invitation() {
+  const { color } = agentOf(served().defaults.training.agent);
+  return html`
+    <section class="panel invitation" aria-labelledby="invitation-title">
+      <h2 id="invitation-title">One seed misleads</h2>
+      <p>
+        The paper shows one run of everything. The same robot with other random numbers may walk, or march on the
+        spot. Here everything is run thirty times and each run is a dot, with the published value among them.
+      </p>
+      <svg class="sketch-dots" width="100%" height="112" aria-hidden="true" style=${{ "--agent": color }}>
+        <line class="reach" x1="93%" x2="93%" y1="0" y2="112" />
+        ${ROWS.map(([points, published], n) => html`
+          <${Sketch} points=${points} published=${published} y=${30 + 52 * n} />
+        `)}
+      </svg>
+      <${StripKey} signs=${["seed", "greedy", "published"]} color=${color} />
+      <p class="dim">${isOperator.value ? OPERATOR_WORDS : SPECTATOR_WORDS}</p>
+    </section>
+  `;
+}

@@ -1,18 +1,18 @@
 // The report of one experiment. It fills while trials end.
-import { useMemo } from "preact/hooks";
-import { html } from "../../html.js";
-import { summary, summaryError } from "../../experiments/summaries.js";
-import { AtAGlance } from "./at-a-glance.js";
-import { Claims } from "./claims.js";
-import { FairClocks } from "./fair-clocks.js";
+import { useMemo, useState } from "preact/hooks";
+import { pending } from "../../actions.js";
+import { downloads, fileAddress, reportAddress } from "../../api.js";
+import { command, deleteExperiment, paceOf, summary, summaryError } from "../../experiments/runs.js";
+import { count, duration, sentence } from "../../format.js";
+import { isActive, isOperator } from "../../selectors.js";
+import { describeRun, runTitle, simulatorTitle } from "../../titles.js";
+import { html, Icon, Problem, ProgressBar } from "../elements.js";
 import { FigureFour } from "./figure-four.js";
-import { LeftOut } from "./left-out.js";
-import { Making } from "./making.js";
-import { ReportHead } from "./report-head.js";
-import { Story } from "./story.js";
+import { AtAGlance, Claims, FairClocks, Story, Versus } from "./findings.js";
 import { SweepTable } from "./sweep-table.js";
 import { TableOne } from "./table-one.js";
-import { Versus } from "./versus.js";
+
+/** @import { Summary } from "../../types.js" */
 
 const FIGURES = { table1: TableOne, figure4: FigureFour, sweep: SweepTable };
 
@@ -55,3 +55,173 @@ const Waiting = ({ run }) => html`
     <p class="dim">${WORDS[run.state] ?? "No trial was completed before the experiment ended."}</p>
   </section>
 `;
+
+// ---- the head: the experiment's state, its actions and its downloads
+
+export function ReportHead({ run }) {
+  const pace = paceOf(run);
+  const isUnderWay = isActive(run) || run.state === "interrupted";
+  return html`
+    <section class="panel report-head" aria-labelledby="report-title">
+      <div class="title-row">
+        <h2 id="report-title">${runTitle(run)}</h2>
+        <p class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${run.state}</p>
+        <${Actions} run=${run} />
+      </div>
+      <p class="dim">${sentence(describeRun(run))}</p>
+      ${(isUnderWay || run.state === "stopped") && html`
+        <div class="progress">
+          <p><span class="num">${pace.label}</span><span class="dim num">${pace.left}</span></p>
+          <${ProgressBar} label="Trials that are done" share=${pace.share} />
+        </div>
+      `}
+      <${Note} run=${run} />
+      <${Problem} at=${run.id} />
+      ${!isUnderWay && html`<${Downloads} run=${run} />`}
+    </section>
+  `;
+}
+
+const NOTES = {
+  paused: "Paused. Finished trials are kept, and no core is used.",
+  stopped: "Stopped. The report is of the trials that were done. Resume to run only the rest.",
+  interrupted: "The server ended before the experiment did. Finished trials are kept; resume to run only the rest.",
+};
+
+function Note({ run }) {
+  if (run.state === "failed") {
+    return html`
+      <div class="notice bad">
+        <p><b>The experiment failed.</b> ${run.error}</p>
+        <p>Trials that were done before are kept below; resume to run only the rest.</p>
+      </div>
+    `;
+  }
+  if (!NOTES[run.state]) return null;
+  return html`<p class="notice">${NOTES[run.state]} ${run.state === "stopped" && run.error}</p>`;
+}
+
+function Actions({ run }) {
+  if (!isOperator.value) return null;
+  return html`
+    <div class="report-actions">
+      ${run.state === "running" && html`<${CommandButton} run=${run} verb="pause" icon="pause" title="Pause" />`}
+      ${run.can_resume && html`<${CommandButton} run=${run} verb="resume" icon="play" title="Resume" />`}
+      ${isActive(run) && html`<${CommandButton} run=${run} verb="stop" icon="stop" title="Stop" />`}
+      ${!isActive(run) && html`<${DeleteButton} run=${run} />`}
+    </div>
+  `;
+}
+
+const CommandButton = ({ run, verb, icon, title }) => html`
+  <button class="secondary compact" disabled=${pending.value[run.id]} onClick=${() => command(run, verb)}>
+    <${Icon} name=${icon} />${title}
+  </button>
+`;
+
+function DeleteButton({ run }) {
+  const [isSure, setSure] = useState(false);
+  const onClick = () => (isSure ? deleteExperiment(run) : setSure(true));
+  return html`
+    <button class="quiet compact" disabled=${pending.value[run.id]} onBlur=${() => setSure(false)} onClick=${onClick}>
+      ${isSure ? "Delete for good?" : "Delete"}
+    </button>
+  `;
+}
+
+function Downloads({ run }) {
+  const files = run.result?.files ?? [];
+  const figures = files.filter((name) => /\.(png|svg|pdf)$/.test(name));
+  return html`
+    <p class="takeaways">
+      ${files.includes("report.html") && html`<${ReportLink} run=${run} />`}
+      ${downloads(run).map(([title, href]) => html`<a href=${href} download>${title}</a>`)}
+    </p>
+    ${figures.length > 0 && html`
+      <details class="more figures">
+        <summary>Figures (${figures.length})</summary>
+        <ul>${figures.map((name) => html`<${Figure} run=${run} name=${name} />`)}</ul>
+      </details>
+    `}
+  `;
+}
+
+const ReportLink = ({ run }) => html`
+  <a class="report-link" href=${reportAddress(run)} target="_blank" rel="noopener">Open the report</a>
+`;
+
+const Figure = ({ run, name }) => html`
+  <li><a href=${fileAddress(run, name)} download>${name.split("/").at(-1)}</a></li>
+`;
+
+// ---- trials without a distance, with the reasons
+
+export function LeftOut({ trials }) {
+  const aside = trials.set_aside ?? [];
+  const failures = trials.failures ?? [];
+  if (!aside.length && !trials.failed) return null;
+  const counts = [
+    trials.failed && `${count(trials.failed, "trial")} failed`,
+    aside.length && `${count(aside.length, "trial")} set aside`,
+  ];
+  return html`
+    <section class="panel left-out" aria-labelledby="left-out">
+      <h2 id="left-out">Left out: ${counts.filter(Boolean).join(", ")}</h2>
+      <p class="dim">
+        A trial is set aside when it has killed its worker three times, or cannot be run. All others are in the figures.
+      </p>
+      <details class="more">
+        <summary>Which, and why</summary>
+        <ul>${[...failures, ...aside].map((one) => html`<${Reason} trial=${one.key} reason=${one.reason} />`)}</ul>
+      </details>
+    </section>
+  `;
+}
+
+const Reason = ({ trial, reason }) => html`<li><code>${trial}</code> <span class="dim">${reason}</span></li>`;
+
+// ---- what is needed to repeat it: seeds, versions, machine and time
+
+const joined = (parts) => parts.filter(Boolean).join(", ");
+
+
+/** @param {Summary} known */
+const simulatorOf = ({ config, versions = {} }) => {
+  const version = config.simulator === "mujoco" ? versions.mujoco : null;
+  return [simulatorTitle(config.simulator), version].filter(Boolean).join(" ");
+};
+
+/** @param {Summary} known */
+const versionsOf = ({ versions = {} }) =>
+  joined(Object.entries(versions).filter(([name]) => name !== "mujoco").map(([name, version]) => `${name} ${version}`));
+
+/** @param {Summary} known */
+const machineOf = ({ machine = {} }) => joined([machine.platform, machine.cores && count(machine.cores, "core")]);
+
+const timeOf = ({ cost }) =>
+  cost && joined([
+    cost.wall_s && duration(cost.wall_s),
+    cost.trials_per_s && `${cost.trials_per_s.toPrecision(3)} trials a second`,
+    cost.workers && count(cost.workers, "worker"),
+  ]);
+
+export function Making({ known }) {
+  const { seeds, seed } = known.config;
+  const rows = [
+    ["Seeds", `${count(seeds, "seed")}, spawned from ${seed}`],
+    ["Simulator", simulatorOf(known)],
+    ["Versions", versionsOf(known)],
+    ["Machine", machineOf(known)],
+    ["Time", timeOf(known)],
+  ];
+  return html`
+    <section class="panel making" aria-labelledby="making">
+      <h2 id="making">How it was made</h2>
+      <dl>
+        ${rows.filter(([, value]) => value !== undefined && value !== null).map(([name, value]) => html`
+          <div><dt>${name}</dt><dd>${value}</dd></div>
+        `)}
+      </dl>
+    </section>
+  `;
+}

@@ -1,16 +1,13 @@
 // The settings of a sweep with every seed: the fields that vary, distances, share that walks.
 import { useState } from "preact/hooks";
-import { agentOf } from "../../agents.js";
+import { bare, factorOf, greedyTotals, inUnit, shown } from "../../experiments/distances.js";
 import { count, percentage } from "../../format.js";
-import { html } from "../../html.js";
-import { greedyTotals } from "../../experiments/places.js";
-import { fieldTitle, valueTitle, variedFields } from "../../experiments/titles.js";
-import { bare, factorOf, inUnit, shown } from "../../experiments/units.js";
 import { largest } from "../../scale.js";
-import { DotStrip } from "../dot-strip.js";
-import { Segments } from "../segments.js";
-import { StripKey } from "./strip-key.js";
-import { UnitSwitch } from "./unit-switch.js";
+import { agentOf } from "../../settings.js";
+import { fieldTitle, valueTitle, variedFields } from "../../titles.js";
+import { DotStrip } from "../charts.js";
+import { html, Segments } from "../elements.js";
+import { StripKey, UnitSwitch } from "./report-tools.js";
 
 const ORDERS = [["grid", "In the grid’s order"], ["best", "Furthest first"]];
 const MOST_ROWS = 60;

@@ -1,0 +1,65 @@
+"""Contents that are compressed once, and sent with gzip to clients that accept it.
+
+Only for contents that hold no secret: the length of a compressed secret beside a client's text
+tells what they have in common (BREACH).
+"""
+
+import gzip
+import hashlib
+from collections.abc import Mapping
+
+from starlette.datastructures import Headers
+from starlette.responses import Response
+from starlette.types import Scope
+
+
+class CompressedContent:
+    """A content, plain and compressed, each with its entity tag; clients revalidate at each use.
+
+    Ranges are not served: a request for one is answered with the whole content.
+    """
+
+    def __init__(
+        self, content: bytes, media_type: str, headers: Mapping[str, str] | None = None
+    ) -> None:
+        """Compress a content.
+
+        Args:
+            content: the bytes.
+            media_type: their type.
+            headers: further headers of each response, of 304 as well.
+        """
+        self._media_type = media_type
+        # After revalidation (304) a page and its scripts are of the same version.
+        self._headers = {**(headers or {}), "Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
+        digest = hashlib.sha256(content).hexdigest()[:16]
+        # A strong entity tag identifies the bytes sent, so each encoding needs its own.
+        self._plain = (content, {"ETag": f'"{digest}"'})
+        packed = gzip.compress(content, mtime=0)
+        self._gzipped = (packed, {"ETag": f'"{digest}-gzip"', "Content-Encoding": "gzip"})
+        self._is_smaller = len(packed) < len(content)
+
+    def response(self, scope: Scope) -> Response:
+        """Return the response to a request, without content if its copy is current."""
+        request = Headers(scope=scope)
+        is_gzipped = self._is_smaller and accepts_gzip(request.get("accept-encoding", ""))
+        body, own = self._gzipped if is_gzipped else self._plain
+        headers = {**self._headers, **own}
+        known = {
+            tag.strip().removeprefix("W/") for tag in request.get("if-none-match", "").split(",")
+        }
+        if headers["ETag"] in known or "*" in known:
+            headers.pop("Content-Encoding", None)
+            return Response(status_code=304, headers=headers)
+        headers["Content-Length"] = str(len(body))
+        sent = b"" if scope["method"] == "HEAD" else body
+        return Response(sent, headers=headers, media_type=self._media_type)
+
+
+def accepts_gzip(accept_encoding: str) -> bool:
+    """Whether an `Accept-Encoding` header names gzip with a quality above zero."""
+    for part in accept_encoding.lower().replace(" ", "").split(","):
+        coding, _, quality = part.partition(";q=")
+        if coding == "gzip":
+            return quality.strip("0.") != "" or quality == ""
+    return False

@@ -1,0 +1,105 @@
+// The `html` template tag, and the elements that all views share: icons, glyphs, errors, bars, switches.
+import htm from "htm";
+import { h } from "preact";
+import { dismissProblem, problems } from "../actions.js";
+
+export const html = htm.bind(h);
+
+const SUN = "M8 5.2a2.8 2.8 0 1 0 0 5.6 2.8 2.8 0 0 0 0-5.6";
+const STRAIGHT_RAYS = "M8 1v1.6M8 13.4V15M1 8h1.6M13.4 8H15";
+const SLANTED_RAYS = "M3.05 3.05l1.1 1.1M11.85 11.85l1.1 1.1M3.05 12.95l1.1-1.1M11.85 4.15l1.1-1.1";
+const LINK_LEFT = "M6.6 9.4a2.6 2.6 0 0 0 3.7 0l2.4-2.4a2.6 2.6 0 0 0-3.7-3.7l-.9.9";
+const LINK_RIGHT = "m1.3 2.4a2.6 2.6 0 0 0-3.7 0L3.3 9a2.6 2.6 0 0 0 3.7 3.7l.9-.9";
+
+const PATHS = {
+  play: "M5 3.2v9.6l8-4.8z",
+  pause: "M4 3h3v10H4zM9 3h3v10H9z",
+  stop: "M3.5 3.5h9v9h-9z",
+  skip: "M3 3.2v9.6l6.5-4.8zM10.5 3h2.5v10h-2.5z",
+  link: `${LINK_LEFT}${LINK_RIGHT}`,
+  light: `${SUN}${STRAIGHT_RAYS}${SLANTED_RAYS}`,
+  dark: "M13.2 9.6A5.6 5.6 0 0 1 6.4 2.8a5.6 5.6 0 1 0 6.8 6.8z",
+  auto: "M8 2.2a5.8 5.8 0 1 0 0 11.6A5.8 5.8 0 0 0 8 2.2M8 2.2v11.6M8 4.8h3.9M8 8h5.8M8 11.2h3.9",
+  flag: "M4 14V2.5h8.5L10.8 5.3l1.7 2.7H4",
+};
+const OUTLINED = new Set(["link", "light", "dark", "auto", "flag"]);
+const SIZE = 16;
+
+export function Icon({ name }) {
+  const style = OUTLINED.has(name) ? "icon outlined" : "icon";
+  return html`
+    <svg class=${style} viewBox=${`0 0 ${SIZE} ${SIZE}`} width=${SIZE} height=${SIZE} aria-hidden="true">
+      <path d=${PATHS[name]} />
+    </svg>
+  `;
+}
+
+const HIP = 7.5;
+const FOOT = 24;
+
+/** The point at a distance from the centre in the direction of a leg; azimuths turn anticlockwise. */
+function pointAt(azimuth_deg, radius) {
+  const angle = (azimuth_deg * Math.PI) / 180;
+  return [-radius * Math.sin(angle), -radius * Math.cos(angle)].map((c) => c.toFixed(1));
+}
+
+/** `only`: the pair to show in colour; without it, all are. */
+export function HexapodGlyph({ gait, only = null }) {
+  const pairs = gait.pairs.map((legs, number) => {
+    const [from, to] = legs.map((leg) => pointAt(gait.azimuths_deg[leg - 1], FOOT));
+    const style = only === null || only === number ? `pair pair-${(number % 6) + 1}` : "pair pair-none";
+    return html`
+      <g class=${style}>
+        <path class="thread" d=${`M${from} L${to}`} />
+        ${legs.map((leg) => html`<${Leg} azimuth=${gait.azimuths_deg[leg - 1]} />`)}
+      </g>
+    `;
+  });
+  return html`
+    <svg class="glyph" viewBox="-29 -29 58 58" aria-hidden="true">
+      ${pairs}
+      <circle class="body" r="9" />
+      <path class="forward" d="M0 -5.2 3.6 1.2 H-3.6z" />
+    </svg>
+  `;
+}
+
+function Leg({ azimuth }) {
+  const foot = pointAt(azimuth, FOOT);
+  return html`
+    <path class="leg" d=${`M${pointAt(azimuth, HIP)} L${foot}`} />
+    <circle class="foot" cx=${foot[0]} cy=${foot[1]} r="3.2" />
+  `;
+}
+
+export function Problem({ at }) {
+  const error = problems.value[at];
+  return html`
+    <div role="alert">
+      ${error && html`
+        <p class="problem">
+          <span>${error.message}</span>
+          <button class="quiet square small" aria-label="Dismiss" onClick=${() => dismissProblem(at)}>✕</button>
+        </p>
+      `}
+    </div>
+  `;
+}
+
+export const ProgressBar = ({ label, share }) => html`
+  <div class="bar" role="progressbar" aria-label=${label} aria-valuemin="0" aria-valuemax="100"
+    aria-valuenow=${Math.round(100 * share)}>
+    <i style=${{ width: `${100 * share}%` }}></i>
+  </div>
+`;
+
+/** `choices`: [value, title]. */
+export const Segments = ({ label, choices, value, onValue }) => html`
+  <div class="segments" role="group" aria-label=${label}>
+    ${choices.map(([one, title]) => html`
+      <button key=${one} aria-pressed=${one === value ? "true" : "false"} onClick=${() => onValue(one)}>
+        ${title}
+      </button>
+    `)}
+  </div>
+`;

@@ -1,0 +1,56 @@
+// What stands over a report's figures: the choice of place and unit, and the legend of dot strips.
+import { unit, UNITS } from "../../experiments/distances.js";
+import { sentence } from "../../format.js";
+import { options } from "../../store.js";
+import { observationTitle, robotTitle } from "../../titles.js";
+import { html, Segments } from "../elements.js";
+
+// ---- the place: observation, robot and foot grid; hidden where there is only one
+
+const titleOf = (place, places) => {
+  const differs = (field) => new Set(places.map((one) => one[field])).size > 1;
+  const parts = [
+    observationTitle(place.observation),
+    differs("robot") && robotTitle(place.robot).toLowerCase(),
+    differs("divisions") && `${place.divisions} × ${place.divisions}`,
+    differs("grid_side_m") && `${place.grid_side_m} m`,
+  ];
+  return sentence(parts.filter(Boolean).join(", "));
+};
+
+const descriptionOf = (list, name) => list?.find((one) => one.name === name)?.description ?? "";
+
+/** The observation and the robot of a place, explained. */
+export function PlaceWords({ place: { observation, robot } }) {
+  const about = descriptionOf(options.value?.observations, observation);
+  const words = [`${sentence(observationTitle(observation))}:`, about, descriptionOf(options.value?.robots, robot)];
+  return html`<p class="dim">${words.filter(Boolean).join(" ")}</p>`;
+}
+
+export function PlaceSwitch({ places, value, onValue }) {
+  if (places.length < 2) return null;
+  const choices = places.map((one) => [one.key, titleOf(one, places)]);
+  return html`<${Segments} label="Place" choices=${choices} value=${value} onValue=${onValue} />`;
+}
+
+export const UnitSwitch = () => html`
+  <${Segments} label="Unit of distances" choices=${UNITS} value=${unit.value} onValue=${(one) => (unit.value = one)} />
+`;
+
+const TYPICAL = html`
+  <line class="interval" x1="2" x2="18" y1="8" y2="8" /><line class="typical" x1="10" x2="10" y1="3" y2="13" />
+`;
+const SIGNS = {
+  seed: ["one seed", html`<circle class="dot-of-seed" cx="10" cy="8" r="3.5" />`],
+  typical: ["interquartile mean, 95 % interval", TYPICAL],
+  greedy: ["greedy", html`<line class="mark greedy" x1="10" x2="10" y1="0" y2="16" />`],
+  published: ["the paper", html`<path class="mark published" d="M10 2 16 8 10 14 4 8z" />`],
+};
+
+const Sign = ({ name }) => html`
+  <span><svg class="dots" width="20" height="16" aria-hidden="true">${SIGNS[name][1]}</svg>${SIGNS[name][0]}</span>
+`;
+
+export const StripKey = ({ signs = Object.keys(SIGNS), color }) => html`
+  <p class="strip-key" style=${color && { "--agent": color }}>${signs.map((name) => html`<${Sign} name=${name} />`)}</p>
+`;

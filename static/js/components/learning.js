@@ -1,0 +1,144 @@
+// What the learner in view has learned: its learning curve, and its action values in its present state.
+import { useMemo } from "preact/hooks";
+import { count, metres, millimetres, whole } from "../format.js";
+import { valueColours } from "../scale.js";
+import { shownRun } from "../selectors.js";
+import { agentOf } from "../settings.js";
+import { options, scene, served } from "../store.js";
+import { bestMove, curve, placeName } from "../training.js";
+import { AsTable, Empty, Plot } from "./charts.js";
+import { HexapodGlyph, html } from "./elements.js";
+
+// ---- the learning curve: distance in an evaluation against steps of practice, with greedy's distance
+
+/** With more, single points are not marked. */
+const MOST_MARKED_POINTS = 45;
+/** The axis reaches at least so far [m]. */
+const LEAST_TOP_M = 0.5;
+const HEADROOM = 1.16;
+
+const CURVE_INVITATION = "Each evaluation adds a point here, on its way to greedy’s line.";
+
+export function LearningChart() {
+  const known = curve.value;
+  return html`
+    <section class="panel chart" aria-labelledby="learning-title">
+      <h2 id="learning-title">Learning</h2>
+      <p class="dim">Distance in 50 steps, after so many steps of practice</p>
+      ${known ? html`<${Curve} known=${known} />` : html`<${Empty} words=${CURVE_INVITATION} />`}
+    </section>
+  `;
+}
+
+/** Thin lines: greedy's distance, and where one training continued another. */
+const marksOf = ({ greedy_m, blocks }) => [
+  ...(greedy_m ? [greedyMark(greedy_m)] : []),
+  ...blocks.map((x) => ({ x, color: "--line" })),
+];
+
+const greedyMark = (y) => ({
+  y, color: agentOf("greedy").color, ink: "--dim", dash: [5, 5], text: `greedy, the line to beat: ${metres(y)}`,
+});
+
+function captionOf({ points, greedy_m }) {
+  if (points.length < 2) return "Learning curve, without points so far.";
+  const last = points.at(-1);
+  const greedy = greedy_m ? `; greedy gets ${metres(greedy_m)}` : "";
+  return `Learning curve: ${metres(last.distance_m)} after ${whole(last.step)} steps${greedy}.`;
+}
+
+function Curve({ known }) {
+  const { points, to, greedy_m, run } = known;
+  const { color } = agentOf(run.config.agent ?? served().defaults.training.agent);
+  const last = points.at(-1);
+  const data = useMemo(() => [points.map((p) => p.step), points.map((p) => p.distance_m)], [points]);
+  const end = { text: metres(last.distance_m), color, x: last.step, y: last.distance_m };
+  const distances = points.map((p) => p.distance_m);
+  const caption = captionOf(known);
+  return html`
+    <${Plot} label=${caption} data=${data} marks=${marksOf(known)} labels=${points.length > 1 ? [end] : []} room=${64}
+      series=${[{ color, points: points.length < MOST_MARKED_POINTS }]}
+      x=${{ min: 0, max: to, unit: "steps of practice" }}
+      y=${{ min: Math.min(0, ...distances), max: HEADROOM * Math.max(LEAST_TOP_M, greedy_m ?? 0, ...distances) }} />
+    <${AsTable} caption=${caption} columns=${["Steps of practice", "Distance in 50 steps"]}
+      rows=${points.map((p) => [whole(p.step), metres(p.distance_m)])} />
+  `;
+}
+
+// ---- the action values: one for each pair of legs and each place on the foot grid
+
+const ABOUT = "Millimetres forward that it expects from moving a pair of legs to a place, and from what follows";
+const TABLE_INVITATION =
+  "When a learner is on stage, its table is shown here: one value for each pair of legs and each place.";
+
+export function Knowledge() {
+  const known = scene.value?.knowledge;
+  return html`
+    <section class="panel knowledge" aria-labelledby="knowledge-title">
+      <h2 id="knowledge-title">What the learner knows here</h2>
+      <p class="dim">${ABOUT}</p>
+      ${known
+        ? html`<${Values} known=${known} /><p class="next-move"><${NextMove} known=${known} /></p>`
+        : html`<${Empty} shape="cells" words=${TABLE_INVITATION} />`}
+    </section>
+  `;
+}
+
+function Values({ known }) {
+  const { pairs, cell_names } = known;
+  const gait = options.value?.gaits.find(({ name }) => name === shownRun.value?.config?.gait);
+  return html`
+    <div class="scroller" tabindex="0" role="region" aria-label="Value of each move">
+      <table class="values">
+        <thead>
+          <tr><td></td>${cell_names.map((_, cell) => html`<th scope="col">${placeName(known, cell)}</th>`)}</tr>
+        </thead>
+        <tbody>
+          ${pairs.map((legs, pair) => html`
+            <tr>
+              <th scope="row">
+                ${gait && html`<${HexapodGlyph} gait=${gait} only=${pair} />`}
+                <span>Legs ${legs.join(" + ")}</span>
+              </th>
+              ${cell_names.map((_, cell) => html`<${Value} known=${known} pair=${pair} cell=${cell} />`)}
+            </tr>
+          `)}
+        </tbody>
+      </table>
+    </div>
+  `;
+}
+
+function Value({ known, pair, cell }) {
+  const value = known.values_m[pair][cell];
+  if (known.current[pair] === cell) return html`<td class="here">here</td>`;
+  if (value === null || value === undefined) return html`<td></td>`;
+  const best = bestMove(known);
+  const isBest = best.pair === pair && best.cell === cell;
+  const isNext = known.next?.pair === pair && known.next?.cell === cell;
+  const visits = known.visits?.[pair]?.[cell] ?? null;
+  return html`
+    <td class=${isNext ? "next" : isBest ? "best" : ""} style=${valueColours(value, known.low, known.high)}
+      title=${visits === null ? undefined : `tried ${count(visits, "time")}`}>
+      ${millimetres(value)}${isNext && html`<span class="sr-only">, its next move</span>`}
+    </td>
+  `;
+}
+
+/** The learner's next move in words. */
+function NextMove({ known }) {
+  const { pairs, values_m, visits, lane, agent } = known;
+  const best = bestMove(known);
+  const { pair, cell } = known.next ?? best;
+  if (pair < 0) return null;
+  const value = values_m[pair][cell] ?? 0;
+  const tried = visits?.[pair]?.[cell] ?? 0;
+  const name = scene.value?.lanes?.[lane]?.name ?? agentOf(agent).title;
+  const move = `${name} will move legs ${pairs[pair].join(" and ")} to ${placeName(known, cell, " mm")}`;
+  const times = tried === 1 ? "once" : count(tried, "time");
+  return html`
+    <b>${move}${value < best.value ? " to explore" : ""}.</b> ${tried
+      ? `It has tried that ${times} from here, and expects ${millimetres(value)} mm from it and what follows.`
+      : "It has never tried that from here."}
+  `;
+}

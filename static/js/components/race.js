@@ -1,0 +1,229 @@
+// The race: its scoreboard, and its chart of distance against time.
+import { useMemo } from "preact/hooks";
+import uPlot from "uplot";
+import { form } from "../form.js";
+import { count, decision, duration, metres, whole } from "../format.js";
+import { clipped, distanceAt, headline, isTimedOut, raceScene, shownTime, standings, timeline } from "../race.js";
+import { clock, isActive, raceInView, simulatedPerDecision } from "../selectors.js";
+import { agentOf, learns } from "../settings.js";
+import { runs } from "../store.js";
+import { clockTitle } from "../titles.js";
+import { practisedSteps } from "../training.js";
+import { AsTable, Empty, Plot } from "./charts.js";
+import { html, Icon } from "./elements.js";
+
+// ---- the scoreboard: ranks, distances, decision times and simulated transitions
+
+/** How many steps the look-ahead agents simulate. */
+const DEPTHS = { greedy: 1, "two-step": 2 };
+
+export function Scoreboard() {
+  const rows = standings.value;
+  return html`
+    <section class="panel scoreboard" aria-labelledby="scoreboard-title">
+      <h2 id="scoreboard-title" class=${rows ? "sr-only" : ""}>Scoreboard</h2>
+      ${rows
+        ? html`<p class="headline">${headline.value}</p><${Board} rows=${rows} />`
+        : html`<${StartList} />`}
+    </section>
+  `;
+}
+
+function Board({ rows }) {
+  const longest = Math.max(...rows.map((row) => row.elapsed_s ?? 0), 1e-9);
+  return html`
+    <table class="board">
+      <caption class="sr-only">Standings under the ${clockTitle(clock.value)}</caption>
+      <thead>
+        <tr>
+          <th scope="col"><span class="sr-only">Rank</span></th>
+          <th scope="col"><span class="sr-only">Agent</span></th>
+          <th scope="col" title="Distance at time-out: when the first lane has used its steps">
+            ${isTimedOut.value ? html`<span class="sr-only">Distance </span>At time-out` : "Now"}
+          </th>
+          <th scope="col" title="Distance after all of its own steps">Total</th>
+          <th scope="col" class="aside" title="Measured time of one decision, on average">Decision</th>
+          <th scope="col" class="aside" title="Transitions simulated in order to decide">Simulated</th>
+        </tr>
+      </thead>
+      ${rows.map((row) => html`<${Lane} key=${row.lane} row=${row} longest=${longest} />`)}
+    </table>
+  `;
+}
+
+const Lane = ({ row, longest }) => html`
+  <tbody class=${row.isThinking ? "thinking" : ""} style=${{ "--agent": row.color }}>
+    <tr>
+      <td class="rank">${row.rank}</td>
+      <th scope="row" class="agent"><span class="swatch"></span>${row.title}</th>
+      <td class="big">${metres(row.finished_m ?? row.distance_m)}</td>
+      <td class=${row.isDone ? "" : "dim"}>${isTimedOut.value ? metres(row.total_m ?? row.distance_m) : "–"}</td>
+      <td class="aside">${decision(row.decision_s)}</td>
+      <td class="aside">${whole(row.simulated)}</td>
+    </tr>
+    <tr class="under">
+      <td></td>
+      <td colspan="5">
+        <${TimeStrip} spent=${row.spent} longest=${longest} />
+        <p class="dim">
+          <span>${row.isDone && html`<${Icon} name="flag" />`}${activityOf(row)}</span>
+          <span class="facts">${factsOf(row)}</span>
+        </p>
+        ${row.isMarching && html`<p class="marching"><b>Marching on the spot:</b> ${reasonForMarching(row)}</p>`}
+      </td>
+    </tr>
+  </tbody>
+`;
+
+function TimeStrip({ spent: { walked, thought }, longest }) {
+  const width = (seconds) => ({ width: `${(100 * seconds) / longest}%` });
+  const label = `Walking ${duration(walked)}, thinking ${duration(thought)}`;
+  return html`
+    <div class="strip" role="img" aria-label=${label}>
+      <i class="walked" style=${width(walked)}></i>
+      <i class="thought" style=${width(thought)}></i>
+    </div>
+  `;
+}
+
+/** The values of the columns that a narrow screen has no room for. */
+const factsOf = ({ decision_s, simulated }) =>
+  [decision_s !== null && `${decision(decision_s)} a decision`, simulated !== null && `${whole(simulated)} simulated`]
+    .filter(Boolean).join(", ");
+
+function activityOf(row) {
+  if (row.failure) return `Stopped: ${row.failure}`;
+  if (row.isDone) {
+    const crossed = row.hasCrossed ? ", crossed the finish line" : "";
+    const steps = count(row.steps, "step");
+    return row.elapsed_s ? `${steps} in ${duration(row.elapsed_s)}${crossed}` : steps;
+  }
+  const step = `Step ${row.step} of ${row.steps}`;
+  if (row.isThinking) return `${step}, thinking: ${whole(row.futures)} of ${whole(row.futuresTotal)} simulated`;
+  return row.step ? step : agentSummary(row.agent, row.training_id);
+}
+
+const reasonForMarching = ({ agent }) =>
+  learns(agent)
+    ? "under 1 cm in ten steps: moves that undo each other still have the highest values. More practice changes that."
+    : "under 1 cm in ten steps: no move that it simulates gains distance on this robot.";
+
+/** How an agent decides, in a few words. */
+function agentSummary(agent, trainingId) {
+  if (learns(agent)) {
+    const training = runs.value.get(trainingId);
+    return training
+      ? `${count(practisedSteps(training), "step")} of practice, then looks up its table`
+      : "Practises, then looks up its table";
+  }
+  const depth = DEPTHS[agent];
+  if (!depth) return agentOf(agent).description;
+  const simulated = simulatedPerDecision(depth, raceInView.value?.config ?? form.value);
+  return `Simulates ${whole(simulated)} moves before each step`;
+}
+
+function startSentence(race) {
+  if (!race) return "The lanes of the next race.";
+  return isActive(race) || race.state === "finished"
+    ? "The race starts when practice is over."
+    : `The race ${race.state === "stopped" ? "was stopped" : race.state} before it began.`;
+}
+
+/** The lanes before the race. */
+function StartList() {
+  const race = raceInView.value;
+  const lanes = race?.config?.lanes ?? form.value.lanes.map((agent) => ({ agent, training_id: null }));
+  return html`
+    <p class="dim">${startSentence(race)}</p>
+    <ul class="start-list">
+      ${lanes.map(({ agent, training_id }) => html`
+        <li style=${{ "--agent": agentOf(agent).color }}>
+          <span class="swatch"></span><b>${agentOf(agent).title}</b>
+          <span class="dim">${agentSummary(agent, training_id)}</span>
+        </li>
+      `)}
+    </ul>
+    ${raceScene.value && html`<p class="dim">On the start line.</p>`}
+  `;
+}
+
+// ---- the chart: distance against race time up to the moment that is shown; flat parts are thinking
+
+/** What thinking costs under each clock. */
+const COSTS = {
+  paper: "a decision costs what it did in the paper",
+  wall: "a decision costs the time it took on this machine",
+  free: "a decision costs nothing under this clock",
+};
+const HEADROOM = 1.16;
+const TABLE_ROWS = 10;
+/** The time axis shows at least so much of a race that has just begun [s]. */
+const FIRST_VIEW_S = 20;
+
+export function RaceChart() {
+  const known = timeline.value;
+  const time = shownTime.value;
+  const isOn = known && time !== null && known.lanes.some(({ points }) => points.length > 1);
+  const cost = COSTS[clock.value];
+  return html`
+    <section class="panel chart" aria-labelledby="race-title">
+      <h2 id="race-title">The race</h2>
+      <p class="dim">Flat parts are thinking${cost && `: ${cost}`}</p>
+      ${isOn ? html`<${Lines} known=${known} time=${time} />` : html`<${Empty} shape="lines" words=${invitation()} />`}
+    </section>
+  `;
+}
+
+const invitation = () =>
+  raceInView.value
+    ? "The lines start when the robots do. Flat parts are thinking."
+    : "Each robot draws a line here as it walks. Flat parts are thinking.";
+
+function Lines({ known, time }) {
+  const longest = Math.max(...known.lanes.map(({ total_s }) => total_s));
+  const until = Math.min(time, longest);
+  const lanes = known.lanes.map((lane) => {
+    const shown = clipped(lane.points, until);
+    return { ...lane, ...agentOf(lane.agent), shown, end: shown.at(-1) };
+  });
+  const data = useMemo(
+    () => uPlot.join(lanes.map(({ shown }) => [shown.map(([t]) => t), shown.map(([, d]) => d)])),
+    [known, until],
+  );
+  const far = Math.max(known.finish_line_m, ...lanes.map(({ end }) => end[1]));
+  const ends = lanes.map(({ title, end }) => `${title} ${metres(end[1])}`).join(", ");
+  const caption = `The race after ${Math.round(until)} seconds: ${ends}.`;
+  return html`
+    <${Plot} label=${caption} data=${data} marks=${marksOf(known, until)}
+      series=${lanes.map(({ color }) => ({ color }))}
+      labels=${lanes.map(({ title, color, end }) => ({ text: title, color, x: end[0], y: end[1] }))}
+      x=${{ min: 0, max: lastMoment(known, until, longest), unit: "race time, s" }}
+      y=${{ min: 0, max: HEADROOM * far }} />
+    <${AsTable} caption=${caption} columns=${["Race time", ...lanes.map(({ title }) => title)]}
+      rows=${rowsOf(lanes, until)} />
+  `;
+}
+
+/** Where the time axis ends. */
+function lastMoment({ first_finish_s }, until, longest) {
+  const planned = first_finish_s ? Math.min(1.3 * first_finish_s, longest) : Math.min(longest, FIRST_VIEW_S);
+  return Math.max(until, planned, 1);
+}
+
+/** The finish line, and time-out once it is past. */
+function marksOf({ finish_line_m, first_finish_s }, until) {
+  // Its caption stands where no line passes: first on the left, later behind the lanes that have arrived.
+  const share = first_finish_s && until > 1.5 * first_finish_s ? 0.55 : 0;
+  /** @type {object[]} */
+  const marks = [{ y: finish_line_m, color: "--finish", text: "finish line", share }];
+  if (first_finish_s && until >= first_finish_s) {
+    marks.push({ x: first_finish_s, color: "--dim", dash: [2, 3], text: "time-out" });
+  }
+  return marks;
+}
+
+function rowsOf(lanes, until) {
+  const step = Math.max(1, Math.ceil(until / TABLE_ROWS));
+  const moments = Array.from({ length: Math.floor(until / step) + 1 }, (_, n) => n * step);
+  return moments.map((t) => [`${t} s`, ...lanes.map(({ points }) => metres(distanceAt(points, t)))]);
+}

@@ -1,0 +1,109 @@
+// Distances of a report: grouped by the place in which agents are compared, and in the chosen unit.
+import { signal } from "@preact/signals";
+import { metres, THIN_SPACE } from "../format.js";
+
+/** @import { Place, Setting } from "../types.js" */
+
+// ---- places: observation, robot and foot grid
+
+/** @param {Omit<Place, "key" | "half_side_m">} setting */
+export const placeOf = ({ observation, robot, divisions, grid_side_m }) =>
+  [observation, robot, divisions, grid_side_m].join("/");
+
+/** @param {Setting} setting */
+const pairOf = (setting) => `${setting.gait} in ${placeOf(setting)}`;
+
+/**
+ * The places of an experiment, in its order.
+ * @param {Omit<Place, "key">[]} settings
+ * @returns {Place[]}
+ */
+export function placesOf(settings) {
+  /** @type {Map<string, Place>} */
+  const found = new Map();
+  for (const setting of settings) {
+    const { observation, robot, divisions, grid_side_m, half_side_m } = setting;
+    const key = placeOf(setting);
+    if (!found.has(key)) found.set(key, { key, observation, robot, divisions, grid_side_m, half_side_m });
+  }
+  return [...found.values()];
+}
+
+/**
+ * Each gait of a place with its learners and references, in the order of the experiment.
+ * @param {Setting[]} settings
+ * @param {string} place
+ */
+export function gaitsOf(settings, place) {
+  const here = settings.filter((setting) => placeOf(setting) === place);
+  return [...new Set(here.map(({ gait }) => gait))].map((gait) => {
+    const own = here.filter((setting) => setting.gait === gait);
+    const references = own.filter(({ role }) => role === "reference");
+    return {
+      gait,
+      learners: own.filter(({ role }) => role === "learner"),
+      references: Object.fromEntries(references.map((one) => [one.agent, one])),
+    };
+  });
+}
+
+/**
+ * A function from a setting to greedy's total distance for the same gait in the same place [m].
+ * @param {Setting[]} settings
+ * @returns {(setting: Setting) => number | null}
+ */
+export function greedyTotals(settings) {
+  /** @type {Map<string, number>} */
+  const found = new Map();
+  for (const setting of settings) {
+    const isGreedy = setting.role === "reference" && setting.agent === "greedy";
+    if (isGreedy && setting.total) found.set(pairOf(setting), setting.total.mean_m);
+  }
+  return (setting) => found.get(pairOf(setting)) ?? null;
+}
+
+// ---- units: metres, half grid sides, or shares of greedy's distance
+
+const MINUS = "\u2212";
+
+/** @type {[string, string][]} */
+export const UNITS = [["m", "metres"], ["h", "half grid sides"], ["greedy", "relative to greedy"]];
+export const unit = signal("m");
+
+/**
+ * The factor from metres to the chosen unit; null where its reference is unknown.
+ * @param {{ half_side_m: number, greedy_m: number | null }} reference
+ */
+export function factorOf({ half_side_m, greedy_m }) {
+  if (unit.value === "m") return 1;
+  const one = unit.value === "h" ? half_side_m : greedy_m;
+  return one ? 1 / one : null;
+}
+
+/**
+ * A number of the chosen unit with its sign: "0.38 m", "19.1 h", "76 %".
+ * @param {number | null | undefined} value
+ */
+export function shown(value) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  if (unit.value === "m") return metres(value);
+  const rounded = unit.value === "h" ? value.toFixed(1) : (100 * value).toFixed(0);
+  return `${rounded.replace("-", MINUS)}${THIN_SPACE}${unit.value === "h" ? "h" : "%"}`;
+}
+
+/**
+ * The same without the unit, for the ends of an interval.
+ * @param {number | null | undefined} value
+ */
+export const bare = (value) => shown(value).replace(/[^\d.−–].*$/u, "");
+
+/** @type {(value: number | null | undefined, factor: number | null) => number | null} */
+export const inUnit = (value, factor) =>
+  value === null || value === undefined || factor === null ? null : value * factor;
+
+/** Labels of an axis. @type {Record<string, string>} */
+export const UNIT_NAMES = {
+  m: "metres in 50 steps",
+  h: "half grid sides in 50 steps",
+  greedy: "share of greedy’s distance",
+};

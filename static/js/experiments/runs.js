@@ -1,0 +1,235 @@
+// The known experiments, and the chosen one: its address, summary and pace, and the actions on it.
+import { computed, effect, signal } from "@preact/signals";
+import { attempt, deleteRun } from "../actions.js";
+import * as api from "../api.js";
+import { getRun, getSummary, listRuns } from "../api.js";
+import { count, duration, whole } from "../format.js";
+import { place } from "../page.js";
+import { announcement } from "../race.js";
+import { everyRun, isActive, isOperator } from "../selectors.js";
+import { connection, isDeleted, requestRun, requestRuns, runs, setEntry, summarised } from "../store.js";
+import { runTitle } from "../titles.js";
+import { chosenExperiment, mistakes, readQuery, requestBody, toQuery, trials } from "./form.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { RequestError } from "../api.js" */
+/** @import { Run, Summary, Verb } from "../types.js" */
+
+// ---- the address: `#experiments?experiment=sweep&alpha=0.1,0.3&run=…`
+
+/** The id of the requested experiment; null for the newest. @type {Signal<string | null>} */
+export const wantedRun = signal(null);
+
+const query = () => {
+  const search = new URLSearchParams(toQuery());
+  if (wantedRun.value) search.set("run", wantedRun.value);
+  return search.toString().replaceAll("%2C", ",");
+};
+
+const currentHash = () => (query() ? `#experiments?${query()}` : "#experiments");
+
+/** The hash that was last written or read here. */
+let known = "";
+
+function readHash() {
+  const { hash } = location;
+  if (hash === known || !hash.startsWith("#experiments")) return;
+  known = hash;
+  const search = new URLSearchParams(hash.split("?")[1] ?? "");
+  // The bare link of the navigation leaves the form as it was.
+  if (search.size === 0) return;
+  readQuery(search);
+  wantedRun.value = search.get("run");
+}
+
+/** Keep the form and the address the same. Call it once the options are known. */
+export function followAddress() {
+  readHash();
+  addEventListener("hashchange", readHash);
+  effect(() => {
+    if (place.value !== "experiments") return;
+    // A link that was followed is read before the form is written over it.
+    readHash();
+    known = currentHash();
+    if (location.hash === known) return;
+    history.replaceState(history.state, "", `${location.pathname}${location.search}${known}`);
+  });
+}
+
+// ---- the known experiments, newest first, and the one whose report is shown
+
+export const experimentRuns = computed(() => everyRun.value.filter(({ kind }) => kind === "experiment"));
+
+/** The requested one, else the active one, else the newest. */
+export const chosenRun = computed(() => {
+  const all = experimentRuns.value;
+  if (wantedRun.value) return all.find(({ id }) => id === wantedRun.value) ?? null;
+  return all.find(isActive) ?? all[0] ?? null;
+});
+
+/** Whether the server has listed its experiments. */
+export const isListed = signal(false);
+/** Where older ones continue, null after the last. @type {Signal<string | null>} */
+const cursor = signal(null);
+export const hasOlder = computed(() => cursor.value !== null);
+
+/** @param {string | null} [from] */
+async function loadList(from) {
+  const answer = await requestRuns(() => listRuns("experiment", from)).catch(() => null);
+  if (!answer) return;
+  cursor.value = answer.next_cursor ?? null;
+  isListed.value = true;
+}
+
+export const loadOlder = () => loadList(cursor.value);
+
+/** List experiments when the view opens: the first snapshot may have had room for trainings and races only. */
+export function followExperiments() {
+  const isOpen = computed(() => place.value === "experiments" && connection.value === "live");
+  effect(() => {
+    if (isOpen.value) loadList();
+  });
+  const unknown = computed(() => {
+    const id = wantedRun.value;
+    return isOpen.value && id && !runs.value.has(id) ? id : null;
+  });
+  effect(() => {
+    const id = unknown.value;
+    if (!id) return;
+    if (isDeleted(id)) {
+      wantedRun.value = null;
+      return;
+    }
+    requestRun(() => getRun({ kind: "experiment", id })).catch(() => (wantedRun.value = null));
+  });
+}
+
+// ---- the summary of the chosen experiment, requested again as its trials end
+
+const PAUSE_MS = 2000;
+
+/** Run id → its newest summary. @type {Signal<Record<string, Summary>>} */
+const summaries = signal({});
+/** Run id → the error of its last request. @type {Signal<Record<string, RequestError | null>>} */
+const errors = signal({});
+
+export const summary = computed(() => summaries.value[chosenRun.value?.id ?? ""] ?? null);
+export const summaryError = computed(() => errors.value[chosenRun.value?.id ?? ""] ?? null);
+
+/** Lists of a config that are no parameters of a setting. */
+const PLACES = ["agents", "gaits", "observations", "robots"];
+
+/**
+ * A summary with the names of its parameters, which earlier versions left out.
+ * @param {Summary} stored
+ * @returns {Summary}
+ */
+function withParameters(stored) {
+  const lists = Object.entries(stored.config).filter(([, value]) => Array.isArray(value));
+  const names = lists.map(([name]) => name).filter((name) => !PLACES.includes(name));
+  return { ...stored, parameters: stored.parameters ?? names };
+}
+
+/** @param {string} id */
+async function loadSummary(id) {
+  try {
+    setEntry(summaries, id, withParameters(await getSummary(id)));
+    setEntry(errors, id, null);
+  } catch (error) {
+    setEntry(errors, id, /** @type {RequestError} */ (error));
+  }
+}
+
+/** Request at most one summary every two seconds, and one more for changes in between. */
+export function followSummary() {
+  const wanted = computed(() => {
+    const run = chosenRun.value;
+    if (!run || place.value !== "experiments" || connection.value !== "live") return "";
+    return [run.id, run.state, summarised.value[run.id] ?? ""].join(" ");
+  });
+  let isBusy = false;
+  let hasMissed = false;
+  let last = "";
+
+  const next = async () => {
+    const [id] = wanted.peek().split(" ");
+    if (!id) return;
+    if (isBusy && id === last) {
+      hasMissed = true;
+      return;
+    }
+    isBusy = true;
+    hasMissed = false;
+    last = id;
+    await loadSummary(id);
+    setTimeout(() => {
+      isBusy = false;
+      if (hasMissed) next();
+    }, PAUSE_MS);
+  };
+  effect(() => {
+    if (wanted.value) next();
+  });
+}
+
+// ---- the pace: trials per second, and the time that is left
+
+/**
+ * Trials a second, as the estimate of the remaining time implies; null before there is one.
+ * @param {Run} run
+ */
+const rateOf = ({ eta_s, progress: { done, total } }) =>
+  eta_s && eta_s > 0 && done > 0 ? (total - done) / eta_s : null;
+
+/**
+ * Progress in words: "412 of 1008 trials", "9.8 a second, 1 min left".
+ * @param {Run} run
+ */
+export function paceOf(run) {
+  const { done, total } = run.progress;
+  const share = total ? done / total : 0;
+  const label = `${whole(done)} of ${count(total, "trial")}`;
+  const rate = run.state === "running" ? rateOf(run) : null;
+  if (rate === null) return { share, label, left: "" };
+  const shown = rate < 10 ? rate.toFixed(1) : whole(rate);
+  return { share, label, left: `${shown} a second, ${duration(run.eta_s ?? 0)} left` };
+}
+
+// ---- actions
+
+export const startLabel = () => `Run ${chosenExperiment.value.title}: ${count(trials.value, "trial")}`;
+
+export const canStart = () =>
+  isOperator.value && Object.keys(mistakes.value).length === 0 && trials.value > 0;
+
+export const start = () =>
+  attempt("experiment", async () => {
+    const run = await requestRun(() => api.startExperiment(requestBody()));
+    wantedRun.value = run.id;
+  });
+
+/** @type {(run: Run, verb: Verb) => Promise<void | null>} */
+export const command = (run, verb) =>
+  attempt(run.id, async () => {
+    await requestRun(() => api.command(run, verb));
+  });
+
+/** @param {Run} run */
+export const deleteExperiment = async (run) => {
+  await deleteRun(run);
+  if (wantedRun.value === run.id) wantedRun.value = null;
+};
+
+// ---- announcements
+
+export function announceExperiments() {
+  /** @type {Run | null} */
+  let before = null;
+  effect(() => {
+    const run = chosenRun.value;
+    if (run && before?.id === run.id && isActive(before) && !isActive(run)) {
+      announcement.value = `${runTitle(run)} is ${run.state}. ${run.error ?? ""}`;
+    }
+    before = run;
+  });
+}

@@ -1,0 +1,279 @@
+// The race in view at the moment that is shown: its timeline, its standings, and what is announced of it.
+import { computed, effect, signal } from "@preact/signals";
+import { getTimeline } from "./api.js";
+import { metres } from "./format.js";
+import { clock, isActive, isToCome, raceInView, shownRun } from "./selectors.js";
+import { agentOf } from "./settings.js";
+import { connection, scene, stage } from "./store.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { ClockResult, LaneConfig, LaneResult, Run, SceneLane, Timeline, TimelineLane } from "./types.js" */
+/** @import { TimelinePoint } from "./types.js" */
+
+// ---- the timeline under the chosen clock, which grows while the race is simulated
+
+const PAUSE_MS = 700;
+
+/** @type {Signal<Timeline | null>} */
+const newest = signal(null);
+
+/** The timeline of the race in view, null while it is not known. */
+export const timeline = computed(() => {
+  const race = raceInView.value;
+  const known = newest.value;
+  return race && known?.id === race.id && known.clock === clock.value ? known : null;
+});
+
+/** The race time that is shown [s]: null before the race begins, Infinity after its show. */
+export const shownTime = computed(() => {
+  const race = raceInView.value;
+  if (!race) return null;
+  if (scene.value?.run_id === race.id && scene.value.kind === "race") return scene.value.time_s;
+  // The stage still shows its training, or is about to begin.
+  if (stage.value?.run_id === race.id || isToCome(race)) return null;
+  return race.state === "finished" || race.state === "stopped" ? Infinity : null;
+});
+
+/**
+ * A lane's distance at a race time [m], interpolated between the points of its path.
+ * @param {TimelinePoint[]} points
+ * @param {number} time
+ */
+export function distanceAt(points, time) {
+  const last = points.at(-1);
+  if (!last) return 0;
+  const next = points.findIndex(([t]) => t >= time);
+  if (next === -1) return last[1];
+  if (next === 0) return points[0][1];
+  const [[t0, d0], [t1, d1]] = [points[next - 1], points[next]];
+  return t1 > t0 ? d0 + ((d1 - d0) * (time - t0)) / (t1 - t0) : d1;
+}
+
+/**
+ * A lane's path up to a race time, ending in an interpolated point where that is between two.
+ * @param {TimelinePoint[]} points
+ * @param {number} time
+ * @returns {TimelinePoint[]}
+ */
+export function clipped(points, time) {
+  const before = points.filter(([t]) => t <= time);
+  if (!before.length) return [[0, 0]];
+  return before.length < points.length ? [...before, [time, distanceAt(points, time)]] : before;
+}
+
+/**
+ * How long a lane has thought and walked until a race time [s].
+ * @param {Pick<TimelineLane, "thinking" | "total_s">} lane
+ * @param {number} time
+ */
+export function timeSpent({ thinking, total_s }, time) {
+  const elapsed = Math.min(time, total_s);
+  const thought = thinking.reduce((sum, [from, to]) => sum + Math.max(0, Math.min(to, elapsed) - from), 0);
+  return { thought, walked: elapsed - thought };
+}
+
+/** Request the timeline whenever it has grown; one request at a time. */
+export function followTimeline() {
+  const wanted = computed(() => {
+    const race = raceInView.value;
+    if (!race?.progress.done || connection.value !== "live") return "";
+    return [race.id, clock.value, race.state, race.progress.done].join(" ");
+  });
+  let isBusy = false;
+  let hasMissed = false;
+
+  const load = async () => {
+    if (isBusy) {
+      hasMissed = true;
+      return;
+    }
+    const [id, shown] = wanted.peek().split(" ");
+    if (!id) return;
+    isBusy = true;
+    hasMissed = false;
+    const answer = await getTimeline(id, shown).catch(() => null);
+    if (answer) newest.value = { ...answer, id };
+    setTimeout(() => {
+      isBusy = false;
+      if (hasMissed) load();
+    }, answer ? PAUSE_MS / 2 : PAUSE_MS);
+  };
+  effect(() => {
+    if (wanted.value) load();
+  });
+}
+
+// ---- the standings at the moment that is shown, and nothing later
+
+/** A decision that simulates fewer is over before it can be shown as thinking. */
+const FEWEST_SHOWN_FUTURES = 100;
+
+/** The scene, if it shows the race in view. */
+export const raceScene = computed(() =>
+  scene.value && scene.value.kind === "race" && scene.value.run_id === raceInView.value?.id
+    ? scene.value
+    : null,
+);
+
+/** Whether the moment that is shown is after time-out: the first lane has used its steps. */
+export const isTimedOut = computed(() => {
+  const timeOut = timeline.value?.first_finish_s ?? null;
+  return (
+    shownTime.value === Infinity ||
+    ["photo-finish", "finished"].includes(raceScene.value?.phase ?? "") ||
+    (timeOut !== null && shownTime.value !== null && shownTime.value >= timeOut)
+  );
+});
+
+/** One row per lane, the leader first; null before the race. */
+export const standings = computed(() => {
+  const race = raceInView.value;
+  const time = shownTime.value;
+  if (!race || time === null) return null;
+  if (!isActive(race) && !race.progress.done) return null;
+  const rows = race.config.lanes.map((lane, number) => rowOf(race, lane, number, time));
+  return rows.sort((a, b) => a.rank - b.rank || a.lane - b.lane);
+});
+
+/** @typedef {ReturnType<typeof rowOf>} Standing */
+
+/**
+ * @param {Run} race
+ * @param {LaneConfig} config
+ * @param {number} number of the lane, from 0
+ * @param {number} time race time that is shown [s]; Infinity after the race
+ */
+function rowOf(race, { agent, training_id }, number, time) {
+  const lane = laneOf(race, number, time);
+  const { seen, result } = lane;
+  return {
+    lane: number,
+    agent,
+    training_id,
+    steps: seen?.steps ?? race.config.steps,
+    decision_s: result?.steps ? result.decision_s / result.steps : null,
+    ...placeOf(agent, seen, result),
+    ...distancesOf(lane),
+    ...thinkingOf(seen),
+    ...workOf(lane),
+  };
+}
+
+/** @typedef {ReturnType<typeof laneOf>} Lane */
+
+/**
+ * What is known of a lane: its scene, its timeline and its result, each null while there is none.
+ * @param {Run} race
+ * @param {number} number
+ * @param {number} time
+ */
+function laneOf(race, number, time) {
+  const seen = raceScene.value?.lanes.find(({ lane }) => lane === number) ?? null;
+  const track = timeline.value?.lanes[number] ?? null;
+  const result = race.result?.lanes?.[number] ?? null;
+  const isDone = time === Infinity || (seen?.done ?? false);
+  return { seen, track, result, isDone, time };
+}
+
+/**
+ * Steps, simulated transitions and time that a lane has used so far.
+ * @param {Lane} lane
+ */
+function workOf({ seen, track, result, isDone, time }) {
+  const step = (time === Infinity ? result?.steps : seen?.step) ?? 0;
+  return {
+    step,
+    isDone,
+    simulated: isDone && result ? result.simulated_transitions : simulatedUntil(track, step),
+    spent: track ? timeSpent(track, time) : { thought: 0, walked: 0 },
+    elapsed_s: track ? Math.min(time, track.total_s) : null,
+    failure: seen?.failure ?? (isDone ? result?.failure : null) ?? null,
+  };
+}
+
+/** @type {(result: LaneResult | null) => ClockResult | undefined} */
+const timedResult = (result) => result?.clocks?.[clock.value];
+
+/**
+ * The lane's name, colour and rank: of the scene, which may lag behind the result.
+ * @param {string} agent
+ * @param {SceneLane | null} seen
+ * @param {LaneResult | null} result
+ */
+function placeOf(agent, seen, result) {
+  const { title, color } = agentOf(agent);
+  const timed = timedResult(result);
+  return {
+    title: seen?.name ?? title,
+    color: seen?.color ?? color,
+    rank: seen?.rank ?? timed?.rank ?? 1,
+    hasCrossed: seen?.crossed ?? Boolean(timed?.crossed_s),
+  };
+}
+
+/**
+ * Distances now, at time-out and at the end; null before.
+ * @param {Lane} lane
+ */
+function distancesOf({ seen, track, result, isDone, time }) {
+  const timed = timedResult(result);
+  const distance_m = seen?.distance_m ?? (track ? distanceAt(track.points, time) : timed?.finished_distance_m);
+  return {
+    distance_m,
+    finished_m: isTimedOut.value ? timeOutDistance(track, timed) : null,
+    total_m: isDone ? result?.total_distance_m ?? distance_m : null,
+  };
+}
+
+/** @param {SceneLane | null} seen */
+const thinkingOf = (seen) => ({
+  isThinking: seen !== null && seen.thinking && seen.futures_total >= FEWEST_SHOWN_FUTURES,
+  futures: seen?.futures ?? 0,
+  futuresTotal: seen?.futures_total ?? 0,
+  isMarching: seen?.marching ?? false,
+});
+
+/** @type {(track: TimelineLane | null, timed: ClockResult | undefined) => number | null} */
+function timeOutDistance(track, timed) {
+  if (timed) return timed.finished_distance_m;
+  const timeOut = timeline.value?.first_finish_s ?? null;
+  return track && timeOut !== null ? distanceAt(track.points, timeOut) : null;
+}
+
+/** @type {(track: TimelineLane | null, steps: number) => number | null} */
+const simulatedUntil = (track, steps) =>
+  track ? track.futures.slice(0, steps).reduce((sum, n) => sum + n, 0) : null;
+
+// ---- announcements for screen readers, each made once: results, failures, a lost connection
+
+/** The text of the page's live region. */
+export const announcement = signal("");
+
+/** The leader in one sentence; null before the race. */
+export const headline = computed(() => {
+  const rows = standings.value;
+  if (!rows?.length) return null;
+  const best = Math.max(...rows.map((row) => (isTimedOut.value ? row.finished_m : row.distance_m) ?? 0));
+  if (!isTimedOut.value && best <= 0) return "On the start line";
+  const ahead = rows.filter((row) => row.rank === 1);
+  if (ahead.length > 1) return isTimedOut.value ? `Level at time-out with ${metres(best)}` : "Level";
+  const verb = isTimedOut.value ? "leads at time-out with" : "leads with";
+  return `${ahead[0].title} ${verb} ${metres(best)}`;
+});
+
+export function announceOutcomes() {
+  const decided = computed(() =>
+    isTimedOut.value && raceInView.value ? `${raceInView.value.id} ${headline.value}` : "",
+  );
+  effect(() => {
+    const [, ...words] = decided.value.split(" ");
+    if (words.length) announcement.value = words.join(" ");
+  });
+  effect(() => {
+    const run = shownRun.value;
+    if (run?.state === "failed") announcement.value = `The ${run.kind} failed: ${run.error ?? ""}`;
+  });
+  effect(() => {
+    if (connection.value === "reconnecting") announcement.value = "Connection lost, reconnecting";
+  });
+}

@@ -1,0 +1,145 @@
+// The training in view: its learning curve, with the trainings that it continues, and its action values.
+import { computed, effect, signal } from "@preact/signals";
+import { getCurve, getRun } from "./api.js";
+import { trainingInView } from "./selectors.js";
+import { connection, evaluations, references, requestRun, runs, scene, setEntry } from "./store.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { Evaluation, Knowledge, Run } from "./types.js" */
+
+/** A point of the curve; steps count all practice. @typedef {{ step: number, distance_m: number }} CurvePoint */
+
+const LONGEST_CHAIN = 20;
+
+/** Run id → evaluations that were requested. @type {Signal<Record<string, Evaluation[]>>} */
+const requested = signal({});
+/** Run id → greedy's distance as the curve's answer has it [m]. @type {Signal<Record<string, number>>} */
+const requestedReferences = signal({});
+
+/**
+ * A training and those that it continues, oldest first.
+ * @param {Run | null | undefined} training
+ */
+export function chainOf(training) {
+  /** @type {Run[]} */
+  const found = [];
+  let run = training;
+  while (run && found.length < LONGEST_CHAIN) {
+    found.unshift(run);
+    run = runs.value.get(run.config?.continue_from ?? "");
+  }
+  return found;
+}
+
+const chain = computed(() => chainOf(trainingInView.value));
+
+/** @param {string} id */
+const evaluationsOf = (id) => {
+  /** @type {Map<number, Evaluation>} */
+  const byStep = new Map();
+  for (const one of [...(requested.value[id] ?? []), ...(evaluations.value[id] ?? [])]) {
+    byStep.set(one.step, one);
+  }
+  return [...byStep.values()].sort((a, b) => a.step - b.step);
+};
+
+/**
+ * The curve of the training in view, null without one. `blocks` are the steps at which one training
+ * ended and the next continued it.
+ */
+export const curve = computed(() => {
+  const trainings = chain.value;
+  const run = trainings.at(-1);
+  if (!run) return null;
+  /** @type {CurvePoint[]} */
+  const points = [{ step: 0, distance_m: 0 }];
+  /** @type {number[]} */
+  const blocks = [];
+  let from = 0;
+  for (const part of trainings) {
+    if (part !== trainings[0]) blocks.push(from);
+    const shown = evaluationsOf(part.id).filter(({ step }) => step <= shownUpTo(part));
+    points.push(...shown.map((one) => ({ ...one, step: from + one.step })));
+    if (part !== run) from += part.progress?.done ?? 0;
+  }
+  const greedy_m = [run, ...trainings].map(greedyOf).find(Number.isFinite) ?? null;
+  return { run, points, from, to: from + run.config.steps, greedy_m, blocks };
+});
+
+/**
+ * The last step to be shown: the stage lags behind the computation, and the curve follows the stage.
+ * @param {Run} run
+ */
+const shownUpTo = ({ id }) => {
+  const { run_id, kind, phase, lanes = [] } = scene.value ?? {};
+  return run_id === id && kind === "training" && phase !== "finished" ? lanes[0]?.step ?? 0 : Infinity;
+};
+
+/** @param {Run} run */
+const greedyOf = ({ id, result, greedy_distance_m }) =>
+  greedy_distance_m ?? references.value[id] ?? requestedReferences.value[id] ?? result?.greedy_distance_m;
+
+/**
+ * All steps of practice behind a training's table.
+ * @param {Run} training
+ */
+export const practisedSteps = (training) =>
+  chainOf(training).reduce((total, { progress }) => total + (progress?.done ?? 0), 0);
+
+/** @param {string} id */
+async function load(id) {
+  const answer = await getCurve(id).catch(() => null);
+  if (!answer) return;
+  setEntry(requested, id, answer.evaluations);
+  if (answer.greedy_distance_m !== null) setEntry(requestedReferences, id, answer.greedy_distance_m);
+}
+
+/** Request what the event stream did not deliver: evaluations before the page was open or while it was offline. */
+export function followCurves() {
+  const wanted = computed(() => (connection.value === "live" ? chain.value.map(({ id }) => id).join(" ") : ""));
+  effect(() => wanted.value.split(" ").filter(Boolean).forEach(load));
+
+  const unknown = computed(() => {
+    const id = chain.value[0]?.config?.continue_from;
+    return id && !runs.value.has(id) ? id : null;
+  });
+  effect(() => {
+    const id = unknown.value;
+    if (id) requestRun(() => getRun({ kind: "training", id })).catch(() => {});
+  });
+}
+
+// ---- the action values of one state: the best move, and the names of places on the foot grid
+
+/** Grids with more cells are named by distances, in millimetres. */
+const MOST_NAMED_CELLS = 5;
+
+/**
+ * The move of the highest value; pair and cell are -1 where there is none.
+ * @param {Pick<Knowledge, "values_m">} known
+ */
+export function bestMove({ values_m }) {
+  let best = { pair: -1, cell: -1, value: -Infinity };
+  values_m.forEach((row, pair) =>
+    row.forEach((value, cell) => {
+      if (value !== null && value > best.value) best = { pair, cell, value };
+    }),
+  );
+  return best;
+}
+
+/**
+ * The name of a cell: "front left", or on finer grids "20 left, 10 front".
+ * @param {Pick<Knowledge, "cell_names" | "cells_m">} known
+ * @param {number} cell
+ * @param {string} unit after each number
+ */
+export function placeName({ cell_names, cells_m }, cell, unit = "") {
+  if (cell === 0 || cell_names.length <= MOST_NAMED_CELLS) return cell_names[cell];
+  const [x, y] = cells_m[cell].map((metres) => Math.round(1000 * metres));
+  const parts = [
+    x && `${Math.abs(x)}${unit} ${x < 0 ? "left" : "right"}`,
+    y && `${Math.abs(y)}${unit} ${y > 0 ? "front" : "back"}`,
+  ];
+  return parts.filter(Boolean).join(", ");
+}

@@ -1,0 +1,149 @@
+"""The dashboard's page and files: compression, entity tags, preloads."""
+
+import gzip
+from pathlib import Path
+
+import pytest
+from starlette.applications import Starlette
+from starlette.testclient import TestClient
+
+from app import assets
+from app.api.compression import CompressedContent, accepts_gzip
+from app.api.pages import content_policy, imported_modules, page_routes, with_preloads
+from tests.api.calls import Api
+
+SCRIPT = "/static/js/main.js"
+PAGE = (
+    '<script type="importmap">{"imports": {"a": "./static/vendor/a.js"}}</script>\n'
+    '<script type="module" src="static/js/main.js"></script>\n'
+)
+
+
+def fetch(
+    api: Api, path: str, method: str = "GET", **headers: str
+) -> tuple[int, dict[str, str], bytes]:
+    """Return status, headers and the body as it was sent."""
+    named = {name.replace("_", "-"): value for name, value in headers.items()}
+    with api.client.stream(
+        method, path, headers={"Accept-Encoding": "identity", **named}
+    ) as response:
+        body = b"".join(response.iter_raw())
+        return response.status_code, dict(response.headers), body
+
+
+@pytest.mark.parametrize("path", ["/", SCRIPT, "/favicon.ico", "/openapi.json"])
+def test_text_is_compressed_for_clients_that_accept_it(api: Api, path: str) -> None:
+    _, plain_headers, plain = fetch(api, path)
+    _, headers, packed = fetch(api, path, Accept_Encoding="br, gzip;q=0.5")
+
+    assert headers["content-encoding"] == "gzip"
+    assert gzip.decompress(packed) == plain
+    assert len(packed) < len(plain)
+    assert "content-encoding" not in plain_headers
+    assert headers["content-type"] == plain_headers["content-type"]
+    assert headers["etag"] != plain_headers["etag"]
+    assert headers["vary"] == plain_headers["vary"] == "Accept-Encoding"
+    assert headers["cache-control"] == plain_headers["cache-control"] == "no-cache"
+
+
+@pytest.mark.parametrize("path", ["/", SCRIPT])
+@pytest.mark.parametrize("encoding", ["identity", "gzip"])
+def test_current_copy_is_not_sent_again(api: Api, path: str, encoding: str) -> None:
+    _, sent, _ = fetch(api, path, Accept_Encoding=encoding)
+    tags = f'"other", W/{sent["etag"]}'
+    status, headers, body = fetch(api, path, Accept_Encoding=encoding, If_None_Match=tags)
+
+    assert (status, body) == (304, b"")
+    for name in ("etag", "vary", "cache-control", "content-security-policy"):
+        assert headers[name] == sent[name]
+    assert fetch(api, path, Accept_Encoding=encoding, If_None_Match='"other"')[0] == 200
+
+
+def test_copy_of_another_encoding_is_not_current(api: Api) -> None:
+    _, plain, _ = fetch(api, SCRIPT)
+    status, _, _ = fetch(api, SCRIPT, Accept_Encoding="gzip", If_None_Match=plain["etag"])
+
+    assert status == 200
+
+
+@pytest.mark.parametrize("encoding", ["identity", "gzip"])
+def test_head_has_the_headers_of_get(api: Api, encoding: str) -> None:
+    _, got, body = fetch(api, SCRIPT, Accept_Encoding=encoding)
+    status, headers, nothing = fetch(api, SCRIPT, "HEAD", Accept_Encoding=encoding)
+
+    assert (status, headers, nothing) == (200, got, b"")
+    assert int(headers["content-length"]) == len(body)
+
+
+@pytest.mark.parametrize("encoding", ["identity", "gzip"])
+def test_range_is_answered_with_the_whole(api: Api, encoding: str) -> None:
+    whole = fetch(api, SCRIPT, Accept_Encoding=encoding)
+
+    assert fetch(api, SCRIPT, Accept_Encoding=encoding, Range="bytes=1-9") == whole
+
+
+def test_runs_and_events_are_not_compressed(api: Api) -> None:
+    for path in ("/api/v1/options", "/api/v1/trainings", "/docs"):
+        _, headers, _ = fetch(api, path, Accept_Encoding="gzip")
+        assert "content-encoding" not in headers
+
+
+def test_changed_file_is_sent_anew(tmp_path: Path) -> None:
+    (tmp_path / "index.html").write_text(PAGE)
+    (tmp_path / "js").mkdir()
+    (tmp_path / "js" / "main.js").write_text("first")
+    (tmp_path / "favicon.svg").write_text("<svg/>")
+    with TestClient(Starlette(routes=page_routes(tmp_path))) as client:
+        first = client.get(SCRIPT)
+        (tmp_path / "js" / "main.js").write_text("another")
+        second = client.get(SCRIPT)
+
+    assert (first.text, second.text) == ("first", "another")
+    assert first.headers["etag"] != second.headers["etag"]
+
+
+def test_content_that_does_not_get_smaller_stays_plain() -> None:
+    content = CompressedContent(b"ab", "text/plain")
+    scope = {"type": "http", "method": "GET", "headers": [(b"accept-encoding", b"gzip")]}
+
+    assert content.response(scope).body == b"ab"
+
+
+@pytest.mark.parametrize(
+    ("header", "expected"),
+    [
+        ("gzip", True),
+        ("br, GZIP ; q=0.5", True),
+        ("gzip;q=1.0", True),
+        ("gzip;q=0", False),
+        ("gzip; q=0.000, br", False),
+        ("x-gzip", False),
+        ("", False),
+    ],
+)
+def test_accepted_encodings(header: str, *, expected: bool) -> None:
+    assert accepts_gzip(header) is expected
+
+
+def test_page_preloads_every_module_once(api: Api) -> None:
+    page = api.client.get("/").text
+    folder = assets.static_dir()
+    modules = imported_modules("static/js/main.js", folder)
+
+    assert {folder.parent / path for path in modules} == {*(folder / "js").rglob("*.js")}
+    for module in [*modules, *(f"static/vendor/{p.name}" for p in folder.glob("vendor/*.js"))]:
+        assert page.count(f'<link rel="modulepreload" href="{module}">') == 1
+        assert api.client.get(f"/{module}").status_code == 200
+    assert page.index("importmap") < page.index("modulepreload")
+
+
+def test_policy_allows_the_inline_scripts_of_the_page_as_sent(api: Api) -> None:
+    response = api.client.get("/")
+
+    assert response.headers["content-security-policy"] == content_policy(response.text)
+    assert response.headers["content-security-policy"].count("'sha256-") == 2
+
+
+def test_page_without_an_entry_point_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="entry point"):
+        with_preloads("<p></p>", tmp_path)
