@@ -95,9 +95,20 @@ export const getOptions = () => call("GET", "options");
 /** @type {(run: RunKey) => Promise<Run>} */
 export const getRun = (run) => call("GET", pathOf(run));
 
-/** @type {(kind: Kind, cursor?: string | null) => Promise<Page<Run>>} */
-export const listRuns = (kind, cursor) =>
-  call("GET", `${collection(kind)}?limit=50${cursor ? `&cursor=${encodeURIComponent(cursor)}` : ""}`);
+/**
+ * A run of which only the id is known.
+ * @type {(id: string) => Promise<Run>}
+ */
+export const getAnyRun = (id) => call("GET", `runs/${encodeURIComponent(id)}`);
+
+/**
+ * A page of runs, newest first. Empty values filter nothing.
+ * @type {(query: Partial<Record<"kind" | "state" | "search" | "cursor", string | null>>) => Promise<Page<Run>>}
+ */
+export const listRuns = (query) => {
+  const given = Object.entries(query).flatMap(([name, value]) => (value ? [[name, value]] : []));
+  return call("GET", `runs?${new URLSearchParams(given)}`);
+};
 
 const RETRY_MS = 500;
 

@@ -8,6 +8,7 @@ import { announceExperiments, followAddress, followExperiments, followSummary } 
 import { readAddress, writeAddress } from "./form.js";
 import { followTheme } from "./page.js";
 import { announceOutcomes, followTimeline } from "./race.js";
+import { followList, followStageRuns } from "./runs.js";
 import { applyEvent, connection, isLockedOut, options, version } from "./store.js";
 import { followCurves } from "./training.js";
 import { followWhatIf } from "./what-if.js";
@@ -15,13 +16,16 @@ import { followWhatIf } from "./what-if.js";
 const FIRST_RETRY_MS = 500;
 const LONGEST_RETRY_MS = 8000;
 
+/** @param {unknown} error */
+const isLockOut = (error) => error instanceof RequestError && (error.status === 401 || error.status === 403);
+
 /** Ask for the options until they come; the forms work from then on. */
 async function loadOptions(attempt = 0) {
   try {
     options.value = await getOptions();
     isLockedOut.value = false;
   } catch (error) {
-    isLockedOut.value = error instanceof RequestError && (error.status === 401 || error.status === 403);
+    isLockedOut.value = isLockOut(error);
     setTimeout(loadOptions, Math.min(FIRST_RETRY_MS * 2 ** attempt, LONGEST_RETRY_MS), attempt + 1);
     return;
   }
@@ -43,6 +47,8 @@ function reloadAfterUpgrade() {
 
 followTheme();
 reloadAfterUpgrade();
+followStageRuns();
+followList();
 followCurves();
 followTimeline();
 followExperiments();
@@ -50,7 +56,12 @@ followSummary();
 announceOutcomes();
 announceExperiments();
 listenForKeys();
-openEvents(applyEvent, (state) => (connection.value = state));
+openEvents(applyEvent, (state) => {
+  connection.value = state;
+  if (state === "live") isLockedOut.value = false;
+  // The stream does not say why it ended: the server may have come back with a token.
+  if (state === "reconnecting") getOptions().catch((error) => (isLockedOut.value = isLockOut(error)));
+});
 loadOptions();
 
 const root = /** @type {HTMLElement} */ (document.getElementById("app"));

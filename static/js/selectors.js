@@ -60,7 +60,7 @@ export const clock = computed(() => stage.value?.clock ?? scene.value?.clock ?? 
  * Ids of the trainings whose tables a race uses.
  * @param {Run | null} race
  */
-const trainingIds = (race) => [
+export const trainingIds = (race) => [
   ...new Set(
     [...(race?.config.lanes ?? []).map((lane) => lane.training_id), ...(race?.waiting_for ?? [])].filter(isKnown),
   ),

@@ -28,6 +28,10 @@ def test_the_last_picture_stays_until_it_is_back(dashboard: Dashboard, tmp_path:
     # Nobody answered: the browser says so by itself, and cannot be kept from it.
     dashboard.complaints.clear()
 
+    with serving(tmp_path, port, token="for-the-operator", spectators="token"):
+        expect(page.get_by_role("heading", name="This page needs a link")).to_be_visible()
+    dashboard.complaints.clear()
+
     with serving(tmp_path, port):
         expect(page.locator(".live")).to_contain_text("live")
         expect(page.get_by_text("Reconnecting.")).to_have_count(0)

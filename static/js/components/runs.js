@@ -1,47 +1,45 @@
 // The list of all runs with its filters.
 import { useState } from "preact/hooks";
 import { copySettings, deleteRun, isShown, pending, resumeRun, showOnStage } from "../actions.js";
-import { downloads, listRuns } from "../api.js";
+import { downloads } from "../api.js";
 import { paceOf } from "../experiments/runs.js";
 import { ago, count, listed, metres, sentence, whole } from "../format.js";
-import { everyRun, hasTable, isActive, isOperator, presetOf } from "../selectors.js";
+import { hasTable, isActive, isOperator, presetOf } from "../selectors.js";
 import { agentOf, ratesInWords } from "../settings.js";
-import { damagedRuns, requestRuns, served } from "../store.js";
+import {
+  clearFilters, filters, hasOlder, isFiltered, isLoading, listError, loadOlder, reload, shownRuns,
+} from "../runs.js";
+import { served } from "../store.js";
 import { describeRun, gaitTitle, observationTitle, robotTitle, runTitle, simulatorTitle } from "../titles.js";
 import { html, Problem, Segments } from "./elements.js";
 
-/** @import { RequestError } from "../api.js" */
-/** @import { Kind } from "../types.js" */
+const KINDS = [["", "All"], ["training", "Trainings"], ["race", "Races"], ["experiment", "Experiments"]];
+const STATES = ["running", "paused", "queued", "finished", "stopped", "failed", "interrupted"];
 
-const KINDS = [["all", "All"], ["training", "Trainings"], ["race", "Races"], ["experiment", "Experiments"]];
-const ANY_STATE = "any state";
-const STATES = [ANY_STATE, "running", "paused", "queued", "finished", "stopped", "failed", "interrupted"];
-/** The snapshot has so many; more are requested. */
-const SNAPSHOT_RUNS = 50;
+const setFilter = (name, value) => (filters.value = { ...filters.value, [name]: value });
 
 export function Runs() {
-  const [kind, setKind] = useState("all");
-  const [state, setState] = useState(ANY_STATE);
-  const all = [...damagedRuns.value.values(), ...everyRun.value];
-  const shown = all.filter(
-    (run) => ["all", run.kind ?? kind].includes(kind) && (state === ANY_STATE || run.state === state),
-  );
+  const { kind, state, search } = filters.value;
+  const shown = shownRuns.value;
   return html`
-    <section class="panel runs" aria-labelledby="runs-title">
+    <section class="panel runs" aria-labelledby="runs-title" aria-busy=${isLoading.value ? "true" : "false"}>
       <div class="runs-head">
         <h2 id="runs-title">Runs</h2>
-        <${Segments} label="Kind" choices=${KINDS} value=${kind} onValue=${setKind} />
+        <${Segments} label="Kind" choices=${KINDS} value=${kind} onValue=${(value) => setFilter("kind", value)} />
         <label class="choice">
           <span class="sr-only">State</span>
-          <select onChange=${({ target }) => setState(target.value)}>
-            ${STATES.map((one) => html`<option selected=${one === state}>${one}</option>`)}
+          <select onChange=${({ target }) => setFilter("state", target.value)}>
+            <option value="" selected=${state === ""}>any state</option>
+            ${STATES.map((one) => html`<option value=${one} selected=${one === state}>${one}</option>`)}
           </select>
         </label>
+        <input class="search" type="search" aria-label="Search names and ids" placeholder="Name or id" maxlength="100"
+          value=${search} onInput=${({ target }) => setFilter("search", target.value)} />
       </div>
       ${shown.length === 0
-        ? html`<${NoRuns} isFiltered=${all.length > 0} />`
+        ? html`<${NoRuns} />`
         : html`<ul>${shown.map((run) => html`<${rowOf(run)} key=${run.id} run=${run} />`)}</ul>`}
-      <${Older} shown=${all.length} />
+      <${Older} />
     </section>
   `;
 }
@@ -51,9 +49,17 @@ function rowOf(run) {
   return run.kind === "experiment" ? ExperimentRunRow : RunRow;
 }
 
-const NoRuns = ({ isFiltered }) => html`
-  <div class="no-runs">${isFiltered ? html`<p>No run is of this kind and state.</p>` : html`<${FirstVisit} />`}</div>
-`;
+function NoRuns() {
+  if (listError.value) return null;
+  if (isLoading.value) return html`<p class="no-runs" role="status"><span class="spinner"></span> Loading…</p>`;
+  if (!isFiltered.value) return html`<div class="no-runs"><${FirstVisit} /></div>`;
+  return html`
+    <div class="no-runs">
+      <p role="status">No run matches these filters.</p>
+      <button class="secondary" onClick=${clearFilters}>Show all runs</button>
+    </div>
+  `;
+}
 
 const FirstVisit = () => html`
   <p><b>No runs yet.</b></p>
@@ -63,39 +69,21 @@ const FirstVisit = () => html`
   </p>
 `;
 
-/** @type {Kind[]} */
-const LISTED_KINDS = ["training", "race", "experiment"];
-
-function Older({ shown }) {
-  /** Where each kind continues; null after its last page. */
-  const [cursors, setCursors] = useState(/** @type {Record<Kind, string | null>} */ (
-    { training: "", race: "", experiment: "" }
-  ));
-  const [note, setNote] = useState("");
-  const [isLoading, setIsLoading] = useState(false);
-  if (shown < SNAPSHOT_RUNS || Object.values(cursors).every((cursor) => cursor === null)) return null;
-  const load = async () => {
-    // A second click would request the same pages again.
-    if (isLoading) return;
-    setIsLoading(true);
-    setNote("");
-    try {
-      const next = { ...cursors };
-      for (const kind of LISTED_KINDS.filter((one) => cursors[one] !== null)) {
-        const { next_cursor } = await requestRuns(() => listRuns(kind, cursors[kind]));
-        next[kind] = next_cursor ?? null;
-      }
-      setCursors(next);
-    } catch (error) {
-      setNote(/** @type {RequestError} */ (error).message);
-    } finally {
-      setIsLoading(false);
-    }
-  };
+function Older() {
+  if (listError.value) {
+    return html`
+      <div class="older">
+        <p role="alert">${listError}</p>
+        <button class="secondary" onClick=${reload}>Try again</button>
+      </div>
+    `;
+  }
+  if (!hasOlder.value) return null;
   return html`
     <div class="older">
-      <button class="secondary" aria-disabled=${isLoading ? "true" : undefined} onClick=${load}>Show older runs</button>
-      <p role="alert">${note}</p>
+      <button class="secondary" aria-disabled=${isLoading.value ? "true" : undefined} onClick=${loadOlder}>
+        Show older runs
+      </button>
     </div>
   `;
 }

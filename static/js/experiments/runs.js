@@ -67,6 +67,11 @@ export const chosenRun = computed(() => {
   return all.find(isActive) ?? all[0] ?? null;
 });
 
+const NOT_FOUND = 404;
+/** The requested experiment, once the server has said that there is none. @type {Signal<string | null>} */
+const missingRun = signal(null);
+export const isMissing = computed(() => wantedRun.value !== null && wantedRun.value === missingRun.value);
+
 /** Whether the server has listed its experiments. */
 export const isListed = signal(false);
 /** Where older ones continue, null after the last. @type {Signal<string | null>} */
@@ -75,7 +80,7 @@ export const hasOlder = computed(() => cursor.value !== null);
 
 /** @param {string | null} [from] */
 async function loadList(from) {
-  const answer = await requestRuns(() => listRuns("experiment", from)).catch(() => null);
+  const answer = await requestRuns(() => listRuns({ kind: "experiment", cursor: from })).catch(() => null);
   if (!answer) return;
   cursor.value = answer.next_cursor ?? null;
   isListed.value = true;
@@ -97,10 +102,12 @@ export function followExperiments() {
     const id = unknown.value;
     if (!id) return;
     if (isDeleted(id)) {
-      wantedRun.value = null;
+      missingRun.value = id;
       return;
     }
-    requestRun(() => getRun({ kind: "experiment", id })).catch(() => (wantedRun.value = null));
+    requestRun(() => getRun({ kind: "experiment", id })).catch(({ status }) => {
+      if (status === NOT_FOUND) missingRun.value = id;
+    });
   });
 }
 

@@ -1,5 +1,7 @@
 // The experiments view: form and list on one side, the report on the other.
-import { chosenRun, experimentRuns, hasOlder, isListed, loadOlder, paceOf, wantedRun } from "../../experiments/runs.js";
+import {
+  chosenRun, experimentRuns, hasOlder, isListed, isMissing, loadOlder, paceOf, wantedRun,
+} from "../../experiments/runs.js";
 import { ago } from "../../format.js";
 import { isActive, isOperator } from "../../selectors.js";
 import { agentOf } from "../../settings.js";
@@ -21,11 +23,26 @@ export function Experiments() {
       </div>
       <div class="answer">
         ${isOffline && html`<${OfflineNote} />`}
-        ${run ? html`<${Report} key=${run.id} run=${run} />` : isListed.value && html`<${Invitation} />`}
+        ${run ? html`<${Report} key=${run.id} run=${run} />` : html`<${NoReport} />`}
       </div>
     </div>
   `;
 }
+
+function NoReport() {
+  if (isMissing.value) return html`<${MissingRun} />`;
+  return isListed.value && !wantedRun.value && html`<${Invitation} />`;
+}
+
+const MissingRun = () => html`
+  <section class="panel invitation" aria-labelledby="missing-title">
+    <h2 id="missing-title">This experiment is not here</h2>
+    <p role="alert">
+      The link names the experiment ${wantedRun.value}. It was deleted, or it is on another server.
+    </p>
+    <p><button class="secondary" onClick=${() => (wantedRun.value = null)}>Show the newest experiment</button></p>
+  </section>
+`;
 
 const OfflineNote = () => html`
   <p class="cut-off-note" role="status">
