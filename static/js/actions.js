@@ -251,7 +251,7 @@ const TOAST_MS = 4000;
 let toastTimer;
 
 /** @param {string} message */
-export function toast(message) {
+function toast(message) {
   toastMessage.value = message;
   clearTimeout(toastTimer);
   toastTimer = setTimeout(() => (toastMessage.value = null), TOAST_MS);

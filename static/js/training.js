@@ -20,7 +20,7 @@ const requestedReferences = signal({});
  * A training and those that it continues, oldest first.
  * @param {Run | null | undefined} training
  */
-export function chainOf(training) {
+function chainOf(training) {
   /** @type {Run[]} */
   const found = [];
   let run = training;

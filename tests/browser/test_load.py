@@ -13,7 +13,7 @@ from tests.browser.serving import Serving
 pytestmark = pytest.mark.timeout(300)
 
 MOST_REQUESTS = 60
-MOST_BYTES = 600_000
+MOST_BYTES = 300_000
 
 
 @dataclass

@@ -1,11 +1,10 @@
-// Views, errors of the API, titles, and the learner's next move.
+// Views, errors of the API, and titles.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { downloads, fileAddress, refusal } from "../../static/js/api.js";
 import { viewOf } from "../../static/js/page.js";
 import { options } from "../../static/js/store.js";
 import { choicesOf, clockTitle, gaitTitle, observationTitle, simulatorTitle } from "../../static/js/titles.js";
-import { bestMove, placeName } from "../../static/js/training.js";
 import { OPTIONS } from "./options.js";
 
 beforeEach(() => (options.value = OPTIONS));
@@ -41,20 +40,4 @@ test("names of the vocabulary, unless the server has a title", () => {
   assert.equal(gaitTitle("unknown"), "unknown");
   assert.deepEqual(choicesOf(OPTIONS.simulators, simulatorTitle),
     [["mujoco", "MuJoCo physics"], ["kinematic", "Ideal (no slip)"]]);
-});
-
-test("the best move is the one of the highest value", () => {
-  assert.deepEqual(bestMove({ values_m: [[null, 0.1], [-0.2, 0.3]] }), { pair: 1, cell: 1, value: 0.3 });
-  assert.equal(bestMove({ values_m: [[null, null]] }).pair, -1);
-});
-
-test("places are named on a small grid and measured on a fine one", () => {
-  const named = { cell_names: ["home", "front left"], cells_m: /** @type {[number, number][]} */ ([[0, 0], [-1, 1]]) };
-  assert.equal(placeName(named, 1), "front left");
-  const fine = {
-    cell_names: ["home", "a", "b", "c", "d", "e"],
-    cells_m: /** @type {[number, number][]} */ ([[0, 0], [-0.02, 0.01], [0.02, 0], [0, -0.01], [0, 0], [0, 0]]),
-  };
-  assert.deepEqual([0, 1, 2, 3].map((cell) => placeName(fine, cell, " mm")),
-    ["home", "20 mm left, 10 mm front", "20 mm right", "10 mm back"]);
 });

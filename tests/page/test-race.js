@@ -1,9 +1,8 @@
-// The race at the moment that is shown: timeline, standings, headline, learning curve.
+// The race at the moment that is shown: timeline, standings, headline.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { clipped, distanceAt, headline, isTimedOut, shownTime, standings, timeSpent } from "../../static/js/race.js";
 import { applyEvent, options } from "../../static/js/store.js";
-import { curve, practisedSteps } from "../../static/js/training.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 /** @import { TimelinePoint } from "../../static/js/types.js" */
@@ -97,22 +96,4 @@ test("only long decisions are shown as thinking", () => {
     lanes: [sceneLane({ ...thinking, futures_total: 12 }), sceneLane({ ...thinking, lane: 1, futures_total: 156 })],
   });
   assert.deepEqual((standings.value ?? []).map(({ isThinking }) => isThinking), [false, true]);
-});
-
-test("the learning curve joins the trainings that continue each other, up to the step on stage", () => {
-  const first = makeRun({ progress: { done: 100, total: 100 }, greedy_distance_m: 0.5 });
-  const second = makeRun({
-    state: "running", progress: { done: 40, total: 100 },
-    config: { ...first.config, steps: 100, continue_from: first.id },
-  });
-  applyEvent("snapshot", { runs: [first, second], stage: { ...STAGE, run_id: second.id }, scene: null });
-  const evaluate = (/** @type {string} */ run_id, /** @type {number} */ step) =>
-    applyEvent("evaluation", { run_id, step, distance_m: step / 1000, epsilon: 1 });
-  evaluate(first.id, 50);
-  evaluate(second.id, 20);
-  evaluate(second.id, 40);
-  applyEvent("scene", { run_id: second.id, kind: "training", phase: "practice", lanes: [{ step: 30 }] });
-  assert.deepEqual(curve.value?.points.map(({ step }) => step), [0, 50, 120]);
-  assert.deepEqual([curve.value?.blocks, curve.value?.to, curve.value?.greedy_m], [[100], 200, 0.5]);
-  assert.equal(practisedSteps(second), 140);
 });

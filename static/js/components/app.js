@@ -55,7 +55,7 @@ function focusMain(event) {
 // ---- the race view
 
 /** Hidden, not removed, while another view is open, so that the stage does not load again. */
-export const RaceView = ({ isHidden }) => html`
+const RaceView = ({ isHidden }) => html`
   <div class="race-view" hidden=${isHidden}>
     <${Stage} />
     ${isNarrow.value && isOperator.value && html`<div class="shared-choices"><${SharedChoices} /></div>`}
@@ -76,7 +76,7 @@ export const RaceView = ({ isHidden }) => html`
 
 const VIEWS = [["race", "Race", "#"], ["experiments", "Experiments", "#experiments"], ["runs", "Runs", "#runs"]];
 
-export const Header = () => html`
+const Header = () => html`
   <header class="header">
     <h1 class="brand"><img src="static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</h1>
     <nav class="nav" aria-label="Views">
@@ -114,7 +114,7 @@ function Connection() {
 // ---- keyboard shortcuts, pressed on the page or forwarded by the stage's frame
 
 /** [key, what it does] */
-export const KEYS = [
+const KEYS = [
   ["Space", "pause and resume"],
   ["R", "press the main button: train and race"],
   ["1 – 8", "follow the robot in that lane"],
@@ -159,7 +159,7 @@ export function listenForKeys() {
 
 // ---- the help dialog: keys, and what the page shows
 
-export function HelpDialog() {
+function HelpDialog() {
   const dialog = useRef(/** @type {HTMLDialogElement | null} */ (null));
   const isOpen = helpIsOpen.value;
   useEffect(() => {
@@ -192,6 +192,7 @@ export function HelpDialog() {
   `;
 }
 
-export const Toast = () => html`
+/** A message that disappears by itself. */
+const Toast = () => html`
   <div class="toast" role="status">${toastMessage.value && html`<p>${toastMessage.value}</p>`}</div>
 `;

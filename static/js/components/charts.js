@@ -11,6 +11,7 @@ const HEIGHT = 216;
 const FONT = "12px system-ui, sans-serif";
 
 /**
+ * A uPlot chart that is redrawn when its size, the theme or its data change.
  * @param {object} props
  * @param {string} props.label what the chart shows, in a sentence
  * @param {uPlot.AlignedData} props.data [xs, ys…]
@@ -106,12 +107,13 @@ const END_DOT_PX = 4;
 const fontOf = (px, weight = 400) => `${weight} ${FONT.replace("12px", `${12 * px}px`)}`;
 
 /**
+ * A uPlot plugin: labels at the ends of lines instead of a legend, and straight lines with a caption.
  * @param labels returns [{text, color, x, y}] in the chart's units
  * @param marks returns [{x? or y?, color, ink?, text?, share?, dash?}]: straight lines across the chart;
  *   `share` of the width is where the caption of a horizontal one begins
  * @param resolve returns the colour of a custom property
  */
-export function lineLabels(labels, marks, resolve) {
+function lineLabels(labels, marks, resolve) {
   const colourOf = (name) => (name.startsWith("--") ? resolve(name) : name);
 
   const drawMark = (u, mark) => {
@@ -194,6 +196,7 @@ const MOST_DOTS = 600;
 const LANE_PX = 12;
 
 /**
+ * Every seed as a dot on one axis, with the interquartile mean and reference values.
  * @param {object} props
  * @param {string} props.label the same in words
  * @param {number[]} props.points one per seed

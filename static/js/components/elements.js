@@ -25,6 +25,7 @@ const PATHS = {
 const OUTLINED = new Set(["link", "light", "dark", "auto", "flag"]);
 const SIZE = 16;
 
+/** An icon, drawn in the colour of the text beside it. */
 export function Icon({ name }) {
   const style = OUTLINED.has(name) ? "icon outlined" : "icon";
   return html`
@@ -43,7 +44,10 @@ function pointAt(azimuth_deg, radius) {
   return [-radius * Math.sin(angle), -radius * Math.cos(angle)].map((c) => c.toFixed(1));
 }
 
-/** `only`: the pair to show in colour; without it, all are. */
+/**
+ * A hexapod from above, forward up. Legs that move together share a colour and are joined by a line.
+ * `only`: the pair to show in colour; without it, all are.
+ */
 export function HexapodGlyph({ gait, only = null }) {
   const pairs = gait.pairs.map((legs, number) => {
     const [from, to] = legs.map((leg) => pointAt(gait.azimuths_deg[leg - 1], FOOT));
@@ -72,6 +76,7 @@ function Leg({ azimuth }) {
   `;
 }
 
+/** An error, beside the control that caused it. */
 export function Problem({ at }) {
   const error = problems.value[at];
   return html`
@@ -93,7 +98,7 @@ export const ProgressBar = ({ label, share }) => html`
   </div>
 `;
 
-/** `choices`: [value, title]. */
+/** A choice of one out of a few, side by side. `choices`: [value, title]. */
 export const Segments = ({ label, choices, value, onValue }) => html`
   <div class="segments" role="group" aria-label=${label}>
     ${choices.map(([one, title]) => html`

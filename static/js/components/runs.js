@@ -90,7 +90,7 @@ function Older() {
 
 // ---- a training or race
 
-export function RunRow({ run }) {
+function RunRow({ run }) {
   const title = run.name || sentence(run.kind);
   return html`
     <li class="run">
@@ -204,7 +204,7 @@ function Downloads({ run }) {
 
 // ---- an experiment, with a link to its report
 
-export const ExperimentRunRow = ({ run }) => html`
+const ExperimentRunRow = ({ run }) => html`
   <li class="run">
     <p class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${run.state}</p>
     <div class="what">
@@ -222,7 +222,7 @@ export const ExperimentRunRow = ({ run }) => html`
 
 // ---- a run that the server cannot read: what is known of it, the reason, and its deletion
 
-export const DamagedRunRow = ({ run }) => html`
+const DamagedRunRow = ({ run }) => html`
   <li class="run">
     <p class="state failed"><span class="dot" aria-hidden="true"></span>damaged</p>
     <div class="what">

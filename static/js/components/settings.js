@@ -92,7 +92,7 @@ function Row({ name, setting, ...rest }) {
 
 // ---- the gait, chosen by its drawing
 
-export const GaitPicker = () => html`
+const GaitPicker = () => html`
   <fieldset onFocusIn=${showHelp("gait")} onPointerEnter=${showHelp("gait")}>
     <legend><h2>Gait</h2></legend>
     <div class="gait-row">
@@ -115,7 +115,7 @@ const PACES = [
   ["max", "As fast as possible"], [0.5, "Half real time"], [1, "Real time"], [2, "×2"], [4, "×4"], [8, "×8"],
 ];
 
-export const MoreSettings = () => html`
+const MoreSettings = () => html`
   <details class="more">
     <summary>More settings</summary>
     <div class="more-fields">

@@ -74,7 +74,7 @@ const REFUSALS = {
 };
 
 /** Whether a status of the frame says that it has no place. */
-export const isRefused = (status) => status in REFUSALS;
+const isRefused = (status) => status in REFUSALS;
 
 const Robot = ({ x, color }) => html`
   <g transform=${`translate(${x} 0)`} style=${{ color }}>
@@ -84,7 +84,7 @@ const Robot = ({ x, color }) => html`
   </g>
 `;
 
-export function StagePlaceholder({ status }) {
+function StagePlaceholder({ status }) {
   const robots = form.value.lanes.slice(0, LANES_X.length);
   return html`
     <div class="placeholder">
@@ -103,7 +103,7 @@ export function StagePlaceholder({ status }) {
 
 // ---- labels: the run, the speed, the lanes that think, the colours of the foot grid
 
-export function StageLabels() {
+function StageLabels() {
   const thinking = (raceScene.value && standings.value?.filter((row) => row.isThinking)) || [];
   return html`
     <div class="labels">
@@ -147,7 +147,7 @@ function SpeedChip({ now }) {
 
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 64];
 
-export function Transport() {
+function Transport() {
   const now = scene.value;
   return html`
     <div class="transport">

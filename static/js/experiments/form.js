@@ -40,7 +40,7 @@ const combinations = (values, fields) =>
  * @param {string} experiment
  * @param {ExperimentValues} values
  */
-export function countTrials(experiment, values) {
+function countTrials(experiment, values) {
   const places = combinations(values, PLACE_FIELDS);
   if (experiment === "table1") return places * (2 + values.steps.length * values.seeds + 1);
   const perPlace = [...new Set(["greedy", ...values.agents])].map((agent) => {

@@ -142,14 +142,14 @@ const NameField = () => html`
 
 const helpField = signal("seeds");
 
-export const help = (field) => () => (helpField.value = field);
+const help = (field) => () => (helpField.value = field);
 
-export const Help = () => html`<p class="setting-help" aria-hidden="true">${helpFor(helpField.value)}</p>`;
+const Help = () => html`<p class="setting-help" aria-hidden="true">${helpFor(helpField.value)}</p>`;
 
 // ---- a choice of several out of a few; at least one stays chosen
 
 /** `choices`: [value, title]. */
-export function CheckList({ field, label, choices }) {
+function CheckList({ field, label, choices }) {
   const chosen = /** @type {string[]} */ (values.value[field]);
   const toggle = (event, name) => {
     const isChosen = (one) => (one === name ? !chosen.includes(one) : chosen.includes(one));
@@ -204,7 +204,7 @@ function TypedField({ field, label, text, parse, inputmode, placeholder = undefi
 }
 
 /** One whole number. */
-export function CountField({ field, label }) {
+function CountField({ field, label }) {
   const parse = (typed) => {
     const value = /^\d+$/.test(typed.trim()) ? Number(typed) : NaN;
     const mistake = mistakeIn(value, limitsOf(field), true);
@@ -217,7 +217,7 @@ export function CountField({ field, label }) {
 const joined = (list) => /** @type {SettingValue[]} */ (list).join(", ");
 
 /** One value of a setting, or several with commas between; none where each agent has its own default. */
-export function ValuesField({ field, setting }) {
+function ValuesField({ field, setting }) {
   const standard = defaults.value[field];
   const isOwn = joined(standard) === "";
   const parse = (typed) => (isOwn && typed.trim() === "" ? { value: standard } : parseValues(typed, setting));

@@ -52,7 +52,7 @@ const OfflineNote = () => html`
 
 // ---- the list, with progress and links to reports
 
-export function ExperimentList() {
+function ExperimentList() {
   const all = experimentRuns.value;
   if (!all.length) return null;
   return html`
@@ -113,7 +113,7 @@ const Sketch = ({ points, published, y }) => html`
   <svg x=${`${published}%`} y=${y} overflow="visible"><path d="M0-8 7 0 0 8-7 0z" /></svg>
 `;
 
-export function Invitation() {
+function Invitation() {
   const { color } = agentOf(served().defaults.training.agent);
   return html`
     <section class="panel invitation" aria-labelledby="invitation-title">

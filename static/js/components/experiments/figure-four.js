@@ -105,7 +105,7 @@ const ROOM = { left: 52, right: 10, top: 20, bottom: 34 };
 const WIDE_PX = 300;
 
 /** `curves`: [{agent, steps, iqm, low, high, points}], numbers in the unit that is shown. */
-export function BandChart({ label, curves, greedy, high }) {
+function BandChart({ label, curves, greedy, high }) {
   const [host, width] = useWidth();
   return html`
     <div class="band-chart" ref=${host}>
@@ -155,7 +155,7 @@ function Curve({ one: { agent, steps, iqm, low, high, points }, x, y }) {
 }
 
 /** [ref, width in px], 0 until it is measured. @returns {[{ current: any }, number]} */
-export function useWidth() {
+function useWidth() {
   /** @type {{ current: any }} */
   const host = useRef(null);
   const [width, setWidth] = useState(0);

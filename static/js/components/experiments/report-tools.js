@@ -51,6 +51,7 @@ const Sign = ({ name }) => html`
   <span><svg class="dots" width="20" height="16" aria-hidden="true">${SIGNS[name][1]}</svg>${SIGNS[name][0]}</span>
 `;
 
+/** The legend of a dot strip. */
 export const StripKey = ({ signs = Object.keys(SIGNS), color }) => html`
   <p class="strip-key" style=${color && { "--agent": color }}>${signs.map((name) => html`<${Sign} name=${name} />`)}</p>
 `;

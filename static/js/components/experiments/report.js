@@ -58,7 +58,7 @@ const Waiting = ({ run }) => html`
 
 // ---- the head: the experiment's state, its actions and its downloads
 
-export function ReportHead({ run }) {
+function ReportHead({ run }) {
   const pace = paceOf(run);
   const isUnderWay = isActive(run) || run.state === "interrupted";
   return html`
@@ -156,7 +156,7 @@ const Figure = ({ run, name }) => html`
 
 // ---- trials without a distance, with the reasons
 
-export function LeftOut({ trials }) {
+function LeftOut({ trials }) {
   const aside = trials.set_aside ?? [];
   const failures = trials.failures ?? [];
   if (!aside.length && !trials.failed) return null;
@@ -205,7 +205,7 @@ const timeOf = ({ cost }) =>
     cost.workers && count(cost.workers, "worker"),
   ]);
 
-export function Making({ known }) {
+function Making({ known }) {
   const { seeds, seed } = known.config;
   const rows = [
     ["Seeds", `${count(seeds, "seed")}, spawned from ${seed}`],

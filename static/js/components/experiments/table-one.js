@@ -106,7 +106,7 @@ const NOTES = {
 // ---- cells: the seeds of this run as a strip, and the paper's value
 
 /** `measure`: {ours, paper, high}: factors of the unit, and the end of the axis. */
-export function LearnerCell({ setting, distance, greedy, measure }) {
+function LearnerCell({ setting, distance, greedy, measure }) {
   const label = `${agentOf(setting.agent).title}, ${count(setting.steps, "step")}`;
   if (!setting[distance] || measure.ours === null) return html`<${EmptyCell} label=${label} />`;
   const shares = inUnits({ setting, distance, greedy, measure });
@@ -163,7 +163,7 @@ function Published({ value, quantile }) {
 }
 
 /** Agents that look ahead do the same with every seed. */
-export function ReferenceCell({ title, setting, distance, measure }) {
+function ReferenceCell({ title, setting, distance, measure }) {
   const ours = inUnit(setting?.[distance]?.mean_m ?? null, measure.ours);
   const printed = inUnit(setting?.published?.[`${distance}_m`] ?? null, measure.paper);
   const isUnfinished = setting?.published && setting.published[`${distance}_m`] === null;
