@@ -4,8 +4,9 @@ Model-based test: random verbs (start, pause, resume, stop, delete, PATCH, and k
 process) against a state machine, while another client deletes further runs in every state. Each
 answer must be allowed by the model; at the end no rows or files are left, and the queue moves.
 
-Promised: 100,000 verbs. Here 1,000, with fewer starts; in full by `make soak`. `/readyz` answers 503 while a queued
-run waits beside a free core for 5 s, which is shown below by a supervisor that cannot start it.
+Promised: 100,000 verbs. Here 1,000, with fewer starts; in full by `make soak`. `/readyz` answers
+503 while a queued run waits beside a free core for 5 s, which is shown below by a supervisor that
+cannot start it.
 """
 
 import random
@@ -22,10 +23,18 @@ from typing import Any
 import httpx2
 import psutil
 import pytest
+from starlette.testclient import TestClient
 
+from app.jobs.supervisor import STUCK_S, Supervisor
+from app.server import create_app
+from app.settings import Settings
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
+from app.storage.errors import StorageFailed
+from tests.api.calls import ADDRESS
+from tests.jobs.waiting import wait_until
 from tests.promises.length import at_length
 from tests.served import BODY, ENDLESS, LONG_S, Served
+from tests.storage.stores import opened
 
 VERBS = at_length(1_000, 100_000)
 RUNS = 10
@@ -227,3 +236,26 @@ def test_deleting_a_run_as_it_stops_does_not_block_the_queue(launch: Callable[..
             assert stopping.result(LONG_S).status_code in (202, 404)
     last = server.start(SHORT)
     assert server.in_state(last, *ENDED)["state"] == "finished"
+
+
+def test_a_run_that_waits_beside_a_free_core_is_reported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise StorageFailed("refused by the test")
+
+    settings = Settings(data=tmp_path, job_niceness=0)
+    with (
+        opened(tmp_path, None) as store,
+        TestClient(create_app(settings, store), base_url=ADDRESS) as client,
+    ):
+        with monkeypatch.context() as patch:
+            patch.setattr(Supervisor, "_start", refuse)
+            run = client.post("/api/v1/trainings", json=SHORT).json()
+            assert client.get("/readyz").status_code == 200
+            time.sleep(STUCK_S - 1)
+            wait_until(lambda: client.get("/readyz").status_code == 503)
+            assert "beside a free core" in client.get("/readyz").json()["detail"]
+        path = f"/api/v1/trainings/{run['id']}"
+        wait_until(lambda: client.get(path).json()["state"] == "finished")
+        assert client.get("/readyz").status_code == 200
