@@ -39,15 +39,16 @@ def every_route() -> list[Route]:
     return routes
 
 
-def send(port: int, *lines: str, body: bytes = b"") -> bytes:
+def send(port: int, *lines: str, body: bytes = b"", source: str = "127.0.0.1") -> bytes:
     """Send a request over a raw socket, and return the first 64 KiB of the answer.
 
     Args:
         port: the server's port.
         lines: the request line and the headers, in any bytes of Latin-1.
         body: the request's body.
+        source: the client's address, a loopback one.
     """
-    with socket.create_connection(("127.0.0.1", port), timeout=_PATIENCE_S) as sock:
+    with socket.create_connection(("127.0.0.1", port), _PATIENCE_S, (source, 0)) as sock:
         end = [] if "Upgrade: websocket" in lines else ["Connection: close"]
         head = "\r\n".join([*lines, *end]) + "\r\n\r\n"
         sock.sendall(head.encode("latin-1") + body)

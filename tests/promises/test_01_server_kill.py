@@ -57,5 +57,5 @@ def watch_progress(server: Served, run: dict[str, object], for_s: float) -> list
     while not observed or time.monotonic() < until_s:
         done = server.look(run)["progress"]["done"]
         observed.append((time.monotonic(), done))
-        time.sleep(0.05)
+        time.sleep(0.1)
     return observed

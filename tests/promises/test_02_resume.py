@@ -3,11 +3,13 @@
 A training is killed with its server and later interrupted by SIGTERM, its rates are changed in
 between, and yet its table, random generator and robot are those of an uninterrupted run: the file
 is the same byte by byte. Promised for a run; here for one on each simulator, by `make soak` four.
+Both simulators' trainings run beside each other.
 """
 
 import signal
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,50 +18,68 @@ from tests.promises.trainings import checkpoint_step, uninterrupted
 from tests.served import Served
 
 SEEDS = at_length([3], [3, 4, 5, 6])
+SIMULATORS = ("kinematic", "mujoco")
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.parametrize("simulator", ["kinematic", "mujoco"])
-def test_an_interrupted_training_ends_like_an_uninterrupted_one(
-    simulator: str, seed: int, launch: Callable[..., Served], tmp_path: Path
+def test_interrupted_trainings_end_like_uninterrupted_ones(
+    seed: int, launch: Callable[..., Served], tmp_path: Path
 ) -> None:
-    body = {"gait": "left-right-origin", "simulator": simulator, "seed": seed, "pace": 30}
+    body = {"gait": "left-right-origin", "seed": seed, "pace": 20, "steps_per_episode": 20}
     server = launch()
-    run = server.start({**body, "steps": 180, "steps_per_episode": 20, "evaluate_every": 20})
-    path = f"/api/v1/trainings/{run['id']}"
-    server.after_step(run, 25)
-    assert server.tell(run, "pause").status_code == 202
-    server.until(run, lambda _: checkpoint_step(tmp_path, run["id"]) is not None)
-    assert server.tell(run, "resume").status_code == 202
-    server.after_step(run, 45)
-    changed = server.client.patch(path, json={"alpha": 0.7, "epsilon": 0.5})
-    assert changed.status_code == 200, changed.text
-    server.after_step(run, 65)
+    runs = [
+        server.start({**body, "simulator": simulator, "steps": 300, "evaluate_every": 20})
+        for simulator in SIMULATORS
+    ]
+    for run in runs:
+        server.after_step(run, 25)
+        assert server.tell(run, "pause").status_code == 202
+        server.until(run, lambda now: checkpoint_step(tmp_path, now["id"]) is not None)
+    for run in runs:
+        assert server.tell(run, "resume").status_code == 202
+    for run in runs:
+        server.after_step(run, 45)
+        changed = server.client.patch(path_of(run), json={"alpha": 0.7, "epsilon": 0.5})
+        assert changed.status_code == 200, changed.text
+    for run in runs:
+        server.after_step(run, 65)
     server.end(signal.SIGKILL)
 
     server = launch()
-    assert server.look(run)["state"] == "interrupted"
-    assert server.tell(run, "resume").json()["state"] != "interrupted"
-    server.after_step(run, 85)
-    assert server.client.patch(path, json={"gamma": 0.8}).status_code == 200
+    for run in runs:
+        assert server.look(run)["state"] == "interrupted"
+        assert server.tell(run, "resume").json()["state"] != "interrupted"
+    for run in runs:
+        server.after_step(run, 85)
+        assert server.client.patch(path_of(run), json={"gamma": 0.8}).status_code == 200
     assert server.end(signal.SIGTERM) == 0
 
     server = launch()
-    left = server.look(run)
-    assert left["state"] == "interrupted"
-    assert left["progress"]["done"] >= 85
-    assert server.tell(run, "resume").json()["progress"]["done"] == left["progress"]["done"]
-    server.in_state(run, "running")
-    assert server.client.patch(path, json={"pace": "max"}).status_code == 200
+    for run in runs:
+        left = server.look(run)
+        assert left["state"] == "interrupted"
+        assert left["progress"]["done"] >= 85
+        assert server.tell(run, "resume").json()["progress"]["done"] == left["progress"]["done"]
+        server.in_state(run, "running")
+        assert server.client.patch(path_of(run), json={"pace": "max"}).status_code == 200
+    for run in runs:
+        check_end(server, run)
+
+
+def path_of(run: dict[str, Any]) -> str:
+    return f"/api/v1/trainings/{run['id']}"
+
+
+def check_end(server: Served, run: dict[str, Any]) -> None:
+    """Check that a training ends with the table and curve of an uninterrupted one."""
     ended = server.in_state(run, "finished", "failed")
     assert ended["state"] == "finished", ended
-
     assert [sorted(set(c) - {"step"}) for c in ended["changes"]] == [
         ["alpha", "epsilon"],
         ["gamma"],
         ["pace"],
     ]
     table, curve = uninterrupted(ended["config"], ended["changes"])
-    assert server.client.get(f"{path}/q-table?format=npz").content == table
-    assert server.client.get(f"{path}/curve").json()["evaluations"] == curve
-    assert [row["step"] for row in curve] == list(range(20, 181, 20))
+    assert server.client.get(f"{path_of(run)}/q-table?format=npz").content == table
+    assert server.client.get(f"{path_of(run)}/curve").json()["evaluations"] == curve
+    assert [row["step"] for row in curve] == list(range(20, 301, 20))

@@ -7,6 +7,7 @@ import io
 import struct
 import zipfile
 from collections.abc import Callable
+from functools import cache
 
 import httpx2
 import numpy as np
@@ -20,6 +21,7 @@ UNPACKED_BYTES = 320_000_000
 MOST_BYTES = 50_000_000
 
 
+@cache
 def compression_bomb() -> bytes:
     """Build a zip of zeros, compressed to a thousandth of its size."""
     buffer = io.BytesIO()

@@ -46,7 +46,7 @@ def start_moving(server: Serving) -> None:
     while (
         httpx2.get(f"{server.address}api/v1/trainings/{run['id']}").json()["progress"]["done"] == 0
     ):
-        pass
+        time.sleep(0.05)
 
 
 @contextmanager

@@ -16,8 +16,8 @@ import pytest
 from tests.promises.length import at_length
 from tests.served import ENDLESS, LONG_S, Served
 
-RUNS = at_length(3, 10)
-PAIRS_A_RUN = at_length(20, 100)
+RUNS = at_length(1, 10)
+PAIRS_A_RUN = at_length(60, 100)
 
 
 @pytest.mark.timeout(at_length(120, 1800))

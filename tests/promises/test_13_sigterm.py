@@ -7,26 +7,18 @@ import signal
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import psutil
-import pytest
 
+from app.events.run_view import run_view
 from tests.promises.trainings import checkpoint_step
 from tests.served import ENDLESS, Served
+from tests.storage.stores import opened
 
 
-@pytest.mark.parametrize("by", [signal.SIGTERM, signal.SIGINT], ids=["SIGTERM", "SIGINT"])
-def test_a_signal_drains_the_server(by: int, launch: Callable[..., Served], tmp_path: Path) -> None:
-    server = launch()
-    first = server.start(ENDLESS)
-    server.after_step(first, 5)
-    assert server.tell(first, "pause").status_code == 202
-    cores = psutil.cpu_count() or 1
-    runs = [first, *(server.start(ENDLESS) for _ in range(cores + 1))]
-    for run in runs[1:-1]:
-        server.moving(run)
-    assert server.look(runs[-1])["state"] == "queued"
-    done_before = {run["id"]: server.look(run)["progress"]["done"] for run in runs}
+def end_and_check(server: Served, by: int) -> None:
+    """End a server by a signal, and check that all its processes end in time."""
     children = psutil.Process(server.process.pid).children(recursive=True)
     began = time.monotonic()
     assert server.end(by) == 0
@@ -34,20 +26,48 @@ def test_a_signal_drains_the_server(by: int, launch: Callable[..., Served], tmp_
     _, left = psutil.wait_procs(children, timeout=5)
     assert not left
 
+
+def occupy(server: Served, runs: list[dict[str, Any]]) -> dict[str, int]:
+    """Pause the first run, so that all others but the last run; return each run's steps done."""
+    for run in runs[:-1]:
+        server.after_step(run, server.look(run)["progress"]["done"] + 1)
+        if run is runs[0]:
+            assert server.tell(run, "pause").status_code == 202
+    assert server.look(runs[-1])["state"] == "queued"
+    return {run["id"]: server.look(run)["progress"]["done"] for run in runs}
+
+
+def check_interrupted(folder: Path, now: dict[str, Any], done_before: dict[str, int]) -> None:
+    assert now["state"] == "interrupted"
+    assert now["can_resume"]
+    done = now["progress"]["done"]
+    assert done >= done_before[now["id"]]
+    assert checkpoint_step(folder, now["id"]) == (done or None), "progress and checkpoint agree"
+
+
+def test_a_signal_drains_the_server(launch: Callable[..., Served], tmp_path: Path) -> None:
+    """It is ended by SIGTERM, goes on with the same runs, and is ended by SIGINT."""
+    server = launch()
+    cores = psutil.cpu_count() or 1
+    runs = [server.start(ENDLESS) for _ in range(cores + 2)]
+    done_before = occupy(server, runs)
+    end_and_check(server, signal.SIGTERM)
+
     server = launch()
     for run in runs:
-        now = server.look(run)
-        assert now["state"] == "interrupted"
-        done = now["progress"]["done"]
-        assert done >= done_before[run["id"]]
-        assert checkpoint_step(tmp_path, run["id"]) == (done or None), (
-            "progress and checkpoint agree"
-        )
+        check_interrupted(tmp_path, server.look(run), done_before)
         assert server.tell(run, "resume").json()["state"] != "interrupted"
-        server.tell(run, "stop")
+    done_before = occupy(server, runs)
+    end_and_check(server, signal.SIGINT)
+
+    with opened(tmp_path, None) as store:
+        for run in runs:
+            check_interrupted(tmp_path, run_view(store.get(run["id"])), done_before)
 
 
-def test_sigterm_ends_an_experiment_and_its_cluster(launch: Callable[..., Served]) -> None:
+def test_sigterm_ends_an_experiment_and_its_cluster(
+    launch: Callable[..., Served], tmp_path: Path
+) -> None:
     """The processes of a what-if end as well."""
     server = launch()
     body = {"experiment": "sweep", "simulator": "kinematic", "steps": 1000, "workers": 1}
@@ -55,15 +75,10 @@ def test_sigterm_ends_an_experiment_and_its_cluster(launch: Callable[..., Served
     question = {"gait": "left-right-origin", "steps": 5}
     assert server.client.post("/api/v1/what-if", json=question).status_code == 200
     server.after_step(run, 1)
-    children = psutil.Process(server.process.pid).children(recursive=True)
-    began = time.monotonic()
-    assert server.end() == 0
-    assert time.monotonic() - began < 10
-    _, left = psutil.wait_procs(children, timeout=5)
-    assert not left
+    end_and_check(server, signal.SIGTERM)
 
-    server = launch()
-    now = server.look(run)
-    assert (now["state"], now["error"]) == ("interrupted", "The server was stopped while it ran.")
-    trials = server.client.get(f"/api/v1/experiments/{run['id']}/trials").json()["trials"]
-    assert len(trials) >= now["progress"]["done"] > 0
+    with opened(tmp_path, None) as store:
+        now = store.get(run["id"])
+        trials = store.trials(run["id"])
+    assert (now.state, now.error) == ("interrupted", "The server was stopped while it ran.")
+    assert len(trials) >= now.done > 0

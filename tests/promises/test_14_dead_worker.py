@@ -16,6 +16,8 @@ import pytest
 from tests.jobs.experiments import sweep, tried
 from tests.served import BODY, ENDLESS, Served
 
+SEEDS = 16
+
 
 def test_a_killed_job_is_failed_within_five_seconds(launch: Callable[..., Served]) -> None:
     server = launch()
@@ -73,7 +75,7 @@ def test_a_dead_servers_experiment_can_be_resumed_and_leaves_no_process(
 ) -> None:
     server = launch()
     body = {"experiment": "sweep", "simulator": "kinematic", "gaits": "left-right-origin"}
-    run = server.start({**body, "seeds": 40, "steps": 1000, "workers": 1}, "/experiments")
+    run = server.start({**body, "seeds": SEEDS, "steps": 1000, "workers": 1}, "/experiments")
     server.after_step(run, 1)
     below = psutil.Process(server.process.pid).children(recursive=True)
     assert len(below) > 2, "the job's process, and its cluster's"
@@ -86,11 +88,11 @@ def test_a_dead_servers_experiment_can_be_resumed_and_leaves_no_process(
     path = f"/api/v1/experiments/{run['id']}"
     kept = server.client.get(f"{path}/trials").json()["trials"]
     assert kept
-    assert server.client.get(f"{path}/summary").json()["trials"]["total"] == 41
+    assert server.client.get(f"{path}/summary").json()["trials"]["total"] == SEEDS + 1
     assert server.tell(run, "resume").status_code == 202
     ended = server.in_state(run, "finished", "failed", "stopped")
     assert ended["state"] == "finished", ended
     rows = server.client.get(f"{path}/trials").json()["trials"]
     assert all(row in rows for row in kept), "some were repeated"
-    plain = json.loads(json.dumps(tried(sweep(seeds=40, steps=(1000,)))))
+    plain = json.loads(json.dumps(tried(sweep(seeds=SEEDS, steps=(1000,)))))
     assert {row["key"]: row["result"] for row in rows} == plain

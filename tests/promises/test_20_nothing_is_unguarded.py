@@ -5,23 +5,22 @@ nothing by any of them, and their page offers no control that would be refused.
 """
 
 import json
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
+import time
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import pytest
 from playwright.sync_api import Page, Request, expect
 
-from tests.api.calls import Api
 from tests.browser.dashboard import PATIENCE_MS, Dashboard
 from tests.browser.serving import Serving, serving
 from tests.promises.raw import Route, every_route, request_lines, send, status_of
 
 TOKEN = "a-token-for-tests"
-Serve = Callable[..., Api]
 READS = {"GET", "HEAD", "WS"}
 FOR_ANYONE = {"/", "/healthz", "/readyz", "/static/favicon.svg"}
 """Accessible without the token: the page, which asks for it, and the health checks."""
+STARTED = ("/api/v1/trainings", "/api/v1/races", "/api/v1/experiments")
 OPERATOR = f"Authorization: Bearer {TOKEN}"
 VALID_BODIES: dict[str, Any] = {
     "/api/v1/trainings": {"gait": "left-right-origin", "simulator": "kinematic", "steps": 5},
@@ -57,7 +56,7 @@ def status_for(server: Serving, route: Route, run_id: str, *headers: str) -> int
 
 def state_of(server: Serving) -> Any:
     """Return all state that a request could change."""
-    paths = ("/api/v1/trainings", "/api/v1/races", "/api/v1/experiments", "/api/v1/stage")
+    paths = (*STARTED, "/api/v1/stage")
     lines = [f"Host: 127.0.0.1:{server.port}", OPERATOR]
     answers = [send(server.port, f"GET {path} HTTP/1.1", *lines) for path in paths]
     state = [json.loads(answer.partition(b"\r\n\r\n")[2]) for answer in answers]
@@ -67,16 +66,31 @@ def state_of(server: Serving) -> Any:
     return state
 
 
-@pytest.fixture
-def guarded(tmp_path: Path) -> Any:
-    with serving(tmp_path / "guarded", token=TOKEN, spectators="token") as server:
+class Public(NamedTuple):
+    """A server that spectators need no token for, and the id of its one run, a finished one."""
+
+    server: Serving
+    run_id: str
+
+
+@pytest.fixture(scope="module")
+def guarded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serving]:
+    with serving(tmp_path_factory.mktemp("guarded"), token=TOKEN, spectators="token") as server:
         yield server
 
 
-@pytest.fixture
-def public(tmp_path: Path) -> Any:
-    with serving(tmp_path / "public", token=TOKEN) as server:
-        yield server
+@pytest.fixture(scope="module")
+def public(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Public]:
+    with serving(tmp_path_factory.mktemp("public"), token=TOKEN) as server:
+        yield Public(server, finished_run(server))
+
+
+def stop_runs(server: Serving) -> None:
+    """Stop all runs before their processes have done much."""
+    lines = (f"Host: 127.0.0.1:{server.port}", OPERATOR, "Content-Length: 0")
+    for path, answer in zip(STARTED, state_of(server), strict=False):
+        for run in answer["items"]:
+            send(server.port, f"POST {path}/{run['id']}/stop HTTP/1.1", *lines)
 
 
 def finished_run(server: Serving) -> str:
@@ -88,23 +102,23 @@ def finished_run(server: Serving) -> str:
     run_id = str(json.loads(answer.partition(b"\r\n\r\n")[2])["id"])
     look = (f"GET /api/v1/trainings/{run_id} HTTP/1.1", host, OPERATOR)
     while b'"state":"finished"' not in send(server.port, *look):
-        pass
+        time.sleep(0.05)
     return run_id
 
 
-def test_each_route_has_its_role_and_spectators_change_nothing(public: Serving) -> None:
-    run_id = finished_run(public)
-    before = state_of(public)
+def test_each_route_has_its_role_and_spectators_change_nothing(public: Public) -> None:
+    server, run_id = public
+    before = state_of(server)
     for route in every_route():
-        status = status_for(public, route, run_id)
+        status = status_for(server, route, run_id)
         if role_of(route) == "operator":
             assert status == 401, route
         else:
             assert status not in (401, 403), route
     for method in ("POST", "PUT", "PATCH", "DELETE", "TRACE", "CONNECT", "MKCOL", "get"):
         for path in ("/nothing", "/metrics", "/viewer/", "/static/favicon.svg", "/docs"):
-            assert status_for(public, Route(method, path), run_id) >= 400, (method, path)
-    assert state_of(public) == before
+            assert status_for(server, Route(method, path), run_id) >= 400, (method, path)
+    assert state_of(server) == before
 
 
 def test_without_the_token_a_guarded_server_refuses_reads(guarded: Serving) -> None:
@@ -119,19 +133,20 @@ def test_without_the_token_a_guarded_server_refuses_reads(guarded: Serving) -> N
 def test_operators_are_accepted_on_every_route(guarded: Serving) -> None:
     for route in every_route():
         assert status_for(guarded, route, "none", OPERATOR) not in (401, 403), route
+        if route.path in STARTED and route.method == "POST":
+            stop_runs(guarded)
 
 
 def test_a_spectators_page_offers_nothing_that_would_fail(
-    page: Page, public: Serving, dashboard: Dashboard
+    page: Page, public: Public, dashboard: Dashboard
 ) -> None:
-    finished_run(public)
     requests: list[Request] = []
     # Playwright cannot inspect the signature of a builtin method.
     page.on("request", lambda request: requests.append(request))  # noqa: PLW0108
-    dashboard.open(public.address)
+    dashboard.open(public.server.address)
     expect(page.locator(".live")).to_contain_text("live")
     pressed = press_everything(page)
-    page.goto(f"{public.address}#runs")
+    page.goto(f"{public.server.address}#runs")
     expect(page.locator("li.run")).to_have_count(1, timeout=PATIENCE_MS)
     pressed += press_everything(page)
     for key in (" ", "r", "1", "2", "Enter", "s", "p", "ArrowRight", "Delete", "Escape"):

@@ -3,7 +3,7 @@
 The database has at most `SQLITE_FILES` open files, and the number of all others does not grow.
 
 In full by `make soak`: the use by a class in a day: 1,000 rounds of starting, watching,
-disconnecting, reading and deleting. The gate's shorter form has 6 rounds after 4 warm-up rounds,
+disconnecting, reading and deleting. The gate's shorter form has 4 rounds after 2 warm-up rounds,
 and allows 10 MB: so few cannot distinguish a leak from the allocator's behaviour.
 """
 
@@ -21,8 +21,8 @@ from tests.promises.length import at_length
 from tests.promises.test_12_browsers_come_back import Events
 from tests.viewer.serving import PATIENCE_S, Viewer
 
-WARM_UP = at_length(4, 50)
-ROUNDS = at_length(6, 1000)
+WARM_UP = at_length(2, 50)
+ROUNDS = at_length(4, 1000)
 SOME_BYTES = at_length(10_000_000, 0)
 NOTICED_S = 2.0
 BODY = {"gait": "left-right-origin", "simulator": "kinematic", "steps": 20, "evaluate_every": 10}
@@ -36,7 +36,7 @@ def use_once(server: Serving, api: httpx2.Client) -> None:
     run: dict[str, Any] = api.post("/trainings", json=BODY).json()
     path = f"/trainings/{run['id']}"
     while api.get(path).json()["state"] != "finished":
-        time.sleep(0.02)
+        time.sleep(0.05)
     for viewer in viewers:
         viewer.frame()
     for path_below in ("/curve", "/q-table", "/q-table?format=npz", "/nothing"):

@@ -8,7 +8,6 @@ import json
 import socket
 from collections.abc import Iterator
 from contextlib import ExitStack
-from pathlib import Path
 
 import pytest
 from websockets.exceptions import ConnectionClosed
@@ -22,9 +21,9 @@ PLACES = at_length(10, 300)
 SHARE = PLACES * 4 // 5
 
 
-@pytest.fixture
-def server(tmp_path: Path) -> Iterator[Served]:
-    with serving_from(tmp_path) as make:
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    with serving_from(tmp_path_factory.mktemp("data")) as make:
         yield make(HEXAPODS_TOKEN=TOKEN, HEXAPODS_MAX_VIEWERS=str(PLACES))
 
 

@@ -32,9 +32,9 @@ RUN_S = 7.0
 """Approximate duration of such a run."""
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def own_postgresql() -> Iterator[PostgresServer]:
-    """A PostgreSQL server used by this test alone."""
+    """A PostgreSQL server for these tests alone, each of which leaves it running."""
     with postgres_server() as server:
         yield server
 
@@ -135,7 +135,7 @@ def until_ended(server: Served, run: dict[str, object]) -> dict[str, object]:
             shown: dict[str, object] = answer.json()
             return shown
         assert time.monotonic() < deadline, answer.text
-        time.sleep(0.05)
+        time.sleep(0.2)
 
 
 def curve_of(server: Served, run: dict[str, object]) -> object:

@@ -1,7 +1,7 @@
 """Promise 32: every write is all or nothing.
 
 Promised: `kill -9` and a full disk at each write of start, import, finish and delete: no partial
-run is visible, and an orphaned file lasts until the next start at most. Here an eighth of the
+run is visible, and an orphaned file lasts until the next start at most. Here a twelfth of the
 writes, chosen at random, and 2 kills of a server that imports runs; all of them, and 30 kills, by
 `make soak`.
 """
@@ -28,7 +28,7 @@ from tests.served import Served
 from tests.storage.ended import ended_training
 from tests.storage.stores import opened
 
-SHARE = at_length(0.125, 1.0)
+SHARE = at_length(1 / 12, 1.0)
 KILLS = at_length(2, 30)
 QUOTA_MB = 10
 
@@ -139,7 +139,7 @@ def test_a_server_that_is_killed_leaves_no_half_run(
         ]
         for one in importers:
             one.start()
-        time.sleep(chance.uniform(0.3, 2))
+        time.sleep(chance.uniform(0.3, at_length(0.8, 2)))
         server.process.send_signal(signal.SIGKILL)
         for one in importers:
             one.join()

@@ -3,7 +3,7 @@ cost the server less than 100 MB, and so do 25 of every other heavy answer.
 
 The largest table is one of 8 divisions, 52,728,000 values, as JSON, CSV and `.npz`. Beside it a
 race's recording, its arrays, its film and its timeline, an experiment's trials, report and files,
-curves, and exports. The gate's form has a table of 600,000 values that were visited, and five
+curves, and exports. The gate's form has a table of 400,000 values that were visited, and five
 of these answers; `make soak` has 2,500,000, and all of them.
 """
 
@@ -30,7 +30,7 @@ from tests.served import BODY, Served, serving_from
 
 READERS = 25
 MOST_BYTES = 100_000_000
-VISITED_STATES = at_length(60_000, 250_000)
+VISITED_STATES = at_length(40_000, 250_000)
 SETTLED_S = at_length(0.5, 10.0)
 RACE = {**BODY, "steps": 60, "lanes": [{"agent": "greedy"}] * 4}
 EXPERIMENT = {
