@@ -9,6 +9,7 @@ from typing import Any
 
 import segno
 
+from app.cli.importing import importing
 from app.cli.options import CommandParser, integer
 from app.settings import Settings, read_settings
 
@@ -34,7 +35,8 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         InvalidInput: if the server cannot start with these options.
     """
-    from app.server import serve  # noqa: PLC0415 - its imports take a second
+    with importing():
+        from app.server import serve  # noqa: PLC0415 - its imports take most of a second
 
     given: dict[str, Any] = {"host": options.host, "port": options.port, "data": options.data}
     if options.share:
