@@ -35,9 +35,6 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         InvalidInput: if the server cannot start with these options.
     """
-    with importing():
-        from app.server import serve  # noqa: PLC0415 - its imports take most of a second
-
     given: dict[str, Any] = {"host": options.host, "port": options.port, "data": options.data}
     if options.share:
         given["host"] = options.host or "0.0.0.0"  # noqa: S104 - that is what --share is for
@@ -45,6 +42,8 @@ def run(options: argparse.Namespace) -> int:
     settings = read_settings(**given)
     if options.share:
         show_links(settings)
+    with importing():
+        from app.server import serve  # noqa: PLC0415 - its imports take most of a second
     serve(settings)
     return 0
 

@@ -37,13 +37,13 @@ PAGES = {"/", "/docs", "/favicon.ico", "/openapi.json", "/static", "/viewer", "/
 Serve = Callable[..., Api]
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def app() -> Iterator[FastAPI]:
     with temporary_store() as store:
         yield create_app(Settings(data=Path("unused")), store)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def described(app: FastAPI) -> dict[str, Any]:
     return app.openapi()
 
@@ -98,7 +98,9 @@ def test_every_error_status_is_described(described: dict[str, Any]) -> None:
     assert all(issubclass(error, HexapodError) for error in STATUSES)
 
 
-def test_new_route_gets_its_problem_responses(app: FastAPI) -> None:
+def test_new_route_gets_its_problem_responses(serve: Serve) -> None:
+    app = serve().client.app
+    assert isinstance(app, FastAPI)
 
     @app.put("/api/v1/new/{thing}/part")
     def put_part(thing: str, body: dict[str, int]) -> None:

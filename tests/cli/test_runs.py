@@ -12,7 +12,7 @@ import pytest
 
 from app.storage.database.store import RunStore
 from app.storage.run import TABLE
-from tests.cli.running import ROOT, hexapods, output, refusal
+from tests.cli.running import ROOT, hexapods, output, refusal, refusal_in_process
 from tests.storage.ended import ended_experiment, ended_race, ended_training
 from tests.storage.stores import opened, training
 
@@ -51,7 +51,9 @@ def test_runs_are_listed(data: Path, tmp_path: Path) -> None:
     lines = hexapods("runs", "list", *here, folder=tmp_path).stdout.splitlines()
     assert lines[0].split("\t")[:4] == [TRAINING, "training", "finished", "120"]
     assert lines[1].split("\t")[4] == "greedy"
-    assert "at least 1" in refusal("runs", "list", *here, "--limit", "0", folder=tmp_path)
+    assert "at least 1" in refusal_in_process(
+        "runs", "list", *here, "--limit", "0", folder=tmp_path
+    )
 
 
 def test_runs_are_printed_as_a_table_in_a_terminal(data: Path, tmp_path: Path) -> None:
@@ -81,7 +83,7 @@ def test_unknown_run_is_refused_with_a_hint(
     verb: tuple[str, ...], data: Path, tmp_path: Path
 ) -> None:
     for folder in (data, tmp_path / "empty"):
-        sentence = refusal(*verb, "../nope", "--data", str(folder), folder=tmp_path)
+        sentence = refusal_in_process(*verb, "../nope", "--data", str(folder), folder=tmp_path)
         assert "no run '../nope'" in sentence
         assert "`hexapods runs list`" in sentence
     assert not (tmp_path / "x").exists()
@@ -121,9 +123,10 @@ def test_invalid_archive_or_output_is_refused_in_one_sentence(data: Path, tmp_pa
         ("missing.zip", "cannot read missing.zip"),
         ("folder", "cannot read folder"),
     ):
-        assert names in refusal("import", file, *here, folder=tmp_path)
+        assert names in refusal_in_process("import", file, *here, folder=tmp_path)
     for out, names in (("no/such/x.zip", "can be written"), ("folder", "it is a folder")):
-        assert names in refusal("export", TRAINING, "--out", out, *here, folder=tmp_path)
+        sentence = refusal_in_process("export", TRAINING, "--out", out, *here, folder=tmp_path)
+        assert names in sentence
 
 
 def test_reading_commands_work_beside_a_server(
