@@ -9,7 +9,7 @@ import pytest
 from app.assembly import build_learner, finish_training
 from app.runs.config import training_config
 from app.runs.training import train
-from tests.cli.running import EXAMPLES, hexapods, output, refusal, refusal_in_process
+from tests.cli.running import EXAMPLES, hexapods, in_process, output, refusal
 
 GAIT = ("--gait", "left-right-origin")
 QUICK = (*GAIT, "--simulator", "kinematic")
@@ -117,7 +117,7 @@ def test_custom_robot_and_gait_are_accepted(tmp_path: Path) -> None:
 def test_invalid_input_to_train_is_refused_in_one_sentence(
     arguments: tuple[str, ...], names: str, tmp_path: Path
 ) -> None:
-    assert names in refusal_in_process("train", *arguments, folder=tmp_path)
+    assert names in refusal("train", *arguments, folder=tmp_path, run=in_process)
 
 
 @pytest.mark.parametrize(
@@ -135,11 +135,13 @@ def test_invalid_input_to_train_is_refused_in_one_sentence(
 def test_invalid_input_to_race_is_refused_in_one_sentence(
     arguments: tuple[str, ...], names: str, folder: Path
 ) -> None:
-    assert names in refusal_in_process("race", *arguments, folder=folder)
+    assert names in refusal("race", *arguments, folder=folder, run=in_process)
 
 
 def test_seed_with_a_table_to_continue_is_refused(folder: Path) -> None:
-    sentence = refusal_in_process("train", *QUICK, "--from", "q.npz", "--seed", "1", folder=folder)
+    sentence = refusal(
+        "train", *QUICK, "--from", "q.npz", "--seed", "1", folder=folder, run=in_process
+    )
     assert "leave --seed out" in sentence
 
 
