@@ -14,6 +14,7 @@ from app.domain.types import FloatArray
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
 from app.runs.tables import Checkpoint, from_bytes, snapshot, to_bytes
 from app.runs.training import evaluate, train, walk
+from tests.promises.length import at_length
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -21,6 +22,8 @@ R = TypeVar("R")
 H_M = 0.02
 """Half the side of the default foot grid, in which kinematic distances are given."""
 GREEDY_H = 24.833
+MEASURED_STEPS = at_length((250, 500), (250, 500, 1000))
+NINE_CELLS_STEPS = at_length((500,), (250, 500, 1000))
 WORKERS = 2
 
 
@@ -73,8 +76,9 @@ def _kinematic(seed: int, steps: int, observation: Observation, divisions: int =
 def kinematic_rows(seed: int) -> dict[str, float]:
     """One seed's entry in every row of kinematic Q-learning [h]."""
     found: dict[str, float] = {}
-    for steps in (250, 500, 1000):
+    for steps in MEASURED_STEPS:
         found[f"measured {steps}"] = practise(_kinematic(seed, steps, "measured"))
+    for steps in NINE_CELLS_STEPS:
         found[f"nine cells {steps}"] = practise(_kinematic(seed, steps, "measured", 3))
     for steps in (500, 1000):
         found[f"commanded {steps}"] = practise(_kinematic(seed, steps, "commanded"))

@@ -43,7 +43,7 @@ def before(data: Path) -> dict[str, bytes]:
         server.end()
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def server(data: Path, before: dict[str, bytes]) -> Iterator[Served]:
     del before
     again = Served(data)

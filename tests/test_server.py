@@ -17,6 +17,8 @@ from websockets.sync.client import connect
 
 from tests.served import BODY, ENDLESS, HEXAPODS, LONG_S, Events, Served, environ, serving_from
 
+TOKEN = "a-token-for-tests"
+
 
 @pytest.fixture
 def serve(tmp_path: Path) -> Iterator[Callable[..., Served]]:
@@ -24,12 +26,19 @@ def serve(tmp_path: Path) -> Iterator[Callable[..., Served]]:
         yield make
 
 
-def test_event_stream_begins_with_a_snapshot_and_continues_with_changes(
+@pytest.fixture(scope="module")
+def guarded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A server with a token, for the tests that only look."""
+    with serving_from(tmp_path_factory.mktemp("guarded")) as make:
+        yield make(HEXAPODS_TOKEN=TOKEN)
+
+
+def test_event_stream_begins_with_a_snapshot_continues_with_changes_and_is_resumed(
     serve: Callable[..., Served],
 ) -> None:
     server = serve()
     events = server.events()
-    name, snapshot, _ = next(events)
+    name, snapshot, begin = next(events)
     assert name == "snapshot"
     assert (snapshot["role"], snapshot["viewers"], snapshot["runs"]) == ("operator", 0, [])
     assert {"version", "stage", "scene"} <= set(snapshot)
@@ -48,27 +57,8 @@ def test_event_stream_begins_with_a_snapshot_and_continues_with_changes(
     assert seen["run"][0]["id"] == run["id"]
     assert seen["stage"][-1]["run_id"] == run["id"]
 
-
-def test_server_does_not_import_modules_of_experiments() -> None:
-    """These modules, and trimesh, which viser may import, would double the start time."""
-    look = (
-        "import sys, app.server, app.jobs.worker\n"
-        "heavy = ('distributed', 'matplotlib', 'scipy', 'trimesh')\n"
-        "print([name for name in heavy if name in sys.modules])"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", look], capture_output=True, text=True, check=True, timeout=LONG_S
-    )
-    assert done.stdout.strip() == "[]"
-
-
-def test_reconnected_client_receives_all_evaluations(serve: Callable[..., Served]) -> None:
-    server = serve()
-    _, _, seen = next(server.events())
-    run = server.start({**BODY, "steps": 100})
-    while server.client.get(f"/api/v1/trainings/{run['id']}").json()["state"] != "finished":
-        time.sleep(0.02)
-    events = server.events(last=seen)
+    # A client that reconnects receives all that it has missed.
+    events = server.events(last=begin)
     name, snapshot, _ = next(events)
     assert (name, snapshot["runs"][0]["state"]) == ("snapshot", "finished")
     steps: list[int] = []
@@ -85,6 +75,19 @@ def test_reconnected_client_receives_all_evaluations(serve: Callable[..., Served
         404,
         "application/problem+json",
     )
+
+
+def test_server_does_not_import_modules_of_experiments() -> None:
+    """These modules, and trimesh, which viser may import, would double the start time."""
+    look = (
+        "import sys, app.server, app.jobs.worker\n"
+        "heavy = ('distributed', 'matplotlib', 'scipy', 'trimesh')\n"
+        "print([name for name in heavy if name in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", look], capture_output=True, text=True, check=True, timeout=LONG_S
+    )
+    assert done.stdout.strip() == "[]"
 
 
 def test_pause_and_live_changes_are_published(serve: Callable[..., Served]) -> None:
@@ -141,8 +144,8 @@ def test_killed_server_leaves_no_process(serve: Callable[..., Served]) -> None:
     assert not alive
 
 
-def test_viewer_websocket_accepts_only_own_host_and_origin(serve: Callable[..., Served]) -> None:
-    server = serve()
+def test_viewer_websocket_accepts_only_own_host_and_origin(guarded: Served) -> None:
+    server = guarded
     address = server.address.replace("http", "ws") + "/viewer/?view=leader"
     protocols: Any = [f"viser-v{viser.__version__}"]
     own: Any = server.address
@@ -161,13 +164,15 @@ def test_viewer_websocket_accepts_only_own_host_and_origin(serve: Callable[..., 
     assert server.client.get("/docs").text.count("<details>") > 20
 
 
-def test_snapshot_has_the_role_of_the_client(serve: Callable[..., Served]) -> None:
-    server = serve(HEXAPODS_TOKEN="a-token-for-tests")
-    assert next(server.events())[1]["role"] == "spectator"
-    assert server.client.post("/api/v1/trainings", json=BODY).status_code == 401
-    server.client.headers["Authorization"] = "Bearer a-token-for-tests"
-    assert next(server.events())[1]["role"] == "operator"
-    server.start({**BODY, "steps": 1})
+def test_snapshot_has_the_role_of_the_client(guarded: Served) -> None:
+    assert next(guarded.events())[1]["role"] == "spectator"
+    assert guarded.client.post("/api/v1/trainings", json=BODY).status_code == 401
+    guarded.client.headers["Authorization"] = f"Bearer {TOKEN}"
+    try:
+        assert next(guarded.events())[1]["role"] == "operator"
+        guarded.start({**BODY, "steps": 1})
+    finally:
+        del guarded.client.headers["Authorization"]
 
 
 def refusal(*arguments: str, **variables: str) -> str:

@@ -5,31 +5,33 @@ Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `runs` (list, show, d
 measurements in `benchmarks`). Their module docstrings are the descriptions in `--help`.
 Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments
 and sweeps), `files` (files that users name), `server_client` (requests to a running server),
-`terminal` (progress bars and tables).
+`terminal` (progress bars and tables), `importing` (a faster start).
 """
 
 import argparse
+import importlib
 import io
 import sys
 from collections.abc import Sequence
 
 from app import __version__
-from app.cli import (
-    bench,
-    doctor,
-    experiment,
-    export,
-    imports,
-    race,
-    runs,
-    serve,
-    sweep,
-    train,
-)
+from app.cli.importing import importing
 from app.cli.options import CommandParser
 from app.domain.errors import HexapodError
 
-COMMANDS = (serve, train, race, experiment, sweep, runs, export, imports, doctor, bench)
+COMMANDS = {
+    "serve": "serve",
+    "train": "train",
+    "race": "race",
+    "experiment": "experiment",
+    "sweep": "sweep",
+    "runs": "runs",
+    "export": "export",
+    "import": "imports",
+    "doctor": "doctor",
+    "bench": "bench",
+}
+"""Name of the module of each command."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -39,7 +41,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
     sys.path.insert(0, "")  # so that --agent my_agent:Agent finds my_agent.py in this folder
-    options = _parser().parse_args(arguments)
+    given = sys.argv[1:] if arguments is None else arguments
+    with importing():
+        parser = _parser(given)
+    options = parser.parse_args(given)
     try:
         code: int = options.run(options)
     except HexapodError as error:
@@ -51,7 +56,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return code
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(arguments: Sequence[str] = ()) -> argparse.ArgumentParser:
+    """Return the parser of the command that the arguments begin with, or else of all commands.
+
+    Importing all of them takes twice the time in which most commands start.
+    """
     parser = argparse.ArgumentParser(
         prog="hexapods",
         description="Six-legged robots that learn to walk, and race against look-ahead search.",
@@ -60,6 +69,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(
         dest="command", required=True, metavar="COMMAND", parser_class=CommandParser
     )
-    for command in COMMANDS:
-        command.add_to(commands)
+    named = [name for name in arguments[:1] if name in COMMANDS]
+    for name in named or COMMANDS:
+        importlib.import_module(f"app.cli.{COMMANDS[name]}").add_to(commands)
     return parser

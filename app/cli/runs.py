@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from app.cli.options import CommandParser, integer
-from app.cli.race import show_lanes
 from app.cli.server_client import call_server
-from app.cli.terminal import show_table
+from app.cli.terminal import show_lanes, show_table
 from app.domain.errors import InvalidInput
 from app.events.damage import as_shown
 from app.events.run_view import run_view

@@ -10,6 +10,7 @@ from typing import Any
 
 import segno
 
+from app.cli.importing import importing
 from app.cli.options import CommandParser, integer
 from app.settings import Settings, read_settings
 
@@ -35,13 +36,13 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         InvalidInput: if the server cannot start with these options.
     """
-    from app.server import serve  # noqa: PLC0415 - its imports take a second
-
     given: dict[str, Any] = {"host": options.host, "port": options.port, "data": options.data}
     if options.share:
         given["host"] = options.host or "0.0.0.0"  # noqa: S104 - that is what --share is for
         given["token"] = read_token() or secrets.token_urlsafe(24)
     settings = read_settings(**given)
+    with importing():
+        from app.server import serve  # noqa: PLC0415 - its imports take most of a second
     # A link that is opened before the server answers looks broken.
     serve(settings, on_ready=partial(show_links, settings) if options.share else None)
     return 0

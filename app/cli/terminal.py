@@ -70,3 +70,22 @@ def show_table(
         # As `Text`, as Rich would parse [brackets] in a name as markup.
         table.add_row(*(Text(str(cell)) for cell in row))
     Console(file=sys.stdout).print(table)
+
+
+def show_lanes(result: dict[str, Any], clock: str) -> None:
+    """Print the result of a race as a table, ranked under a clock."""
+    rows = []
+    for lane in sorted(result["lanes"], key=lambda lane: lane["clocks"][clock]["rank"]):
+        timed, total = lane["clocks"][clock], lane["total_distance_m"]
+        rows.append(
+            (
+                f"{timed['rank']}. {lane['agent']}",
+                f"{timed['finished_distance_m']:.2f} m",
+                lane["failure"] if total is None else f"{total:.2f} m",
+                f"{timed['elapsed_s']:.1f} s",
+                f"{1000 * lane['decision_s'] / max(1, lane['steps']):.1f} ms",
+                f"{lane['simulated_transitions']:,}",
+            )
+        )
+    head = ("lane", "at time-out", "in all", "time", "a decision", "simulated transitions")
+    show_table(f"Ranked at time-out, {clock} clock", head, rows)

@@ -1,11 +1,13 @@
 """Fixtures: the real app with real jobs, and a client that calls it as a local browser does."""
 
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
 import pytest
+from anyio.from_thread import start_blocking_portal
 from starlette.testclient import TestClient
 
 from app.server import create_app
@@ -39,12 +41,31 @@ def trained(api: Api) -> dict[str, Any]:
 @pytest.fixture
 def serve(data: Path) -> Iterator[Callable[..., Api]]:
     """Return a factory of servers with own settings; without lifespan, so that no jobs run."""
+    with serving(data) as make:
+        yield make
+
+
+@pytest.fixture(scope="module")
+def shared(data: Path) -> Iterator[Callable[..., Api]]:
+    """Return a factory like `serve`, of one server per settings for the tests of a module.
+
+    For tests that change nothing on the server. It refuses no request for its rate.
+    """
+    with serving(data) as make:
+        yield cache(partial(make, starts_per_minute=1_000_000))
+
+
+@contextmanager
+def serving(data: Path) -> Iterator[Callable[..., Api]]:
+    """Yield a factory of servers without lifespan, which all end with the context."""
     with ExitStack() as stack:
 
         def make(**settings: Any) -> Api:
             store = stack.enter_context(temporary_store())
             app = create_app(Settings(**{"data": data, "job_niceness": 0, **settings}), store)
             client = TestClient(app, base_url=ADDRESS, follow_redirects=False)
+            # One event loop for all requests; by default each has a new one in a new thread.
+            client.portal = stack.enter_context(start_blocking_portal())
             stack.callback(client.close)
             return Api(client)
 

@@ -55,6 +55,11 @@ def without_stream(routes: list[tuple[str, str]]) -> list[tuple[str, str]]:
     return [(method, path) for method, path in routes if path != "/api/v1/events"]
 
 
+def changing(routes: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return the routes that change something."""
+    return [(method, path) for method, path in routes if method not in SAFE | {"WS"}]
+
+
 @pytest.mark.parametrize(
     "headers",
     [
@@ -85,8 +90,8 @@ def without_stream(routes: list[tuple[str, str]]) -> list[tuple[str, str]]:
     ],
     ids=str,
 )
-def test_foreign_hosts_and_origins_are_refused(serve: Serve, headers: dict[str, str]) -> None:
-    client = serve().client
+def test_foreign_hosts_and_origins_are_refused(shared: Serve, headers: dict[str, str]) -> None:
+    client = shared().client
     for method, path in [*every_route(client), ("GET", "/nothing")]:
         assert answer(client, method, path, headers) == 403, (method, path)
 
@@ -111,15 +116,15 @@ def test_foreign_hosts_and_origins_are_refused(serve: Serve, headers: dict[str, 
     ],
     ids=str,
 )
-def test_own_hosts_and_origins_are_accepted(serve: Serve, headers: dict[str, str]) -> None:
-    client = serve(public_url="https://hexapods.example", allowed_hosts=("lab.example",)).client
+def test_own_hosts_and_origins_are_accepted(shared: Serve, headers: dict[str, str]) -> None:
+    client = shared(public_url="https://hexapods.example", allowed_hosts=("lab.example",)).client
     headers = {"X-Requested-With": "tests", **headers}
     for method, path in without_stream(every_route(client)):
         assert answer(client, method, path, headers) not in (401, 403), (method, path)
 
 
-def test_spectator_has_read_access_only(serve: Serve) -> None:
-    client = serve(token=TOKEN).client
+def test_spectator_has_read_access_only(shared: Serve) -> None:
+    client = shared(token=TOKEN).client
     for method, path in without_stream(every_route(client)):
         status = answer(client, method, path, {})
         if method in SAFE | {"WS"}:
@@ -199,32 +204,36 @@ def test_token_link_sets_a_cookie_and_redirects_without_the_token(serve: Serve) 
     assert serve().client.get("/?token=any").headers["location"] == "./"
 
 
-@pytest.mark.parametrize(
-    "headers",
-    [
-        {"Content-Type": "text/plain"},
-        {"Content-Type": "text/plain; application/json"},
-        {"Content-Type": "application/x-www-form-urlencoded"},
-        {"Content-Type": "multipart/form-data; boundary=x"},
-        {},
-    ],
-    ids=str,
-)
+FORM_HEADERS = [
+    {"Content-Type": "text/plain"},
+    {"Content-Type": "text/plain; application/json"},
+    {"Content-Type": "application/x-www-form-urlencoded"},
+    {"Content-Type": "multipart/form-data; boundary=x"},
+    {},
+]
+
+
+@pytest.mark.parametrize("headers", FORM_HEADERS, ids=str)
 @pytest.mark.parametrize("mark", ["Origin", "Cookie", "Referer", "Sec-Fetch-Site"])
 def test_cross_site_form_requests_are_refused(
-    serve: Serve, mark: str, headers: dict[str, str]
+    shared: Serve, mark: str, headers: dict[str, str]
 ) -> None:
-    client = serve().client
+    client = shared().client
     value = {"Origin": "http://127.0.0.1:8000", "Sec-Fetch-Site": "same-origin"}.get(mark, "x=y")
-    for method, path in without_stream(every_route(client)):
-        if method in SAFE | {"WS"}:
-            continue
+    for method, path in changing(every_route(client)):
         by_browser = {mark: value, **headers}
         refused(client.request(method, path, headers=by_browser), 403, "X-Requested-With")
         for header in ({"X-Requested-With": "x"}, {"Content-Type": "application/json"}):
             own = {**by_browser, **header}
             assert client.request(method, path, headers=own).status_code != 403, (method, path)
-        # Other programs need no such header.
+
+
+@pytest.mark.parametrize("headers", FORM_HEADERS, ids=str)
+def test_form_requests_of_other_programs_need_no_header(
+    shared: Serve, headers: dict[str, str]
+) -> None:
+    client = shared().client
+    for method, path in changing(every_route(client)):
         assert client.request(method, path, headers=headers).status_code != 403, (method, path)
 
 
@@ -244,10 +253,10 @@ def test_wrong_session_cookies_are_rate_limited_like_tokens(serve: Serve) -> Non
     client = serve(token=TOKEN).client
     statuses = [
         client.get("/healthz", headers={"Cookie": f"{COOKIE}=guess-{number}"}).status_code
-        for number in range(2000)
+        for number in range(500)
     ]
     assert statuses[:WRONG_TOKENS] == [200] * WRONG_TOKENS
-    assert statuses.count(429) > 1900
+    assert statuses.count(429) > 400
     # A browser's expired session cookie is deleted, so that it is a spectator again.
     answer = client.get("/healthz", headers={"Cookie": f"{COOKIE}=guess"})
     refused(answer, 429, "wrong tokens")
@@ -255,8 +264,8 @@ def test_wrong_session_cookies_are_rate_limited_like_tokens(serve: Serve) -> Non
     assert client.get("/healthz").status_code == 200
 
 
-def test_every_response_has_security_headers(serve: Serve) -> None:
-    client = serve().client
+def test_every_response_has_security_headers(shared: Serve) -> None:
+    client = shared().client
     for method, path in without_stream(every_route(client)):
         if method == "WS":
             continue

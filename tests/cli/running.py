@@ -1,13 +1,22 @@
-"""Run `hexapods` in a subprocess and a working folder of its own, as a user does."""
+"""Run `hexapods` in a working folder, in a process of its own as a user does, or in this one."""
 
+import contextlib
+import io
 import json
+import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pytest
+
+from app.cli import main
+
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "docs" / "examples"
+Run = Callable[..., subprocess.CompletedProcess[str]]
 
 
 def hexapods(*arguments: str, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
@@ -23,17 +32,38 @@ def hexapods(*arguments: str, folder: Path, **variables: str) -> subprocess.Comp
     )
 
 
-def output(*arguments: str, folder: Path) -> Any:
+def in_process(*arguments: str, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
+    """Run a command like `hexapods`, but in this process, which takes a tenth of the time."""
+    out, err = io.StringIO(), io.StringIO()
+    with (
+        pytest.MonkeyPatch.context() as patch,
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(err),
+    ):
+        for name in [name for name in os.environ if name.startswith("HEXAPODS_")]:
+            patch.delenv(name)
+        for name, value in variables.items():
+            patch.setenv(name, value)
+        patch.chdir(folder)
+        patch.setattr(sys, "path", [*sys.path])
+        try:
+            code: Any = main(arguments)
+        except SystemExit as ended:
+            code = ended.code
+    return subprocess.CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
+
+
+def output(*arguments: str, folder: Path, run: Run = hexapods) -> Any:
     """Return the JSON that a command, which must succeed, prints."""
-    done = hexapods(*arguments, "--json", folder=folder)
+    done = run(*arguments, "--json", folder=folder)
     assert done.returncode == 0, done.stderr
     assert done.stderr == "", "a program that reads JSON gets no progress bar"
     return json.loads(done.stdout)
 
 
-def refusal(*arguments: str, folder: Path) -> str:
+def refusal(*arguments: str, folder: Path, run: Run = hexapods, **variables: str) -> str:
     """Return the error message of a command, which must exit with 2."""
-    done = hexapods(*arguments, folder=folder)
+    done = run(*arguments, folder=folder, **variables)
     assert done.returncode == 2, (done.returncode, done.stdout, done.stderr)
     assert "Traceback" not in done.stderr
     return done.stderr.strip().splitlines()[-1]

@@ -9,7 +9,7 @@ import pytest
 
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.server_lock import lock_folder, write_address_file
-from tests.cli.running import hexapods
+from tests.cli.running import hexapods, in_process
 from tests.postgresql import PostgresServer
 from tests.storage.stores import database_url, opened
 
@@ -19,7 +19,7 @@ ANY_PORT = {"HEXAPODS_PORT": "0"}
 def examined(folder: Path, **variables: str) -> dict[str, Any]:
     """Return the checks' results by name, for the data folder `data`."""
     data = ("--data", str(folder / "data"))
-    done = hexapods("doctor", *data, "--json", folder=folder, **{**ANY_PORT, **variables})
+    done = in_process("doctor", *data, "--json", folder=folder, **{**ANY_PORT, **variables})
     found = json.loads(done.stdout)
     assert done.returncode == (0 if found["ok"] else 1)
     assert "Traceback" not in done.stderr

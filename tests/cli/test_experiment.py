@@ -12,9 +12,8 @@ from typing import Any
 
 import pytest
 
-from app.cli import main
 from app.experiments.folder import TRIALS
-from tests.cli.running import EXAMPLES, ROOT, hexapods, output, refusal
+from tests.cli.running import EXAMPLES, ROOT, hexapods, in_process, output, refusal
 
 ONE_GAIT = ("--gait", "left-right-origin", "--simulator", "kinematic")
 SWEEP = ("sweep", *ONE_GAIT, "--alpha", "0.1,0.3", "--steps", "50")
@@ -75,7 +74,7 @@ def test_custom_agent_is_compared_and_its_failed_trials_are_retried(tmp_path: Pa
     text = agent.read_text("utf-8")
     assert "def act(" in text
     agent.write_text(text.replace("def act(", "def act(self, *_):\n        1 / 0\n\n    def _act("))
-    agents = ("--agent", "q-learning", "--agent", "mine:Agent")
+    agents = ("--agent", "q-learning", "--agent", "mine:Agent", "--workers", "1")
     figure4 = ("experiment", "figure4", *ONE_GAIT, "--observation", "measured", "--seeds", "3")
     done = hexapods(*figure4, *agents, folder=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -159,20 +158,9 @@ def test_full_disk_ends_the_sweep_and_finished_trials_are_stored(tmp_path: Path)
     ],
 )
 def test_invalid_input_is_refused_in_one_sentence(
-    arguments: tuple[str, ...],
-    names: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    arguments: tuple[str, ...], names: str, tmp_path: Path
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "path", [*sys.path])
-    try:
-        code: object = main(arguments)
-    except SystemExit as refused:
-        code = refused.code
-    assert code == 2
-    assert names in capsys.readouterr().err.strip().splitlines()[-1]
+    assert names in refusal(*arguments, folder=tmp_path, run=in_process)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -185,7 +173,8 @@ def test_unreachable_scheduler_is_refused_in_one_sentence(tmp_path: Path) -> Non
 def test_foreign_results_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.txt").touch()
-    sentence = refusal(*SWEEP, "--out", "mine", folder=tmp_path)
+    sentence = refusal(*SWEEP, "--out", "mine", folder=tmp_path, run=in_process)
     assert "mine is not empty, and has no results in it" in sentence
     (tmp_path / "mine" / TRIALS).write_text('{"format": 9, "versions": {}, "config": {}}\n')
-    assert "results in format 9" in refusal(*SWEEP, "--out", "mine", folder=tmp_path)
+    sentence = refusal(*SWEEP, "--out", "mine", folder=tmp_path, run=in_process)
+    assert "results in format 9" in sentence

@@ -12,7 +12,7 @@ import pytest
 
 from app.storage.database.store import RunStore
 from app.storage.run import TABLE
-from tests.cli.running import ROOT, hexapods, output, refusal
+from tests.cli.running import ROOT, in_process, output, refusal
 from tests.storage.ended import ended_experiment, ended_race, ended_training
 from tests.storage.stores import opened, training
 
@@ -46,12 +46,14 @@ def test_runs_are_listed(data: Path, tmp_path: Path) -> None:
         (("--state", "failed"), []),
         (("--limit", "1"), [TRAINING]),
     ):
-        listed = output("runs", "list", *here, *filters, folder=tmp_path)
+        listed = output("runs", "list", *here, *filters, folder=tmp_path, run=in_process)
         assert [run["id"] for run in listed["items"]] == ids
-    lines = hexapods("runs", "list", *here, folder=tmp_path).stdout.splitlines()
+    lines = in_process("runs", "list", *here, folder=tmp_path).stdout.splitlines()
     assert lines[0].split("\t")[:4] == [TRAINING, "training", "finished", "120"]
     assert lines[1].split("\t")[4] == "greedy"
-    assert "at least 1" in refusal("runs", "list", *here, "--limit", "0", folder=tmp_path)
+    assert "at least 1" in refusal(
+        "runs", "list", *here, "--limit", "0", folder=tmp_path, run=in_process
+    )
 
 
 def test_runs_are_printed_as_a_table_in_a_terminal(data: Path, tmp_path: Path) -> None:
@@ -68,10 +70,10 @@ def test_runs_are_printed_as_a_table_in_a_terminal(data: Path, tmp_path: Path) -
 
 def test_run_is_shown_as_json_and_text(data: Path, tmp_path: Path) -> None:
     here = ("--data", str(data))
-    shown = output("runs", "show", TRAINING, *here, folder=tmp_path)
+    shown = output("runs", "show", TRAINING, *here, folder=tmp_path, run=in_process)
     assert shown["name"] == "[b]old[/b]"
     assert len(shown["curve"]) == 24
-    text = hexapods("runs", "show", RACED, *here, folder=tmp_path).stdout
+    text = in_process("runs", "show", RACED, *here, folder=tmp_path).stdout
     assert "Ranked at time-out, paper clock" in text
     assert "16 of 16" in text
 
@@ -81,7 +83,7 @@ def test_unknown_run_is_refused_with_a_hint(
     verb: tuple[str, ...], data: Path, tmp_path: Path
 ) -> None:
     for folder in (data, tmp_path / "empty"):
-        sentence = refusal(*verb, "../nope", "--data", str(folder), folder=tmp_path)
+        sentence = refusal(*verb, "../nope", "--data", str(folder), folder=tmp_path, run=in_process)
         assert "no run '../nope'" in sentence
         assert "`hexapods runs list`" in sentence
     assert not (tmp_path / "x").exists()
@@ -91,7 +93,7 @@ def test_unknown_run_is_refused_with_a_hint(
 def test_run_is_deleted(data: Path, tmp_path: Path) -> None:
     here = ("--data", str(data))
     assert output("runs", "delete", RACED, *here, folder=tmp_path) == {"deleted": RACED}
-    listed = output("runs", "list", *here, folder=tmp_path)
+    listed = output("runs", "list", *here, folder=tmp_path, run=in_process)
     assert [run["id"] for run in listed["items"]] == [TRAINING]
 
 
@@ -100,12 +102,15 @@ def test_exported_run_is_imported_into_another_folder(data: Path, tmp_path: Path
         out = ("--out", "run.zip", "--data", str(data))
         assert output("export", run_id, *out, folder=tmp_path)["id"] == run_id
         other = ("--data", str(tmp_path / "other"))
-        assert output("import", "run.zip", *other, folder=tmp_path)["id"] == run_id
-        there = [output("runs", "show", run_id, *at, folder=tmp_path) for at in (out[2:], other)]
+        assert output("import", "run.zip", *other, folder=tmp_path, run=in_process)["id"] == run_id
+        there = [
+            output("runs", "show", run_id, *at, folder=tmp_path, run=in_process)
+            for at in (out[2:], other)
+        ]
         assert there[0] == there[1]
-        again = output("import", "run.zip", *other, folder=tmp_path)
+        again = output("import", "run.zip", *other, folder=tmp_path, run=in_process)
         assert again["id"] != run_id
-    imported = hexapods("import", "run.zip", "--data", str(data), folder=tmp_path)
+    imported = in_process("import", "run.zip", "--data", str(data), folder=tmp_path)
     assert "is race " in imported.stdout
     with opened(tmp_path / "other", None) as store:
         assert store.artifact(TRAINING, TABLE) is not None
@@ -121,9 +126,10 @@ def test_invalid_archive_or_output_is_refused_in_one_sentence(data: Path, tmp_pa
         ("missing.zip", "cannot read missing.zip"),
         ("folder", "cannot read folder"),
     ):
-        assert names in refusal("import", file, *here, folder=tmp_path)
+        assert names in refusal("import", file, *here, folder=tmp_path, run=in_process)
     for out, names in (("no/such/x.zip", "can be written"), ("folder", "it is a folder")):
-        assert names in refusal("export", TRAINING, "--out", out, *here, folder=tmp_path)
+        sentence = refusal("export", TRAINING, "--out", out, *here, folder=tmp_path, run=in_process)
+        assert names in sentence
 
 
 def test_reading_commands_work_beside_a_server(
@@ -157,14 +163,16 @@ def test_experiment_is_listed_shown_moved_and_deleted(tmp_path: Path) -> None:
     with opened(data, None) as store:
         ended_experiment(store, "00000000000e1")
     here = ("--data", str(data))
-    listed = hexapods("runs", "list", "--kind", "experiment", *here, folder=tmp_path).stdout
+    listed = in_process("runs", "list", "--kind", "experiment", *here, folder=tmp_path).stdout
     assert listed.split("\t")[:4] == ["00000000000e1", "experiment", "finished", "4 trials"]
-    shown = hexapods("runs", "show", "00000000000e1", *here, folder=tmp_path).stdout
+    shown = in_process("runs", "show", "00000000000e1", *here, folder=tmp_path).stdout
     assert "4 of 4" in shown
     archive = str(tmp_path / "run.zip")
-    hexapods("export", "00000000000e1", "--out", archive, *here, folder=tmp_path)
-    hexapods("import", archive, "--data", str(other), folder=tmp_path)
-    moved = output("runs", "show", "00000000000e1", "--data", str(other), folder=tmp_path)
+    in_process("export", "00000000000e1", "--out", archive, *here, folder=tmp_path)
+    in_process("import", archive, "--data", str(other), folder=tmp_path)
+    moved = output(
+        "runs", "show", "00000000000e1", "--data", str(other), folder=tmp_path, run=in_process
+    )
     assert moved["result"]["trials"]["done"] == 4
-    hexapods("runs", "delete", "00000000000e1", *here, folder=tmp_path)
-    assert output("runs", "list", *here, folder=tmp_path)["items"] == []
+    in_process("runs", "delete", "00000000000e1", *here, folder=tmp_path)
+    assert output("runs", "list", *here, folder=tmp_path, run=in_process)["items"] == []

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.cli.running import hexapods, output, refusal
+from tests.cli.running import hexapods, in_process, output, refusal
 from tests.served import Served
 from tests.storage.ended import ended_race, ended_training
 from tests.storage.stores import opened, training
@@ -15,9 +15,8 @@ from tests.storage.stores import opened, training
 TRAINING, RACED, TOKEN = "00000000000t1", "00000000000r1", "a-token-for-tests"
 
 
-@pytest.fixture
-def data(tmp_path: Path) -> Path:
-    folder = tmp_path / "data"
+def filled(folder: Path) -> Path:
+    """Fill a data folder with a finished training and race."""
     with opened(folder, None) as store:
         ended_training(store, TRAINING)
         ended_race(store, RACED, TRAINING)
@@ -25,9 +24,23 @@ def data(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
+def data(tmp_path: Path) -> Path:
+    return filled(tmp_path / "data")
+
+
+@pytest.fixture
 def server(data: Path) -> Iterator[Served]:
     served = Served(data, HEXAPODS_TOKEN=TOKEN)
     yield served
+    served.end()
+
+
+@pytest.fixture(scope="module")
+def unchanged(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Served, Path]]:
+    """A server and its data folder, for the tests that are refused every change."""
+    folder = filled(tmp_path_factory.mktemp("unchanged"))
+    served = Served(folder, HEXAPODS_TOKEN=TOKEN)
+    yield served, folder
     served.end()
 
 
@@ -50,22 +63,25 @@ def test_changes_are_made_by_the_running_server(server: Served, data: Path, tmp_
     assert "race-" in exported.headers["content-disposition"]
 
 
-def test_refusals_of_the_server_are_reported(server: Served, data: Path, tmp_path: Path) -> None:
+def test_refusals_of_the_server_are_reported(
+    unchanged: tuple[Served, Path], tmp_path: Path
+) -> None:
+    server, data = unchanged
     here = ("--data", str(data))
     for token in ("", "another-token-for-tests"):
-        done = hexapods("runs", "delete", RACED, *here, folder=tmp_path, HEXAPODS_TOKEN=token)
-        assert done.returncode == 2
-        assert "needs its token: set HEXAPODS_TOKEN" in done.stderr
+        delete = ("runs", "delete", RACED, *here)
+        said = refusal(*delete, folder=tmp_path, run=in_process, HEXAPODS_TOKEN=token)
+        assert "needs its token: set HEXAPODS_TOKEN" in said
     (tmp_path / "junk.zip").write_bytes(b"milk")
-    done = hexapods("import", "junk.zip", *here, folder=tmp_path, HEXAPODS_TOKEN=TOKEN)
-    assert done.returncode == 2
-    assert "is no archive of a run" in done.stderr
-    assert server.address in done.stderr
-    listed = output("runs", "list", *here, folder=tmp_path)
+    said = refusal("import", "junk.zip", *here, folder=tmp_path, HEXAPODS_TOKEN=TOKEN)
+    assert "is no archive of a run" in said
+    assert server.address in said
+    listed = output("runs", "list", *here, folder=tmp_path, run=in_process)
     assert [run["id"] for run in listed["items"]] == [TRAINING, RACED]
 
 
-def test_import_route_checks_token_archive_and_size(server: Served) -> None:
+def test_import_route_checks_token_archive_and_size(unchanged: tuple[Served, Path]) -> None:
+    server, _ = unchanged
     bearer = {"Authorization": f"Bearer {TOKEN}"}
     post: Any = server.client.post
     assert post("/api/v1/import", content=b"x").status_code == 401

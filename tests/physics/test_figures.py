@@ -1,4 +1,7 @@
-"""The specification's figures for MuJoCo: metres over 50 steps from rest."""
+"""The specification's figures for MuJoCo: metres over 50 steps from rest.
+
+The gate's shorter form leaves out gaits of some robots, and the learner of the default robot.
+"""
 
 from itertools import product
 
@@ -10,7 +13,11 @@ from app.domain.robot import robot
 from app.domain.types import FloatArray
 from app.runs.config import training_config
 from tests.figures import in_a_pool, look_ahead, practise
+from tests.promises.length import at_length
 
+GAITS = tuple(NAMED_GAITS)
+EXCEPTIONAL = "left-right-vertical"
+"""The gait that lifts both front legs at once."""
 COMPLIANT = {"servo_kp": 10, "servo_kv": 0.5}
 SOFT = {"servo_kp": 5, "servo_kv": 0.3}
 ROBOTS: dict[str, dict[str, float]] = {
@@ -25,9 +32,20 @@ SEEDS = range(8)
 pytestmark = pytest.mark.timeout(1800)
 
 
+EVERY_ROBOT_AND_GAIT = list(product(ROBOTS, GAITS))
+WALKERS = at_length(
+    [
+        (name, gait)
+        for name, gait in EVERY_ROBOT_AND_GAIT
+        if name in ("stiff", "compliant") or gait in (GAITS[0], EXCEPTIONAL)
+    ],
+    EVERY_ROBOT_AND_GAIT,
+)
+
+
 @pytest.fixture(scope="module")
 def greedy_m() -> dict[tuple[str, str], float]:
-    keys = list(product(ROBOTS, NAMED_GAITS))
+    keys = WALKERS
     runs = [("greedy", gait, "mujoco", ROBOTS[name]) for name, gait in keys]
     return dict(zip(keys, in_a_pool(look_ahead, runs), strict=True))
 
@@ -45,30 +63,29 @@ def greedy_m() -> dict[tuple[str, str], float]:
 def test_greedy_in_the_four_gaits(
     greedy_m: dict[tuple[str, str], float], name: str, metres: tuple[float, ...]
 ) -> None:
-    measured = [greedy_m[name, gait] for gait in NAMED_GAITS]
-
-    # A centimetre is the specification's own rounding, and 0.01 m is all that one of them covers.
-    assert measured == [pytest.approx(m, rel=0.1, abs=0.01) for m in metres]
+    for gait, m in zip(GAITS, metres, strict=True):
+        if (name, gait) in WALKERS:
+            # A centimetre is the specification's own rounding, and all that one of them covers.
+            assert greedy_m[name, gait] == pytest.approx(m, rel=0.1, abs=0.01), gait
 
 
 def test_the_default_robot_covers_half_a_metre_in_every_gait(
     greedy_m: dict[tuple[str, str], float],
 ) -> None:
-    for gait in NAMED_GAITS:
+    for gait in GAITS:
         assert greedy_m["stiff", gait] == pytest.approx(0.5, rel=0.1)
 
 
 def test_compliant_servos_let_the_body_pitch_in_left_right_vertical(
     greedy_m: dict[tuple[str, str], float],
 ) -> None:
-    """The paper's exceptional gait lifts both front legs at once."""
-    others = [greedy_m["compliant", gait] for gait in NAMED_GAITS if gait != "left-right-vertical"]
+    others = [greedy_m["compliant", gait] for gait in GAITS if gait != EXCEPTIONAL]
 
-    assert greedy_m["compliant", "left-right-vertical"] < 0.8 * min(others)
+    assert greedy_m["compliant", EXCEPTIONAL] < 0.8 * min(others)
 
 
 LEARNERS = {
-    "left-right-origin stiff": ("left-right-origin", "stiff"),
+    **at_length({}, {"left-right-origin stiff": ("left-right-origin", "stiff")}),
     "left-right-origin compliant": ("left-right-origin", "compliant"),
     "left-right-vertical compliant": ("left-right-vertical", "compliant"),
 }
@@ -86,23 +103,21 @@ def learned_m() -> dict[str, FloatArray]:
     return dict(zip(LEARNERS, found, strict=True))
 
 
-@pytest.mark.parametrize(
-    ("name", "span_m"),
-    [
-        ("left-right-origin stiff", (0.32, 0.43)),
-        ("left-right-origin compliant", (0.00, 0.44)),
-        ("left-right-vertical compliant", (0.02, 0.31)),
-    ],
-)
-def test_measured_q_learning_after_500_steps(
-    learned_m: dict[str, FloatArray], name: str, span_m: tuple[float, float]
-) -> None:
+SPANS_M = {
+    "left-right-origin stiff": (0.32, 0.43),
+    "left-right-origin compliant": (0.00, 0.44),
+    "left-right-vertical compliant": (0.02, 0.31),
+}
+
+
+@pytest.mark.parametrize("name", LEARNERS)
+def test_measured_q_learning_after_500_steps(learned_m: dict[str, FloatArray], name: str) -> None:
     """Compare the middle half of our seeds with the specification's range of eight seeds.
 
     Only the middle half, since these are other seeds and the distribution has long tails; to the
     specification's rounding of a centimetre.
     """
-    middle = np.sort(learned_m[name])[2:6]
+    middle, span_m = np.sort(learned_m[name])[2:6], SPANS_M[name]
 
     assert middle.min() > span_m[0] - 0.01
     assert middle.max() < span_m[1] + 0.01

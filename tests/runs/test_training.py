@@ -1,6 +1,7 @@
 """Training loop: schedule, records, determinism, and bit-exact resume from a checkpoint."""
 
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -185,13 +186,19 @@ def test_the_table_is_the_same_at_any_thread_count() -> None:
     assert evaluations[0] == evaluations[1] == evaluations[2]
 
 
+@cache
+def unbroken_run(simulator: SimulatorName) -> tuple[TrainingConfig, Learner, list[TrainingRecord]]:
+    """Return a training's config, and what `run` gives for it."""
+    config = replace(CONFIG, simulator=simulator, steps=90, evaluate_every=45)
+    return config, *run(config)
+
+
 @on_both
 @pytest.mark.parametrize("broken_at", [13, 50, 77])
 def test_training_resumed_from_a_checkpoint_equals_the_unbroken_run(
     simulator: SimulatorName, broken_at: int
 ) -> None:
-    config = replace(CONFIG, simulator=simulator, steps=90, evaluate_every=45)
-    unbroken, records = run(config)
+    config, unbroken, records = unbroken_run(simulator)
 
     first = build_learner(config)
     for _ in train(first, config):
