@@ -201,9 +201,13 @@ class Stage:
     def _start_replay(self) -> None:
         finished = self._store.list(kind="race", state="finished", limit=_RECENT_RACES)
         for run in finished.runs:
-            if self._recordings.race(run.id):
-                self._load([run.id], replay=True)
-                return
+            try:
+                if self._recordings.race(run.id):
+                    self._load([run.id], replay=True)
+                    return
+            except HexapodError:
+                # Deleted since it was listed, or its recording cannot be read.
+                continue
 
     def _load(self, run_ids: Sequence[str], replay: bool = False) -> None:
         """Read runs from the store and play them."""

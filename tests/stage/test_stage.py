@@ -2,12 +2,14 @@
 
 import asyncio
 import json
+from typing import Any
 
 import pytest
 
 from app.runs.config import LaneConfig, RaceConfig
 from app.stage.stage import REPLAY_AFTER_S
 from app.storage.errors import NotFound
+from app.storage.run import Page
 from tests.stage.stage_parts import GAIT, StageParts
 
 
@@ -96,6 +98,22 @@ def test_newest_finished_race_is_replayed_after_twenty_idle_seconds(
     started, _ = parts.running_race()
     assert parts.stage.offer(started.id), "a replay gives way"
     assert not parts.next_frame().replay
+
+
+def test_race_that_is_deleted_as_its_replay_begins_gives_way_to_another(
+    parts: StageParts, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other, newest = parts.finished_race(), parts.finished_race()
+    list_runs = parts.store.list
+
+    def list_then_delete(*args: Any, **kwargs: Any) -> Page:
+        page = list_runs(*args, **kwargs)
+        if newest.id in [run.id for run in page.runs]:
+            parts.store.delete(newest.id)
+        return page
+
+    monkeypatch.setattr(parts.store, "list", list_then_delete)
+    assert parts.watch(REPLAY_AFTER_S + 1)[-1].run_id == other.id
 
 
 def test_idle_stage_without_a_finished_race_does_not_change(parts: StageParts) -> None:
