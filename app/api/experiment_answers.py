@@ -50,9 +50,10 @@ class TrialsView(Answer):
 
 
 class Reason(Answer):
-    """Why a trial has no result."""
+    """Why a trial has no result, with its key and its description in words."""
 
     key: str
+    label: str | None = None
     reason: str
 
 

@@ -8,9 +8,11 @@ from importlib.metadata import version
 from itertools import combinations
 from typing import Any
 
+from app.agents.appearance import title_of
 from app.experiments.claims import CLAIMS_OF
 from app.experiments.claims.judging import judge
 from app.experiments.config import ExperimentConfig, as_json
+from app.experiments.formatting import OBSERVATION_LABELS, gait_name, parameter_text
 from app.experiments.measures import (
     Reference,
     compare_with_published,
@@ -19,7 +21,7 @@ from app.experiments.measures import (
     summarise_distances,
 )
 from app.experiments.narrative.narrative import narrate
-from app.experiments.plan import Plan
+from app.experiments.plan import Plan, Setting
 from app.experiments.published import published
 from app.experiments.setting_results import (
     SettingResults,
@@ -202,19 +204,56 @@ def _timed(one: SettingResults) -> dict[str, Any]:
 def _count_trials(
     plan: Plan, settings: Sequence[SettingResults], set_aside: Mapping[str, str]
 ) -> dict[str, Any]:
-    failed = [
-        {"key": f"{one.setting.key}#{number}", "reason": result.failure}
+    failed = {
+        f"{one.setting.key}#{number}": result.failure
         for one in settings
         for number, result in sorted(one.results.items())
         if result.failure
+    }
+    by_key = {setting.key: setting for setting in plan.settings}
+    varied = [
+        name
+        for name in plan.settings[0].parameters
+        if len({setting.parameters[name] for setting in plan.settings} - {None}) > 1
     ]
+
+    def reasons(by_trial: Mapping[str, str]) -> list[dict[str, str]]:
+        return [
+            {"key": key, "label": _trial_label(by_key, key, varied), "reason": reason}
+            for key, reason in by_trial.items()
+        ]
+
     return {
         "done": sum(len(one.results) for one in settings),
         "total": plan.total,
         "failed": len(failed),
-        "failures": failed,
-        "set_aside": [{"key": key, "reason": why} for key, why in sorted(set_aside.items())],
+        "failures": reasons(failed),
+        "set_aside": reasons(dict(sorted(set_aside.items()))),
     }
+
+
+def _trial_label(settings: Mapping[str, Setting], key: str, varied: Iterable[str]) -> str:
+    """Describe a trial, with the parameters that vary in its experiment: `…, α 0.3, seed 12`."""
+    name, _, number = key.rpartition("#")
+    setting = settings.get(name)
+    if setting is None:
+        return key
+    training = setting.training
+    values = [
+        parameter_text(name, setting.parameters[name], training.agent)
+        for name in varied
+        if setting.parameters[name] is not None
+    ]
+    return ", ".join(
+        [
+            title_of(training.agent),
+            *values,
+            gait_name(setting.gait),
+            OBSERVATION_LABELS[training.observation],
+            f"{setting.robot} robot",
+            f"seed {number}",
+        ]
+    )
 
 
 @lru_cache(maxsize=1)

@@ -140,7 +140,9 @@ def test_a_failed_trial_is_excluded_from_all_measures_and_listed() -> None:
     found = setting(summary, Q500)
     assert (found["n"], found["failed"]) == (3, 1)
     assert summary["trials"]["failed"] == 1
-    assert summary["trials"]["failures"] == [{"key": f"{Q500}#2", "reason": "the physics diverged"}]
+    label = "Q-learning, 500\u00a0steps, Left-right, opposite, feet measured, stiff robot, seed 2"
+    failure = {"key": f"{Q500}#2", "label": label, "reason": "the physics diverged"}
+    assert summary["trials"]["failures"] == [failure]
     assert summary["trials"]["set_aside"][0]["key"] == f"{Q500}#3"
 
 

@@ -99,8 +99,9 @@ def test_trials_without_a_result_are_named_on_the_page_and_in_the_csv() -> None:
     del results[worse]
     summary = summarise(tried, results, {worse: "it killed its worker three times"})
     text = page(summary)
-    assert f"<code>{bad}</code> failed: =the physics diverged" in text
-    assert f"<code>{worse}</code> was set aside: it killed its worker three times" in text
+    trial = "Q-learning, 500\u00a0steps, Left-right, opposite, feet measured, stiff robot, seed"
+    assert f"{trial} 1 failed: =the physics diverged" in text
+    assert f"{trial} 2 was set aside: it killed its worker three times" in text
     rows = {row["trial"]: row for row in _rows(_csv(summary, results))}
     assert (
         rows[bad]["failure"] == "'=the physics diverged"
