@@ -172,13 +172,15 @@ function LeftOut({ trials }) {
       </p>
       <details class="more">
         <summary>Which, and why</summary>
-        <ul>${[...failures, ...aside].map((one) => html`<${Reason} trial=${one.label ?? one.key} reason=${one.reason} />`)}</ul>
+        <ul>
+          ${[...failures, ...aside].map(({ label, key, reason }) => html`
+            <li>${label ?? key}: <span class="dim">${reason}</span></li>
+          `)}
+        </ul>
       </details>
     </section>
   `;
 }
-
-const Reason = ({ trial, reason }) => html`<li>${trial}: <span class="dim">${reason}</span></li>`;
 
 // ---- what is needed to repeat it: seeds, versions, machine and time
 
