@@ -36,14 +36,21 @@ run: $(RUN_STAMP) ## Serve the dashboard; options by ARGS="--port 9000 --share"
 venv: $(DQN_STAMP) $(PAGE_STAMP) ## Make or update .venv with everything a developer needs
 
 .PHONY: test
-test: $(DQN_STAMP) $(PAGE_STAMP) ## Run every check; this is the gate
+test: ## Run every check; this is the gate
+	@$(MAKE) --no-print-directory --jobs=3 check test-page browser
+	$(BIN)/python -m pytest --numprocesses 2
+
+.PHONY: check
+check: $(DQN_STAMP) ## Check the Python code: format, linter, types, import contracts
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
-	@$(MAKE) --no-print-directory test-page
+
+# Beside the other checks: it mostly waits for the network.
+.PHONY: browser
+browser: $(DEV_STAMP)
 	$(BIN)/python tests/install_browser.py
-	$(BIN)/python -m pytest --numprocesses 2
 
 .PHONY: test-page
 test-page: $(PAGE_STAMP) ## Check the page's JavaScript: linter, types, unit tests
