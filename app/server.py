@@ -70,7 +70,7 @@ _TICKS_PER_S = 10
 """Frequency of uvicorn's main loop [1/s]."""
 _DESCRIPTION = (
     "Hexapods that learn to walk, and race against look-ahead search. Errors are problem "
-    "documents (RFC 9457), and each says what is valid."
+    "documents (RFC 9457), and each says what is valid; requests that prefer text/html get a page."
 )
 
 
@@ -129,8 +129,8 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     sessions = None if settings.token is None else Sessions(store.sessions, settings.token)
     app.add_middleware(TokenGuard, settings=settings, sessions=sessions)
     app.add_middleware(HostGuard, settings=settings)
-    app.add_middleware(WellFormed)
     app.add_middleware(ProblemPages)
+    app.add_middleware(WellFormed)
     app.add_middleware(SecurityHeaders)
     return app
 

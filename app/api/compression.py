@@ -51,9 +51,7 @@ class CompressedContent:
         if headers["ETag"] in known or "*" in known:
             headers.pop("Content-Encoding", None)
             return Response(status_code=304, headers=headers)
-        headers["Content-Length"] = str(len(body))
-        sent = b"" if scope["method"] == "HEAD" else body
-        return Response(sent, headers=headers, media_type=self._media_type)
+        return Response(body, headers=headers, media_type=self._media_type)
 
 
 def accepts_gzip(accept_encoding: str) -> bool:

@@ -51,7 +51,7 @@ VALID: Mapping[str, str] = {
     "clock": _one_of(CLOCKS),
     "kind": _one_of(KINDS),
     "state": _one_of(STATES),
-    "search": f"a part of the name or the id, of at most {MAX_SEARCH} characters",
+    "search": f"a part of the name or id, of at most {MAX_SEARCH} characters; A to Z match a to z",
     "limit": f"a whole number from 1 to {MAX_PAGE}",
     "cursor": "the next_cursor of the page before",
     "idempotency-key": "1 to 200 printable ASCII characters without spaces",

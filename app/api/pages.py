@@ -98,7 +98,8 @@ class _Files(StaticFiles):
 
     def __init__(self, directory: Path) -> None:
         super().__init__(directory=directory)
-        self._contents: dict[str, tuple[tuple[int, int], CompressedContent]] = {}
+        # By device and inode: some file systems know a file under names in any case.
+        self._contents: dict[tuple[int, int], tuple[tuple[int, int], CompressedContent]] = {}
 
     def file_response(
         self,
@@ -109,9 +110,10 @@ class _Files(StaticFiles):
     ) -> Response:
         del status_code
         path, version = str(full_path), (stat_result.st_mtime_ns, stat_result.st_size)
-        known = self._contents.get(path)
+        file = (stat_result.st_dev, stat_result.st_ino)
+        known = self._contents.get(file)
         if known is None or known[0] != version:
             media_type = mimetypes.guess_type(path)[0] or "text/plain"
             known = (version, CompressedContent(Path(path).read_bytes(), media_type))
-            self._contents[path] = known
+            self._contents[file] = known
         return known[1].response(scope)

@@ -15,7 +15,8 @@ class ProblemPages:
     """Middleware that sends a problem document as a page where the request prefers HTML.
 
     Browsers ask for `text/html` first when a person opens an address, and never in a script's
-    request. Status and headers stay.
+    request. Status and headers stay. An unexpected error (500) stays a document: its handler runs
+    outside all middleware.
     """
 
     def __init__(self, app: ASGIApp) -> None:
@@ -23,20 +24,22 @@ class ProblemPages:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app, and rewrite its answer if it is a problem document."""
-        if scope["type"] != "http" or not _prefers_html(Headers(scope=scope)):
+        if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
+        is_page = _prefers_html(Headers(scope=scope))
         start: Message | None = None
         body = b""
 
         async def send_page(message: Message) -> None:
             nonlocal start, body
             if message["type"] == "http.response.start":
-                headers = Headers(scope=message)
-                if headers.get("content-type") != MEDIA_TYPE:
+                headers = MutableHeaders(scope=message)
+                if headers.get("content-type") == MEDIA_TYPE:
+                    headers.add_vary_header("Accept")
+                    start = message if is_page else None
+                if start is None:
                     await send(message)
-                    return
-                start = message
             elif start is None:
                 await send(message)
             else:
@@ -52,15 +55,12 @@ def _prefers_html(headers: Headers) -> bool:
 
 
 def _page(start: Message, body: bytes, scope: Scope) -> HTMLResponse:
-    """Render a problem document; the answer to a HEAD request has no body to read it from."""
     status = HTTPStatus(start["status"])
-    detail = json.loads(body)["detail"] if body else ""
     # Relative, so that it is valid behind a proxy that serves the app under a prefix.
     home = "../" * max(scope["path"].count("/") - 1, 0) or "./"
-    page = render("problem.html", title=status.phrase, detail=detail, home=home)
+    page = render("problem.html", title=status.phrase, detail=json.loads(body)["detail"], home=home)
     response = HTMLResponse(page, status)
     for name, value in MutableHeaders(scope=start).items():
         if name not in ("content-type", "content-length"):
             response.headers.append(name, value)
-    response.headers.add_vary_header("Accept")
     return response

@@ -5,7 +5,7 @@ Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `runs` (list, show, d
 measurements in `benchmarks`). Their module docstrings are the descriptions in `--help`.
 Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments
 and sweeps), `files` (files that users name), `server_client` (requests to a running server),
-`terminal` (progress bars and tables), `importing` (a faster start).
+`terminal` (progress bars and tables), `startup` (a faster start).
 """
 
 import argparse
@@ -15,8 +15,8 @@ import sys
 from collections.abc import Sequence
 
 from app import __version__
-from app.cli.importing import importing
 from app.cli.options import CommandParser
+from app.cli.startup import without_garbage_collection
 from app.domain.errors import HexapodError
 
 COMMANDS = {
@@ -42,7 +42,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="replace")
     sys.path.insert(0, "")  # so that --agent my_agent:Agent finds my_agent.py in this folder
     given = sys.argv[1:] if arguments is None else arguments
-    with importing():
+    with without_garbage_collection():
         parser = _parser(given)
     options = parser.parse_args(given)
     try:

@@ -10,8 +10,8 @@ from typing import Any
 
 import segno
 
-from app.cli.importing import importing
 from app.cli.options import CommandParser, integer
+from app.cli.startup import without_garbage_collection
 from app.settings import Settings, read_settings
 
 
@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
         given["host"] = options.host or "0.0.0.0"  # noqa: S104 - that is what --share is for
         given["token"] = read_token() or secrets.token_urlsafe(24)
     settings = read_settings(**given)
-    with importing():
+    with without_garbage_collection():
         from app.server import serve  # noqa: PLC0415 - its imports take most of a second
     # A link that is opened before the server answers looks broken.
     serve(settings, on_ready=partial(show_links, settings) if options.share else None)

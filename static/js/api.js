@@ -161,6 +161,8 @@ export const getTimeline = (id, clock) =>
 /** @type {(id: string) => Promise<Summary>} */
 export const getSummary = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/summary`);
 
+/** @returns {Promise<Stage>} */
+export const getStage = () => call("GET", "stage");
 /** @type {(changes: Partial<Stage> & { time_s?: number }) => Promise<Stage | null>} */
 export const putStage = (changes) => call("PUT", "stage", changes);
 

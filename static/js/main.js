@@ -1,14 +1,14 @@
 // Entry point: loads the options, opens the event stream, renders the page.
 import { effect } from "@preact/signals";
 import { render } from "preact";
-import { getOptions, openEvents, RequestError } from "./api.js";
+import { getOptions, getStage, openEvents, RequestError } from "./api.js";
 import { App, listenForKeys } from "./components/app.js";
 import { html } from "./components/elements.js";
 import { announceExperiments, followAddress, followExperiments, followSummary } from "./experiments/runs.js";
 import { readAddress, writeAddress } from "./form.js";
 import { followTheme } from "./page.js";
 import { announceOutcomes, followTimeline } from "./race.js";
-import { followList, followStageRuns } from "./runs.js";
+import { followRuns, runList, stageIds } from "./runs.js";
 import { applyEvent, connection, isLockedOut, options, version } from "./store.js";
 import { followCurves } from "./training.js";
 import { followWhatIf } from "./what-if.js";
@@ -47,8 +47,8 @@ function reloadAfterUpgrade() {
 
 followTheme();
 reloadAfterUpgrade();
-followStageRuns();
-followList();
+followRuns(stageIds);
+runList.follow("runs");
 followCurves();
 followTimeline();
 followExperiments();
@@ -60,7 +60,7 @@ openEvents(applyEvent, (state) => {
   connection.value = state;
   if (state === "live") isLockedOut.value = false;
   // The stream does not say why it ended: the server may have come back with a token.
-  if (state === "reconnecting") getOptions().catch((error) => (isLockedOut.value = isLockOut(error)));
+  if (state === "reconnecting") getStage().catch((error) => (isLockedOut.value = isLockOut(error)));
 });
 loadOptions();
 

@@ -1,17 +1,55 @@
-// Runs that the page requests beside those of the snapshot: those on stage, and the list with its filters.
+// Runs that the page requests beside those of the snapshot: single ones by their ids, and lists by pages.
 import { computed, effect, signal } from "@preact/signals";
 import { getAnyRun, listRuns } from "./api.js";
 import { place } from "./page.js";
 import { everyRun, trainingIds } from "./selectors.js";
 import { connection, damagedRuns, isDeleted, requestRun, requestRuns, runs, stage } from "./store.js";
 
-/** @import { Signal } from "@preact/signals" */
+/** @import { ReadonlySignal, Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
 /** @import { DamagedRun, Kind, Run, State } from "./types.js" */
 
-// ---- the runs on stage, with the trainings of its race: they may be older than those of the snapshot
+// ---- single runs
 
-const stageIds = computed(() => {
+const RETRY_MS = 3000;
+const NOT_FOUND = 404;
+
+/** Ids that the server has said to be of no run. @type {Signal<Set<string>>} */
+export const absentIds = signal(new Set());
+
+/**
+ * Request each run that is not known, until it is, or the server says that there is none.
+ * @param {ReadonlySignal<string[]>} ids
+ */
+export function followRuns(ids) {
+  /** @type {Set<string>} */
+  const requested = new Set();
+  const request = async (/** @type {string} */ id) => {
+    requested.add(id);
+    try {
+      await requestRun(() => getAnyRun(id));
+    } catch (error) {
+      if (/** @type {RequestError} */ (error).status === NOT_FOUND) {
+        absentIds.value = new Set([...absentIds.value, id]);
+        return;
+      }
+      setTimeout(requestMissing, RETRY_MS);
+    }
+    requested.delete(id);
+  };
+  const isMissing = (/** @type {string} */ id) =>
+    !runs.value.has(id) && !damagedRuns.value.has(id) && !absentIds.value.has(id) && !isDeleted(id);
+  function requestMissing() {
+    if (connection.value !== "live") return;
+    for (const id of ids.value.filter(isMissing)) {
+      if (!requested.has(id)) request(id);
+    }
+  }
+  effect(requestMissing);
+}
+
+/** The runs on stage, with the trainings of its race: they may be older than those of the snapshot. */
+export const stageIds = computed(() => {
   const shown = [stage.value?.run_id, stage.value?.next_run_id].filter((id) => id !== null && id !== undefined);
   return shown.flatMap((id) => {
     const run = runs.value.get(id);
@@ -19,99 +57,102 @@ const stageIds = computed(() => {
   });
 });
 
-/** Request each run on stage that is not known, once per connection: it may have been deleted. */
-export function followStageRuns() {
-  /** @type {Set<string>} */
-  const requested = new Set();
-  effect(() => {
-    if (connection.value !== "live") {
-      requested.clear();
-      return;
-    }
-    const isMissing = (/** @type {string} */ id) =>
-      !runs.value.has(id) && !damagedRuns.value.has(id) && !isDeleted(id) && !requested.has(id);
-    for (const id of stageIds.value.filter(isMissing)) {
-      requested.add(id);
-      requestRun(() => getAnyRun(id)).catch(() => null);
-    }
-  });
-}
+// ---- lists: filtered and searched by the server, a page at a time
 
-// ---- the list: filtered and searched by the server, a page at a time
-
-const SEARCH_PAUSE_MS = 250;
-
-/** An empty filter lets every run pass. @typedef {{ kind: Kind | "", state: State | "", search: string }} Filters */
+/**
+ * Filters of a list; empty ones let every run pass.
+ * @typedef {{ kind: Kind | "", state: State | "", search: string }} Filters
+ */
 
 /** @type {Filters} */
 const NO_FILTERS = { kind: "", state: "", search: "" };
+
+/**
+ * A list of runs with these filters. `cursor` is null after the last page.
+ * @param {ReadonlySignal<Filters>} filters
+ */
+export function makeList(filters) {
+  /** @type {Signal<{ filters: Filters | null, ids: string[], cursor: string | null }>} */
+  const pages = signal({ filters: null, ids: [], cursor: null });
+  const isLoading = signal(false);
+  /** Why the last page could not be loaded; empty where it could. */
+  const error = signal("");
+  /** Whether the first page of these filters is here. */
+  const isListed = computed(() => pages.value.filters === filters.value);
+  const hasOlder = computed(() => isListed.value && pages.value.cursor !== null);
+  /** Number of the newest request; the answers of earlier ones are of other filters. */
+  let newest = 0;
+
+  /** @param {string | null} cursor null for the first page */
+  const load = async (cursor) => {
+    newest += 1;
+    const number = newest;
+    const wanted = filters.value;
+    isLoading.value = true;
+    error.value = "";
+    try {
+      const { items, next_cursor } = await requestRuns(() => listRuns({ ...wanted, cursor }));
+      if (number !== newest) return;
+      const before = cursor ? pages.value.ids : [];
+      pages.value = { filters: wanted, ids: [...before, ...items.map(({ id }) => id)], cursor: next_cursor };
+    } catch (failure) {
+      if (number === newest) error.value = /** @type {RequestError} */ (failure).message;
+    } finally {
+      if (number === newest) isLoading.value = false;
+    }
+  };
+
+  /** Whether a run is in the pages that were loaded, or newer. @param {{ id: string }} run */
+  const includes = ({ id }) => {
+    const { ids, cursor } = pages.value;
+    return !isListed.value || cursor === null || ids.includes(id) || id > (ids.at(-1) ?? "");
+  };
+
+  return {
+    isListed, isLoading, error, hasOlder, includes,
+    /** Load the first page, or the next one: whichever is missing. */
+    loadMore: () => (isLoading.value ? undefined : load(isListed.value ? pages.value.cursor : null)),
+    /** Load the first page as soon as the view is open, and again after a reconnection and for other filters. */
+    follow(/** @type {string} */ view) {
+      const isOpen = computed(() => place.value === view);
+      effect(() => {
+        // The snapshot after a reconnection replaces all known runs.
+        if (connection.value !== "live") pages.value = { filters: null, ids: [], cursor: null };
+      });
+      effect(() => {
+        if (!isOpen.value || connection.value !== "live" || isListed.value) return undefined;
+        const timer = setTimeout(() => load(null), filters.value.search ? SEARCH_PAUSE_MS : 0);
+        return () => clearTimeout(timer);
+      });
+    },
+  };
+}
+
+const SEARCH_PAUSE_MS = 250;
+
+// ---- the list of the Runs view
+
 /** @type {Signal<Filters>} */
 export const filters = signal(NO_FILTERS);
 export const isFiltered = computed(() => Object.values(filters.value).some(Boolean));
 export const clearFilters = () => (filters.value = NO_FILTERS);
 
-/** What the server has listed for these filters. `cursor` is null after the last page, empty before the first. */
-/** @type {Signal<{ filters: Filters, ids: Set<string>, cursor: string | null }>} */
-const listed = signal({ filters: NO_FILTERS, ids: new Set(), cursor: "" });
-export const isLoading = signal(false);
-/** Why the list could not be loaded; empty where it could. */
-export const listError = signal("");
+export const runList = makeList(filters);
 
-const isListed = computed(() => listed.value.filters === filters.value && listed.value.cursor !== "");
-export const hasOlder = computed(() => isListed.value && listed.value.cursor !== null);
+/** The server matches only the letters A to Z in upper and lower case. @param {string} text */
+const folded = (text) => text.replaceAll(/[A-Z]/g, (letter) => letter.toLowerCase());
 
-/** @param {Run | DamagedRun} run */
+/**
+ * A run whose kind cannot be read is listed under every kind.
+ * @param {Run | DamagedRun} run
+ */
 const passes = (run) => {
   const { kind, state, search } = filters.value;
-  const text = `${run.name ?? ""} ${run.id}`.toLowerCase();
-  return [run.kind, null, ""].includes(kind) && ["", run.state].includes(state) && text.includes(search.toLowerCase());
+  const isFound = [run.name ?? "", run.id].some((text) => folded(text).includes(folded(search)));
+  return ["", run.kind ?? kind].includes(kind) && ["", run.state].includes(state) && isFound;
 };
 
 /** The runs to be shown, newest first: what the server has listed, and what has begun since. */
-export const shownRuns = computed(() => {
-  const { ids, cursor } = listed.value;
-  const oldest = [...ids].at(-1) ?? "";
-  const isInPages = (/** @type {Run | DamagedRun} */ { id }) =>
-    !isListed.value || cursor === null || ids.has(id) || id > oldest;
-  return [...damagedRuns.value.values(), ...everyRun.value].filter(passes).filter(isInPages);
-});
-
-/** Number of the newest request; the answers of earlier ones are of other filters. */
-let newest = 0;
-
-/** @param {string | null} cursor */
-async function load(cursor) {
-  newest += 1;
-  const number = newest;
-  const wanted = filters.value;
-  const before = listed.value.filters === wanted ? listed.value.ids : new Set();
-  isLoading.value = true;
-  listError.value = "";
-  try {
-    const { items, next_cursor } = await requestRuns(() => listRuns({ ...wanted, cursor }));
-    if (number !== newest) return;
-    listed.value = { filters: wanted, ids: new Set([...before, ...items.map(({ id }) => id)]), cursor: next_cursor };
-  } catch (error) {
-    if (number === newest) listError.value = /** @type {RequestError} */ (error).message;
-  } finally {
-    if (number === newest) isLoading.value = false;
-  }
-}
-
-export const reload = () => load(null);
-
-/** Load the next page, unless one is being loaded. */
-export const loadOlder = () => {
-  if (!isLoading.value) load(listed.value.cursor);
-};
-
-/** Load the list while it is open, again after a reconnection and when the filters change. */
-export function followList() {
-  const isOpen = computed(() => place.value === "runs" && connection.value === "live");
-  effect(() => {
-    const { search } = filters.value;
-    if (!isOpen.value) return undefined;
-    const timer = setTimeout(reload, search ? SEARCH_PAUSE_MS : 0);
-    return () => clearTimeout(timer);
-  });
-}
+export const shownRuns = computed(() =>
+  [...damagedRuns.value.values(), ...everyRun.value].filter(passes).filter(runList.includes),
+);

@@ -13,13 +13,14 @@ def test_browsers_get_a_page_with_a_link_to_the_dashboard(api: Api, path: str) -
     page = api.client.get(path, headers=BROWSER)
     assert page.status_code == document.status_code
     assert page.headers["content-type"] == "text/html; charset=utf-8"
-    assert page.headers["vary"] == "Accept"
+    assert page.headers["vary"] == document.headers["vary"] == "Accept"
     assert page.headers["content-security-policy"] == document.headers["content-security-policy"]
     assert document.json()["title"] in page.text
     levels = path.partition("?")[0].count("/") - 1
     assert f'<a href="{"../" * levels or "./"}">' in page.text
     head = api.client.head(path, headers=BROWSER)
     assert (head.status_code, head.text) == (page.status_code, "")
+    assert head.headers["content-length"] == page.headers["content-length"]
 
 
 def test_what_an_address_says_is_escaped(api: Api) -> None:
@@ -33,4 +34,4 @@ def test_programs_get_the_document_and_pages_stay_as_they_are(api: Api) -> None:
     refused(api.client.get("/nothing", headers={"Accept": "application/json, text/html"}), 404)
     refused(api.client.get("/nothing", headers={"Accept": "*/*"}), 404)
     assert "REST" in api.client.get("/docs", headers=BROWSER).text
-    assert api.client.get("/api/v1/runs", headers=BROWSER).json()["items"] == []
+    assert "items" in api.client.get("/api/v1/runs", headers=BROWSER).json()

@@ -1,6 +1,7 @@
 """Run `hexapods` in a working folder, in a process of its own as a user does, or in this one."""
 
 import contextlib
+import gc
 import io
 import json
 import os
@@ -46,6 +47,8 @@ def in_process(*arguments: str, folder: Path, **variables: str) -> subprocess.Co
             patch.setenv(name, value)
         patch.chdir(folder)
         patch.setattr(sys, "path", [*sys.path])
+        # Garbage of the tests before must not be exempted from collection.
+        patch.setattr(gc, "freeze", lambda: None)
         try:
             code: Any = main(arguments)
         except SystemExit as ended:

@@ -28,7 +28,7 @@ def end_and_check(server: Served, by: int) -> None:
 
 
 def occupy(server: Served, runs: list[dict[str, Any]]) -> dict[str, int]:
-    """Pause the first run, so that all others but the last run; return each run's steps done."""
+    """Pause the first run, which frees a core for the last but one; return each run's steps."""
     for run in runs[:-1]:
         server.after_step(run, server.look(run)["progress"]["done"] + 1)
         if run is runs[0]:

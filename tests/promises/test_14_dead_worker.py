@@ -75,7 +75,7 @@ def test_a_dead_servers_experiment_can_be_resumed_and_leaves_no_process(
 ) -> None:
     server = launch()
     body = {"experiment": "sweep", "simulator": "kinematic", "gaits": "left-right-origin"}
-    run = server.start({**body, "seeds": SEEDS, "steps": 1000, "workers": 1}, "/experiments")
+    run = server.start({**body, "seeds": SEEDS, "steps": 3000, "workers": 1}, "/experiments")
     server.after_step(run, 1)
     below = psutil.Process(server.process.pid).children(recursive=True)
     assert len(below) > 2, "the job's process, and its cluster's"
@@ -94,5 +94,5 @@ def test_a_dead_servers_experiment_can_be_resumed_and_leaves_no_process(
     assert ended["state"] == "finished", ended
     rows = server.client.get(f"{path}/trials").json()["trials"]
     assert all(row in rows for row in kept), "some were repeated"
-    plain = json.loads(json.dumps(tried(sweep(seeds=SEEDS, steps=(1000,)))))
+    plain = json.loads(json.dumps(tried(sweep(seeds=SEEDS, steps=(3000,)))))
     assert {row["key"]: row["result"] for row in rows} == plain

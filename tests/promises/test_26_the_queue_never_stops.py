@@ -153,11 +153,11 @@ def kill_one(server: Served, runs: list[Model], chance: random.Random) -> None:
 def delete_continually(address: str, done: threading.Event) -> int:
     """Start runs and request their deletion until it succeeds; return their number.
 
-    The gate has a pause before each: a run that is not stopped takes a process, and a core.
+    The gate has a pause after each: a run that is not stopped takes a process, and a core.
     """
     count, chance = 0, random.Random(27)
     with httpx2.Client(base_url=address, timeout=LONG_S, trust_env=False) as client:
-        while not done.wait(at_length(2.0, 0.0)):
+        while not done.is_set():
             response = client.post("/api/v1/trainings", json=SHORT)
             if response.status_code == 429:
                 time.sleep(0.1)
@@ -172,6 +172,7 @@ def delete_continually(address: str, done: threading.Event) -> int:
                 time.sleep(chance.uniform(0, 0.02))
             assert client.get(path).status_code == 404
             count += 1
+            done.wait(at_length(2.0, 0.0))
     return count
 
 
@@ -193,7 +194,7 @@ def test_random_verbs_never_block_the_queue(launch: Callable[..., Served], tmp_p
         deleter = pool.submit(delete_continually, server.address, done)
         try:
             for number in range(VERBS):
-                if len(runs) < RUNS and chance.random() < STARTS:
+                if not runs or (len(runs) < RUNS and chance.random() < STARTS):
                     started = start(server.client, chance)
                     runs += [started] if started else []
                 elif number % 100 == 99:

@@ -11,7 +11,6 @@ import json
 import random
 import shutil
 import sqlite3
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager
 from functools import partial
@@ -27,7 +26,6 @@ from sqlalchemy import text
 from app.archive import archive
 from app.archive.archived_trials import TRIALS
 from app.archive.transfer import RUN, export_run
-from app.cli import main
 from app.events.run_view import run_view
 from app.runs import tables
 from app.runs.tables import from_bytes
@@ -39,6 +37,7 @@ from app.storage.errors import Damaged
 from app.storage.run import TABLE, DamagedRun
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import serving
+from tests.cli.running import in_process
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.promises.worst_values import BROKEN_TEXT, IMPORTED, STORED, paths_to_values, put_value
@@ -311,16 +310,14 @@ DAMAGE: list[tuple[str, Any]] = [
 
 
 @pytest.fixture
-def command(
-    data_folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> Callable[..., Any]:
+def command(data_folder: Path) -> Callable[..., Any]:
     """A function that runs a command of `hexapods` in this process, and returns its JSON."""
-    monkeypatch.setenv("HEXAPODS_PORT", "0")
-    monkeypatch.setattr(sys, "path", [*sys.path])
 
-    def run(*arguments: str) -> Any:
-        main([*arguments, "--data", str(data_folder), "--json"])
-        return json.loads(capsys.readouterr().out)
+    def run(*arguments: str, code: int = 0) -> Any:
+        given = (*arguments, "--data", str(data_folder), "--json")
+        done = in_process(*given, folder=data_folder, HEXAPODS_PORT="0")
+        assert (done.returncode, done.stderr) == (code, "")
+        return json.loads(done.stdout)
 
     return run
 
@@ -347,7 +344,7 @@ def test_damaged_runs_are_named_everywhere_and_can_be_deleted(
         assert f"hexapods_runs_damaged {len(damage)}.0" in server.client.get("/metrics").text
         rows = {run["id"]: run.get("damaged") for run in command("runs", "list")["items"]}
         assert rows == {**dict.fromkeys((SOUND, RACE, EXPERIMENT)), **damaged}
-        found = {check["name"]: check for check in command("doctor")["checks"]}
+        found = {check["name"]: check for check in command("doctor", code=1)["checks"]}
         assert not found["database"]["ok"]
         for run_id, message in damaged.items():
             assert len(message) > 10

@@ -23,7 +23,7 @@ NOTICED_S = 10.0
 PACED = {**BODY, "steps": 400, "pace": 20, "evaluate_every": 100, "seed": 33}
 
 
-@pytest.mark.timeout(at_length(120, 3600))
+@pytest.mark.timeout(at_length(240, 3600))
 def test_a_dead_job_is_detected_and_can_be_resumed(launch: Callable[..., Served]) -> None:
     chance = random.Random(33)
     server = launch()

@@ -200,7 +200,8 @@ class RunStore:
             state: only runs in this state; None for all.
             limit: items per page.
             cursor: `Page.next_cursor` of the page before; None for the first page.
-            search: only runs with this text in their name or id, in upper or lower case.
+            search: only runs with this text in their name or id; the letters A to Z match in
+                upper and lower case.
         """
         newest_first = select_runs().order_by(RUNS.c.id.desc()).limit(limit + 1)
         if state is not None:

@@ -6,9 +6,7 @@ import { paceOf } from "../experiments/runs.js";
 import { ago, count, listed, metres, sentence, whole } from "../format.js";
 import { hasTable, isActive, isOperator, presetOf } from "../selectors.js";
 import { agentOf, ratesInWords } from "../settings.js";
-import {
-  clearFilters, filters, hasOlder, isFiltered, isLoading, listError, loadOlder, reload, shownRuns,
-} from "../runs.js";
+import { clearFilters, filters, isFiltered, runList, shownRuns } from "../runs.js";
 import { served } from "../store.js";
 import { describeRun, gaitTitle, observationTitle, robotTitle, runTitle, simulatorTitle } from "../titles.js";
 import { html, Problem, Segments } from "./elements.js";
@@ -22,7 +20,7 @@ export function Runs() {
   const { kind, state, search } = filters.value;
   const shown = shownRuns.value;
   return html`
-    <section class="panel runs" aria-labelledby="runs-title" aria-busy=${isLoading.value ? "true" : "false"}>
+    <section class="panel runs" aria-labelledby="runs-title" aria-busy=${runList.isLoading.value ? "true" : "false"}>
       <div class="runs-head">
         <h2 id="runs-title">Runs</h2>
         <${Segments} label="Kind" choices=${KINDS} value=${kind} onValue=${(value) => setFilter("kind", value)} />
@@ -33,8 +31,9 @@ export function Runs() {
             ${STATES.map((one) => html`<option value=${one} selected=${one === state}>${one}</option>`)}
           </select>
         </label>
-        <input class="search" type="search" aria-label="Search names and ids" placeholder="Name or id" maxlength="100"
-          value=${search} onInput=${({ target }) => setFilter("search", target.value)} />
+        <input class="search" type="search" aria-label="Search names and ids" placeholder="Name or id"
+          maxlength=${served().limits.name[1]} value=${search}
+          onInput=${({ target }) => setFilter("search", target.value)} />
       </div>
       ${shown.length === 0
         ? html`<${NoRuns} />`
@@ -50,8 +49,10 @@ function rowOf(run) {
 }
 
 function NoRuns() {
-  if (listError.value) return null;
-  if (isLoading.value) return html`<p class="no-runs" role="status"><span class="spinner"></span> Loading…</p>`;
+  if (runList.error.value) return null;
+  if (!runList.isListed.value) {
+    return html`<p class="no-runs" role="status"><span class="spinner" aria-hidden="true"></span> Loading…</p>`;
+  }
   if (!isFiltered.value) return html`<div class="no-runs"><${FirstVisit} /></div>`;
   return html`
     <div class="no-runs">
@@ -70,19 +71,13 @@ const FirstVisit = () => html`
 `;
 
 function Older() {
-  if (listError.value) {
-    return html`
-      <div class="older">
-        <p role="alert">${listError}</p>
-        <button class="secondary" onClick=${reload}>Try again</button>
-      </div>
-    `;
-  }
-  if (!hasOlder.value) return null;
+  const { error, hasOlder, isLoading, loadMore } = runList;
+  if (!hasOlder.value && !error.value) return null;
   return html`
     <div class="older">
-      <button class="secondary" aria-disabled=${isLoading.value ? "true" : undefined} onClick=${loadOlder}>
-        Show older runs
+      <p role="alert">${error}</p>
+      <button class="secondary" aria-disabled=${isLoading.value ? "true" : undefined} onClick=${loadMore}>
+        ${error.value ? "Try again" : "Show older runs"}
       </button>
     </div>
   `;

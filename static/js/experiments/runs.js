@@ -2,12 +2,13 @@
 import { computed, effect, signal } from "@preact/signals";
 import { attempt, deleteRun } from "../actions.js";
 import * as api from "../api.js";
-import { getRun, getSummary, listRuns } from "../api.js";
+import { getSummary } from "../api.js";
 import { count, duration, whole } from "../format.js";
 import { place } from "../page.js";
 import { announcement } from "../race.js";
+import { absentIds, followRuns, makeList } from "../runs.js";
 import { everyRun, isActive, isOperator } from "../selectors.js";
-import { connection, isDeleted, requestRun, requestRuns, runs, setEntry, summarised } from "../store.js";
+import { connection, isDeleted, requestRun, runs, setEntry, summarised } from "../store.js";
 import { runTitle } from "../titles.js";
 import { chosenExperiment, mistakes, readQuery, requestBody, toQuery, trials } from "./form.js";
 
@@ -67,48 +68,20 @@ export const chosenRun = computed(() => {
   return all.find(isActive) ?? all[0] ?? null;
 });
 
-const NOT_FOUND = 404;
-/** The requested experiment, once the server has said that there is none. @type {Signal<string | null>} */
-const missingRun = signal(null);
-export const isMissing = computed(() => wantedRun.value !== null && wantedRun.value === missingRun.value);
+/** Listed by themselves: the first snapshot may have had room for trainings and races only. */
+export const experimentList = makeList(signal({ kind: "experiment", state: "", search: "" }));
 
-/** Whether the server has listed its experiments. */
-export const isListed = signal(false);
-/** Where older ones continue, null after the last. @type {Signal<string | null>} */
-const cursor = signal(null);
-export const hasOlder = computed(() => cursor.value !== null);
+/** Whether the requested run is no experiment of this server, by its answer. */
+export const isMissing = computed(() => {
+  const id = wantedRun.value;
+  if (id === null) return false;
+  const run = runs.value.get(id);
+  return run ? run.kind !== "experiment" : absentIds.value.has(id) || isDeleted(id);
+});
 
-/** @param {string | null} [from] */
-async function loadList(from) {
-  const answer = await requestRuns(() => listRuns({ kind: "experiment", cursor: from })).catch(() => null);
-  if (!answer) return;
-  cursor.value = answer.next_cursor ?? null;
-  isListed.value = true;
-}
-
-export const loadOlder = () => loadList(cursor.value);
-
-/** List experiments when the view opens: the first snapshot may have had room for trainings and races only. */
 export function followExperiments() {
-  const isOpen = computed(() => place.value === "experiments" && connection.value === "live");
-  effect(() => {
-    if (isOpen.value) loadList();
-  });
-  const unknown = computed(() => {
-    const id = wantedRun.value;
-    return isOpen.value && id && !runs.value.has(id) ? id : null;
-  });
-  effect(() => {
-    const id = unknown.value;
-    if (!id) return;
-    if (isDeleted(id)) {
-      missingRun.value = id;
-      return;
-    }
-    requestRun(() => getRun({ kind: "experiment", id })).catch(({ status }) => {
-      if (status === NOT_FOUND) missingRun.value = id;
-    });
-  });
+  experimentList.follow("experiments");
+  followRuns(computed(() => (place.value === "experiments" && wantedRun.value ? [wantedRun.value] : [])));
 }
 
 // ---- the summary of the chosen experiment, requested again as its trials end

@@ -1,6 +1,6 @@
 // The experiments view: form and list on one side, the report on the other.
 import {
-  chosenRun, experimentRuns, hasOlder, isListed, isMissing, loadOlder, paceOf, wantedRun,
+  chosenRun, experimentList, experimentRuns, isMissing, paceOf, wantedRun,
 } from "../../experiments/runs.js";
 import { ago } from "../../format.js";
 import { isActive, isOperator } from "../../selectors.js";
@@ -31,7 +31,7 @@ export function Experiments() {
 
 function NoReport() {
   if (isMissing.value) return html`<${MissingRun} />`;
-  return isListed.value && !wantedRun.value && html`<${Invitation} />`;
+  return experimentList.isListed.value && !wantedRun.value && html`<${Invitation} />`;
 }
 
 const MissingRun = () => html`
@@ -59,13 +59,13 @@ function ExperimentList() {
     <section class="panel experiment-list" aria-labelledby="experiment-list">
       <h2 id="experiment-list">Experiments</h2>
       <ul>${all.map((run) => html`<${Row} key=${run.id} run=${run} />`)}</ul>
-      ${hasOlder.value && html`<${Older} />`}
+      ${experimentList.hasOlder.value && html`<${Older} />`}
     </section>
   `;
 }
 
 const Older = () => html`
-  <div class="older"><button class="secondary" onClick=${loadOlder}>Show older experiments</button></div>
+  <div class="older"><button class="secondary" onClick=${experimentList.loadMore}>Show older experiments</button></div>
 `;
 
 function Row({ run }) {
