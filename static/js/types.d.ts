@@ -173,6 +173,8 @@ export interface RunConfig {
 export interface ClockResult {
   rank: number;
   finished_distance_m: number;
+  /** When the lane has used its steps [s]. */
+  elapsed_s: number;
   crossed_s: number | null;
 }
 

@@ -9,6 +9,7 @@ import { agentOf, learns } from "../settings.js";
 import { runs } from "../store.js";
 import { clockTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
+import { flatParts, ruleOf } from "../verdict.js";
 import { AsTable, Empty, Plot } from "./charts.js";
 import { html, Icon } from "./elements.js";
 
@@ -23,7 +24,11 @@ export function Scoreboard() {
     <section class="panel scoreboard" aria-labelledby="scoreboard-title">
       <h2 id="scoreboard-title" class=${rows ? "sr-only" : ""}>Scoreboard</h2>
       ${rows
-        ? html`<p class="headline">${headline.value}</p><${Board} rows=${rows} />`
+        ? html`
+          <p class="headline">${headline.value}</p>
+          <p class="dim">${ruleOf(rows[0].steps, clockTitle(clock.value))}</p>
+          <${Board} rows=${rows} />
+        `
         : html`<${StartList} />`}
     </section>
   `;
@@ -33,7 +38,7 @@ function Board({ rows }) {
   const longest = Math.max(...rows.map((row) => row.elapsed_s ?? 0), 1e-9);
   return html`
     <table class="board">
-      <caption class="sr-only">Standings under the ${clockTitle(clock.value)}</caption>
+      <caption class="sr-only">Standings (${clockTitle(clock.value)})</caption>
       <thead>
         <tr>
           <th scope="col"><span class="sr-only">Rank</span></th>
@@ -66,7 +71,7 @@ const Lane = ({ row, longest }) => html`
       <td colspan="5">
         <${TimeStrip} spent=${row.spent} longest=${longest} />
         <p class="dim">
-          <span>${row.isDone && html`<${Icon} name="flag" />`}${activityOf(row)}</span>
+          <span>${row.hasCrossed && html`<${Icon} name="flag" />`}${activityOf(row)}</span>
           <span class="facts">${factsOf(row)}</span>
         </p>
         ${row.isMarching && html`<p class="marching"><b>Marching on the spot:</b> ${reasonForMarching(row)}</p>`}
@@ -147,14 +152,8 @@ function StartList() {
   `;
 }
 
-// ---- the chart: distance against race time up to the moment that is shown; flat parts are thinking
+// ---- the chart: distance against race time up to the moment that is shown
 
-/** What thinking costs under each clock. */
-const COSTS = {
-  paper: "a decision costs what it did in the paper",
-  wall: "a decision costs the time it took on this machine",
-  free: "a decision costs nothing under this clock",
-};
 const HEADROOM = 1.16;
 const TABLE_ROWS = 10;
 /** The time axis shows at least so much of a race that has just begun [s]. */
@@ -164,11 +163,10 @@ export function RaceChart() {
   const known = timeline.value;
   const time = shownTime.value;
   const isOn = known && time !== null && known.lanes.some(({ points }) => points.length > 1);
-  const cost = COSTS[clock.value];
   return html`
     <section class="panel chart" aria-labelledby="race-title">
       <h2 id="race-title">The race</h2>
-      <p class="dim">Flat parts are thinking${cost && `: ${cost}`}</p>
+      <p class="dim">${flatParts(clock.value)}</p>
       ${isOn ? html`<${Lines} known=${known} time=${time} />` : html`<${Empty} shape="lines" words=${invitation()} />`}
     </section>
   `;
@@ -176,8 +174,8 @@ export function RaceChart() {
 
 const invitation = () =>
   raceInView.value
-    ? "The lines start when the robots do. Flat parts are thinking."
-    : "Each robot draws a line here as it walks. Flat parts are thinking.";
+    ? "The lines start when the robots do."
+    : "Each robot draws a line here as it walks.";
 
 function Lines({ known, time }) {
   const longest = Math.max(...known.lanes.map(({ total_s }) => total_s));

@@ -129,7 +129,7 @@ function SceneChips() {
   return html`
     <div class="chips">
       <p class="chip strong">${now?.label || "On the start line"}</p>
-      ${now?.phase === "photo-finish" && html`<p class="chip accent">Photo finish</p>`}
+      ${now?.phase === "photo-finish" && html`<p class="chip accent">Time-out: photo finish</p>`}
       ${now?.phase === "waiting" && html`<p class="chip">Waiting for a robot that still thinks</p>`}
       ${now?.replay && html`<p class="chip">Replay</p>`}
       <${SpeedChip} now=${now} />
