@@ -60,6 +60,11 @@ def test_the_values_of_the_state_are_a_table(dashboard: Dashboard, server: Servi
     expect(dashboard.page.locator(".next-move")).to_have_text(
         re.compile(r"^Q-learning will move legs \d and \d to (home|front|back)")
     )
+    expect(values.locator("td.untried").first).to_have_text(re.compile("^never"))
+    tried = values.locator("td", has=dashboard.page.locator("small"))
+    expect(tried.first).to_have_text(re.compile(r"^−?\d+\s*[1-9]\d*×, tried \d+ times?"))
+    expect(dashboard.page.locator(".values-key")).to_contain_text("never tried")
+    assert dashboard.violations() == []
 
 
 def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server: Serving) -> None:

@@ -68,7 +68,7 @@ def frame_at_rest(spec: SceneSpec) -> StageFrame:
 def action_values(spec: SceneSpec, current: tuple[int, ...] = (0, 1, 2)) -> ActionValuesView:
     values = np.linspace(-0.01, 0.06, 3 * len(spec.grid)).reshape(3, -1)
     values[range(3), current] = np.nan
-    return ActionValuesView(values, values, current, None, -0.01, 0.06)
+    return ActionValuesView(values, np.ones_like(values), current, None, -0.01, 0.06)
 
 
 def test_number_of_robot_nodes_does_not_depend_on_the_lanes(
@@ -193,6 +193,20 @@ def test_cells_are_coloured_by_value_but_for_the_current_one(
     assert best[0] > 120
     assert best[2] < 40
     assert present.max() < 20
+
+
+def test_a_cell_that_was_never_tried_is_grey_whatever_its_value(server: InProcessViser) -> None:
+    spec, scene = race_of(1), StageScene(server)
+    known = action_values(spec)
+    known.visits[2, 3:] = 0
+    lane = replace(frame_at_rest(spec).lanes[0], knowledge=known)
+    scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
+    fills = scene_nodes(server)["/world/cast/lane0/grid/others/fills"]
+    colors = fills["batched_colors"].reshape(6, 4, 3).astype(int)
+
+    leader = spec.gait.pairs[2][0] - 1
+    is_grey = np.ptp(colors[leader], axis=1) < 20
+    assert is_grey.tolist() == [False, True, True, True], "the present cell, and two of three"
 
 
 @pytest.mark.parametrize("divisions", [2, 3, 8])

@@ -78,7 +78,11 @@ export function Knowledge() {
       <h2 id="knowledge-title">What the learner knows here</h2>
       <p class="dim">${ABOUT}</p>
       ${known
-        ? html`<${Values} known=${known} /><p class="next-move"><${NextMove} known=${known} /></p>`
+        ? html`
+          <${Values} known=${known} />
+          ${known.visits && html`<${ValuesKey} />`}
+          <p class="next-move"><${NextMove} known=${known} /></p>
+        `
         : html`<${Empty} shape="cells" words=${TABLE_INVITATION} />`}
     </section>
   `;
@@ -117,13 +121,25 @@ function Value({ known, pair, cell }) {
   const isBest = best.pair === pair && best.cell === cell;
   const isNext = known.next?.pair === pair && known.next?.cell === cell;
   const visits = known.visits?.[pair]?.[cell] ?? null;
+  const mark = isNext ? "next" : isBest ? "best" : "";
+  const nextMove = isNext && html`<span class="sr-only">, its next move</span>`;
+  // A move without a try has the table's first value, which is no estimate.
+  if (visits === 0) return html`<td class=${`untried ${mark}`}>never${nextMove}</td>`;
   return html`
-    <td class=${isNext ? "next" : isBest ? "best" : ""} style=${valueColours(value, known.low, known.high)}
-      title=${visits === null ? undefined : `tried ${count(visits, "time")}`}>
-      ${millimetres(value)}${isNext && html`<span class="sr-only">, its next move</span>`}
+    <td class=${mark} style=${valueColours(value, known.low, known.high)}>
+      ${millimetres(value)}${visits !== null && html`
+        <small aria-hidden="true">${whole(visits)}×</small><span class="sr-only">, tried ${count(visits, "time")}</span>
+      `}${nextMove}
     </td>
   `;
 }
+
+const ValuesKey = () => html`
+  <p class="values-key dim">
+    <span><i class="untried" aria-hidden="true"></i>never tried</span>
+    <span><b>12</b> <small>5×</small> worth 12 mm, tried 5 times</span>
+  </p>
+`;
 
 /** The learner's next move in words. */
 function NextMove({ known }) {

@@ -103,6 +103,8 @@ export function StagePlaceholder({ status }) {
 
 // ---- labels: the run, the speed, the lanes that think, the colours of the foot grid
 
+const GRID_COLOURS = "Colours of the foot grid: dark is worth less, light is worth more, grey was never tried";
+
 export function StageLabels() {
   const thinking = (raceScene.value && standings.value?.filter((row) => row.isThinking)) || [];
   return html`
@@ -116,8 +118,8 @@ export function StageLabels() {
         `)}
       </div>
       ${scene.value?.knowledge && html`
-        <p class="chip legend" aria-label="Colours of the foot grid: dark is worth less, light is worth more">
-          worth less<span class="ramp" aria-hidden="true"></span>more
+        <p class="chip legend" aria-label=${GRID_COLOURS}>
+          worth less<span class="ramp" aria-hidden="true"></span>more<i aria-hidden="true"></i>never tried
         </p>
       `}
     </div>
