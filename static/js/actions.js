@@ -4,7 +4,7 @@ import * as api from "./api.js";
 import { chooseLearner, form, link, mistakes, raceBody, setField, setFields, trainingBody } from "./form.js";
 import { count, listed, whole } from "./format.js";
 import {
-  isActive, isOperator, isRaceRun, laneTables, liveTraining, markAsMine, myWork, presetOf, shownRun, work,
+  isActive, isOperator, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, myWork, presetOf, shownRun, work,
 } from "./selectors.js";
 import { agentOf, learns, limitsOf, settingsOf } from "./settings.js";
 import { markDeleted, options, rates, requestRun, requestStage, runs, scene, setEntry, stage } from "./store.js";
@@ -192,7 +192,7 @@ export const setStage = (changes) =>
   attempt("stage", () => requestStage(() => api.putStage(changes)));
 
 export const togglePlaying = () => {
-  if (isOperator.value && stage.value?.run_id) setStage({ playing: !stage.value.playing });
+  if (isOperator.value && stage.value?.run_id) setStage({ playing: !isPlaying.value });
 };
 export const skipToEnd = () => setStage({ time_s: scene.value?.duration_s ?? undefined, playing: true });
 

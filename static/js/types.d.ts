@@ -285,6 +285,8 @@ export interface Stage {
   run_id: string | null;
   next_run_id: string | null;
   playing: boolean;
+  /** Whether its end is shown; playing starts it again. */
+  ended: boolean;
   speed: number | "time-lapse";
   clock: Clock;
 }

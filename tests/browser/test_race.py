@@ -39,6 +39,9 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     ).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("^The race after .*Two-step"))).to_be_visible()
     expect(dashboard.rows.filter(has_text="Two-step").locator(".aside").last).to_have_text("936")
+    expect(dashboard.button("Play again for everyone")).to_be_visible()
+    timeline_end = page.locator(".seek .num").last.inner_text()
+    expect(dashboard.rows.filter(has_text="Two-step")).to_contain_text(f"6 steps in {timeline_end}")
 
     expect(dashboard.primary).to_have_text("Practise 40 more, race again")
     dashboard.primary.click()

@@ -2,7 +2,7 @@
 import { useMemo } from "preact/hooks";
 import uPlot from "uplot";
 import { form } from "../form.js";
-import { count, decision, duration, metres, whole } from "../format.js";
+import { clockTime, count, decision, metres, whole } from "../format.js";
 import { clipped, distanceAt, headline, isTimedOut, raceScene, shownTime, standings, timeline } from "../race.js";
 import { clock, isActive, raceInView, simulatedPerDecision } from "../selectors.js";
 import { agentOf, learns } from "../settings.js";
@@ -82,7 +82,7 @@ const Lane = ({ row, longest }) => html`
 
 function TimeStrip({ spent: { walked, thought }, longest }) {
   const width = (seconds) => ({ width: `${(100 * seconds) / longest}%` });
-  const label = `Walking ${duration(walked)}, thinking ${duration(thought)}`;
+  const label = `Walking ${clockTime(walked)}, thinking ${clockTime(thought)} (minutes:seconds)`;
   return html`
     <div class="strip" role="img" aria-label=${label}>
       <i class="walked" style=${width(walked)}></i>
@@ -101,7 +101,7 @@ function activityOf(row) {
   if (row.isDone) {
     const crossed = row.hasCrossed ? ", crossed the finish line" : "";
     const steps = count(row.steps, "step");
-    return row.elapsed_s ? `${steps} in ${duration(row.elapsed_s)}${crossed}` : steps;
+    return row.elapsed_s ? `${steps} in ${clockTime(row.elapsed_s)}${crossed}` : steps;
   }
   const step = `Step ${row.step} of ${row.steps}`;
   if (row.isThinking) return `${step}, thinking: ${whole(row.futures)} of ${whole(row.futuresTotal)} simulated`;

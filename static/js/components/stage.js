@@ -5,7 +5,7 @@ import { form } from "../form.js";
 import { clockTime, sentence, times, whole } from "../format.js";
 import { isNarrow, shownTheme, view } from "../page.js";
 import { raceScene, standings } from "../race.js";
-import { clock, isActive, isOperator, shownRun } from "../selectors.js";
+import { clock, isActive, isOperator, isPlaying, playbackName, shownRun } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { connection, options, scene, stage } from "../store.js";
 import { choicesOf, clockTitle } from "../titles.js";
@@ -140,8 +140,10 @@ function SceneChips() {
 }
 
 function SpeedChip({ now }) {
-  if (stage.value?.playing === false && now?.kind !== "idle") return html`<p class="chip">Paused</p>`;
-  if (!now || now.kind === "idle" || !(now.shown_speed > 0)) return null;
+  if (stage.value?.playing === false && now?.kind !== "idle") {
+    return html`<p class="chip">${sentence(playbackName.value)} paused</p>`;
+  }
+  if (!now || now.kind === "idle" || now.phase === "finished" || !(now.shown_speed > 0)) return null;
   return html`<p class="chip num" title="Times real time">${times(now.shown_speed)}</p>`;
 }
 
@@ -166,11 +168,12 @@ export function Transport() {
 }
 
 function PlayButton() {
-  const isPlaying = stage.value?.playing;
+  const verb = isPlaying.value ? "Pause" : "Play";
+  const label = stage.value?.ended ? "Play again for everyone" : `${verb} ${playbackName.value} for everyone`;
   return html`
     <button class="quiet square" disabled=${!stage.value?.run_id} onClick=${togglePlaying}
-      aria-label=${isPlaying ? "Pause the playback" : "Play"} title="Pause or play, on every page">
-      <${Icon} name=${isPlaying ? "pause" : "play"} />
+      aria-label=${label} title=${label}>
+      <${Icon} name=${isPlaying.value ? "pause" : "play"} />
     </button>
   `;
 }
