@@ -212,6 +212,8 @@ export interface Run {
   /** The trainings that a race waits for. */
   waiting_for?: string[];
   greedy_distance_m?: number | null;
+  /** Of a training: new values of live settings and the pace, with the number of steps done before. */
+  changes?: ({ step: number } & Rates)[];
 }
 
 /** A run that the server cannot read. It can be deleted. */

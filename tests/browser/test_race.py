@@ -89,6 +89,19 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
         lambda: (changes().get("alpha"), changes().get("epsilon")) == (0.5, 0.25), "the new rates"
     )
 
+    said = re.compile(r"^Changed: α\s0\.5 from step \d+, ε\s0\.25 from step \d+$")
+    expect(page.locator(".changes")).to_have_text(said)
+    other = Dashboard(page.context.new_page(), has_3d=False)
+    other.open(server.address)
+    alpha = other.page.get_by_role("slider", name="Learning rate α")
+    expect(alpha).to_have_value("0.5")
+    expect(other.page.get_by_role("slider", name="Exploration now ε")).to_have_value("0.25")
+    expect(other.page.locator(".next-rates")).to_contain_text(re.compile(r"with α\s0\.3\.$"))
+    alpha.fill("0.75")
+    expect(page.get_by_role("slider", name="Learning rate α")).to_have_value("0.75")
+    assert other.complaints == []
+    other.page.close()
+
     dashboard.button("Pause").click()
     expect(page.get_by_text(re.compile("^Paused at "))).to_be_visible()
     dashboard.button("Resume").click()

@@ -1,5 +1,6 @@
 // What the learner in view has learned: its learning curve, and its action values in its present state.
 import { useMemo } from "preact/hooks";
+import { changesInWords, rateInWords } from "../changes.js";
 import { count, metres, millimetres, whole } from "../format.js";
 import { valueColours } from "../scale.js";
 import { shownRun } from "../selectors.js";
@@ -30,10 +31,13 @@ export function LearningChart() {
   `;
 }
 
-/** Thin lines: greedy's distance, and where one training continued another. */
-const marksOf = ({ greedy_m, blocks }) => [
+/** Thin lines: greedy's distance, where one training continued another, and where live settings changed. */
+const marksOf = ({ greedy_m, blocks, changes, run }) => [
   ...(greedy_m ? [greedyMark(greedy_m)] : []),
   ...blocks.map((x) => ({ x, color: "--line" })),
+  ...changes.map((change) => ({
+    x: change.step, color: "--dim", dash: [2, 3], text: rateInWords(run.config.agent, change),
+  })),
 ];
 
 const greedyMark = (y) => ({
@@ -55,11 +59,13 @@ function Curve({ known }) {
   const end = { text: metres(last.distance_m), color, x: last.step, y: last.distance_m };
   const distances = points.map((p) => p.distance_m);
   const caption = captionOf(known);
+  const changed = changesInWords(run.config.agent, known.changes);
   return html`
     <${Plot} label=${caption} data=${data} marks=${marksOf(known)} labels=${points.length > 1 ? [end] : []} room=${64}
       series=${[{ color, points: points.length < MOST_MARKED_POINTS }]}
       x=${{ min: 0, max: to, unit: "steps of practice" }}
       y=${{ min: Math.min(0, ...distances), max: HEADROOM * Math.max(LEAST_TOP_M, greedy_m ?? 0, ...distances) }} />
+    ${changed.length > 0 && html`<p class="changes dim">Changed: ${changed.join(", ")}</p>`}
     <${AsTable} caption=${caption} columns=${["Steps of practice", "Distance in 50 steps"]}
       rows=${points.map((p) => [whole(p.step), metres(p.distance_m)])} />
   `;
