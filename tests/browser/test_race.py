@@ -39,6 +39,25 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     ).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("^The race after .*Two-step"))).to_be_visible()
     expect(dashboard.rows.filter(has_text="Two-step").locator(".aside").last).to_have_text("936")
+    curve = page.get_by_role("slider", name="Values of the learning curve")
+    curve.hover()
+    expect(curve.locator(".readout")).to_contain_text(
+        re.compile(r"steps.*Q-learning −?\d\.\d\d\sm")
+    )
+    curve.press("Home")
+    expect(curve).to_have_attribute(
+        "aria-valuetext", re.compile(r"^0 steps: Q-learning 0\.00\sm, Greedy \d\.\d\d\sm$")
+    )
+    curve.press("ArrowRight")
+    expect(curve).to_have_attribute("aria-valuetext", re.compile("^20 steps: "))
+    race = page.get_by_role("slider", name="Values of the race")
+    box = race.bounding_box()
+    assert box is not None
+    finger = {"clientX": box["x"] + 1, "pointerType": "touch"}
+    race.dispatch_event("pointerdown", finger)
+    race.dispatch_event("pointerleave", finger)
+    expect(race.locator(".readout")).to_contain_text(re.compile(r"^0\.0\ss.*Two-step 0\.00\sm"))
+    assert dashboard.violations() == []
     expect(dashboard.button("Play again for everyone")).to_be_visible()
     timeline_end = page.locator(".seek .num").last.inner_text()
     expect(dashboard.rows.filter(has_text="Two-step")).to_contain_text(f"6 steps in {timeline_end}")

@@ -4,6 +4,7 @@ import uPlot from "uplot";
 import { whole } from "../format.js";
 import { shownTheme } from "../page.js";
 import { largest, percent, shareOf, swarm, thinned } from "../scale.js";
+import { Crosshair } from "./crosshair.js";
 import { html } from "./elements.js";
 import { lineLabels, roomFor } from "./line-labels.js";
 
@@ -13,6 +14,11 @@ import { lineLabels, roomFor } from "./line-labels.js";
 
 const HEIGHT = 216;
 const FONT = "12px system-ui, sans-serif";
+const X_AXIS = { size: 26, labelSize: 18 };
+const Y_AXIS_PX = 44;
+const TOP_PX = 20;
+/** Of the plotting area in the chart, without the right side. */
+const INSET = { left: Y_AXIS_PX, top: TOP_PX, bottom: X_AXIS.size + X_AXIS.labelSize };
 
 /**
  * @param {object} props
@@ -23,6 +29,7 @@ const FONT = "12px system-ui, sans-serif";
  * @param {{ min?: number, max: number }} props.y
  * @param {EndLabel[]} props.labels at the ends of lines
  * @param {Mark[]} [props.marks] straight lines
+ * @param {{ label: string, xs: number[], read: (index: number) => any }} props.values as a `Crosshair` takes them
  */
 export function Plot(props) {
   /** @type {{ current: any }} */
@@ -50,7 +57,12 @@ export function Plot(props) {
   // New data alone would not measure the padding again.
   useEffect(() => plot.current.redraw(true, true), [room]);
 
-  return html`<div class="plot" role="img" aria-label=${props.label} ref=${host}></div>`;
+  return html`
+    <div class="plot-frame">
+      <div class="plot" role="img" aria-label=${props.label} ref=${host}></div>
+      <${Crosshair} ...${props.values} low=${props.x.min ?? 0} high=${props.x.max} inset=${{ ...INSET, right: room }} />
+    </div>
+  `;
 }
 
 /** @returns {any} uPlot's options; its types want more than it does */
@@ -67,17 +79,17 @@ function optionsOf(host, newest) {
   return {
     width: host.clientWidth || 300,
     height: HEIGHT,
-    padding: [20, () => roomFor(newest.current.labels), 0, 0],
+    padding: [TOP_PX, () => roomFor(newest.current.labels), 0, 0],
     legend: { show: false },
     cursor: { show: false },
     select: { show: false },
     scales: { x: { time: false, range: range("x") }, y: { range: range("y") } },
     axes: [
       axis({
-        size: 26, gap: 6, space: 56, grid: { show: false }, values: (_, splits) => splits.map(tickText),
-        label: newest.current.x.unit, labelSize: 18, labelFont: FONT, labelGap: 0,
+        ...X_AXIS, gap: 6, space: 56, grid: { show: false }, values: (_, splits) => splits.map(tickText),
+        label: newest.current.x.unit, labelFont: FONT, labelGap: 0,
       }),
-      axis({ size: 44, gap: 8, space: 30, values: (_, splits) => splits.map((v) => `${v.toFixed(1)} m`) }),
+      axis({ size: Y_AXIS_PX, gap: 8, space: 30, values: (_, splits) => splits.map((v) => `${v.toFixed(1)} m`) }),
     ],
     series: [
       {},

@@ -60,8 +60,17 @@ function Curve({ known }) {
   const distances = points.map((p) => p.distance_m);
   const caption = captionOf(known);
   const changed = changesInWords(run.config.agent, known.changes);
+  const greedy = agentOf("greedy");
+  const read = (index) => ({
+    at: count(points[index].step, "step"),
+    values: [
+      { name: agentOf(run.config.agent).title, color, value: metres(points[index].distance_m) },
+      ...(greedy_m ? [{ name: greedy.title, color: greedy.color, value: metres(greedy_m) }] : []),
+    ],
+  });
   return html`
     <${Plot} label=${caption} data=${data} marks=${marksOf(known)} labels=${points.length > 1 ? [end] : []}
+      values=${{ label: "Values of the learning curve", xs: points.map((p) => p.step), read }}
       series=${[{ color, points: points.length < MOST_MARKED_POINTS }]}
       x=${{ min: 0, max: to, unit: "steps of practice" }}
       y=${{ min: Math.min(0, ...distances), max: HEADROOM * Math.max(LEAST_TOP_M, greedy_m ?? 0, ...distances) }} />

@@ -156,6 +156,7 @@ function StartList() {
 
 const HEADROOM = 1.16;
 const TABLE_ROWS = 10;
+const MOST_MOMENTS = 250;
 /** The time axis shows at least so much of a race that has just begun [s]. */
 const FIRST_VIEW_S = 20;
 
@@ -191,15 +192,27 @@ function Lines({ known, time }) {
   const far = Math.max(known.finish_line_m, ...lanes.map(({ end }) => end[1]));
   const ends = lanes.map(({ title, end }) => `${title} ${metres(end[1])}`).join(", ");
   const caption = `The race after ${Math.round(until)} seconds: ${ends}.`;
+  const moments = momentsUntil(until);
+  const read = (index) => ({
+    at: `${moments[index].toFixed(1)}\u00a0s`,
+    values: lanes.map(({ title, color, points }) =>
+      ({ name: title, color, value: metres(distanceAt(points, moments[index])) })),
+  });
   return html`
     <${Plot} label=${caption} data=${data} marks=${marksOf(known, until)}
       series=${lanes.map(({ color }) => ({ color }))}
       labels=${lanes.map(({ title, color, end }) => ({ text: title, color, x: end[0], y: end[1] }))}
       x=${{ min: 0, max: lastMoment(known, until, longest), unit: "race time, s" }}
-      y=${{ min: 0, max: HEADROOM * far }} />
+      y=${{ min: 0, max: HEADROOM * far }} values=${{ label: "Values of the race", xs: moments, read }} />
     <${AsTable} caption=${caption} columns=${["Race time", ...lanes.map(({ title }) => title)]}
       rows=${rowsOf(lanes, until)} />
   `;
+}
+
+/** The moments at which the crosshair stops: each half second, in a long race fewer, and the last. */
+function momentsUntil(until) {
+  const step = Math.max(0.5, Math.ceil(until / MOST_MOMENTS));
+  return [...Array.from({ length: Math.ceil(until / step) }, (_, n) => n * step), until];
 }
 
 /** Where the time axis ends. */
