@@ -121,9 +121,11 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
     assert other.complaints == []
     other.page.close()
 
-    dashboard.button("Pause").click()
+    expect(dashboard.button("Pause picture for everyone")).to_be_visible()
+    dashboard.button("Pause training").click()
     expect(page.get_by_text(re.compile("^Paused at "))).to_be_visible()
-    dashboard.button("Resume").click()
+    expect(dashboard.button("Play picture for everyone")).to_be_visible()
+    dashboard.button("Resume training").click()
     expect(page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
 
     dashboard.button("Stop").click()
@@ -147,9 +149,9 @@ def test_no_click_is_lost_while_a_command_is_answered(
     dashboard.primary.click()
     expect(page.get_by_text(re.compile(r"^Practising, \S+ of"))).to_be_visible()
     page.route("**/api/v1/stage", late)
-    dashboard.button("Pause").click()
+    dashboard.button("Pause training").click()
     expect(page.get_by_text(re.compile("^Paused at "))).to_be_visible()
-    dashboard.button("Resume").click()
+    dashboard.button("Resume training").click()
     expect(page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
     page.unroute_all(behavior="wait")
     dashboard.button("Stop").click()

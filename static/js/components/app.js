@@ -115,7 +115,7 @@ function Connection() {
 
 /** [key, what it does] */
 export const KEYS = [
-  ["Space", "pause and resume"],
+  ["Space", "pause and resume the training on stage, else the replay"],
   ["R", "press the main button: train and race"],
   ["1 – 8", "follow the robot in that lane"],
   ["0", "free the camera"],
