@@ -291,6 +291,8 @@ export const headline = computed(() => {
   const rows = standings.value;
   if (!rows?.length) return null;
   const steps = raceInView.value?.config.steps ?? 0;
+  // Of a race that ended before its timeline was loaded nothing can be said.
+  if (isOver.value && !timeline.value && !raceInView.value?.result) return null;
   return isTimedOut.value || isOver.value ? verdictOf(rows, firstTimedOut.value, steps) : leadOf(rows);
 });
 

@@ -101,6 +101,8 @@ test("a lane that failed does not time the race out, and no time-out is claimed 
   showResult([failed, { ...failed, clocks: laneResult("greedy", 2, 0.1).clocks }]);
   assert.equal(headline.value, "Learner got furthest, 0.40\u00a0m: no robot used its 50 steps");
   assert.ok(!isTimedOut.value);
+  showResult([failed, failed], { state: "stopped", result: null });
+  assert.equal(headline.value, null, "before its timeline is loaded");
 });
 
 test("what flat parts are is said without contradiction under each clock", () => {
