@@ -9,6 +9,7 @@ import pytest
 
 from app.domain.grid import FootGrid
 from app.domain.robot import Robot, ring
+from app.runs.clocks import FINISH_LINE_M
 from app.runs.config import LaneConfig, RaceConfig, training_config
 from app.stage.scene_spec import idle_scene, race_scene, rest_pose, training_scene
 from app.stage.stage_frame import ActionValuesView, Ghost, LaneView, SceneSpec, StageFrame
@@ -242,14 +243,17 @@ def test_photo_finish_is_redrawn_under_another_clock(server: InProcessViser) -> 
     assert texts == ["2.  0.25 m"] * 3
 
 
-def test_finished_lane_shows_its_flag(server: InProcessViser) -> None:
+def test_a_flag_at_the_finish_line_shows_who_crossed_it(server: InProcessViser) -> None:
     spec, scene = race_of(1), StageScene(server)
     frame = frame_at_rest(spec)
     scene.draw(frame)
-    assert not scene_nodes(server)["/world/cast/lane0/flag"]["visible"]
-
     scene.draw(replace(frame, lanes=(replace(frame.lanes[0], done=True),)))
-    assert scene_nodes(server)["/world/cast/lane0/flag"]["visible"]
+    assert not scene_nodes(server)["/world/cast/lane0/flag"]["visible"], "time-out is no crossing"
+
+    scene.draw(replace(frame, lanes=(replace(frame.lanes[0], crossed=True),)))
+    shown = scene_nodes(server)["/world/cast/lane0/flag"]
+    assert shown["visible"]
+    assert shown["position"][1] == pytest.approx(FINISH_LINE_M)
 
 
 def test_update_of_three_walking_robots_is_small() -> None:
