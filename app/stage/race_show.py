@@ -122,12 +122,11 @@ class RaceShow:
         lanes = tuple(lane.view(self._time_s, self._complete(lane)) for lane in self._lanes)
         at_rest = LaneView(rest_pose(self.spec), 0, self.steps, 0.0)
         lanes = lanes or (at_rest,) * len(self.spec.lane_specs)
-        step = max(lane.step for lane in lanes)
         return StageFrame(
             spec=self.spec,
             run_id=run_label.run_id,
             phase=self._phase,
-            label=f"{run_label.name}, step {step} of {self.steps}" if step else run_label.name,
+            label=self._label(run_label.name, lanes),
             lanes=self._with_ranks(lanes),
             time_s=self._time_s,
             duration_s=self.duration_s,
@@ -136,6 +135,20 @@ class RaceShow:
             clock=self.clock,
             replay=run_label.replay,
         )
+
+    def _label(self, name: str, lanes: tuple[LaneView, ...]) -> str:
+        """Return the run's name with the progress of the lanes that still walk."""
+        step = max(lane.step for lane in lanes)
+        walking = [number for number, lane in enumerate(lanes) if not lane.done]
+        if step == 0:
+            return name
+        if len(walking) in (0, len(lanes)):
+            return f"{name}, step {step} of {self.steps}"
+        if len(walking) > 1:
+            return f"{name}, {len(walking)} robots still walk"
+        last = walking[0]
+        lane_name = self.spec.lane_specs[last].name
+        return f"{name}, {lane_name} at step {lanes[last].step} of {self.steps}"
 
     @property
     def _phase(self) -> Phase:

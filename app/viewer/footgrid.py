@@ -15,6 +15,7 @@ from app.viewer.viser_internals.client import batch_colors
 _HOME_RIM: Rgb = rgb("#e5484d")
 _OTHER_RIM: Rgb = rgb("#4c8dff")
 _CURRENT_FILL: Rgb = (38, 42, 50)
+_UNTRIED_FILL: Rgb = rgb("#80868f")
 _CURRENT_RIM: Rgb = (255, 255, 255)
 _ABOVE_GROUND_M = 0.003
 _LAYER_OFFSET = np.array([0.0, 0.0, 0.0006])
@@ -26,7 +27,8 @@ class FootGridDrawing:
 
     A cell is drawn as its Voronoi region, as observations assign a foot to the nearest cell. Rims
     are red at home and blue elsewhere, as in the paper; the fill is the value of moving the pair
-    there now. The cell where a pair is has a white rim and no value, since it is no legal action.
+    there now, or grey if it was never moved there from here. The cell where a pair is has a white
+    rim and no value, since it is no legal action.
 
     Args:
         server: where to draw.
@@ -78,6 +80,7 @@ class FootGridDrawing:
         is_current = np.array(action_values.current)[self._pair_of_leg][:, None] == np.arange(
             values.shape[1]
         )
+        fills[action_values.visits[self._pair_of_leg] == 0] = _UNTRIED_FILL
         fills[is_current] = _CURRENT_FILL
         for tiles in self._tiles:
             tiles.draw(fills, is_current)

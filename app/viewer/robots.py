@@ -1,4 +1,4 @@
-"""The robots on stage, their name labels, and the flags of those that have finished."""
+"""The robots on stage, their name labels, and the flags of those that crossed the finish line."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -7,6 +7,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from app.runs.clocks import FINISH_LINE_M
 from app.stage.stage_frame import LaneSpec, LaneView, SceneSpec, StageFrame
 from app.viewer.colormap import Rgb, mix, rgb
 from app.viewer.robot_mesh import ANTENNA_M, RobotMesh
@@ -119,6 +120,7 @@ class NameLabel:
             color=rgb(lane_spec.color),
             side="double",
             receive_shadow=False,
+            position=(x_m + 0.17, FINISH_LINE_M, 0.0),
             visible=False,
         )
         self._position: tuple[float, float, float] | None = None
@@ -133,10 +135,8 @@ class NameLabel:
         text = label_text(self._lane_spec, lane)
         if text != self._label.text:
             self._label.text = text
-        finished = lane.done and lane.failure is None
-        if finished != self._flag.visible:
-            self._flag.position = np.array([position[0] + 0.17, y + 0.05, 0.0])
-            self._flag.visible = finished
+        if lane.crossed != self._flag.visible:
+            self._flag.visible = lane.crossed
 
 
 def _color(color: str, painted: bool) -> Rgb:

@@ -1,10 +1,11 @@
 // The user's actions. Each keeps its own error, which is shown beside the control that caused it.
 import { computed, signal } from "@preact/signals";
 import * as api from "./api.js";
+import { configAtEnd } from "./changes.js";
 import { chooseLearner, form, link, mistakes, raceBody, setField, setFields, trainingBody } from "./form.js";
 import { count, listed, whole } from "./format.js";
 import {
-  isActive, isOperator, isRaceRun, laneTables, liveTraining, markAsMine, myWork, presetOf, shownRun, work,
+  isActive, isOperator, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, myWork, presetOf, shownRun, work,
 } from "./selectors.js";
 import { agentOf, learns, limitsOf, settingsOf } from "./settings.js";
 import { markDeleted, options, rates, requestRun, requestStage, runs, scene, setEntry, stage } from "./store.js";
@@ -180,9 +181,16 @@ export function tune(changes) {
     unsent = null;
     api.tuneTraining(run.id, sent).then(
       () => setEntry(problems, "tune", null),
-      (error) => isActive(runs.value.get(run.id)) && setEntry(problems, "tune", error),
+      (error) => refuseTuning(run, sent, error),
     );
   }, TUNE_MS);
+}
+
+/** @type {(run: Run, sent: Rates, error: RequestError) => void} */
+function refuseTuning(run, sent, error) {
+  const kept = Object.entries(rates.value[run.id] ?? {}).filter(([name, value]) => sent[name] !== value);
+  setEntry(rates, run.id, Object.fromEntries(kept));
+  if (isActive(runs.value.get(run.id))) setEntry(problems, "tune", error);
 }
 
 // ---- the stage, which all pages share
@@ -192,7 +200,7 @@ export const setStage = (changes) =>
   attempt("stage", () => requestStage(() => api.putStage(changes)));
 
 export const togglePlaying = () => {
-  if (isOperator.value && stage.value?.run_id) setStage({ playing: !stage.value.playing });
+  if (isOperator.value && stage.value?.run_id) setStage({ playing: !isPlaying.value });
 };
 export const skipToEnd = () => setStage({ time_s: scene.value?.duration_s ?? undefined, playing: true });
 
@@ -221,11 +229,11 @@ export const deleteRun = (run) =>
   });
 
 /**
- * Copy the settings of a run into the form, those of a race together with those of its training.
+ * Copy the settings of a run into the form as they hold at its end, those of a race with those of its training.
  * @param {Run} run
  */
 export function copySettings(run) {
-  const { robot, agent, ...config } = run.kind === "race" ? configOfRace(run) : run.config;
+  const { robot, agent, ...config } = run.kind === "race" ? configOfRace(run) : configAtEnd(run);
   if (agent && learns(agent)) chooseLearner(agent);
   const racing = run.kind === "race" ? run.config.lanes.map((lane) => lane.agent) : [];
   const known = Object.keys({ ...form.value, ...settingsOf([form.value.agent, ...racing]) });
@@ -235,7 +243,7 @@ export function copySettings(run) {
 
 /** @type {(race: Run) => Omit<Partial<RunConfig>, "lanes"> & { lanes: string[] }} */
 function configOfRace({ config: { lanes, steps, ...walk } }) {
-  const trainings = lanes.map((lane) => runs.value.get(lane.training_id ?? "")?.config);
+  const trainings = lanes.map((lane) => runs.value.get(lane.training_id ?? "")).map((run) => run && configAtEnd(run));
   // Of a setting that several learners have, the value of the first.
   const practice = Object.assign({}, ...trainings.reverse());
   return { ...practice, ...walk, race_steps: steps, lanes: lanes.map(({ agent }) => agent) };

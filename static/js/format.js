@@ -58,12 +58,15 @@ export function duration(seconds) {
   return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
 
+/** Sums of steps' durations miss a whole second by less. */
+const SAME_MOMENT_S = 0.0005;
+
 /**
- * A position on the time bar: "1:05".
+ * A moment of a race or practice, as on the time bar: "1:05".
  * @param {number} seconds
  */
 export function clockTime(seconds) {
-  const rounded = Math.max(0, Math.floor(seconds));
+  const rounded = Math.max(0, Math.floor(seconds + SAME_MOMENT_S));
   return `${Math.floor(rounded / 60)}:${String(rounded % 60).padStart(2, "0")}`;
 }
 

@@ -1,10 +1,10 @@
 // The race in view at the moment that is shown: its timeline, its standings, and what is announced of it.
 import { computed, effect, signal } from "@preact/signals";
 import { getTimeline } from "./api.js";
-import { metres } from "./format.js";
 import { clock, isActive, isToCome, raceInView, shownRun } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { connection, scene, stage } from "./store.js";
+import { leadOf, verdictOf } from "./verdict.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { ClockResult, LaneConfig, LaneResult, Run, SceneLane, Timeline, TimelineLane } from "./types.js" */
@@ -115,12 +115,38 @@ export const raceScene = computed(() =>
     : null,
 );
 
+const SAME_S = 1e-6;
+
+/** Numbers of the lanes that use all their steps first, under the clock in use; none while it is not known. */
+const firstTimedOut = computed(() => {
+  const race = raceInView.value;
+  if (!race) return [];
+  const ends = race.config.lanes.map((_, number) => endOf(race, number));
+  const first = Math.min(...ends);
+  return ends.flatMap((end, number) => (Number.isFinite(end) && end - first < SAME_S ? [number] : []));
+});
+
+/**
+ * When a lane has used all its steps [s]; Infinity if it has not.
+ * @param {Run} race
+ * @param {number} number
+ */
+function endOf(race, number) {
+  const result = race.result?.lanes?.[number];
+  const track = timeline.value?.lanes[number];
+  if (result) return result.steps === race.config.steps ? timedResult(result)?.elapsed_s ?? Infinity : Infinity;
+  return track?.futures.length === race.config.steps ? track.total_s : Infinity;
+}
+
+/** Whether the whole race was shown, or there is nothing to show of it. */
+const isOver = computed(() => shownTime.value === Infinity || raceScene.value?.phase === "finished");
+
 /** Whether the moment that is shown is after time-out: the first lane has used its steps. */
 export const isTimedOut = computed(() => {
   const timeOut = timeline.value?.first_finish_s ?? null;
   return (
-    shownTime.value === Infinity ||
-    ["photo-finish", "finished"].includes(raceScene.value?.phase ?? "") ||
+    (isOver.value && firstTimedOut.value.length > 0) ||
+    raceScene.value?.phase === "photo-finish" ||
     (timeOut !== null && shownTime.value !== null && shownTime.value >= timeOut)
   );
 });
@@ -131,11 +157,22 @@ export const standings = computed(() => {
   const time = shownTime.value;
   if (!race || time === null) return null;
   if (!isActive(race) && !race.progress.done) return null;
-  const rows = race.config.lanes.map((lane, number) => rowOf(race, lane, number, time));
+  const rows = ranked(race.config.lanes.map((lane, number) => rowOf(race, lane, number, time)));
   return rows.sort((a, b) => a.rank - b.rank || a.lane - b.lane);
 });
 
-/** @typedef {ReturnType<typeof rowOf>} Standing */
+/** @typedef {Omit<ReturnType<typeof rowOf>, "rank"> & { rank: number }} Standing */
+
+/**
+ * Rows with ranks: those of the scene or the result, else by distance.
+ * @param {ReturnType<typeof rowOf>[]} rows
+ * @returns {Standing[]}
+ */
+const ranked = (rows) =>
+  rows.map((row) => ({
+    ...row,
+    rank: row.rank ?? 1 + rows.filter((other) => (other.distance_m ?? 0) > (row.distance_m ?? 0)).length,
+  }));
 
 /**
  * @param {Run} race
@@ -206,7 +243,7 @@ function placeOf(agent, seen, result) {
   return {
     title: seen?.name ?? title,
     color: seen?.color ?? color,
-    rank: seen?.rank ?? timed?.rank ?? 1,
+    rank: seen?.rank ?? timed?.rank ?? null,
     hasCrossed: seen?.crossed ?? Boolean(timed?.crossed_s),
   };
 }
@@ -249,16 +286,14 @@ const simulatedUntil = (track, steps) =>
 /** The text of the page's live region. */
 export const announcement = signal("");
 
-/** The leader in one sentence; null before the race. */
+/** Who leads, or who has won and when, in one sentence; null before the race. */
 export const headline = computed(() => {
   const rows = standings.value;
   if (!rows?.length) return null;
-  const best = Math.max(...rows.map((row) => (isTimedOut.value ? row.finished_m : row.distance_m) ?? 0));
-  if (!isTimedOut.value && best <= 0) return "On the start line";
-  const ahead = rows.filter((row) => row.rank === 1);
-  if (ahead.length > 1) return isTimedOut.value ? `Level at time-out with ${metres(best)}` : "Level";
-  const verb = isTimedOut.value ? "leads at time-out with" : "leads with";
-  return `${ahead[0].title} ${verb} ${metres(best)}`;
+  const steps = raceInView.value?.config.steps ?? 0;
+  // Of a race that ended before its timeline was loaded nothing can be said.
+  if (isOver.value && !timeline.value && !raceInView.value?.result) return null;
+  return isTimedOut.value || isOver.value ? verdictOf(rows, firstTimedOut.value, steps) : leadOf(rows);
 });
 
 export function announceOutcomes() {

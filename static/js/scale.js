@@ -1,4 +1,4 @@
-// Maps numbers to positions on an axis and to colours, picks round tick values, thins and spreads points.
+// Maps numbers to positions on an axis and to colours, picks round ticks, thins points and lays them apart.
 
 /**
  * The position of a value between `low` and `high`, from 0 to 1.
@@ -61,24 +61,6 @@ export function swarm(shares) {
     taken.set(bin, before + 1);
     return before % 2 ? (before + 1) / 2 : -before / 2;
   });
-}
-
-/**
- * Positions at least `gap` apart, moved as little as possible, within `low` and `high`.
- * @param {number[]} positions in ascending order
- * @param {number} gap
- * @param {number} low
- * @param {number} high
- */
-export function spread(positions, gap, low, high) {
-  const moved = [...positions];
-  for (let n = 1; n < moved.length; n += 1) moved[n] = Math.max(moved[n], moved[n - 1] + gap);
-  const over = Math.max(0, (moved.at(-1) ?? low) - high);
-  if (over > 0) {
-    moved[moved.length - 1] -= over;
-    for (let n = moved.length - 2; n >= 0; n -= 1) moved[n] = Math.min(moved[n], moved[n + 1] - gap);
-  }
-  return moved;
 }
 
 // ---- the viridis colour map, which the 3D stage uses too: equal steps of value look equal

@@ -53,6 +53,12 @@ function readOwnRuns() {
   }
 }
 
+/** Whether the stage plays: one that shows the end of its run does not. */
+export const isPlaying = computed(() => stage.value !== null && stage.value.playing && !stage.value.ended);
+
+/** What plays: a live run is a picture of what happens, else it is a replay. */
+export const playbackName = computed(() => (isActive(shownRun.value) ? "picture" : "replay"));
+
 /** The clock under which the stage times the race. */
 export const clock = computed(() => stage.value?.clock ?? scene.value?.clock ?? "paper");
 
@@ -204,7 +210,7 @@ export function simulatedPerDecision(depth, { gait, divisions }) {
   return total;
 }
 
-// ---- the progress of the running work, or of the playback
+// ---- the progress of the running work, or of what plays
 
 /** Run id → when this page first saw it, for an estimate of its own. @type {Map<string, {at: number, done: number}>} */
 const firstSeen = new Map();
@@ -222,7 +228,7 @@ function secondsLeft(run) {
 /** @type {Record<string, string>} */
 const VERBS = { training: "Practising", race: "Simulating the race" };
 
-/** {label, left, share} of the work, else of the playback; null while there is neither. */
+/** {label, left, share} of the work, else of what plays; null while there is neither. */
 export const progress = computed(() => (work.value ? ofWork(work.value) : ofPlayback(scene.value)));
 
 /** @param {{ requested: Run, current: Run }} work */
@@ -248,7 +254,7 @@ function ofPlayback(shown) {
   const isTimeLapse = shown.kind === "training" && stage.value?.speed === "time-lapse";
   const isPaused = stage.value?.playing === false;
   return {
-    label: isPaused ? "The playback is paused" : `${verb} the ${shown.kind}`,
+    label: isPaused ? `The ${playbackName.value} is paused` : `${verb} the ${shown.kind}`,
     left: isPaused || isTimeLapse ? "" : `${duration(rest)} left`,
     share: shown.time_s / shown.duration_s,
   };

@@ -30,7 +30,10 @@ export const scene = signal(null);
 export const evaluations = signal({});
 /** Run id → greedy's distance on the same robot [m]. @type {Signal<Record<string, number>>} */
 export const references = signal({});
-/** Run id → the pace and the live settings that were changed while it ran. @type {Signal<Record<string, Rates>>} */
+/**
+ * Run id → the pace and the live settings that were changed since the snapshot; earlier changes are in the run.
+ * @type {Signal<Record<string, Rates>>}
+ */
 export const rates = signal({});
 /** Run id → number of trials in that experiment's newest summary. @type {Signal<Record<string, number>>} */
 export const summarised = signal({});
@@ -67,6 +70,7 @@ const handlers = {
     viewers.value = data.viewers ?? null;
     runs.value = new Map();
     damagedRuns.value = new Map();
+    rates.value = {};
     (data.runs ?? []).forEach(upsertRun);
     stage.value = data.stage ?? null;
     scene.value = data.scene ?? null;
@@ -85,7 +89,7 @@ const handlers = {
     setEntry(evaluations, run_id, [...(evaluations.value[run_id] ?? []), evaluation]);
   },
   reference: ({ run_id, greedy_distance_m }) => setEntry(references, run_id, greedy_distance_m),
-  rates: ({ run_id, ...changed }) => setEntry(rates, run_id, { ...rates.value[run_id], ...changed }),
+  rates: ({ run_id, step: _, ...changed }) => setEntry(rates, run_id, { ...rates.value[run_id], ...changed }),
   stage(data) {
     newestEvents.set("stage", eventCount);
     stage.value = data;

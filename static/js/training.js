@@ -1,10 +1,12 @@
 // The training in view: its learning curve, with the trainings that it continues, and its action values.
 import { computed, effect, signal } from "@preact/signals";
 import { getCurve, getRun } from "./api.js";
+import { rateChanges } from "./changes.js";
 import { trainingInView } from "./selectors.js";
 import { connection, evaluations, references, requestRun, runs, scene, setEntry } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
+/** @import { RateChange } from "./changes.js" */
 /** @import { Evaluation, Knowledge, Run } from "./types.js" */
 
 /** A point of the curve; steps count all practice. @typedef {{ step: number, distance_m: number }} CurvePoint */
@@ -45,7 +47,7 @@ const evaluationsOf = (id) => {
 
 /**
  * The curve of the training in view, null without one. `blocks` are the steps at which one training
- * ended and the next continued it.
+ * ended and the next continued it, `changes` those at which live settings changed.
  */
 export const curve = computed(() => {
   const trainings = chain.value;
@@ -55,15 +57,18 @@ export const curve = computed(() => {
   const points = [{ step: 0, distance_m: 0 }];
   /** @type {number[]} */
   const blocks = [];
+  /** @type {RateChange[]} */
+  const changes = [];
   let from = 0;
   for (const part of trainings) {
     if (part !== trainings[0]) blocks.push(from);
     const shown = evaluationsOf(part.id).filter(({ step }) => step <= shownUpTo(part));
     points.push(...shown.map((one) => ({ ...one, step: from + one.step })));
+    changes.push(...rateChanges(part, from).filter(({ step }) => step <= from + shownUpTo(part)));
     if (part !== run) from += part.progress?.done ?? 0;
   }
   const greedy_m = [run, ...trainings].map(greedyOf).find(Number.isFinite) ?? null;
-  return { run, points, from, to: from + run.config.steps, greedy_m, blocks };
+  return { run, points, from, to: from + run.config.steps, greedy_m, blocks, changes };
 });
 
 /**

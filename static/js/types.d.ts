@@ -173,6 +173,8 @@ export interface RunConfig {
 export interface ClockResult {
   rank: number;
   finished_distance_m: number;
+  /** When the lane has used its steps [s]. */
+  elapsed_s: number;
   crossed_s: number | null;
 }
 
@@ -210,6 +212,8 @@ export interface Run {
   /** The trainings that a race waits for. */
   waiting_for?: string[];
   greedy_distance_m?: number | null;
+  /** Of a training: new values of live settings and the pace, with the number of steps done before. */
+  changes?: ({ step: number } & Rates)[];
 }
 
 /** A run that the server cannot read. It can be deleted. */
@@ -283,6 +287,8 @@ export interface Stage {
   run_id: string | null;
   next_run_id: string | null;
   playing: boolean;
+  /** Whether its end is shown; playing starts it again. */
+  ended: boolean;
   speed: number | "time-lapse";
   clock: Clock;
 }

@@ -154,6 +154,12 @@ def test_reports_fit_a_phone(browser: Browser, small_runs: list[str], theme: str
         for address in small_runs:
             page.goto(address)
             expect(page.get_by_role("heading", name="How it was made")).to_be_visible()
+            if address == small_runs[0]:
+                values = page.get_by_role("slider", name=re.compile("^Values of Left-right")).first
+                values.press("ArrowLeft")
+                expect(values.locator(".readout")).to_contain_text(
+                    re.compile(r"steps.*Q-learning \d\.\d\d\sm \(.* – .*\).*Greedy \d\.\d\d\sm$")
+                )
             assert dashboard.scroll_width() == PHONE["width"]
             assert dashboard.violations() == []
             page.goto("about:blank")

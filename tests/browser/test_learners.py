@@ -76,11 +76,13 @@ def test_settings_of_the_learner_act_on_its_training(dashboard: Dashboard, serve
 
     page.get_by_role("link", name="Runs").click()
     expect(page.locator(".run")).to_contain_text("Sarsa(λ)")
+    expect(page.locator(".run")).to_contain_text(re.compile(r"λ\s0\.75 from step \d+"))
     page.get_by_label("More for this training").click()
     page.get_by_role("link", name="Use its settings").click()
     page.get_by_role("link", name="Race", exact=True).click()
     expect(learner(dashboard)).to_have_value("sarsa-lambda")
-    expect(trace_decay(dashboard)).to_have_value("0.5")
+    # As it was at the end, not as it began.
+    expect(trace_decay(dashboard)).to_have_value("0.75")
 
 
 def test_each_learner_of_a_race_has_its_own_settings(dashboard: Dashboard, server: Serving) -> None:

@@ -30,13 +30,37 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     dashboard.eventually(lambda: dashboard.picture() != before, "the robots move in the canvas")
     dashboard.eventually(dashboard.has_figures, "the scoreboard fills")
     headline = page.locator(".headline")
-    expect(headline).to_have_text(re.compile(r"at time-out with −?0\.\d\d\sm$"))
-    expect(page.get_by_role("status").filter(has_text="at time-out")).to_be_attached()
+    verdict = re.compile(r"(wins|tie).*: −?0\.\d\d\sm when .* had used its 6 steps$")
+    expect(headline).to_have_text(verdict)
+    expect(page.get_by_role("status").filter(has_text=verdict)).to_be_attached()
+    expect(page.locator(".scoreboard")).to_contain_text("The furthest at time-out wins")
     expect(
         page.get_by_role("img", name=re.compile("^Learning curve: .*greedy gets"))
     ).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("^The race after .*Two-step"))).to_be_visible()
     expect(dashboard.rows.filter(has_text="Two-step").locator(".aside").last).to_have_text("936")
+    curve = page.get_by_role("slider", name="Values of the learning curve")
+    curve.hover()
+    expect(curve.locator(".readout")).to_contain_text(
+        re.compile(r"steps.*Q-learning −?\d\.\d\d\sm")
+    )
+    curve.press("Home")
+    expect(curve).to_have_attribute(
+        "aria-valuetext", re.compile(r"^0 steps: Q-learning 0\.00\sm, Greedy \d\.\d\d\sm$")
+    )
+    curve.press("ArrowRight")
+    expect(curve).to_have_attribute("aria-valuetext", re.compile("^20 steps: "))
+    race = page.get_by_role("slider", name="Values of the race")
+    box = race.bounding_box()
+    assert box is not None
+    finger = {"clientX": box["x"] + 1, "pointerType": "touch"}
+    race.dispatch_event("pointerdown", finger)
+    race.dispatch_event("pointerleave", finger)
+    expect(race.locator(".readout")).to_contain_text(re.compile(r"^0\.0\ss.*Two-step 0\.00\sm"))
+    assert dashboard.violations() == []
+    expect(dashboard.button("Play again for everyone")).to_be_visible()
+    timeline_end = page.locator(".seek .num").last.inner_text()
+    expect(dashboard.rows.filter(has_text="Two-step")).to_contain_text(f"6 steps in {timeline_end}")
 
     expect(dashboard.primary).to_have_text("Practise 40 more, race again")
     dashboard.primary.click()
@@ -58,6 +82,11 @@ def test_the_values_of_the_state_are_a_table(dashboard: Dashboard, server: Servi
     expect(dashboard.page.locator(".next-move")).to_have_text(
         re.compile(r"^Q-learning will move legs \d and \d to (home|front|back)")
     )
+    expect(values.locator("td.untried").first).to_have_text(re.compile("^never"))
+    tried = values.locator("td", has=dashboard.page.locator("small"))
+    expect(tried.first).to_have_text(re.compile(r"^−?\d+\s*[1-9]\d*×, tried \d+ times?"))
+    expect(dashboard.page.locator(".values-key")).to_contain_text("never tried")
+    assert dashboard.violations() == []
 
 
 def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server: Serving) -> None:
@@ -79,9 +108,24 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
         lambda: (changes().get("alpha"), changes().get("epsilon")) == (0.5, 0.25), "the new rates"
     )
 
-    dashboard.button("Pause").click()
+    said = re.compile(r"^Changed: α\s0\.5 from step \d+, ε\s0\.25 from step \d+$")
+    expect(page.locator(".changes")).to_have_text(said)
+    other = Dashboard(page.context.new_page(), has_3d=False)
+    other.open(server.address)
+    alpha = other.page.get_by_role("slider", name="Learning rate α")
+    expect(alpha).to_have_value("0.5")
+    expect(other.page.get_by_role("slider", name="Exploration now ε")).to_have_value("0.25")
+    expect(other.page.locator(".next-rates")).to_contain_text(re.compile(r"with α\s0\.3\.$"))
+    alpha.fill("0.75")
+    expect(page.get_by_role("slider", name="Learning rate α")).to_have_value("0.75")
+    assert other.complaints == []
+    other.page.close()
+
+    expect(dashboard.button("Pause picture for everyone")).to_be_visible()
+    dashboard.button("Pause training").click()
     expect(page.get_by_text(re.compile("^Paused at "))).to_be_visible()
-    dashboard.button("Resume").click()
+    expect(dashboard.button("Play picture for everyone")).to_be_visible()
+    dashboard.button("Resume training").click()
     expect(page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
 
     dashboard.button("Stop").click()
@@ -105,9 +149,9 @@ def test_no_click_is_lost_while_a_command_is_answered(
     dashboard.primary.click()
     expect(page.get_by_text(re.compile(r"^Practising, \S+ of"))).to_be_visible()
     page.route("**/api/v1/stage", late)
-    dashboard.button("Pause").click()
+    dashboard.button("Pause training").click()
     expect(page.get_by_text(re.compile("^Paused at "))).to_be_visible()
-    dashboard.button("Resume").click()
+    dashboard.button("Resume training").click()
     expect(page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
     page.unroute_all(behavior="wait")
     dashboard.button("Stop").click()

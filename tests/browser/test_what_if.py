@@ -39,9 +39,9 @@ def test_a_slider_is_tried_out_and_gone_on_with(dashboard: Dashboard, server: Se
     practice.fill("60")
     expect(panel).not_to_contain_text("at most")
 
-    expect(dashboard.button("Continue with these settings")).to_have_count(0)
+    expect(dashboard.button("Practise 60 more, don’t race")).to_have_count(0)
     dashboard.button("Train only").click()
-    dashboard.button("Continue with these settings").click()
+    dashboard.button("Practise 60 more, don’t race").click()
     dashboard.eventually(lambda: len(trainings(dashboard)) == 2, "the training that goes on")
     second, first = trainings(dashboard)
     assert second["config"]["continue_from"] == first["id"]

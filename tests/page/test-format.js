@@ -38,6 +38,8 @@ test("durations use the largest unit that says enough", () => {
 
 test("positions on the time bar have two digits for seconds", () => {
   assert.deepEqual([-1, 5, 65.9].map(format.clockTime), ["0:00", "0:05", "1:05"]);
+  // The scoreboard sums up what the server rounds to the millisecond for the time bar.
+  assert.equal(format.clockTime(15.9999999), format.clockTime(16));
 });
 
 test("shares, factors and millimetres", () => {

@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { clipped, distanceAt, headline, isTimedOut, shownTime, standings, timeSpent } from "../../static/js/race.js";
 import { applyEvent, options } from "../../static/js/store.js";
+import { flatParts, ruleOf } from "../../static/js/verdict.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 /** @import { TimelinePoint } from "../../static/js/types.js" */
@@ -12,15 +13,22 @@ const PATH = [[0, 0], [1, 0], [3, 0.4], [4, 0.4]];
 
 const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
 
-const laneResult = (/** @type {string} */ agent, rank = 1, finished_distance_m = 0.3) => ({
+const laneResult = (/** @type {string} */ agent, rank = 1, finished_distance_m = 0.3, elapsed_s = 16) => ({
   agent, steps: 50, total_distance_m: 0.5, decision_s: 5, simulated_transitions: 600,
-  clocks: { paper: { rank, finished_distance_m, crossed_s: null } },
+  clocks: { paper: { rank, finished_distance_m, elapsed_s, crossed_s: null } },
 });
+
+/** Puts a race of these lanes on the page, after its show. */
+const showResult = (/** @type {object[]} */ lanes, /** @type {object} */ changes = {}) => {
+  const config = { steps: 50, lanes: lanes.map((_, n) => ({ agent: ["learner", "greedy", "planner"][n] })) };
+  const race = makeRun({ kind: "race", progress: { done: 99, total: 150 }, config, result: { lanes }, ...changes });
+  applyEvent("snapshot", { runs: [race], stage: STAGE, scene: null });
+};
 
 const RACE = makeRun({
   kind: "race", progress: { done: 100, total: 100 },
   config: { steps: 50, lanes: [{ agent: "learner" }, { agent: "greedy" }] },
-  result: { lanes: [laneResult("learner", 2, 0.2), laneResult("greedy", 1, 0.3)] },
+  result: { lanes: [laneResult("learner", 2, 0.2), laneResult("greedy", 1, 0.3, 22)] },
 });
 
 const sceneLane = (/** @type {object} */ changes) => ({
@@ -66,7 +74,40 @@ test("after its show a race has its result, ranked", () => {
   const [first, second] = standings.value ?? [];
   assert.deepEqual([first.title, first.rank, first.finished_m], ["Greedy", 1, 0.3]);
   assert.deepEqual([second.title, second.total_m, second.decision_s, second.simulated], ["Learner", 0.5, 0.1, 600]);
-  assert.equal(headline.value, "Greedy leads at time-out with 0.30\u00a0m");
+  assert.equal(headline.value, "Greedy wins: 0.30\u00a0m when Learner had used its 50 steps");
+});
+
+test("the headline says who won and what decided it", () => {
+  showResult([laneResult("learner", 1, 0.37), laneResult("greedy", 2, 0.2, 22)]);
+  assert.equal(headline.value, "Learner wins: 0.37\u00a0m when it had used its 50 steps");
+  showResult([laneResult("learner", 2, 0.2), laneResult("greedy", 1, 0.37)]);
+  assert.equal(headline.value, "Greedy wins: 0.37\u00a0m after 50 steps each");
+  showResult([laneResult("learner", 2, 0.2), laneResult("greedy", 1, 0.37), laneResult("planner", 3, 0.1, 90)]);
+  assert.equal(headline.value, "Greedy wins: 0.37\u00a0m when Greedy and Learner had used their 50 steps");
+});
+
+test("ties and narrow margins are told", () => {
+  showResult([laneResult("learner", 1, 0.3), laneResult("greedy", 1, 0.3, 22), laneResult("planner", 3, 0.1, 90)]);
+  assert.equal(headline.value, "Learner and Greedy tie: 0.30\u00a0m when Learner had used its 50 steps");
+  showResult([laneResult("learner", 2, 0.302), laneResult("greedy", 1, 0.304, 22)]);
+  assert.equal(headline.value, "Greedy wins by 2 mm: 0.30\u00a0m when Learner had used its 50 steps");
+});
+
+test("a lane that failed does not time the race out, and no time-out is claimed without one", () => {
+  const failed = { ...laneResult("learner", 1, 0.4, 3), steps: 9, failure: "it broke" };
+  showResult([failed, laneResult("greedy", 2, 0.3, 22)]);
+  assert.equal(headline.value, "Learner wins, stopped at step 9: 0.40\u00a0m when Greedy had used its 50 steps");
+  showResult([failed, { ...failed, clocks: laneResult("greedy", 2, 0.1).clocks }]);
+  assert.equal(headline.value, "Learner got furthest, 0.40\u00a0m: no robot used its 50 steps");
+  assert.ok(!isTimedOut.value);
+  showResult([failed, failed], { state: "stopped", result: null });
+  assert.equal(headline.value, null, "before its timeline is loaded");
+});
+
+test("what flat parts are is said without contradiction under each clock", () => {
+  assert.deepEqual(["paper", "wall", "free"].map((clock) => /^Flat parts are thinking/.test(flatParts(clock))),
+    [true, true, false]);
+  assert.match(ruleOf(50, "paper clock"), /^The furthest at time-out wins: .* 50 steps \(paper clock\)\.$/);
 });
 
 test("during its show nothing later than the scene is told", () => {

@@ -1,7 +1,7 @@
 // Positions on an axis, ticks, thinning, and points that make room for each other.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { largest, percent, shareOf, spread, swarm, thinned, ticks, valueColours } from "../../static/js/scale.js";
+import { largest, percent, shareOf, swarm, thinned, ticks, valueColours } from "../../static/js/scale.js";
 
 test("positions stay on the axis, also where it has no length", () => {
   assert.deepEqual([-1, 0, 1, 3, 9].map((value) => shareOf(value, 0, 4)), [0, 0, 0.25, 0.75, 1]);
@@ -30,12 +30,6 @@ test("the largest value of a list that is longer than a call's arguments", () =>
 
 test("dots at one place lie alternately on both sides", () => {
   assert.deepEqual(swarm([0.5, 0.5, 0.5, 0.5, 0.9]).map((row) => row + 0), [0, 1, -1, 2, 0]);
-});
-
-test("labels are moved apart and stay in the frame", () => {
-  assert.deepEqual(spread([10, 11, 50], 16, 0, 100), [10, 26, 50]);
-  assert.deepEqual(spread([90, 95], 16, 0, 100), [84, 100]);
-  assert.deepEqual(spread([], 16, 0, 100), []);
 });
 
 test("values are dark to light, with text that can be read on them", () => {

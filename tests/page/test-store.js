@@ -4,8 +4,8 @@ import { beforeEach, test } from "node:test";
 import { form, overrides, setField, setFields } from "../../static/js/form.js";
 import { shownTime } from "../../static/js/race.js";
 import {
-  everyRun, hasTable, interruptedRun, isRaceRun, laneTables, liveTraining, markAsMine, matchingTable, myWork, offStage,
-  raceInView, simulatedPerDecision, trainingInView, work,
+  everyRun, hasTable, interruptedRun, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, matchingTable,
+  myWork, offStage, playbackName, raceInView, simulatedPerDecision, trainingInView, work,
 } from "../../static/js/selectors.js";
 import { learns } from "../../static/js/settings.js";
 import {
@@ -76,6 +76,16 @@ test("an answer does not undo the events that overtook it", async () => {
   assert.deepEqual([...runs.value.values()].map(({ state }) => state), ["finished"]);
   await requestStage(answerAfter(meanwhile, STAGE));
   assert.equal(stage.value?.run_id, run.id);
+});
+
+test("a stage that shows its run's end does not play, and plays a replay unless its run is live", () => {
+  const [done, live] = [makeRun({}), makeRun({ state: "running" })];
+  show({ runs: [done, live], stage: { ...STAGE, run_id: done.id, ended: false } });
+  assert.deepEqual([isPlaying.value, playbackName.value], [true, "replay"]);
+  applyEvent("stage", { ...STAGE, run_id: done.id, ended: true });
+  assert.equal(isPlaying.value, false);
+  applyEvent("stage", { ...STAGE, run_id: live.id, ended: false });
+  assert.deepEqual([isPlaying.value, playbackName.value], [true, "picture"]);
 });
 
 test("a deleted run is marked before its event comes, until it is imported again", () => {

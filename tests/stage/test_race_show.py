@@ -100,6 +100,17 @@ def test_change_of_clock_at_the_photo_finish_and_at_the_end(parts: StageParts) -
     assert parts.stage.state()["ended"]
 
 
+def test_label_tells_of_the_lanes_that_still_walk(parts: StageParts) -> None:
+    labels = [frame.label.partition(", ")[2] for frame in show_to_end(parts)]
+    in_order = [label for label, before in pairwise([*labels, ""]) if label != before]
+
+    assert in_order[0] == "step 1 of 12"
+    after = in_order.index("2 robots still walk")
+    assert in_order[after - 1] == "step 12 of 12"
+    assert in_order[after + 1].startswith("Two-step at step ")
+    assert in_order[-1] == "step 12 of 12", "every lane has used its steps"
+
+
 def test_seek_to_the_duration_ends_the_race(parts: StageParts) -> None:
     parts.stage.set(run_id=parts.finished_race(LANES).id)
     duration = parts.next_frame().duration_s

@@ -9,6 +9,7 @@ import pytest
 
 from app.domain.grid import FootGrid
 from app.domain.robot import Robot, ring
+from app.runs.clocks import FINISH_LINE_M
 from app.runs.config import LaneConfig, RaceConfig, training_config
 from app.stage.scene_spec import idle_scene, race_scene, rest_pose, training_scene
 from app.stage.stage_frame import ActionValuesView, Ghost, LaneView, SceneSpec, StageFrame
@@ -68,7 +69,7 @@ def frame_at_rest(spec: SceneSpec) -> StageFrame:
 def action_values(spec: SceneSpec, current: tuple[int, ...] = (0, 1, 2)) -> ActionValuesView:
     values = np.linspace(-0.01, 0.06, 3 * len(spec.grid)).reshape(3, -1)
     values[range(3), current] = np.nan
-    return ActionValuesView(values, values, current, None, -0.01, 0.06)
+    return ActionValuesView(values, np.ones_like(values), current, None, -0.01, 0.06)
 
 
 def test_number_of_robot_nodes_does_not_depend_on_the_lanes(
@@ -195,6 +196,20 @@ def test_cells_are_coloured_by_value_but_for_the_current_one(
     assert present.max() < 20
 
 
+def test_a_cell_that_was_never_tried_is_grey_whatever_its_value(server: InProcessViser) -> None:
+    spec, scene = race_of(1), StageScene(server)
+    known = action_values(spec)
+    known.visits[2, 3:] = 0
+    lane = replace(frame_at_rest(spec).lanes[0], knowledge=known)
+    scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
+    fills = scene_nodes(server)["/world/cast/lane0/grid/others/fills"]
+    colors = fills["batched_colors"].reshape(6, 4, 3).astype(int)
+
+    leader = spec.gait.pairs[2][0] - 1
+    is_grey = np.ptp(colors[leader], axis=1) < 20
+    assert is_grey.tolist() == [False, True, True, True], "the present cell, and two of three"
+
+
 @pytest.mark.parametrize("divisions", [2, 3, 8])
 def test_grids_of_all_sizes_can_be_drawn(server: InProcessViser, divisions: int) -> None:
     spec = replace(race_of(1), grid=FootGrid(0.04, divisions))
@@ -228,14 +243,17 @@ def test_photo_finish_is_redrawn_under_another_clock(server: InProcessViser) -> 
     assert texts == ["2.  0.25 m"] * 3
 
 
-def test_finished_lane_shows_its_flag(server: InProcessViser) -> None:
+def test_a_flag_at_the_finish_line_shows_who_crossed_it(server: InProcessViser) -> None:
     spec, scene = race_of(1), StageScene(server)
     frame = frame_at_rest(spec)
     scene.draw(frame)
-    assert not scene_nodes(server)["/world/cast/lane0/flag"]["visible"]
-
     scene.draw(replace(frame, lanes=(replace(frame.lanes[0], done=True),)))
-    assert scene_nodes(server)["/world/cast/lane0/flag"]["visible"]
+    assert not scene_nodes(server)["/world/cast/lane0/flag"]["visible"], "time-out is no crossing"
+
+    scene.draw(replace(frame, lanes=(replace(frame.lanes[0], crossed=True),)))
+    shown = scene_nodes(server)["/world/cast/lane0/flag"]
+    assert shown["visible"]
+    assert shown["position"][1] == pytest.approx(FINISH_LINE_M)
 
 
 def test_update_of_three_walking_robots_is_small() -> None:

@@ -115,7 +115,7 @@ function Connection() {
 
 /** [key, what it does] */
 const KEYS = [
-  ["Space", "pause and resume"],
+  ["Space", "pause and resume the training on stage, else the replay"],
   ["R", "press the main button: train and race"],
   ["1 – 8", "follow the robot in that lane"],
   ["0", "free the camera"],
@@ -183,8 +183,9 @@ function HelpDialog() {
         <p>
           A hexapod learns by trial and error: it moves two legs at a time, measures how far that took it, and
           keeps in a table what each move is worth. Then it races against two robots that simulate their moves
-          before they make one: greedy looks one step ahead, two-step looks two. The race ends at time-out, when
-          the first robot has used its steps; the robot that is furthest then wins. Thinking costs time.
+          before they make one: greedy looks one step ahead, two-step looks two. Thinking costs time. At time-out,
+          when the first robot has used its steps, the one that is furthest wins. The red line is the finish line;
+          a flag shows who crossed it.
         </p>
         <form method="dialog"><button class="secondary" autofocus>Close</button></form>
       </div>

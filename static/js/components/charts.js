@@ -1,14 +1,24 @@
 // Charts: lines drawn by uPlot, dots on one axis, their numbers as a table, and the placeholder without data.
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
+import { whole } from "../format.js";
 import { shownTheme } from "../page.js";
-import { largest, percent, shareOf, spread, swarm, thinned } from "../scale.js";
+import { largest, percent, shareOf, swarm, thinned } from "../scale.js";
+import { Crosshair } from "./crosshair.js";
 import { html } from "./elements.js";
+import { lineLabels, roomFor } from "./line-labels.js";
+
+/** @import { EndLabel, Mark } from "./line-labels.js" */
 
 // ---- lines
 
 const HEIGHT = 216;
 const FONT = "12px system-ui, sans-serif";
+const X_AXIS = { size: 26, labelSize: 18 };
+const Y_AXIS_PX = 44;
+const TOP_PX = 20;
+/** Of the plotting area in the chart, without the right side. */
+const INSET = { left: Y_AXIS_PX, top: TOP_PX, bottom: X_AXIS.size + X_AXIS.labelSize };
 
 /**
  * A uPlot chart that is redrawn when its size, the theme or its data change.
@@ -18,9 +28,9 @@ const FONT = "12px system-ui, sans-serif";
  * @param {{ color: string, dash?: number[], width?: number, points?: boolean }[]} props.series one per line
  * @param {{ min?: number, max: number, unit: string }} props.x
  * @param {{ min?: number, max: number }} props.y
- * @param {{ text: string, color: string, x: number, y: number }[]} props.labels at the ends of lines
- * @param {object[]} [props.marks] straight lines, as `lineLabels` takes them
- * @param {number} [props.room] for the labels, on the right [px]
+ * @param {EndLabel[]} props.labels at the ends of lines
+ * @param {Mark[]} [props.marks] straight lines
+ * @param {{ label: string, xs: number[], read: (index: number) => any }} props.values as a `Crosshair` takes them
  */
 export function Plot(props) {
   /** @type {{ current: any }} */
@@ -29,6 +39,7 @@ export function Plot(props) {
   const plot = useRef(null);
   const newest = useRef(props);
   newest.current = props;
+  const room = roomFor(props.labels);
   const shape = JSON.stringify(props.series);
 
   useLayoutEffect(() => {
@@ -44,8 +55,15 @@ export function Plot(props) {
   }, [shape, shownTheme.value]);
 
   useEffect(() => plot.current.setData(props.data), [props.data, props.x.max, props.y.max]);
+  // New data alone would not measure the padding again.
+  useEffect(() => plot.current.redraw(true, true), [room]);
 
-  return html`<div class="plot" role="img" aria-label=${props.label} ref=${host}></div>`;
+  return html`
+    <div class="plot-frame">
+      <div class="plot" role="img" aria-label=${props.label} ref=${host}></div>
+      <${Crosshair} ...${props.values} low=${props.x.min ?? 0} high=${props.x.max} inset=${{ ...INSET, right: room }} />
+    </div>
+  `;
 }
 
 /** @returns {any} uPlot's options; its types want more than it does */
@@ -62,17 +80,17 @@ function optionsOf(host, newest) {
   return {
     width: host.clientWidth || 300,
     height: HEIGHT,
-    padding: [20, newest.current.room ?? 88, 0, 0],
+    padding: [TOP_PX, () => roomFor(newest.current.labels), 0, 0],
     legend: { show: false },
     cursor: { show: false },
     select: { show: false },
     scales: { x: { time: false, range: range("x") }, y: { range: range("y") } },
     axes: [
       axis({
-        size: 26, gap: 6, space: 56, grid: { show: false },
-        label: newest.current.x.unit, labelSize: 18, labelFont: FONT, labelGap: 0,
+        ...X_AXIS, gap: 6, space: 56, grid: { show: false }, values: (_, splits) => splits.map(tickText),
+        label: newest.current.x.unit, labelFont: FONT, labelGap: 0,
       }),
-      axis({ size: 44, gap: 8, space: 30, values: (_, splits) => splits.map((v) => `${v.toFixed(1)} m`) }),
+      axis({ size: Y_AXIS_PX, gap: 8, space: 30, values: (_, splits) => splits.map((v) => `${v.toFixed(1)} m`) }),
     ],
     series: [
       {},
@@ -88,6 +106,9 @@ function optionsOf(host, newest) {
   };
 }
 
+/** @type {(value: number) => string} */
+const tickText = (value) => (Number.isInteger(value) ? whole(value) : String(Number(value.toFixed(3))));
+
 /** A function that resolves custom properties, which a canvas does not. */
 function coloursOf(host) {
   const probe = document.createElement("span");
@@ -98,92 +119,6 @@ function coloursOf(host) {
     probe.remove();
     return found;
   };
-}
-
-const LINE_PX = 16;
-const END_DOT_PX = 4;
-
-/** The font at the canvas's resolution. */
-const fontOf = (px, weight = 400) => `${weight} ${FONT.replace("12px", `${12 * px}px`)}`;
-
-/**
- * A uPlot plugin: labels at the ends of lines instead of a legend, and straight lines with a caption.
- * @param labels returns [{text, color, x, y}] in the chart's units
- * @param marks returns [{x? or y?, color, ink?, text?, share?, dash?}]: straight lines across the chart;
- *   `share` of the width is where the caption of a horizontal one begins
- * @param resolve returns the colour of a custom property
- */
-function lineLabels(labels, marks, resolve) {
-  const colourOf = (name) => (name.startsWith("--") ? resolve(name) : name);
-
-  const drawMark = (u, mark) => {
-    const { ctx } = u;
-    const px = devicePixelRatio;
-    ctx.save();
-    ctx.strokeStyle = colourOf(mark.color);
-    ctx.fillStyle = colourOf(mark.ink ?? mark.color);
-    ctx.lineWidth = 1.5 * px;
-    ctx.setLineDash((mark.dash ?? []).map((d) => d * px));
-    ctx.beginPath();
-    if (mark.x === undefined) drawHorizontal(u, mark, px);
-    else drawVertical(u, mark, px);
-    ctx.stroke();
-    ctx.restore();
-  };
-
-  const drawLabels = (u) => {
-    const { ctx, bbox } = u;
-    const px = devicePixelRatio;
-    const placed = labels()
-      .map((label) => ({
-        ...label,
-        left: Math.min(u.valToPos(label.x, "x", true), bbox.left + bbox.width),
-        top: u.valToPos(label.y, "y", true),
-      }))
-      .sort((a, b) => a.top - b.top);
-    const tops = spread(placed.map(({ top }) => top), LINE_PX * px, bbox.top, bbox.top + bbox.height);
-    ctx.save();
-    ctx.font = fontOf(px, 600);
-    ctx.textBaseline = "middle";
-    ctx.textAlign = "left";
-    placed.forEach(({ text, color, left, top }, n) => {
-      ctx.fillStyle = colourOf(color);
-      ctx.beginPath();
-      ctx.arc(left, top, END_DOT_PX * px, 0, 2 * Math.PI);
-      ctx.fill();
-      // Not in the line's own colour: yellow on white cannot be read.
-      ctx.fillStyle = colourOf("--ink");
-      ctx.fillText(text, left + 9 * px, tops[n]);
-    });
-    ctx.restore();
-  };
-
-  return { hooks: { draw: [(u) => marks().forEach((mark) => drawMark(u, mark)), drawLabels] } };
-}
-
-function drawHorizontal(u, { y, text, share = 0 }, px) {
-  const { ctx, bbox } = u;
-  const at = u.valToPos(y, "y", true);
-  ctx.moveTo(bbox.left, at);
-  ctx.lineTo(bbox.left + bbox.width, at);
-  if (!text) return;
-  ctx.font = fontOf(px, 600);
-  ctx.textAlign = "left";
-  ctx.textBaseline = "bottom";
-  ctx.fillText(text, bbox.left + share * bbox.width + 6 * px, at - 4 * px);
-}
-
-function drawVertical(u, { x, text }, px) {
-  const { ctx, bbox } = u;
-  const at = u.valToPos(x, "x", true);
-  ctx.moveTo(at, bbox.top);
-  ctx.lineTo(at, bbox.top + bbox.height);
-  if (!text) return;
-  const isFarRight = at > bbox.left + 0.6 * bbox.width;
-  ctx.font = fontOf(px);
-  ctx.textAlign = isFarRight ? "right" : "left";
-  ctx.textBaseline = "bottom";
-  ctx.fillText(text, at + (isFarRight ? 6 : -6) * px, bbox.top - 3 * px);
 }
 
 // ---- dots

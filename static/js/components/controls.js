@@ -5,7 +5,7 @@ import {
   showOnStage, stop,
 } from "../actions.js";
 import { form } from "../form.js";
-import { count, whole } from "../format.js";
+import { count, sentence, whole } from "../format.js";
 import { isNarrow } from "../page.js";
 import { interruptedRun, isOperator, myWork, offStage, progress, shownRun, work } from "../selectors.js";
 import { agentOf, ratesInWords } from "../settings.js";
@@ -69,7 +69,7 @@ function Actions() {
 const busyLabel = () => {
   const { requested, current } = myWork.value ?? {};
   if (!requested || !current) return "Starting…";
-  if (current.state === "paused") return "Paused";
+  if (current.state === "paused") return `${sentence(current.kind)} paused`;
   if (current.kind !== "training" && scene.value?.kind !== "training") return "Racing…";
   return requested.kind === "training" ? "Practising…" : "Practising, then racing…";
 };
@@ -93,7 +93,7 @@ const SecondaryActions = () => html`
 `;
 
 function WorkActions() {
-  const state = work.value?.current.state;
+  const { kind, state } = work.value?.current ?? {};
   const isPaused = state === "paused";
   // Events tell of a new state before the command is answered; a click in between would be lost.
   // Not `disabled`, by which the button would lose the keyboard's focus.
@@ -102,7 +102,7 @@ function WorkActions() {
     <div class="row">
       <button class="secondary" onClick=${isPaused ? resume : pause} aria-disabled=${isHeld}
         disabled=${state === "queued"}>
-        <${Icon} name=${isPaused ? "play" : "pause"} />${isPaused ? "Resume" : "Pause"}
+        <${Icon} name=${isPaused ? "play" : "pause"} />${isPaused ? "Resume" : "Pause"} ${kind}
       </button>
       <button class="secondary" onClick=${stop} aria-disabled=${isHeld}>
         <${Icon} name="stop" />Stop

@@ -1,5 +1,6 @@
 // What the learner in view has learned: its learning curve, and its action values in its present state.
 import { useMemo } from "preact/hooks";
+import { changesInWords, rateInWords } from "../changes.js";
 import { count, metres, millimetres, whole } from "../format.js";
 import { valueColours } from "../scale.js";
 import { shownRun } from "../selectors.js";
@@ -30,10 +31,13 @@ export function LearningChart() {
   `;
 }
 
-/** Thin lines: greedy's distance, and where one training continued another. */
-const marksOf = ({ greedy_m, blocks }) => [
+/** Thin lines: greedy's distance, where one training continued another, and where live settings changed. */
+const marksOf = ({ greedy_m, blocks, changes, run }) => [
   ...(greedy_m ? [greedyMark(greedy_m)] : []),
   ...blocks.map((x) => ({ x, color: "--line" })),
+  ...changes.map((change) => ({
+    x: change.step, color: "--dim", dash: [2, 3], text: rateInWords(run.config.agent, change),
+  })),
 ];
 
 const greedyMark = (y) => ({
@@ -55,11 +59,22 @@ function Curve({ known }) {
   const end = { text: metres(last.distance_m), color, x: last.step, y: last.distance_m };
   const distances = points.map((p) => p.distance_m);
   const caption = captionOf(known);
+  const changed = changesInWords(run.config.agent, known.changes);
+  const greedy = agentOf("greedy");
+  const read = (index) => ({
+    at: count(points[index].step, "step"),
+    values: [
+      { name: agentOf(run.config.agent).title, color, value: metres(points[index].distance_m) },
+      ...(greedy_m ? [{ name: greedy.title, color: greedy.color, value: metres(greedy_m) }] : []),
+    ],
+  });
   return html`
-    <${Plot} label=${caption} data=${data} marks=${marksOf(known)} labels=${points.length > 1 ? [end] : []} room=${64}
+    <${Plot} label=${caption} data=${data} marks=${marksOf(known)} labels=${points.length > 1 ? [end] : []}
+      values=${{ label: "Values of the learning curve", xs: points.map((p) => p.step), read }}
       series=${[{ color, points: points.length < MOST_MARKED_POINTS }]}
       x=${{ min: 0, max: to, unit: "steps of practice" }}
       y=${{ min: Math.min(0, ...distances), max: HEADROOM * Math.max(LEAST_TOP_M, greedy_m ?? 0, ...distances) }} />
+    ${changed.length > 0 && html`<p class="changes dim">Changed: ${changed.join(", ")}</p>`}
     <${AsTable} caption=${caption} columns=${["Steps of practice", "Distance in 50 steps"]}
       rows=${points.map((p) => [whole(p.step), metres(p.distance_m)])} />
   `;
@@ -78,7 +93,11 @@ export function Knowledge() {
       <h2 id="knowledge-title">What the learner knows here</h2>
       <p class="dim">${ABOUT}</p>
       ${known
-        ? html`<${Values} known=${known} /><p class="next-move"><${NextMove} known=${known} /></p>`
+        ? html`
+          <${Values} known=${known} />
+          ${known.visits && html`<${ValuesKey} />`}
+          <p class="next-move"><${NextMove} known=${known} /></p>
+        `
         : html`<${Empty} shape="cells" words=${TABLE_INVITATION} />`}
     </section>
   `;
@@ -117,13 +136,25 @@ function Value({ known, pair, cell }) {
   const isBest = best.pair === pair && best.cell === cell;
   const isNext = known.next?.pair === pair && known.next?.cell === cell;
   const visits = known.visits?.[pair]?.[cell] ?? null;
+  const mark = isNext ? "next" : isBest ? "best" : "";
+  const nextMove = isNext && html`<span class="sr-only">, its next move</span>`;
+  // A move without a try has the table's first value, which is no estimate.
+  if (visits === 0) return html`<td class=${`untried ${mark}`}>never${nextMove}</td>`;
   return html`
-    <td class=${isNext ? "next" : isBest ? "best" : ""} style=${valueColours(value, known.low, known.high)}
-      title=${visits === null ? undefined : `tried ${count(visits, "time")}`}>
-      ${millimetres(value)}${isNext && html`<span class="sr-only">, its next move</span>`}
+    <td class=${mark} style=${valueColours(value, known.low, known.high)}>
+      ${millimetres(value)}${visits !== null && html`
+        <small aria-hidden="true">${whole(visits)}×</small><span class="sr-only">, tried ${count(visits, "time")}</span>
+      `}${nextMove}
     </td>
   `;
 }
+
+const ValuesKey = () => html`
+  <p class="values-key dim">
+    <span><i class="untried" aria-hidden="true"></i>never tried</span>
+    <span><b>12</b> <small>5×</small> worth 12 mm, tried 5 times</span>
+  </p>
+`;
 
 /** The learner's next move in words. */
 function NextMove({ known }) {

@@ -2,13 +2,14 @@
 import { useMemo } from "preact/hooks";
 import uPlot from "uplot";
 import { form } from "../form.js";
-import { count, decision, duration, metres, whole } from "../format.js";
+import { clockTime, count, decision, metres, whole } from "../format.js";
 import { clipped, distanceAt, headline, isTimedOut, raceScene, shownTime, standings, timeline } from "../race.js";
 import { clock, isActive, raceInView, simulatedPerDecision } from "../selectors.js";
 import { agentOf, learns } from "../settings.js";
 import { runs } from "../store.js";
 import { clockTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
+import { flatParts, ruleOf } from "../verdict.js";
 import { AsTable, Empty, Plot } from "./charts.js";
 import { html, Icon } from "./elements.js";
 
@@ -23,7 +24,11 @@ export function Scoreboard() {
     <section class="panel scoreboard" aria-labelledby="scoreboard-title">
       <h2 id="scoreboard-title" class=${rows ? "sr-only" : ""}>Scoreboard</h2>
       ${rows
-        ? html`<p class="headline">${headline.value}</p><${Board} rows=${rows} />`
+        ? html`
+          <p class="headline">${headline.value}</p>
+          <p class="dim">${ruleOf(rows[0].steps, clockTitle(clock.value))}</p>
+          <${Board} rows=${rows} />
+        `
         : html`<${StartList} />`}
     </section>
   `;
@@ -33,7 +38,7 @@ function Board({ rows }) {
   const longest = Math.max(...rows.map((row) => row.elapsed_s ?? 0), 1e-9);
   return html`
     <table class="board">
-      <caption class="sr-only">Standings under the ${clockTitle(clock.value)}</caption>
+      <caption class="sr-only">Standings (${clockTitle(clock.value)})</caption>
       <thead>
         <tr>
           <th scope="col"><span class="sr-only">Rank</span></th>
@@ -66,7 +71,7 @@ const Lane = ({ row, longest }) => html`
       <td colspan="5">
         <${TimeStrip} spent=${row.spent} longest=${longest} />
         <p class="dim">
-          <span>${row.isDone && html`<${Icon} name="flag" />`}${activityOf(row)}</span>
+          <span>${row.hasCrossed && html`<${Icon} name="flag" />`}${activityOf(row)}</span>
           <span class="facts">${factsOf(row)}</span>
         </p>
         ${row.isMarching && html`<p class="marching"><b>Marching on the spot:</b> ${reasonForMarching(row)}</p>`}
@@ -77,7 +82,7 @@ const Lane = ({ row, longest }) => html`
 
 function TimeStrip({ spent: { walked, thought }, longest }) {
   const width = (seconds) => ({ width: `${(100 * seconds) / longest}%` });
-  const label = `Walking ${duration(walked)}, thinking ${duration(thought)}`;
+  const label = `Walking ${clockTime(walked)}, thinking ${clockTime(thought)} (minutes:seconds)`;
   return html`
     <div class="strip" role="img" aria-label=${label}>
       <i class="walked" style=${width(walked)}></i>
@@ -96,7 +101,7 @@ function activityOf(row) {
   if (row.isDone) {
     const crossed = row.hasCrossed ? ", crossed the finish line" : "";
     const steps = count(row.steps, "step");
-    return row.elapsed_s ? `${steps} in ${duration(row.elapsed_s)}${crossed}` : steps;
+    return row.elapsed_s ? `${steps} in ${clockTime(row.elapsed_s)}${crossed}` : steps;
   }
   const step = `Step ${row.step} of ${row.steps}`;
   if (row.isThinking) return `${step}, thinking: ${whole(row.futures)} of ${whole(row.futuresTotal)} simulated`;
@@ -147,16 +152,11 @@ function StartList() {
   `;
 }
 
-// ---- the chart: distance against race time up to the moment that is shown; flat parts are thinking
+// ---- the chart: distance against race time up to the moment that is shown
 
-/** What thinking costs under each clock. */
-const COSTS = {
-  paper: "a decision costs what it did in the paper",
-  wall: "a decision costs the time it took on this machine",
-  free: "a decision costs nothing under this clock",
-};
 const HEADROOM = 1.16;
 const TABLE_ROWS = 10;
+const MOST_MOMENTS = 250;
 /** The time axis shows at least so much of a race that has just begun [s]. */
 const FIRST_VIEW_S = 20;
 
@@ -164,11 +164,10 @@ export function RaceChart() {
   const known = timeline.value;
   const time = shownTime.value;
   const isOn = known && time !== null && known.lanes.some(({ points }) => points.length > 1);
-  const cost = COSTS[clock.value];
   return html`
     <section class="panel chart" aria-labelledby="race-title">
       <h2 id="race-title">The race</h2>
-      <p class="dim">Flat parts are thinking${cost && `: ${cost}`}</p>
+      <p class="dim">${flatParts(clock.value)}</p>
       ${isOn ? html`<${Lines} known=${known} time=${time} />` : html`<${Empty} shape="lines" words=${invitation()} />`}
     </section>
   `;
@@ -176,8 +175,8 @@ export function RaceChart() {
 
 const invitation = () =>
   raceInView.value
-    ? "The lines start when the robots do. Flat parts are thinking."
-    : "Each robot draws a line here as it walks. Flat parts are thinking.";
+    ? "The lines start when the robots do."
+    : "Each robot draws a line here as it walks.";
 
 function Lines({ known, time }) {
   const longest = Math.max(...known.lanes.map(({ total_s }) => total_s));
@@ -193,15 +192,27 @@ function Lines({ known, time }) {
   const far = Math.max(known.finish_line_m, ...lanes.map(({ end }) => end[1]));
   const ends = lanes.map(({ title, end }) => `${title} ${metres(end[1])}`).join(", ");
   const caption = `The race after ${Math.round(until)} seconds: ${ends}.`;
+  const moments = momentsUntil(until);
+  const read = (index) => ({
+    at: `${moments[index].toFixed(1)}\u00a0s`,
+    values: lanes.map(({ title, color, points }) =>
+      ({ name: title, color, value: metres(distanceAt(points, moments[index])) })),
+  });
   return html`
     <${Plot} label=${caption} data=${data} marks=${marksOf(known, until)}
       series=${lanes.map(({ color }) => ({ color }))}
       labels=${lanes.map(({ title, color, end }) => ({ text: title, color, x: end[0], y: end[1] }))}
       x=${{ min: 0, max: lastMoment(known, until, longest), unit: "race time, s" }}
-      y=${{ min: 0, max: HEADROOM * far }} />
+      y=${{ min: 0, max: HEADROOM * far }} values=${{ label: "Values of the race", xs: moments, read }} />
     <${AsTable} caption=${caption} columns=${["Race time", ...lanes.map(({ title }) => title)]}
       rows=${rowsOf(lanes, until)} />
   `;
+}
+
+/** The moments at which the crosshair stops: each half second, in a long race fewer, and the last. */
+function momentsUntil(until) {
+  const step = Math.max(0.5, Math.ceil(until / MOST_MOMENTS));
+  return [...Array.from({ length: Math.ceil(until / step) }, (_, n) => n * step), until];
 }
 
 /** Where the time axis ends. */

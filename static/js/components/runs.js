@@ -2,6 +2,7 @@
 import { useState } from "preact/hooks";
 import { copySettings, deleteRun, isShown, pending, resumeRun, showOnStage } from "../actions.js";
 import { downloads } from "../api.js";
+import { changesInWords, rateChanges } from "../changes.js";
 import { paceOf } from "../experiments/runs.js";
 import { ago, count, listed, metres, sentence, whole } from "../format.js";
 import { hasTable, isActive, isOperator, presetOf } from "../selectors.js";
@@ -129,12 +130,14 @@ function summaryOf(run) {
 
 const ofRace = ({ lanes, steps }) => [listed(lanes.map(({ agent }) => agentOf(agent).title)), count(steps, "step")];
 
-function ofTraining({ config, progress, state }) {
+function ofTraining(run) {
+  const { config, progress, state } = run;
   const total = count(config.steps, "step");
   return [
     state === "finished" ? total : `${whole(progress.done)} of ${total}`,
     config.continue_from ? "continues an earlier one" : `seed ${config.seed}`,
-    ...ratesInWords(config.agent, config), observationTitle(config.observation),
+    ...ratesInWords(config.agent, config), ...changesInWords(config.agent, rateChanges(run)),
+    observationTitle(config.observation),
   ];
 }
 

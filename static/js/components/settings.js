@@ -1,17 +1,20 @@
 // The settings of a run. Those of the learner that are live also change a training that runs.
 import { tune } from "../actions.js";
+import { presentRates, rateInWords } from "../changes.js";
 import { chooseLearner, form, setField } from "../form.js";
 import { liveTraining } from "../selectors.js";
 import {
   agentOf, beginningOf, fullTitle, furtherSettings, kindOf, learners, limitsOf, mainSettings, quantityOf, settingOf,
   sliderOf,
 } from "../settings.js";
-import { evaluations, options, rates, served } from "../store.js";
+import { evaluations, options, served } from "../store.js";
 import { choicesOf, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
 import { HexapodGlyph, html } from "./elements.js";
 import {
   Description, helpFor, NumberField, SelectField, SettingField, SettingHelp, SettingRow, showHelp, Slider,
 } from "./fields.js";
+
+/** @import { Run } from "../types.js" */
 
 /** What the slider of the practice reaches, which is less than the server accepts: any other number can be typed. */
 const PRACTICE = { min: 50, max: 2000, step: 50 };
@@ -57,19 +60,36 @@ function LearnerSettings() {
   return [
     ...main.map((one) => (one.live && one.live !== one.name && one.live in live
       ? html`<${Present} key=${one.live} name=${one.live} setting=${live[one.live]} run=${run} />`
-      : html`<${Chosen} key=${one.name} one=${one} isLive=${one.name in live} />`)),
+      : html`<${Chosen} key=${one.name} one=${one} run=${one.name in live ? run : null} />`)),
     ...others.map((name) => html`<${Present} key=${name} name=${name} setting=${live[name]} run=${run} />`),
+    run && html`<${NextRates} key="next-rates" run=${run} />`,
   ];
 }
 
-/** A setting of the form, and of the training that runs if it is live there. */
-function Chosen({ one: { name, setting, end }, isLive }) {
+/** A live setting's value now: of the training that runs. @type {(run: Run, name: string) => any} */
+const rateNow = (run, name) => presentRates(run)[name] ?? run.config[name];
+
+/** What the next training starts with, where the one that runs has other values. */
+function NextRates({ run }) {
+  /** @type {Record<string, any>} */
+  const values = form.value;
+  const names = Object.keys(agentOf(run.config.agent).live_settings).filter((name) => name in values);
+  const other = names.filter((name) => rateNow(run, name) !== values[name]);
+  if (!other.length) return null;
+  const words = other.map((name) => rateInWords(values.agent, { name, value: values[name] }));
+  return html`<p class="next-rates dim">The sliders show the training that runs. The next starts with
+    ${" "}${words.join(", ")}.</p>`;
+}
+
+/** A setting of the form; of the training that runs, if it is live there. */
+function Chosen({ one: { name, setting, end }, run }) {
   const onValue = (value) => {
     setField(name, value);
-    if (isLive) tune({ [name]: value });
+    if (run) tune({ [name]: value });
   };
+  const value = run ? rateNow(run, name) : form.value[name];
   const words = end ? { title: quantityOf(setting.title), unit: `to ${form.value[end]}` } : {};
-  return html`<${Row} name=${name} setting=${setting} ...${words} value=${form.value[name]} onValue=${onValue} />`;
+  return html`<${Row} name=${name} setting=${setting} ...${words} value=${value} onValue=${onValue} />`;
 }
 
 /** A setting of the training that runs with its present value, which the form does not keep. */
@@ -78,7 +98,7 @@ function Present({ name, setting, run }) {
   const { step } = sliderOf(setting) ?? { step: 0 };
   const scheduled = evaluations.value[id]?.at(-1)?.[name] ?? beginningOf(config.agent, name, config);
   const rounded = step && typeof scheduled === "number" ? Math.round(scheduled / step) * step : scheduled;
-  const value = rates.value[id]?.[name] ?? rounded;
+  const value = presentRates(run)[name] ?? rounded;
   return html`<${Row} name=${name} setting=${setting} value=${value} onValue=${(one) => tune({ [name]: one })} />`;
 }
 

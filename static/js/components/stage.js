@@ -5,7 +5,7 @@ import { form } from "../form.js";
 import { clockTime, sentence, times, whole } from "../format.js";
 import { isNarrow, shownTheme, view } from "../page.js";
 import { raceScene, standings } from "../race.js";
-import { clock, isActive, isOperator, shownRun } from "../selectors.js";
+import { clock, isActive, isOperator, isPlaying, playbackName, shownRun } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { connection, options, scene, stage } from "../store.js";
 import { choicesOf, clockTitle } from "../titles.js";
@@ -103,6 +103,8 @@ function StagePlaceholder({ status }) {
 
 // ---- labels: the run, the speed, the lanes that think, the colours of the foot grid
 
+const GRID_COLOURS = "Colours of the foot grid: dark is worth less, light is worth more, grey was never tried";
+
 function StageLabels() {
   const thinking = (raceScene.value && standings.value?.filter((row) => row.isThinking)) || [];
   return html`
@@ -116,8 +118,8 @@ function StageLabels() {
         `)}
       </div>
       ${scene.value?.knowledge && html`
-        <p class="chip legend" aria-label="Colours of the foot grid: dark is worth less, light is worth more">
-          worth less<span class="ramp" aria-hidden="true"></span>more
+        <p class="chip legend" aria-label=${GRID_COLOURS}>
+          worth less<span class="ramp" aria-hidden="true"></span>more<i aria-hidden="true"></i>never tried
         </p>
       `}
     </div>
@@ -129,7 +131,7 @@ function SceneChips() {
   return html`
     <div class="chips">
       <p class="chip strong">${now?.label || "On the start line"}</p>
-      ${now?.phase === "photo-finish" && html`<p class="chip accent">Photo finish</p>`}
+      ${now?.phase === "photo-finish" && html`<p class="chip accent">Time-out: photo finish</p>`}
       ${now?.phase === "waiting" && html`<p class="chip">Waiting for a robot that still thinks</p>`}
       ${now?.replay && html`<p class="chip">Replay</p>`}
       <${SpeedChip} now=${now} />
@@ -138,8 +140,10 @@ function SceneChips() {
 }
 
 function SpeedChip({ now }) {
-  if (stage.value?.playing === false && now?.kind !== "idle") return html`<p class="chip">Paused</p>`;
-  if (!now || now.kind === "idle" || !(now.shown_speed > 0)) return null;
+  if (stage.value?.playing === false && now?.kind !== "idle") {
+    return html`<p class="chip">${sentence(playbackName.value)} paused</p>`;
+  }
+  if (!now || now.kind === "idle" || now.phase === "finished" || !(now.shown_speed > 0)) return null;
   return html`<p class="chip num" title="Times real time">${times(now.shown_speed)}</p>`;
 }
 
@@ -164,11 +168,12 @@ function Transport() {
 }
 
 function PlayButton() {
-  const isPlaying = stage.value?.playing;
+  const verb = isPlaying.value ? "Pause" : "Play";
+  const label = stage.value?.ended ? "Play again for everyone" : `${verb} ${playbackName.value} for everyone`;
   return html`
     <button class="quiet square" disabled=${!stage.value?.run_id} onClick=${togglePlaying}
-      aria-label=${isPlaying ? "Pause the playback" : "Play"} title="Pause or play, on every page">
-      <${Icon} name=${isPlaying ? "pause" : "play"} />
+      aria-label=${label} title=${label}>
+      <${Icon} name=${isPlaying.value ? "pause" : "play"} />
     </button>
   `;
 }

@@ -131,8 +131,8 @@ function Continue({ onContinue }) {
   return html`
     <div class="row">
       <button class="secondary" aria-disabled=${canStart.value ? undefined : "true"} onClick=${onClick}
-        title=${`Practises ${count(form.value.steps, "step")} more from the newest table that fits`}>
-        Continue with these settings
+        title="Continues the newest table that fits with these settings, and starts no race">
+        Practise ${whole(form.value.steps)} more, don’t race
       </button>
     </div>
   `;

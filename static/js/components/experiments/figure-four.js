@@ -6,6 +6,7 @@ import { largest, thinned, ticks } from "../../scale.js";
 import { agentOf } from "../../settings.js";
 import { gaitTitle } from "../../titles.js";
 import { AsTable } from "../charts.js";
+import { Crosshair } from "../crosshair.js";
 import { html } from "../elements.js";
 import { PlaceSwitch, PlaceWords, UnitSwitch } from "./report-tools.js";
 
@@ -109,10 +110,36 @@ function BandChart({ label, curves, greedy, high }) {
   const [host, width] = useWidth();
   return html`
     <div class="band-chart" ref=${host}>
-      ${width > 0 && html`<${Chart} label=${label} curves=${curves} greedy=${greedy} high=${high} width=${width} />`}
+      ${width > 0 && html`
+        <${Chart} label=${label} curves=${curves} greedy=${greedy} high=${high} width=${width} />
+        <${Values} label=${label} curves=${curves} greedy=${greedy} />
+      `}
     </div>
   `;
 }
+
+/** Typical distances with their intervals at the crosshair. */
+function Values({ label, curves, greedy }) {
+  const xs = [...new Set(curves.flatMap(({ steps }) => steps))].sort((a, b) => a - b);
+  const read = (index) => ({
+    at: count(xs[index], "step"),
+    values: [
+      ...curves.map((one) => ({
+        name: titleOf(one), color: agentOf(one.agent).color, value: typicalAt(one, one.steps.indexOf(xs[index])),
+      })),
+      ...(greedy === null ? [] : [{ name: "Greedy", color: agentOf("greedy").color, value: shown(greedy) }]),
+    ],
+  });
+  return html`
+    <${Crosshair} label=${`Values of ${label.split(":")[0]}`} xs=${xs} low=${0} high=${Math.max(...xs)} inset=${ROOM}
+      read=${read} />
+  `;
+}
+
+const typicalAt = (one, block) => {
+  if (block < 0) return "–";
+  return one.low[block] === null ? shown(one.iqm[block]) : `${shown(one.iqm[block])} (${intervalOf(one, block)})`;
+};
 
 function Chart({ label, curves, greedy, high, width }) {
   const longest = Math.max(...curves.flatMap(({ steps }) => steps));

@@ -1,0 +1,89 @@
+// Places the labels of a chart so that no two overlap: captions at their lines, labels at the ends of lines.
+
+/** @typedef {{ left: number, top: number, width: number, height: number }} Box [px] */
+
+/** @type {(a: Box, b: Box) => boolean} */
+export const overlap = (a, b) =>
+  a.left < b.left + b.width && b.left < a.left + a.width && a.top < b.top + b.height && b.top < a.top + a.height;
+
+/** @type {(value: number, low: number, high: number) => number} */
+const within = (value, low, high) => Math.max(low, Math.min(value, high));
+
+/** @type {(box: Box, bounds: Box) => Box} */
+const shifted = (box, { left, width }) => ({ ...box, left: within(box.left, left, left + width - box.width) });
+
+/**
+ * Captions where they are wanted, within the bounds; null for one that would overlap another before it.
+ * @param {Box[]} wanted the most important first
+ * @param {Box} bounds
+ */
+export function placeCaptions(wanted, bounds) {
+  /** @type {Box[]} */
+  const placed = [];
+  return wanted.map((one) => {
+    const box = shifted(one, bounds);
+    if (placed.some((other) => overlap(box, other))) return null;
+    placed.push(box);
+    return box;
+  });
+}
+
+/**
+ * Labels as near as possible to where they are wanted, moved up or down from each other and from obstacles;
+ * null for one that the bounds have no room for.
+ * @param {Box[]} wanted
+ * @param {Box[]} obstacles
+ * @param {Box} bounds
+ */
+export function placeLabels(wanted, obstacles, bounds) {
+  const inOrder = wanted.map((one, number) => ({ number, box: shifted(one, bounds) }));
+  inOrder.sort((a, b) => a.box.top - b.box.top);
+  const boxes = inOrder.map(({ box }) => box);
+  const near = nearest(boxes, obstacles, bounds);
+  const placed = near.includes(null) ? stacked(boxes, obstacles, bounds) : near;
+  /** @type {(Box | null)[]} */
+  const found = wanted.map(() => null);
+  inOrder.forEach(({ number }, n) => (found[number] = placed[n]));
+  return found;
+}
+
+/**
+ * Each at the free place that is nearest to its own.
+ * @param {Box[]} boxes
+ * @param {Box[]} obstacles
+ * @param {Box} bounds
+ */
+function nearest(boxes, obstacles, bounds) {
+  const taken = [...obstacles];
+  return boxes.map((box) => {
+    const bottom = bounds.top + bounds.height - box.height;
+    const tops = [box.top, ...taken.flatMap((one) => [one.top - box.height, one.top + one.height])]
+      .map((top) => within(top, bounds.top, bottom))
+      .sort((a, b) => Math.abs(a - box.top) - Math.abs(b - box.top));
+    const top = tops.find((one) => !taken.some((other) => overlap({ ...box, top: one }, other)));
+    if (top === undefined) return null;
+    taken.push({ ...box, top });
+    return { ...box, top };
+  });
+}
+
+/**
+ * All from the top down without gaps, which needs the least room.
+ * @param {Box[]} boxes
+ * @param {Box[]} obstacles
+ * @param {Box} bounds
+ */
+function stacked(boxes, obstacles, bounds) {
+  const taken = [...obstacles];
+  return boxes.map((box) => {
+    let { top } = bounds;
+    for (;;) {
+      const blocking = taken.filter((other) => overlap({ ...box, top }, other));
+      if (!blocking.length) break;
+      top = Math.max(...blocking.map((other) => other.top + other.height));
+    }
+    if (top + box.height > bounds.top + bounds.height) return null;
+    taken.push({ ...box, top });
+    return { ...box, top };
+  });
+}

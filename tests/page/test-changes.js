@@ -1,0 +1,71 @@
+// Changes of live settings while a training runs: which values hold, and what is said of them.
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+import { copySettings } from "../../static/js/actions.js";
+import { changesInWords, configAtEnd, presentRates, rateChanges } from "../../static/js/changes.js";
+import { form, overrides } from "../../static/js/form.js";
+import { applyEvent, options, rates, runs } from "../../static/js/store.js";
+import { curve } from "../../static/js/training.js";
+import { makeRun, OPTIONS } from "./options.js";
+
+const STAGE = { run_id: null, next_run_id: null, playing: true, ended: false, speed: 1, clock: "paper" };
+const CHANGES = [{ step: 136, alpha: 0.5 }, { step: 200, epsilon: 0.25, pace: 8 }];
+
+const makeChanged = (changes = {}) => makeRun({ changes: CHANGES, progress: { done: 500, total: 500 }, ...changes });
+
+beforeEach(() => {
+  options.value = OPTIONS;
+  overrides.value = {};
+  applyEvent("snapshot", { runs: [], stage: STAGE, scene: null });
+});
+
+test("a page that opens later knows the changes, and events supersede them", () => {
+  const run = makeChanged({ state: "running" });
+  applyEvent("snapshot", { runs: [run], stage: STAGE, scene: null });
+  assert.deepEqual(presentRates(run), { alpha: 0.5, epsilon: 0.25, pace: 8 });
+  applyEvent("rates", { run_id: run.id, step: 300, alpha: 0.7 });
+  assert.deepEqual(presentRates(run), { alpha: 0.7, epsilon: 0.25, pace: 8 });
+  // The snapshot after a lost connection is newer than the events before it.
+  applyEvent("snapshot", { runs: [{ ...run, changes: [{ step: 350, alpha: 0.2 }] }], stage: STAGE, scene: null });
+  assert.deepEqual(presentRates(runs.value.get(run.id) ?? run), { alpha: 0.2 });
+  assert.deepEqual(rates.value, {});
+});
+
+test("the changes of a run are told with their steps, without the pace", () => {
+  const run = makeChanged();
+  assert.deepEqual(changesInWords("learner", rateChanges(run)),
+    ["α\u00a00.5 from step 136", "ε\u00a00.25 from step 200"]);
+  const often = makeRun({ changes: [...CHANGES, { step: 400, alpha: 0.1 }] });
+  assert.equal(changesInWords("learner", rateChanges(often))[0], "α\u00a00.1 from step 400 (2 changes)");
+});
+
+test("a slider that is dragged makes one change", () => {
+  const run = makeRun({ changes: [130, 132, 136].map((step) => ({ step, alpha: step / 1000 })) });
+  assert.deepEqual(rateChanges(run), [{ name: "alpha", value: 0.136, step: 136 }]);
+});
+
+test("the curve marks changes at their steps of all practice, once they are on stage", () => {
+  const first = makeChanged();
+  const second = makeRun({
+    state: "running", progress: { done: 300, total: 500 },
+    changes: [{ step: 10, gamma: 0.5 }, { step: 250, gamma: 0.6 }],
+    config: { ...first.config, continue_from: first.id },
+  });
+  applyEvent("snapshot", { runs: [first, second], stage: { ...STAGE, run_id: second.id }, scene: null });
+  applyEvent("scene", { run_id: second.id, kind: "training", phase: "practice", lanes: [{ step: 100 }] });
+  assert.deepEqual(curve.value?.changes.map(({ name, step }) => [name, step]),
+    [["alpha", 136], ["epsilon", 200], ["gamma", 510]]);
+});
+
+test("the settings of a run are copied as they hold at its end", () => {
+  const run = makeChanged();
+  const { alpha, gamma, epsilon_start, epsilon_end, pace } = configAtEnd(run);
+  assert.deepEqual([alpha, gamma, epsilon_start, epsilon_end, pace], [0.5, 0.9, 0.25, 0.25, 8]);
+  copySettings(run);
+  assert.deepEqual([form.value.alpha, form.value.epsilon_end, form.value.pace], [0.5, 0.25, 8]);
+
+  overrides.value = {};
+  applyEvent("run", run);
+  copySettings(makeRun({ kind: "race", config: { steps: 50, lanes: [{ agent: "learner", training_id: run.id }] } }));
+  assert.equal(form.value.alpha, 0.5);
+});

@@ -1,0 +1,51 @@
+// Labels of a chart: near their lines, and never over each other.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { overlap, placeCaptions, placeLabels } from "../../static/js/labels.js";
+
+const BOUNDS = { left: 0, top: 0, width: 300, height: 160 };
+const box = (/** @type {number} */ left, /** @type {number} */ top, width = 60, height = 16) =>
+  ({ left, top, width, height });
+
+/** @param {(import("../../static/js/labels.js").Box | null)[]} boxes */
+function assertApart(boxes) {
+  const shown = boxes.filter((one) => one !== null);
+  shown.forEach((one, n) => shown.slice(n + 1).forEach((other) => assert.ok(!overlap(one, other))));
+}
+
+test("a label with room stays, and moves no further than it must", () => {
+  assert.deepEqual(placeLabels([box(10, 50), box(10, 55), box(10, 120)], [], BOUNDS),
+    [box(10, 50), box(10, 66), box(10, 120)]);
+  assert.deepEqual(placeLabels([box(10, 50), box(100, 50)], [], BOUNDS), [box(10, 50), box(100, 50)]);
+});
+
+test("a label that would leave the chart is moved back into it", () => {
+  assert.deepEqual(placeLabels([box(290, 158)], [], BOUNDS), [box(240, 144)]);
+});
+
+test("labels keep off captions", () => {
+  const [caption] = placeCaptions([box(0, 40, 200, 16)], BOUNDS);
+  assert.deepEqual(placeLabels([box(100, 45)], caption ? [caption] : [], BOUNDS), [box(100, 56)]);
+});
+
+test("of two captions at one place the more important is shown", () => {
+  assert.deepEqual(placeCaptions([box(0, 0), box(10, 0), box(70, 0)], BOUNDS), [box(0, 0), null, box(70, 0)]);
+});
+
+test("no two labels overlap at any width, and eight find room", () => {
+  // A small generator of its own makes the cases the same each time.
+  let seed = 1;
+  const random = () => (seed = (seed * 16807) % 2147483647) / 2147483647;
+  for (let run = 0; run < 400; run += 1) {
+    const width = 120 + Math.floor(random() * 900);
+    const bounds = { left: 0, top: 4, width, height: 172 };
+    const caption = box(random() * width, 20 + random() * 100, 160, 14);
+    const captions = placeCaptions([caption, box(random() * width, 4, 50, 14)], bounds).filter((one) => one !== null);
+    const wanted = Array.from({ length: 1 + Math.floor(random() * 8) }, () =>
+      box(random() * width, 20 + random() * 140, 30 + random() * 60, 16));
+    const placed = placeLabels(wanted, captions, bounds);
+    assertApart([...placed, ...captions]);
+    assert.ok(!placed.includes(null), `a label is missing at ${width} px`);
+    assert.ok(placed.every((one) => one && one.left >= 0 && one.left + one.width <= width + 1e-9));
+  }
+});
