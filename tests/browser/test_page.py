@@ -27,6 +27,34 @@ def test_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
     expect(page.get_by_text("No runs yet.")).to_be_visible()
 
 
+def test_the_button_and_the_scoreboard_stay_in_view(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    page = dashboard.page
+    page.set_viewport_size({"width": 1440, "height": 900})
+    dashboard.open(shared_server.address)
+    rate, its_help = dashboard.box("#field-alpha"), dashboard.box("#help-alpha")
+    assert 0 <= its_help["y"] - rate["y"] - rate["height"] < 8
+
+    page.get_by_text("More settings").click()
+    expect(page.get_by_label("Robot")).to_be_in_viewport(ratio=1)
+    expect(dashboard.primary).to_be_in_viewport(ratio=1)
+    expect(page.get_by_role("region", name="Scoreboard")).to_be_in_viewport(ratio=1)
+
+    page.set_viewport_size({"width": 1920, "height": 1080})
+    for link, left, right in (
+        ("Race", ".stage", ".controls"),
+        ("Experiments", ".answer", ".ask"),
+        ("Runs", ".runs", ".runs"),
+    ):
+        page.get_by_role("navigation").get_by_role("link", name=link).click()
+        header, panel = dashboard.box(".brand"), dashboard.box(right)
+        assert dashboard.box(left)["x"] == header["x"]
+        switches = dashboard.box(".switches")
+        # The last switch is a sign in the middle of its square.
+        assert abs(panel["x"] + panel["width"] - switches["x"] - switches["width"]) <= 8
+
+
 def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> None:
     page = dashboard.page
     dashboard.open(shared_server.address)

@@ -37,6 +37,19 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     ).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("^The race after .*Two-step"))).to_be_visible()
     expect(dashboard.rows.filter(has_text="Two-step").locator(".aside").last).to_have_text("936")
+    for width in (390, 1100, 1280, 1440):
+        page.set_viewport_size({"width": width, "height": 900})
+        # As wide as they get: backwards, after slow decisions with many simulated transitions.
+        page.locator(".board tr:not(.under)").evaluate_all(
+            """rows => rows.forEach(({cells}) => {
+                const widest = ["−0.36 m", "−0.36 m", "120 ms", "46 800"];
+                [...cells].slice(2).forEach((cell, n) => {
+                    if (cell.localName === "td") cell.firstChild.data = widest[n];
+                });
+            })"""
+        )
+        board, panel = dashboard.box(".board"), dashboard.box(".scoreboard")
+        assert board["x"] + board["width"] <= panel["x"] + panel["width"] - 16
 
     expect(dashboard.primary).to_have_text("Practise 40 more, race again")
     dashboard.primary.click()

@@ -60,9 +60,11 @@ export const RaceView = ({ isHidden }) => html`
     <${Stage} />
     ${isNarrow.value && isOperator.value && html`<div class="shared-choices"><${SharedChoices} /></div>`}
     <div class="side">
-      <${Controls} />
+      <div class="work">
+        <${Controls} />
+        <${Scoreboard} />
+      </div>
       <${WhatIf} />
-      <${Scoreboard} />
     </div>
     <div class="below">
       <${LearningChart} />
