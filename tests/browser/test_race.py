@@ -1,6 +1,7 @@
 """The whole way: press the button, watch it learn and race, go on, stop."""
 
 import re
+from itertools import combinations
 from urllib.parse import urlencode
 
 import pytest
@@ -50,6 +51,10 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
         )
         board, panel = dashboard.box(".board"), dashboard.box(".scoreboard")
         assert board["x"] + board["width"] <= panel["x"] + panel["width"] - 16
+    for width, height in ((390, 844), (844, 390)):
+        page.set_viewport_size({"width": width, "height": height})
+        dashboard.eventually(lambda: overlaps(dashboard) == [], "labels apart from each other")
+        expect(dashboard.primary).to_be_in_viewport(ratio=1)
 
     expect(dashboard.primary).to_have_text("Practise 40 more, race again")
     dashboard.primary.click()
@@ -59,6 +64,23 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     runs = dashboard.get("/api/v1/trainings")["items"]
     assert [run["progress"]["done"] for run in runs] == [40, 40]
     assert runs[0]["config"]["continue_from"] == runs[1]["id"]
+
+
+def overlaps(dashboard: Dashboard) -> list[tuple[str, str]]:
+    """Pairs of the stage's labels and chips that lie on each other."""
+    frame = dashboard.page.frame_locator(".picture iframe")
+    labels = frame.locator(".labels > div:not([hidden])").all()
+    assert len(labels) >= 3
+    chips = dashboard.page.locator(".stage .chip").all()
+    boxes = [(one.inner_text(), box) for one in (*labels, *chips) if (box := one.bounding_box())]
+    return [
+        (words, others)
+        for (words, one), (others, other) in combinations(boxes, 2)
+        if one["x"] < other["x"] + other["width"]
+        and other["x"] < one["x"] + one["width"]
+        and one["y"] < other["y"] + other["height"]
+        and other["y"] < one["y"] + one["height"]
+    ]
 
 
 def test_the_values_of_the_state_are_a_table(dashboard: Dashboard, server: Serving) -> None:
