@@ -125,6 +125,20 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
     page.get_by_role("link", name="Runs").click()
     expect(page.locator(".state.stopped")).to_have_count(2)
 
+    # Keys of the race do nothing here, and a menu closes as menus do.
+    page.keyboard.press("r")
+    menu = page.locator("details.menu").first
+    menu.locator("summary").click()
+    page.keyboard.press("Tab")
+    page.keyboard.press("Escape")
+    expect(menu).not_to_have_attribute("open", "")
+    expect(menu.locator("summary")).to_be_focused()
+    menu.locator("summary").press("Enter")
+    expect(menu).to_have_attribute("open", "")
+    page.get_by_role("heading", name="Runs").click()
+    expect(menu).not_to_have_attribute("open", "")
+    assert len(dashboard.get("/api/v1/trainings")["items"]) == 1
+
 
 def test_no_click_is_lost_while_a_command_is_answered(
     dashboard: Dashboard, server: Serving

@@ -132,8 +132,8 @@ const PRESSED_BY_SPACE = "button:not([aria-disabled=true]), a, summary, input:no
  * @param {string} key
  */
 function press(key) {
-  // Keys act on the race view only while it can be seen.
-  if (place.value === "experiments" && key !== "?") return false;
+  // All but the help act on the race, which a reader of another view does not see.
+  if (place.value !== "race" && key !== "?") return false;
   if (key === " ") togglePause();
   else if (key === "r" || key === "R") runPrimaryAction();
   else if (/^[1-8]$/.test(key)) view.value = key;
@@ -141,6 +141,30 @@ function press(key) {
   else if (key === "?") helpIsOpen.value = !helpIsOpen.value;
   else return false;
   return true;
+}
+
+/** Close the open menus in which a target is not. @param {EventTarget | null} target */
+const closeOtherMenus = (target) => {
+  for (const menu of document.querySelectorAll("details.menu[open]")) {
+    if (!(target instanceof Node && menu.contains(target))) menu.removeAttribute("open");
+  }
+};
+
+/** Close the open menu, and give the focus back to what opened it; false if there is none. */
+function leaveMenu() {
+  const menu = document.querySelector("details.menu[open]");
+  if (!menu) return false;
+  menu.removeAttribute("open");
+  menu.querySelector("summary")?.focus();
+  return true;
+}
+
+/** Menus close with Escape, and when a click or the focus goes elsewhere. */
+export function listenForMenus() {
+  addEventListener("keydown", (event) => {
+    if (event.key === "Escape" && leaveMenu()) event.preventDefault();
+  });
+  for (const type of ["pointerdown", "focusin"]) addEventListener(type, ({ target }) => closeOtherMenus(target));
 }
 
 export function listenForKeys() {
