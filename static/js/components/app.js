@@ -1,7 +1,9 @@
 // The page: header, the three views, keyboard shortcuts, the help dialog and messages.
 import { useEffect, useRef } from "preact/hooks";
 import { runPrimaryAction, share, toastMessage, togglePause } from "../actions.js";
-import { helpIsOpen, isNarrow, nextTheme, place, setShortcuts, shortcuts, theme, view } from "../page.js";
+import {
+  helpIsOpen, isNarrow, nextTheme, openLesson, place, setShortcuts, shortcuts, theme, view,
+} from "../page.js";
 import { announcement } from "../race.js";
 import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
@@ -9,6 +11,7 @@ import { Controls } from "./controls.js";
 import { html, Icon } from "./elements.js";
 import { Experiments } from "./experiments/experiments.js";
 import { Knowledge, LearningChart } from "./learning.js";
+import { Lesson } from "./lesson.js";
 import { RaceChart, Scoreboard } from "./race.js";
 import { Runs } from "./runs.js";
 import { SharedChoices, Stage } from "./stage.js";
@@ -60,6 +63,7 @@ export const RaceView = ({ isHidden }) => html`
     <${Stage} />
     ${isNarrow.value && isOperator.value && html`<div class="shared-choices"><${SharedChoices} /></div>`}
     <div class="side">
+      ${isNarrow.value && html`<${Lesson} />`}
       <div class="work">
         <${Controls} />
         <${Scoreboard} />
@@ -67,6 +71,7 @@ export const RaceView = ({ isHidden }) => html`
       <${WhatIf} />
     </div>
     <div class="below">
+      ${!isNarrow.value && html`<${Lesson} />`}
       <${LearningChart} />
       <${RaceChart} />
       <${Knowledge} />
@@ -212,7 +217,10 @@ export function HelpDialog() {
           before they make one: greedy looks one step ahead, two-step looks two. The race ends at time-out, when
           the first robot has used its steps; the robot that is furthest then wins. Thinking costs time.
         </p>
-        <form method="dialog"><button class="secondary" autofocus>Close</button></form>
+        <form method="dialog">
+          <button type="button" class="secondary" onClick=${openLesson}>Show the first lesson</button>
+          <button class="secondary" autofocus>Close</button>
+        </form>
       </div>
     </dialog>
   `;
