@@ -2,7 +2,7 @@
 import { effect } from "@preact/signals";
 import { render } from "preact";
 import { getOptions, getStage, openEvents, RequestError } from "./api.js";
-import { App, listenForKeys } from "./components/app.js";
+import { App, listenForKeys, listenForMenus } from "./components/app.js";
 import { html } from "./components/elements.js";
 import { announceExperiments, followAddress, followExperiments, followSummary } from "./experiments/runs.js";
 import { readAddress, writeAddress } from "./form.js";
@@ -56,6 +56,7 @@ followSummary();
 announceOutcomes();
 announceExperiments();
 listenForKeys();
+listenForMenus();
 openEvents(applyEvent, (state) => {
   connection.value = state;
   if (state === "live") isLockedOut.value = false;

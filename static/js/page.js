@@ -25,6 +25,36 @@ function readShortcuts() {
   }
 }
 
+// ---- the first lesson
+
+/** Whether the first lesson is open: at the first visit ("first"), or from the help ("again"). */
+export const lesson = signal(isLessonDone() ? "" : "first");
+
+export const closeLesson = () => {
+  lesson.value = "";
+  try {
+    localStorage.setItem("hexapods:lesson", "done");
+  } catch {
+    // Storage is forbidden: it opens again at the next visit.
+  }
+};
+
+export const openLesson = () => {
+  location.hash = "";
+  helpIsOpen.value = false;
+  lesson.value = "again";
+};
+
+function isLessonDone() {
+  try {
+    return localStorage.getItem("hexapods:lesson") === "done";
+  } catch {
+    return false;
+  }
+}
+
+// ---- the open view
+
 const VIEWS = ["experiments", "runs"];
 
 /**

@@ -66,6 +66,12 @@ export const variedFields = (settings, fields) =>
 const VALUE_TITLES = { gait: gaitTitle, agent: agentTitle, observation: observationTitle, robot: robotTitle };
 
 /**
+ * Whether the values of a field tell by themselves what they are: "Greedy", but not "0.3".
+ * @param {string} field
+ */
+export const isNamedByValue = (field) => field in VALUE_TITLES;
+
+/**
  * A value of a setting's field in words.
  * @param {string} field
  * @param {any} value
@@ -78,14 +84,27 @@ export function valueTitle(field, value) {
 /** @param {Run} run */
 export const runTitle = (run) => run.name || experimentOf(run.config.experiment)?.title || run.config.experiment;
 
+/** Fields of an experiment's config that are told apart from what it sweeps. */
+const TOLD_APART = ["agents", "gaits", "observations", "robots"];
+
 /**
- * An experiment's seeds and places in one line.
+ * What a sweep varies: "α 0.1, 0.3".
+ * @param {Run["config"]} config
+ */
+const sweptIn = (config) =>
+  Object.entries(config)
+    .filter(([name, values]) => Array.isArray(values) && values.length > 1 && !TOLD_APART.includes(name))
+    .map(([name, values]) => `${fieldTitle(name)} ${values.join(", ")}`);
+
+/**
+ * An experiment's swept values, seeds and places in one line.
  * @param {Run} run
  */
 export const describeRun = ({ config }) => {
   const robots = (config.robots ?? []).map((one) => presetOf(one) ?? one.name ?? "own robot");
   const observations = (config.observations ?? []).map(observationTitle);
   return [
+    ...(config.experiment === "sweep" ? sweptIn(config) : []),
     count(config.seeds, "seed"), `from seed ${config.seed}`, observations.join(" and "), robots.join(" and "),
     simulatorTitle(config.simulator),
   ].filter(Boolean).join(" · ");

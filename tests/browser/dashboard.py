@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import ConsoleMessage, Locator, Page, Response, expect
+from playwright.sync_api import ConsoleMessage, FloatRect, Locator, Page, Response, expect
 
 PATIENCE_MS = 60_000
 """A race in software WebGL beside the browser that shows it, on two cores, takes its time."""
@@ -88,6 +88,12 @@ class Dashboard:
         """Whether every lane has a distance."""
         shown = self.distances()
         return len(shown) == 3 and all(_METRES.fullmatch(one) for one in shown)
+
+    def box(self, selector: str) -> FloatRect:
+        """Where the first element of a selector lies in the window [px]."""
+        box = self.page.locator(selector).first.bounding_box()
+        assert box is not None
+        return box
 
     def scroll_width(self) -> int:
         """How wide the page is, scrolled or not."""

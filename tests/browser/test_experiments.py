@@ -162,8 +162,28 @@ def test_reports_fit_a_phone(browser: Browser, small_runs: list[str], theme: str
                 )
             assert dashboard.scroll_width() == PHONE["width"]
             assert dashboard.violations() == []
+            if address == small_runs[-1]:
+                tells_of_its_sweep(dashboard)
             page.goto("about:blank")
         assert dashboard.complaints == []
+
+
+def tells_of_its_sweep(dashboard: Dashboard) -> None:
+    """Rows say what was swept, strips have numbers, and no table is cut within a row."""
+    page = dashboard.page
+    table = page.get_by_role("region", name="Every setting, with every seed")
+    expect(page.get_by_role("region", name="Experiments")).to_contain_text("α 0.1, 0.3")
+    for width in (PHONE["width"], 1440):
+        page.set_viewport_size({"width": width, "height": 844})
+        expect(table.get_by_role("rowheader")).to_have_text(["α\u00a00.1", "α\u00a00.3"])
+        numbers = table.locator("tbody tr").first.locator(".axis-number")
+        assert [one.strip() for one in numbers.all_text_contents()][:2] == [
+            "0.00\u00a0m",
+            "0.20\u00a0m",
+        ]
+        assert page.locator(".scroller").evaluate_all(
+            "all => all.every((one) => one.scrollHeight <= one.clientHeight)"
+        )
 
 
 @pytest.fixture(scope="module")

@@ -2,16 +2,17 @@
 
 import re
 from pathlib import Path
+from typing import Literal
 
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, ViewportSize, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving, serving
 
 pytestmark = pytest.mark.timeout(300)
 
-PHONE = {"width": 390, "height": 844}
+PHONE: ViewportSize = {"width": 390, "height": 844}
 
 
 @pytest.mark.looks_at_3d
@@ -25,6 +26,63 @@ def test_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
     assert page.url == server.address
     page.get_by_role("link", name="Runs").click()
     expect(page.get_by_text("No runs yet.")).to_be_visible()
+
+
+def test_the_first_lesson_is_skipped_once_and_opened_again(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    page = dashboard.page
+    dashboard.open(shared_server.address)
+    lesson = page.get_by_role("region", name="A first lesson")
+    for title in ("What moves", "What the colours on the feet", "What the learner tries"):
+        expect(lesson).to_contain_text(title)
+        lesson.get_by_role("button", name="Next").click()
+    expect(lesson).to_contain_text("What to change first. Press “Train 500 steps, then race”")
+    assert dashboard.violations() == []
+    dashboard.button("Skip the lesson").click()
+    expect(lesson).to_have_count(0)
+
+    dashboard.open(shared_server.address)
+    expect(dashboard.primary).to_be_visible()
+    expect(lesson).to_have_count(0)
+    page.goto(f"{shared_server.address}#runs")
+    page.get_by_role("button", name="Keys and help").click()
+    dashboard.button("Show the first lesson").click()
+    expect(lesson).to_be_focused()
+    expect(lesson).to_be_in_viewport(ratio=1)
+    page.set_viewport_size(PHONE)
+    expect(lesson).to_be_in_viewport(ratio=1)
+    expect(dashboard.primary).to_be_in_viewport(ratio=1)
+    assert dashboard.scroll_width() == PHONE["width"]
+    assert dashboard.violations() == []
+
+
+def test_the_button_and_the_scoreboard_stay_in_view(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    page = dashboard.page
+    page.set_viewport_size({"width": 1440, "height": 900})
+    dashboard.open(shared_server.address)
+    rate, its_help = dashboard.box("#field-alpha"), dashboard.box("#help-alpha")
+    assert 0 <= its_help["y"] - rate["y"] - rate["height"] < 8
+
+    page.get_by_text("More settings").click()
+    expect(page.get_by_label("Robot")).to_be_in_viewport(ratio=1)
+    expect(dashboard.primary).to_be_in_viewport(ratio=1)
+    expect(page.get_by_role("region", name="Scoreboard")).to_be_in_viewport(ratio=1)
+
+    page.set_viewport_size({"width": 1920, "height": 1080})
+    for link, left, right in (
+        ("Race", ".stage", ".controls"),
+        ("Experiments", ".answer", ".ask"),
+        ("Runs", ".runs", ".runs"),
+    ):
+        page.get_by_role("navigation").get_by_role("link", name=link).click()
+        header, panel = dashboard.box(".brand"), dashboard.box(right)
+        assert dashboard.box(left)["x"] == header["x"]
+        switches = dashboard.box(".switches")
+        # The last switch is a sign in the middle of its square.
+        assert abs(panel["x"] + panel["width"] - switches["x"] - switches["width"]) <= 8
 
 
 def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> None:
@@ -91,8 +149,8 @@ def test_keys(dashboard: Dashboard, server: Serving) -> None:
 def test_a_phone_needs_no_scrolling_sideways(
     browser: Browser, shared_server: Serving, theme: str
 ) -> None:
-    scheme = "light" if theme == "light" else "dark"
-    with browser.new_context(viewport=PHONE, color_scheme=scheme) as context:  # type: ignore[arg-type]
+    scheme: Literal["light", "dark"] = "light" if theme == "light" else "dark"
+    with browser.new_context(viewport=PHONE, color_scheme=scheme) as context:
         dashboard = Dashboard(context.new_page(), has_3d=False)
         dashboard.open(shared_server.address)
         page = dashboard.page

@@ -1,6 +1,7 @@
 """The whole way: press the button, watch it learn and race, go on, stop."""
 
 import re
+from itertools import combinations
 from urllib.parse import urlencode
 
 import pytest
@@ -61,6 +62,23 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     expect(dashboard.button("Play again for everyone")).to_be_visible()
     timeline_end = page.locator(".seek .num").last.inner_text()
     expect(dashboard.rows.filter(has_text="Two-step")).to_contain_text(f"6 steps in {timeline_end}")
+    for width in (390, 1100, 1280, 1440):
+        page.set_viewport_size({"width": width, "height": 900})
+        # As wide as they get: backwards, after slow decisions with many simulated transitions.
+        page.locator(".board tr:not(.under)").evaluate_all(
+            """rows => rows.forEach(({cells}) => {
+                const widest = ["−0.36 m", "−0.36 m", "120 ms", "46 800"];
+                [...cells].slice(2).forEach((cell, n) => {
+                    if (cell.localName === "td") cell.firstChild.data = widest[n];
+                });
+            })"""
+        )
+        board, panel = dashboard.box(".board"), dashboard.box(".scoreboard")
+        assert board["x"] + board["width"] <= panel["x"] + panel["width"] - 16
+    for width, height in ((390, 844), (844, 390)):
+        page.set_viewport_size({"width": width, "height": height})
+        dashboard.eventually(lambda: overlaps(dashboard) == [], "labels apart from each other")
+        expect(dashboard.primary).to_be_in_viewport(ratio=1)
 
     expect(dashboard.primary).to_have_text("Practise 40 more, race again")
     dashboard.primary.click()
@@ -70,6 +88,23 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     runs = dashboard.get("/api/v1/trainings")["items"]
     assert [run["progress"]["done"] for run in runs] == [40, 40]
     assert runs[0]["config"]["continue_from"] == runs[1]["id"]
+
+
+def overlaps(dashboard: Dashboard) -> list[tuple[str, str]]:
+    """Pairs of the stage's labels and chips that lie on each other."""
+    frame = dashboard.page.frame_locator(".picture iframe")
+    labels = frame.locator(".labels > div:not([hidden])").all()
+    assert len(labels) >= 3
+    chips = dashboard.page.locator(".stage .chip").all()
+    boxes = [(one.inner_text(), box) for one in (*labels, *chips) if (box := one.bounding_box())]
+    return [
+        (words, others)
+        for (words, one), (others, other) in combinations(boxes, 2)
+        if one["x"] < other["x"] + other["width"]
+        and other["x"] < one["x"] + one["width"]
+        and one["y"] < other["y"] + other["height"]
+        and other["y"] < one["y"] + one["height"]
+    ]
 
 
 def test_the_values_of_the_state_are_a_table(dashboard: Dashboard, server: Serving) -> None:
@@ -133,6 +168,20 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
     expect(dashboard.primary).to_have_text(re.compile("^Train "))
     page.get_by_role("link", name="Runs").click()
     expect(page.locator(".state.stopped")).to_have_count(2)
+
+    # Keys of the race do nothing here, and a menu closes as menus do.
+    page.keyboard.press("r")
+    menu = page.locator("details.menu").first
+    menu.locator("summary").click()
+    page.keyboard.press("Tab")
+    page.keyboard.press("Escape")
+    expect(menu).not_to_have_attribute("open", "")
+    expect(menu.locator("summary")).to_be_focused()
+    menu.locator("summary").press("Enter")
+    expect(menu).to_have_attribute("open", "")
+    page.get_by_role("heading", name="Runs").click()
+    expect(menu).not_to_have_attribute("open", "")
+    assert len(dashboard.get("/api/v1/trainings")["items"]) == 1
 
 
 def test_no_click_is_lost_while_a_command_is_answered(

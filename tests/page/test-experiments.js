@@ -162,4 +162,8 @@ test("an experiment is described by its seeds, places and simulator", () => {
     describeRun(makeRun({ kind: "experiment", config })),
     "30 seeds · from seed 2 · feet measured and commands remembered · stiff · ideal (no slip)",
   );
+  assert.match(
+    describeRun(makeRun({ config: { ...config, experiment: "sweep", alpha: [0.1, 0.3], gamma: [1] } })),
+    /^α 0.1, 0.3 · 30 seeds/,
+  );
 });

@@ -2,10 +2,11 @@
 
 import re
 from collections.abc import Iterator
+from itertools import combinations
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, ConsoleMessage, Frame, Page
+from playwright.sync_api import Browser, ConsoleMessage, FloatRect, Frame, Page
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, Response
 from starlette.routing import Route
@@ -134,6 +135,15 @@ def socket_addresses(page: Page) -> list[str]:
     return addresses
 
 
+def intersect(one: FloatRect, other: FloatRect) -> bool:
+    return (
+        one["x"] < other["x"] + other["width"]
+        and other["x"] < one["x"] + one["width"]
+        and one["y"] < other["y"] + other["height"]
+        and other["y"] < one["y"] + one["height"]
+    )
+
+
 def test_picture_changes_with_the_scene(viewer: Frame, viser_server: InProcessViser) -> None:
     wait_until(lambda: drawn_pixels(viewer) > 0)
     before = drawn_pixels(viewer)
@@ -199,6 +209,40 @@ def test_theme_follows_the_dashboard(dashboard: Page, viewer: Frame) -> None:
         }"""
     )
     assert opaque == []
+
+
+def test_labels_follow_the_theme_and_do_not_overlap(
+    dashboard: Page, viewer: Frame, viser_server: InProcessViser
+) -> None:
+    camera = viser_server.initial_camera
+    camera.position, camera.look_at = (1.0, 0.5, 6.0), (1.0, 0.5, 0.0)
+    covered = {"left": 0, "top": 0, "right": 480, "bottom": 60}
+    dashboard.evaluate("wanted => show(wanted)", {"lanes": ["#E69F00"] * 6, "covered": [covered]})
+    plates = [
+        viser_server.scene.add_label(
+            f"/world/lane{lane}/plate",
+            f"Robot {lane}\n0.10 m",
+            position=(1.0 + 0.01 * lane, 0.5, 0.0),
+            anchor="bottom-center",
+        )
+        for lane in range(6)
+    ]
+    viser_server.scene.add_label("/world/line", "Start", anchor="center-center")
+    labels = viewer.locator(".labels > div:not([hidden])")
+    wait_until(lambda: labels.count() >= 6)
+
+    def boxes() -> list[FloatRect]:
+        return [box for one in labels.all() if (box := one.bounding_box())]
+
+    # In the frame, which is 8 px inside of its page.
+    wait_until(lambda: all(box["y"] >= 68 for box in boxes()))
+    assert [pair for pair in combinations(boxes(), 2) if intersect(*pair)] == []
+    assert labels.first.evaluate("one => getComputedStyle(one).color") == "rgb(233, 237, 243)"
+
+    plates[0].text = "Another"
+    wait_until(lambda: "Another" in labels.all_inner_texts())
+    plates[0].remove()
+    wait_until(lambda: "Another" not in labels.all_inner_texts())
 
 
 def test_shortcuts_are_forwarded_to_the_dashboard(dashboard: Page, viewer: Frame) -> None:

@@ -44,5 +44,8 @@ Assumed by `client`:
   and in the sorter of Gaussian splats, of which the stage has none.
 - controls_have_these_selectors: `static/viewer/patch.css` hides viser's controls by attributes and
   class names of its page.
+- labels_are_taken_out: the worker posts messages as `message_batch`, which the client reads after
+  `static/viewer/labels.js` has emptied the labels in it, and `__viserMutable` has the camera, the
+  scene, of which `onAfterRender` is free, and the poses and objects of scene nodes by name.
 - batched_colors_are_linear: colours of batched meshes are taken as linear, all others as sRGB.
 """

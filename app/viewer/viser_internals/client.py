@@ -1,6 +1,6 @@
 """viser's client in the browser: the page at /viewer/ that patches it, and its colours.
 
-The page is viser's single file with a script and a style sheet injected. By its
+The page is viser's single file with two scripts and a style sheet injected. By its
 Content-Security-Policy only its own scripts may run, by their hashes. The client itself is packed
 into an attribute of its loader, in base 88 and zstd; the loader unpacks it and adds it to the page
 as one more inline script, so its hash is needed as well.
@@ -150,11 +150,14 @@ def _patched_page() -> str:
     if html.count(_HEAD) != 1 or html.count(_TITLE) != 1:
         raise _unsupported("its head or title is not where the patch goes")
     folder = assets.static_dir() / "viewer"
-    # Read as they are sent, since the policy has the script's hash.
-    script, style = ((folder / name).read_text("utf-8") for name in ("patch.js", "patch.css"))
+    # Read as they are sent, since the policy has the scripts' hashes.
+    labels, script, style = (
+        (folder / name).read_text("utf-8") for name in ("labels.js", "patch.js", "patch.css")
+    )
     html = html.replace(_TITLE, "<title>Racing Hexapods: the stage</title>")
     # At the start of the head, since viser's loader runs while the page is still parsed.
-    return html.replace(_HEAD, f"{_HEAD}<script>{script}</script><style>{style}</style>")
+    patch = f"<script>{labels}</script><script>{script}</script><style>{style}</style>"
+    return html.replace(_HEAD, f"{_HEAD}{patch}")
 
 
 def _unpacked(packed: re.Match[str]) -> bytes:

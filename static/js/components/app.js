@@ -1,7 +1,9 @@
 // The page: header, the three views, keyboard shortcuts, the help dialog and messages.
 import { useEffect, useRef } from "preact/hooks";
 import { runPrimaryAction, share, toastMessage, togglePause } from "../actions.js";
-import { helpIsOpen, isNarrow, nextTheme, place, setShortcuts, shortcuts, theme, view } from "../page.js";
+import {
+  helpIsOpen, isNarrow, nextTheme, openLesson, place, setShortcuts, shortcuts, theme, view,
+} from "../page.js";
 import { announcement } from "../race.js";
 import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
@@ -9,6 +11,7 @@ import { Controls } from "./controls.js";
 import { html, Icon } from "./elements.js";
 import { Experiments } from "./experiments/experiments.js";
 import { Knowledge, LearningChart } from "./learning.js";
+import { Lesson } from "./lesson.js";
 import { RaceChart, Scoreboard } from "./race.js";
 import { Runs } from "./runs.js";
 import { SharedChoices, Stage } from "./stage.js";
@@ -60,11 +63,15 @@ const RaceView = ({ isHidden }) => html`
     <${Stage} />
     ${isNarrow.value && isOperator.value && html`<div class="shared-choices"><${SharedChoices} /></div>`}
     <div class="side">
-      <${Controls} />
+      ${isNarrow.value && html`<${Lesson} />`}
+      <div class="work">
+        <${Controls} />
+        <${Scoreboard} />
+      </div>
       <${WhatIf} />
-      <${Scoreboard} />
     </div>
     <div class="below">
+      ${!isNarrow.value && html`<${Lesson} />`}
       <${LearningChart} />
       <${RaceChart} />
       <${Knowledge} />
@@ -130,8 +137,8 @@ const PRESSED_BY_SPACE = "button:not([aria-disabled=true]), a, summary, input:no
  * @param {string} key
  */
 function press(key) {
-  // Keys act on the race view only while it can be seen.
-  if (place.value === "experiments" && key !== "?") return false;
+  // All but the help act on the race, which a reader of another view does not see.
+  if (place.value !== "race" && key !== "?") return false;
   if (key === " ") togglePause();
   else if (key === "r" || key === "R") runPrimaryAction();
   else if (/^[1-8]$/.test(key)) view.value = key;
@@ -139,6 +146,30 @@ function press(key) {
   else if (key === "?") helpIsOpen.value = !helpIsOpen.value;
   else return false;
   return true;
+}
+
+/** Close the open menus in which a target is not. @param {EventTarget | null} target */
+const closeOtherMenus = (target) => {
+  for (const menu of document.querySelectorAll("details.menu[open]")) {
+    if (!(target instanceof Node && menu.contains(target))) menu.removeAttribute("open");
+  }
+};
+
+/** Close the open menu, and give the focus back to what opened it; false if there is none. */
+function leaveMenu() {
+  const menu = document.querySelector("details.menu[open]");
+  if (!menu) return false;
+  menu.removeAttribute("open");
+  menu.querySelector("summary")?.focus();
+  return true;
+}
+
+/** Menus close with Escape, and when a click or the focus goes elsewhere. */
+export function listenForMenus() {
+  addEventListener("keydown", (event) => {
+    if (event.key === "Escape" && leaveMenu()) event.preventDefault();
+  });
+  for (const type of ["pointerdown", "focusin"]) addEventListener(type, ({ target }) => closeOtherMenus(target));
 }
 
 export function listenForKeys() {
@@ -187,7 +218,10 @@ function HelpDialog() {
           when the first robot has used its steps, the one that is furthest wins. The red line is the finish line;
           a flag shows who crossed it.
         </p>
-        <form method="dialog"><button class="secondary" autofocus>Close</button></form>
+        <form method="dialog">
+          <button type="button" class="secondary" onClick=${openLesson}>Show the first lesson</button>
+          <button class="secondary" autofocus>Close</button>
+        </form>
       </div>
     </dialog>
   `;

@@ -1,36 +1,19 @@
 // Fields of the form: numbers, sliders, lists, the controls that settings declare, and their help.
-import { signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import { refusedFields } from "../actions.js";
 import { form, mistakes, setField, setMistake } from "../form.js";
 import { shareOf } from "../scale.js";
-import { agentOf, fullTitle, kindOf, mistakeIn, settingOf, sliderOf, valueOf } from "../settings.js";
+import { fullTitle, kindOf, mistakeIn, settingOf, sliderOf, valueOf } from "../settings.js";
 import { options } from "../store.js";
 import { html } from "./elements.js";
 
-// ---- help: visible for the field in use, for screen readers at each
+// ---- help: a sentence below each field
 
 export const helpFor = (field) => options.value?.help[field] ?? "";
 
-/** The field whose help is visible, and its words where the field alone does not tell them. */
-const shown = signal({ field: "gait", words: "" });
-
-export const showHelp = (field, words = "") => () => (shown.value = { field, words });
-
 /** The sentence that a field's `aria-describedby` names. */
-export const Description = ({ field, id = field, words = helpFor(field) }) =>
-  html`<span class="sr-only" id=${`help-${id}`}>${words}</span>`;
-
-/** The help of the field in use; of the gait and the learner, the description of the one that is chosen. */
-export function SettingHelp() {
-  const { field, words } = shown.value;
-  const { gait, agent } = form.value;
-  const chosen = {
-    gait: options.value?.gaits.find(({ name }) => name === gait)?.description,
-    agent: agentOf(agent).description,
-  };
-  return html`<p class="setting-help" aria-hidden="true">${words || chosen[field] || helpFor(field)}</p>`;
-}
+export const Description = ({ field, words = helpFor(field) }) =>
+  html`<p class="sentence" id=${`help-${field}`}>${words}</p>`;
 
 // ---- a number to type; it takes effect as soon as it is valid, until then the reason is shown
 
@@ -80,9 +63,8 @@ export function Slider({ field, setting = settingOf(field), title, unit, value, 
   const { symbol, help } = setting;
   const name = title ?? setting.title;
   const reached = Math.min(Math.max(value ?? min, min), max);
-  const show = showHelp(field, help);
   return html`
-    <div class="slider" onFocusIn=${show} onPointerEnter=${show}>
+    <div class="slider">
       <label for=${`slide-${field}`} title=${name}>${name} ${symbol && html`<b>${symbol}</b>`}</label>
       <input type="range" id=${`slide-${field}`} min=${min} max=${max} step=${step}
         value=${reached} style=${{ "--share": `${100 * shareOf(reached, min, max)}%` }}
@@ -98,20 +80,19 @@ export function Slider({ field, setting = settingOf(field), title, unit, value, 
 
 // ---- a choice out of a list
 
-/** `choices`: [value, title]; `onValue` replaces setting the form's field. */
-export function SelectField({ field, label, choices, onValue = (value) => setField(field, value) }) {
-  const help = showHelp(field);
+/** `choices`: [value, title]; `onValue` replaces setting the form's field, `words` its help. */
+export function SelectField({ field, label, choices, onValue = (value) => setField(field, value), words }) {
   const value = String(form.value[field]);
   const onChange = ({ target }) => onValue(choices.find(([one]) => String(one) === target.value)[0]);
   return html`
-    <div class="field" onFocusIn=${help} onPointerEnter=${help}>
+    <div class="field">
       <label for=${`field-${field}`}>${label}</label>
       <select id=${`field-${field}`} aria-describedby=${`help-${field}`} onChange=${onChange}>
         ${choices.map(([one, title]) => html`
           <option value=${String(one)} selected=${String(one) === value}>${title}</option>
         `)}
       </select>
-      <${Description} field=${field} />
+      <${Description} field=${field} words=${words || helpFor(field)} />
     </div>
   `;
 }
@@ -124,7 +105,6 @@ export const SettingField = ({ name, setting }) => html`
     <label for=${`field-${name}`}>${fullTitle(setting)}</label>
     <${SettingControl} name=${name} setting=${setting} value=${form.value[name]}
       onValue=${(value) => setField(name, value)} />
-    <p class="sentence" aria-hidden="true">${setting.help}</p>
     <${Description} field=${name} words=${setting.help} />
   </div>
 `;
@@ -132,9 +112,8 @@ export const SettingField = ({ name, setting }) => html`
 /** A setting without a slider in a row among the sliders. */
 export function SettingRow({ name, setting, value, onValue }) {
   const { title, symbol, unit, help } = setting;
-  const show = showHelp(name, help);
   return html`
-    <div class="slider" onFocusIn=${show} onPointerEnter=${show}>
+    <div class="slider">
       <label for=${`field-${name}`} title=${title}>${title} ${symbol && html`<b>${symbol}</b>`}</label>
       <div class="control">
         <${SettingControl} name=${name} setting=${setting} value=${value} onValue=${onValue} />

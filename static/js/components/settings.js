@@ -11,7 +11,7 @@ import { evaluations, options, served } from "../store.js";
 import { choicesOf, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
 import { HexapodGlyph, html } from "./elements.js";
 import {
-  Description, helpFor, NumberField, SelectField, SettingField, SettingHelp, SettingRow, showHelp, Slider,
+  Description, NumberField, SelectField, SettingField, SettingRow, Slider,
 } from "./fields.js";
 
 /** @import { Run } from "../types.js" */
@@ -28,9 +28,8 @@ export const Settings = () => html`
         value=${form.value.steps} onValue=${(value) => setField("steps", value)} />
       <${LearnerSettings} />
     </div>
-    <${SettingHelp} />
     <div class="inline-fields">
-      <div class="field" onFocusIn=${showHelp("seed")} onPointerEnter=${showHelp("seed")}>
+      <div class="field">
         <label for="field-seed">${settingOf("seed").title}</label>
         <${NumberField} field="seed" value=${form.value.seed} onValue=${(value) => setField("seed", value)} />
         <${Description} field="seed" />
@@ -43,7 +42,7 @@ export const Settings = () => html`
 `;
 
 const Learner = () => html`
-  <${SelectField} field="agent" label="Learner" onValue=${chooseLearner}
+  <${SelectField} field="agent" label="Learner" onValue=${chooseLearner} words=${agentOf(form.value.agent).description}
     choices=${learners.value.map(({ name, title }) => [name, title])} />
 `;
 
@@ -113,7 +112,7 @@ function Row({ name, setting, ...rest }) {
 // ---- the gait, chosen by its drawing
 
 const GaitPicker = () => html`
-  <fieldset onFocusIn=${showHelp("gait")} onPointerEnter=${showHelp("gait")}>
+  <fieldset aria-describedby="help-gait">
     <legend><h2>Gait</h2></legend>
     <div class="gait-row">
       ${served().gaits.map((gait) => html`
@@ -125,6 +124,8 @@ const GaitPicker = () => html`
         </label>
       `)}
     </div>
+    <${Description} field="gait"
+      words=${served().gaits.find(({ name }) => name === form.value.gait)?.description} />
   </fieldset>
 `;
 
@@ -135,12 +136,18 @@ const PACES = [
   ["max", "As fast as possible"], [0.5, "Half real time"], [1, "Real time"], [2, "×2"], [4, "×4"], [8, "×8"],
 ];
 
+/** Show the opened fields where the settings scroll inside their panel. */
+const onMore = ({ target }) => {
+  const scroller = target.closest(".folded");
+  if (target.open) scroller?.scrollTo({ top: target.offsetTop - scroller.offsetTop });
+};
+
 const MoreSettings = () => html`
-  <details class="more">
+  <details class="more" onToggle=${onMore}>
     <summary>More settings</summary>
     <div class="more-fields">
-      <${Choice} field="robot" label="Robot" choices=${choicesOf(options.value?.robots, robotTitle)} />
-      <${Choice} field="simulator" label="Simulator"
+      <${SelectField} field="robot" label="Robot" choices=${choicesOf(options.value?.robots, robotTitle)} />
+      <${SelectField} field="simulator" label="Simulator"
         choices=${choicesOf(options.value?.simulators, simulatorTitle)} />
       <${Pace} />
       <${Figure} field="divisions" />
@@ -157,25 +164,13 @@ const MoreSettings = () => html`
   </details>
 `;
 
-const Sentence = ({ field }) => html`
-  <p class="sentence" aria-hidden="true">${helpFor(field)}</p>
-  <${Description} field=${field} />
-`;
-
-const Choice = ({ field, ...rest }) => html`
-  <div>
-    <${SelectField} field=${field} ...${rest} />
-    <p class="sentence" aria-hidden="true">${helpFor(field)}</p>
-  </div>
-`;
-
 function Figure({ field, step }) {
   return html`
     <div class="field">
       <label for=${`field-${field}`}>${fullTitle(settingOf(field))}</label>
       <${NumberField} field=${field} value=${form.value[field]} step=${step}
         onValue=${(value) => setField(field, value)} />
-      <${Sentence} field=${field} />
+      <${Description} field=${field} />
     </div>
   `;
 }
@@ -187,7 +182,7 @@ function Pace() {
     setField("pace", value);
     tune({ pace: value });
   };
-  return html`<${Choice} field="pace" label=${settingOf("pace").title} choices=${choices} onValue=${onValue} />`;
+  return html`<${SelectField} field="pace" label=${settingOf("pace").title} choices=${choices} onValue=${onValue} />`;
 }
 
 function Lanes() {
@@ -213,7 +208,7 @@ function Lanes() {
         </label>
       `)}
       </div>
-      <${Sentence} field="lanes" />
+      <${Description} field="lanes" />
     </fieldset>
   `;
 }
@@ -224,6 +219,6 @@ const Name = () => html`
     <input type="text" id="field-name" maxlength=${limitsOf("name").maximum} value=${form.value.name}
       placeholder="optional" aria-describedby="help-name"
       onInput=${({ target }) => setField("name", target.value)} />
-    <${Sentence} field="name" />
+    <${Description} field="name" />
   </div>
 `;

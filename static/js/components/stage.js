@@ -1,5 +1,6 @@
 // The 3D stage in its frame, with labels over it and the transport below.
-import { useEffect, useRef, useState } from "preact/hooks";
+import { computed, signal } from "@preact/signals";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { setStage, skipToEnd, togglePlaying } from "../actions.js";
 import { form } from "../form.js";
 import { clockTime, sentence, times, whole } from "../format.js";
@@ -13,6 +14,10 @@ import { html, Icon, Problem } from "./elements.js";
 
 /** A frame that has not reported its status for so long is shown as it is. */
 const STATUS_TIMEOUT_MS = 12_000;
+
+/** Where the chips lie over the picture [px], of which the scene's labels stay clear. */
+const covered = signal(/** @type {object[]} */ ([]));
+const laneColours = computed(() => (scene.value?.lanes ?? []).map(({ color }) => color).join(" "));
 
 export function Stage() {
   const frame = useRef(/** @type {HTMLIFrameElement | null} */ (null));
@@ -35,10 +40,14 @@ export function Stage() {
     };
   }, []);
 
+  const colours = laneColours.value;
   useEffect(() => {
-    const message = { type: "hexapods:show", view: view.value, theme: shownTheme.value };
+    const message = {
+      type: "hexapods:show", view: view.value, theme: shownTheme.value, lanes: colours.split(" "),
+      covered: covered.value,
+    };
     frame.current?.contentWindow?.postMessage(message, location.origin);
-  }, [view.value, shownTheme.value, status]);
+  }, [view.value, shownTheme.value, status, colours, covered.value]);
 
   const isAway = connection.value === "reconnecting" || status === "reconnecting";
   return html`
@@ -107,8 +116,15 @@ const GRID_COLOURS = "Colours of the foot grid: dark is worth less, light is wor
 
 function StageLabels() {
   const thinking = (raceScene.value && standings.value?.filter((row) => row.isThinking)) || [];
+  const labels = useRef(/** @type {HTMLElement | null} */ (null));
+  const measure = () => measureChips(/** @type {HTMLElement} */ (labels.current));
+  useLayoutEffect(measure);
+  useEffect(() => {
+    addEventListener("resize", measure);
+    return () => removeEventListener("resize", measure);
+  }, []);
   return html`
-    <div class="labels">
+    <div class="labels" ref=${labels}>
       <${SceneChips} />
       <div class="chips">
         ${thinking.map((row) => html`
@@ -124,6 +140,17 @@ function StageLabels() {
       `}
     </div>
   `;
+}
+
+/** @param {HTMLElement} labels */
+function measureChips(labels) {
+  const picture = /** @type {HTMLElement} */ (labels.parentElement).getBoundingClientRect();
+  const boxes = [...labels.querySelectorAll(".chip")].map((chip) => chip.getBoundingClientRect())
+    .filter(({ width }) => width > 0)
+    .map(({ left, top, right, bottom }) => ({
+      left: left - picture.left, top: top - picture.top, right: right - picture.left, bottom: bottom - picture.top,
+    }));
+  if (JSON.stringify(boxes) !== JSON.stringify(covered.peek())) covered.value = boxes;
 }
 
 function SceneChips() {

@@ -81,9 +81,9 @@ function captionOf(title, { distances_m, iqm_m, walkers }, { seeds: tried, greed
 
 const Axis = ({ known, far }) => html`
   <p class="tried-axis dim" aria-hidden="true">
-    <span>0</span>
+    <span>0 m</span>
     <span style=${{ left: `${(50 * known.greedy_m) / far}%` }}>half</span>
-    <span style=${{ left: `${(100 * known.greedy_m) / far}%` }}>greedy</span>
+    <span style=${{ left: `${(100 * known.greedy_m) / far}%` }}>greedy ${metres(known.greedy_m)}</span>
   </p>
 `;
 

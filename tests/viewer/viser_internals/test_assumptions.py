@@ -399,6 +399,19 @@ def test_controls_have_these_selectors(client: str) -> None:
         assert source in client
 
 
+def test_labels_are_taken_out(client: str) -> None:
+    for part in (
+        "type:`message_batch`,messages:",
+        ".__viserMutable=",
+        "nodeRefFromName",
+        "nodePoseData",
+        "requestRender",
+    ):
+        assert part in client
+    assert re.search(r"isScene===!0&&\w+\.onAfterRender\(", client)
+    assert ".onAfterRender=" not in client
+
+
 def test_batched_colors_are_linear(viser_server: InProcessViser, page: Page) -> None:
     from app.viewer.hub import Hub
     from app.viewer.viser_internals.client import batch_colors

@@ -18,7 +18,9 @@ from app.viewer.service import viewer_routes
 from app.viewer.viser_internals.client import ViewerPage, batch_colors, content_policy
 
 PATCH = assets.static_dir() / "viewer"
-SCRIPT, STYLE = (PATCH / "patch.js").read_text("utf-8"), (PATCH / "patch.css").read_text("utf-8")
+LABELS, SCRIPT, STYLE = (
+    (PATCH / name).read_text("utf-8") for name in ("labels.js", "patch.js", "patch.css")
+)
 DIGITS = "!#$%()*+,-./0123456789:;=?@ABCDEFGHIJKLMNOPQRSTUVWXYZ[\\]^_abcdefghijklmnopqrstuvwxyz{|}~"
 
 
@@ -38,7 +40,7 @@ def test_patch_precedes_visers_loader(client: TestClient) -> None:
     html = client.get("/viewer/").text
 
     patch_position, loader_position = (
-        html.index(f"<script>{SCRIPT}</script>"),
+        html.index(f"<script>{LABELS}</script><script>{SCRIPT}</script>"),
         html.index("<script data-p="),
     )
     assert html.index("<head>") < patch_position < loader_position
@@ -47,7 +49,7 @@ def test_patch_precedes_visers_loader(client: TestClient) -> None:
 
 
 def test_patch_contains_no_closing_tags() -> None:
-    assert "</" not in SCRIPT
+    assert "</" not in LABELS + SCRIPT
     assert "</" not in STYLE
 
 
@@ -178,11 +180,11 @@ def test_packed_style_is_not_part_of_the_hash() -> None:
     assert content_policy(page_of("α()", "b { --β: 1 }")) == content_policy(page_of("α()"))
 
 
-def test_installed_client_has_three_scripts_and_all_are_hashed() -> None:
+def test_installed_client_has_four_scripts_and_all_are_hashed() -> None:
     headers = ViewerPage().response({}).headers
     policy = headers["content-security-policy"]
 
-    assert len(hashes(policy)) == 3
+    assert len(hashes(policy)) == 4
     script_source = policy.partition("script-src")[2].partition(";")[0]
     for word in ("'unsafe-inline'", "'unsafe-eval'", "'self'", "http"):
         assert word not in script_source

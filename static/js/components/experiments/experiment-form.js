@@ -1,5 +1,4 @@
 // The form of a new experiment.
-import { signal } from "@preact/signals";
 import { useState } from "preact/hooks";
 import { pending, refusedFields } from "../../actions.js";
 import {
@@ -54,7 +53,6 @@ const Fields = () => html`
     `}
     <${Grid} fields=${gridOf(true)} />
     <${More} />
-    <${Help} />
     <${StartButton} />
     <${Problem} at="experiment" />
   </div>
@@ -120,31 +118,31 @@ function placeSummary() {
 }
 
 const SimulatorField = () => html`
-  <div class="field" onFocusIn=${help("simulator")}>
+  <div class="field">
     <label for="experiment-simulator">Simulator</label>
-    <select id="experiment-simulator" onChange=${({ target }) => setField("simulator", target.value)}>
+    <select id="experiment-simulator" aria-describedby="about-simulator"
+      onChange=${({ target }) => setField("simulator", target.value)}>
       ${(options.value?.simulators ?? []).map(({ name }) => html`
         <option value=${name} selected=${name === values.value.simulator}>${sentence(simulatorTitle(name))}</option>
       `)}
     </select>
+    <${Help} field="simulator" />
   </div>
 `;
 
 const NameField = () => html`
-  <div class="field" onFocusIn=${help("name")}>
+  <div class="field">
     <label for="experiment-name">Name</label>
     <input type="text" id="experiment-name" maxlength=${limitsOf("name").maximum} placeholder="optional"
-      value=${values.value.name} onInput=${({ target }) => setField("name", target.value.trim())} />
+      aria-describedby="about-name" value=${values.value.name}
+      onInput=${({ target }) => setField("name", target.value.trim())} />
+    <${Help} field="name" />
   </div>
 `;
 
-// ---- help: the sentence of the field in use
+// ---- help: a sentence below each field
 
-const helpField = signal("seeds");
-
-const help = (field) => () => (helpField.value = field);
-
-const Help = () => html`<p class="setting-help" aria-hidden="true">${helpFor(helpField.value)}</p>`;
+const Help = ({ field }) => html`<p class="sentence" id=${`about-${field}`}>${helpFor(field)}</p>`;
 
 // ---- a choice of several out of a few; at least one stays chosen
 
@@ -158,7 +156,7 @@ function CheckList({ field, label, choices }) {
     else event.target.checked = true;
   };
   return html`
-    <fieldset class="field" onFocusIn=${help(field)} onPointerEnter=${help(field)}>
+    <fieldset class="field" aria-describedby=${`about-${field}`}>
       <legend>${label}</legend>
       <div class="checks">
         ${choices.map(([name, title]) => html`
@@ -168,6 +166,7 @@ function CheckList({ field, label, choices }) {
           </label>
         `)}
       </div>
+      <${Help} field=${field} />
     </fieldset>
   `;
 }
@@ -189,7 +188,7 @@ function TypedField({ field, label, text, parse, inputmode, placeholder = undefi
     setMistake(field, null);
   };
   return html`
-    <div class="field" onFocusIn=${help(field)} onPointerEnter=${help(field)}>
+    <div class="field">
       <label for=${`experiment-${field}`}>${label}</label>
       <span class="number">
         <input type="text" inputmode=${inputmode} id=${`experiment-${field}`} value=${draft ?? text}
@@ -198,7 +197,7 @@ function TypedField({ field, label, text, parse, inputmode, placeholder = undefi
           aria-describedby=${mistake ? `wrong-${field}` : `about-${field}`} onInput=${onInput} onBlur=${onBlur} />
         ${mistake && html`<span class="mistake" role="alert" id=${`wrong-${field}`}>${mistake}</span>`}
       </span>
-      <span class="sr-only" id=${`about-${field}`}>${helpFor(field)}</span>
+      <${Help} field=${field} />
     </div>
   `;
 }

@@ -12,9 +12,10 @@ import { html } from "../elements.js";
 // ---- all gaits together: how near learners come to greedy, how many walk, how often they beat it at time-out
 
 const BEATS_GREEDY = "Beats it at time-out";
+const SHARES = "Share of greedy’s distance, a dot for each seed";
 const POOLED_COLUMNS = [
   { title: "Setting" },
-  { title: "Share of greedy’s distance", kind: "wide-cell" },
+  { title: SHARES, kind: "wide-cell" },
   { title: "Typical", words: "Interquartile mean, with its 95 % interval" },
   { title: "Walk", words: "Get at least half as far as greedy" },
   { title: "Reach greedy", words: "Get at least 95 % as far" },
@@ -35,7 +36,7 @@ export function AtAGlance({ known }) {
     <section class="panel glance" aria-labelledby="glance">
       <h2 id="glance">All gaits together</h2>
       <p class="dim">Total distance as a share of greedy’s in the same place; a robot that gets half as far walks.</p>
-      <div class="scroller tall" tabindex="0" role="region" aria-label="Table of all gaits together">
+      <div class="scroller" tabindex="0" role="region" aria-label="Table of all gaits together">
         <table class="facts-table stacking" role="table">
           <thead role="rowgroup"><tr role="row">
             ${columns.map(({ title, words, kind }) => html`
@@ -60,9 +61,9 @@ function PooledRow({ one, varied, points, high, isRaced }) {
   return html`
     <tr role="row">
       <th role="rowheader" scope="row">${nameOf(one, varied)}</th>
-      <td role="cell" class="wide-cell">
+      <td role="cell" class="wide-cell" data-label=${SHARES}>
         <${DotStrip} label=${label} points=${points} high=${high} typical=${one.relative} marks=${MARKS}
-          color=${agentOf(one.agent).color} height=${44} />
+          color=${agentOf(one.agent).color} height=${44} axis=${percentage} />
       </td>
       <td role="cell" data-label="Typical" class="num">
         <b>${percentage(iqm)}</b>${interval && html`<br /><span class="dim">${interval}</span>`}
@@ -209,7 +210,7 @@ export function FairClocks({ timed }) {
         The distances above are under the paper clock. Here a decision costs the time that it took on this machine:
         one race in each place, with the first seed; distances at time-out.
       </p>
-      <div class="scroller tall" tabindex="0" role="region" aria-label="Races under the real clock">
+      <div class="scroller" tabindex="0" role="region" aria-label="Races under the real clock">
         <table class="facts-table">
           <thead>
             <tr>

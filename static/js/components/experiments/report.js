@@ -3,7 +3,7 @@ import { useMemo, useState } from "preact/hooks";
 import { pending } from "../../actions.js";
 import { downloads, fileAddress, reportAddress } from "../../api.js";
 import { command, deleteExperiment, paceOf, summary, summaryError } from "../../experiments/runs.js";
-import { count, duration, sentence } from "../../format.js";
+import { count, duration } from "../../format.js";
 import { isActive, isOperator } from "../../selectors.js";
 import { describeRun, runTitle, simulatorTitle } from "../../titles.js";
 import { html, Icon, Problem, ProgressBar } from "../elements.js";
@@ -68,7 +68,7 @@ function ReportHead({ run }) {
         <p class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${run.state}</p>
         <${Actions} run=${run} />
       </div>
-      <p class="dim">${sentence(describeRun(run))}</p>
+      <p class="dim">${describeRun(run)}</p>
       ${(isUnderWay || run.state === "stopped") && html`
         <div class="progress">
           <p><span class="num">${pace.label}</span><span class="dim num">${pace.left}</span></p>

@@ -4,13 +4,14 @@ import { bare, factorOf, greedyTotals, inUnit, shown } from "../../experiments/d
 import { count, percentage } from "../../format.js";
 import { largest } from "../../scale.js";
 import { agentOf } from "../../settings.js";
-import { fieldTitle, valueTitle, variedFields } from "../../titles.js";
+import { fieldTitle, isNamedByValue, valueTitle, variedFields } from "../../titles.js";
 import { DotStrip } from "../charts.js";
 import { html, Segments } from "../elements.js";
 import { StripKey, UnitSwitch } from "./report-tools.js";
 
 const ORDERS = [["grid", "In the grid’s order"], ["best", "Furthest first"]];
 const MOST_ROWS = 60;
+const STRIP_TITLE = "Total distance in 50 steps, a dot for each seed";
 
 export function SweepTable({ known }) {
   const [order, setOrder] = useState("grid");
@@ -30,7 +31,7 @@ export function SweepTable({ known }) {
         <${UnitSwitch} />
       </div>
       <${StripKey} signs=${["seed", "typical", "greedy"]} color=${color} />
-      <div class="scroller tall" tabindex="0" role="region" aria-label="Every setting">
+      <div class="scroller" tabindex="0" role="region" aria-label="Every setting">
         <table class="facts-table stacking" role="table">
           <${Head} columns=${columns} />
           <tbody role="rowgroup">
@@ -80,23 +81,25 @@ function measured(setting, greedy_m) {
 const Head = ({ columns }) => html`
   <thead role="rowgroup">
     <tr role="row">
-      ${columns.map((field) => html`<th role="columnheader" scope="col">${fieldTitle(field)}</th>`)}
-      <th role="columnheader" scope="col" class="wide-cell">Total distance, 50 steps</th>
+      <th role="columnheader" scope="col">${columns.map(fieldTitle).join(", ")}</th>
+      <th role="columnheader" scope="col" class="wide-cell">${STRIP_TITLE}</th>
       <th role="columnheader" scope="col" title="Interquartile mean, with its 95 % interval">Typical</th>
       <th role="columnheader" scope="col" title="Get at least half as far as greedy">Walk</th>
     </tr>
   </thead>
 `;
 
+/** What was varied, with its values: "Sarsa(λ), α 0.1". */
+const nameOf = (setting, columns) =>
+  columns.filter((field) => setting[field] !== null && setting[field] !== undefined)
+    .map((field) => (isNamedByValue(field) ? "" : `${fieldTitle(field)}\u00a0`) + valueTitle(field, setting[field]))
+    .join(", ");
+
 function Row({ row: { setting, points, typical, line }, columns, high }) {
-  const [first, ...others] = columns;
   return html`
     <tr role="row">
-      <th role="rowheader" scope="row">${valueTitle(first, setting[first])}</th>
-      ${others.map((field) => html`
-        <td role="cell" data-label=${fieldTitle(field)} class="num">${valueTitle(field, setting[field])}</td>
-      `)}
-      <td role="cell" class="wide-cell">
+      <th role="rowheader" scope="row" class="num">${nameOf(setting, columns)}</th>
+      <td role="cell" class="wide-cell" data-label=${STRIP_TITLE}>
         ${typical
           ? html`<${Strip} agent=${setting.agent} points=${points} typical=${typical} line=${line} high=${high} />`
           : html`<span class="dim">waiting for its first seed</span>`}
@@ -112,7 +115,7 @@ function Strip({ agent, points, typical, line, high }) {
   const marks = line === null ? [] : [{ value: line, kind: "greedy" }];
   return html`
     <${DotStrip} label=${label} points=${points} high=${high} typical=${typical} marks=${marks}
-      color=${agentOf(agent).color} />
+      color=${agentOf(agent).color} axis=${shown} />
   `;
 }
 

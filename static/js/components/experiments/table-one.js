@@ -115,7 +115,7 @@ function LearnerCell({ setting, distance, greedy, measure }) {
     <td role="cell" class="learner" data-label=${label}>
       <p class="cell-words num"><b>${shown(typical.iqm)}</b> <span class="dim">${intervalOf(typical)}</span></p>
       <${DotStrip} label=${captionOf(shares)} points=${points} high=${measure.high} typical=${typical} marks=${marks}
-        color=${agentOf(setting.agent).color} />
+        color=${agentOf(setting.agent).color} axis=${shown} />
       <${Published} value=${printed} quantile=${setting.published?.[`${distance}_quantile`] ?? null} />
     </td>
   `;
