@@ -4,14 +4,14 @@ import {
   canStart, missingLane, pause, pending, primaryAction, resume, resumeRun, runPrimaryAction, secondaryActions,
   showOnStage, stop,
 } from "../actions.js";
-import { form } from "../form.js";
+import { chooseLearner, form, mistakes } from "../form.js";
 import { count, whole } from "../format.js";
 import { isNarrow } from "../page.js";
 import { interruptedRun, isOperator, myWork, offStage, progress, shownRun, work } from "../selectors.js";
-import { agentOf, ratesInWords } from "../settings.js";
+import { agentOf, learners, ratesInWords } from "../settings.js";
 import { scene } from "../store.js";
 import { gaitTitle } from "../titles.js";
-import { html, Icon, Problem, ProgressBar } from "./elements.js";
+import { goToField, Held, html, Icon, Problem, ProgressBar } from "./elements.js";
 import { Settings } from "./settings.js";
 
 export function Controls() {
@@ -47,11 +47,14 @@ function Actions() {
   const isBusy = Boolean(myWork.value) || pending.value.start;
   const label = isBusy ? busyLabel() : primaryAction.value.label;
   const isDisabled = isBusy || !canStart.value;
+  const isHeld = !isBusy && Object.keys(mistakes.value).length > 0;
   return html`
     <div class="actions">
-      <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${runPrimaryAction}>
+      <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${runPrimaryAction}
+        aria-describedby=${isHeld ? "held-start" : undefined}>
         ${!isBusy && html`<${Icon} name="play" />`}${label}
       </button>
+      ${isHeld && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
       <${Problem} at="start" />
       ${!isBusy && html`<${MissingLane} />`}
       ${!myWork.value && html`<${SecondaryActions} />`}
@@ -64,6 +67,14 @@ function Actions() {
       <${Interrupted} />
     </div>
   `;
+}
+
+/** Focus a field; a setting of another learner of the race has one once that learner is chosen. */
+function showField(field) {
+  const { agent, lanes } = form.value;
+  const owner = learners.value.find(({ name, settings }) => lanes.includes(name) && field in settings);
+  if (owner && !(field in agentOf(agent).settings)) chooseLearner(owner.name);
+  requestAnimationFrame(() => goToField(`field-${field}`));
 }
 
 const busyLabel = () => {

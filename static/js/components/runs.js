@@ -4,7 +4,8 @@ import { copySettings, deleteRun, isShown, pending, resumeRun, showOnStage } fro
 import { downloads, listRuns } from "../api.js";
 import { paceOf } from "../experiments/runs.js";
 import { ago, count, listed, metres, sentence, whole } from "../format.js";
-import { everyRun, hasTable, isActive, isOperator, presetOf } from "../selectors.js";
+import { everyRun, hasTable, isActive, isOperator } from "../selectors.js";
+import { formRobot, isSame } from "../robots.js";
 import { agentOf, ratesInWords } from "../settings.js";
 import { damagedRuns, requestRuns, served } from "../store.js";
 import { describeRun, gaitTitle, observationTitle, robotTitle, runTitle, simulatorTitle } from "../titles.js";
@@ -128,16 +129,15 @@ const StateOf = ({ run: { state, queue_position } }) => html`
   </p>
 `;
 
-const gaitOf = ({ config: { gait } }) => (typeof gait === "string" ? gaitTitle(gait) : "own gait");
+const gaitOf = ({ config: { gait } }) => gaitTitle(gait);
 
 function summaryOf(run) {
   const { config } = run;
   const { robot, simulator, agent } = served().defaults.training;
-  const name = presetOf(config.robot);
   // What is as by default is not named.
   const learner = [undefined, agent].includes(config.agent) ? "" : agentOf(config.agent).title;
   const place = [
-    name === robot ? "" : robotTitle(name ?? config.robot.name ?? "own robot"),
+    isSame(formRobot(config.robot), robot) ? "" : robotTitle(config.robot),
     config.simulator === simulator ? "" : simulatorTitle(config.simulator),
   ];
   const own = run.kind === "race" ? ofRace(config) : ofTraining(run);

@@ -9,6 +9,7 @@ import { agentOf, learns } from "../settings.js";
 import {
   answer, error, evaluateSettings, isComputing, isCurrent, isPanelOpen, isTooLong, mostSteps, seeds,
 } from "../what-if.js";
+import { messageOf } from "../titles.js";
 import { DotStrip } from "./charts.js";
 import { html } from "./elements.js";
 
@@ -96,7 +97,7 @@ function Status({ known }) {
   if (error.value && !isComputing.value) {
     return html`
       <p class="what-if-words bad" role="alert">
-        <span>${error.value.message}</span> <button class="link" onClick=${evaluateSettings}>Try again</button>
+        <span>${messageOf(error.value)}</span> <button class="link" onClick=${evaluateSettings}>Try again</button>
       </p>
     `;
   }

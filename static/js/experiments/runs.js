@@ -23,7 +23,7 @@ export const wantedRun = signal(null);
 const query = () => {
   const search = new URLSearchParams(toQuery());
   if (wantedRun.value) search.set("run", wantedRun.value);
-  return search.toString().replaceAll("%2C", ",");
+  return search.toString().replaceAll("%2C", ",").replaceAll("%3B", ";");
 };
 
 const currentHash = () => (query() ? `#experiments?${query()}` : "#experiments");

@@ -3,16 +3,16 @@ import { signal } from "@preact/signals";
 import { useState } from "preact/hooks";
 import { pending, refusedFields } from "../../actions.js";
 import {
-  agentSettings, chooseExperiment, chosenExperiment, defaults, experiments, mistakes, setField, setMistake, takesField,
-  values,
+  agentSettings, chooseExperiment, chosenExperiment, defaults, enter, experiments, mistakes, parse, setField,
+  takesField, values, wrong,
 } from "../../experiments/form.js";
 import { canStart, start, startLabel } from "../../experiments/runs.js";
 import { listed, sentence, whole } from "../../format.js";
 import { isNarrow } from "../../page.js";
-import { limitsOf, mistakeIn, parseValues, settingOf, shortTitle } from "../../settings.js";
+import { settingOf, shortTitle } from "../../settings.js";
 import { options } from "../../store.js";
 import { agentTitle, choicesOf, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../../titles.js";
-import { html, Icon, Problem } from "../elements.js";
+import { goToField, Held, html, Icon, Mistake, Problem } from "../elements.js";
 import { helpFor } from "../fields.js";
 
 /** @import { SettingValue } from "../../types.js" */
@@ -62,27 +62,36 @@ const Fields = () => html`
 
 function StartButton() {
   const isDisabled = !canStart() || pending.value.experiment;
+  const isHeld = Object.keys(mistakes.value).length > 0;
   return html`
-    <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${() => !isDisabled && start()}>
+    <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${() => !isDisabled && start()}
+      aria-describedby=${isHeld ? "held-experiment" : undefined}>
       ${pending.value.experiment ? "Starting…" : html`<${Icon} name="play" />${startLabel()}`}
     </button>
+    ${isHeld && html`
+      <${Held} id="held-experiment" mistakes=${mistakes.value}
+        onField=${(field) => goToField(`experiment-${field}`)} />
+    `}
   `;
 }
 
 const Cards = () => html`
-  <fieldset class="cards">
+  <fieldset class="cards" role="radiogroup" aria-invalid=${wrong.value.experiment ? "true" : undefined}
+    aria-describedby=${wrong.value.experiment && "wrong-experiment"}>
     <legend class="sr-only">Experiment</legend>
-    ${experiments.value.map(({ name, title, description }) => html`
+    ${experiments.value.map(({ name, title, description }, number) => html`
       <label class="card" key=${name}>
-        <input class="sr-only" type="radio" name="experiment" checked=${chosenExperiment.value.name === name}
+        <input class="sr-only" type="radio" name="experiment" id=${number ? undefined : "experiment-experiment"}
+          checked=${!wrong.value.experiment && chosenExperiment.value.name === name}
           onChange=${() => chooseExperiment(name)} />
         <b>${title}</b><span>${description}</span>
       </label>
     `)}
+    <${MistakeOf} field="experiment" />
   </fieldset>
 `;
 
-/** Fields that a sweep combines: one value each, or several with commas. */
+/** Fields that a sweep combines: one value each, or several. */
 const Grid = ({ fields }) => fields.length > 0 && html`
   <fieldset class="grid-fields">
     <legend>Every combination of</legend>
@@ -95,7 +104,7 @@ const Grid = ({ fields }) => fields.length > 0 && html`
 /** Gaits, robots, observations and simulator: rarely changed, so one line until opened. */
 const More = () => html`
   <details class="more">
-    <summary>Where and how<span class="dim">${placeSummary()}</span></summary>
+    <summary>Robots and gaits<span class="dim">${placeSummary()}</span></summary>
     <div class="where">
       <${CheckList} field="gaits" label="Gaits" choices=${choicesOf(options.value?.gaits, gaitTitle)} />
       <${CheckList} field="robots" label="Robots" choices=${choicesOf(options.value?.robots, robotTitle)} />
@@ -122,21 +131,43 @@ function placeSummary() {
 const SimulatorField = () => html`
   <div class="field" onFocusIn=${help("simulator")}>
     <label for="experiment-simulator">Simulator</label>
-    <select id="experiment-simulator" onChange=${({ target }) => setField("simulator", target.value)}>
+    <select ...${attributesOf("simulator")} onChange=${({ target }) => setField("simulator", target.value)}>
+      ${wrong.value.simulator && html`
+        <option value="" selected disabled>${wrong.value.simulator.text || "(empty)"}: not valid</option>
+      `}
       ${(options.value?.simulators ?? []).map(({ name }) => html`
-        <option value=${name} selected=${name === values.value.simulator}>${sentence(simulatorTitle(name))}</option>
+        <option value=${name} selected=${!wrong.value.simulator && name === values.value.simulator}>
+          ${sentence(simulatorTitle(name))}
+        </option>
       `)}
     </select>
+    <${MistakeOf} field="simulator" />
+    <${Description} field="simulator" />
   </div>
 `;
 
 const NameField = () => html`
   <div class="field" onFocusIn=${help("name")}>
     <label for="experiment-name">Name</label>
-    <input type="text" id="experiment-name" maxlength=${limitsOf("name").maximum} placeholder="optional"
-      value=${values.value.name} onInput=${({ target }) => setField("name", target.value.trim())} />
+    <input type="text" ...${attributesOf("name")} placeholder="optional"
+      value=${wrong.value.name?.text ?? values.value.name} onInput=${({ target }) => enter("name", target.value)} />
+    <${MistakeOf} field="name" />
+    <${Description} field="name" />
   </div>
 `;
+
+// ---- what is not valid, and why
+
+/** The attributes of a field's control: its id, whether it is marked, and what describes it. */
+const attributesOf = (field) => ({
+  id: `experiment-${field}`,
+  "aria-invalid": wrong.value[field] || refusedFields("experiment").includes(field) ? "true" : undefined,
+  "aria-describedby": wrong.value[field] ? `wrong-${field} about-${field}` : `about-${field}`,
+});
+
+const MistakeOf = ({ field }) => html`<${Mistake} id=${`wrong-${field}`}>${wrong.value[field]?.mistake}<//>`;
+
+const Description = ({ field }) => html`<span class="sr-only" id=${`about-${field}`}>${helpFor(field)}</span>`;
 
 // ---- help: the sentence of the field in use
 
@@ -146,83 +177,65 @@ export const help = (field) => () => (helpField.value = field);
 
 export const Help = () => html`<p class="setting-help" aria-hidden="true">${helpFor(helpField.value)}</p>`;
 
-// ---- a choice of several out of a few; at least one stays chosen
+// ---- a choice of several out of a few; with none the start is held
 
 /** `choices`: [value, title]. */
 export function CheckList({ field, label, choices }) {
-  const chosen = /** @type {string[]} */ (values.value[field]);
-  const toggle = (event, name) => {
+  const chosen = /** @type {string[]} */ (wrong.value[field]?.text.split(",") ?? values.value[field]);
+  const toggle = (name) => {
     const isChosen = (one) => (one === name ? !chosen.includes(one) : chosen.includes(one));
-    const next = choices.map(([one]) => one).filter(isChosen);
-    if (next.length) setField(field, next);
-    else event.target.checked = true;
+    enter(field, choices.map(([one]) => one).filter(isChosen).join(","));
   };
   return html`
     <fieldset class="field" onFocusIn=${help(field)} onPointerEnter=${help(field)}>
       <legend>${label}</legend>
       <div class="checks">
-        ${choices.map(([name, title]) => html`
+        ${choices.map(([name, title], number) => html`
           <label class="check" key=${name}>
-            <input type="checkbox" checked=${chosen.includes(name)} onChange=${(event) => toggle(event, name)} />
+            <input type="checkbox" checked=${chosen.includes(name)} onChange=${() => toggle(name)}
+              ...${attributesOf(field)} id=${number ? undefined : `experiment-${field}`} />
             ${title}
           </label>
         `)}
       </div>
+      <${MistakeOf} field=${field} />
+      <${Description} field=${field} />
     </fieldset>
   `;
 }
 
-// ---- text fields: a whole number, or values with commas; a mistake disables the start
+// ---- text fields: a whole number, or a list of values; what is typed stays as it is
 
-function TypedField({ field, label, text, parse, inputmode, placeholder = undefined }) {
-  const [draft, setDraft] = useState(null);
-  const mistake = mistakes.value[field];
-  const isRefused = refusedFields("experiment").includes(field);
+function TypedField({ field, label, text, inputmode, placeholder = undefined }) {
+  const [draft, setDraft] = useState(/** @type {string | null} */ (null));
+  const isKept = draft !== null && String(parse(field, draft).value) === String(values.value[field]);
   const onInput = ({ target }) => {
     setDraft(target.value);
-    const parsed = parse(target.value);
-    setMistake(field, parsed.mistake ?? null);
-    if (!parsed.mistake) setField(field, parsed.value);
-  };
-  const onBlur = () => {
-    setDraft(null);
-    setMistake(field, null);
+    enter(field, target.value);
   };
   return html`
     <div class="field" onFocusIn=${help(field)} onPointerEnter=${help(field)}>
       <label for=${`experiment-${field}`}>${label}</label>
-      <span class="number">
-        <input type="text" inputmode=${inputmode} id=${`experiment-${field}`} value=${draft ?? text}
-          placeholder=${placeholder}
-          aria-invalid=${mistake || isRefused ? "true" : undefined}
-          aria-describedby=${mistake ? `wrong-${field}` : `about-${field}`} onInput=${onInput} onBlur=${onBlur} />
-        ${mistake && html`<span class="mistake" role="alert" id=${`wrong-${field}`}>${mistake}</span>`}
-      </span>
-      <span class="sr-only" id=${`about-${field}`}>${helpFor(field)}</span>
+      <input type="text" inputmode=${inputmode} autocomplete="off" ...${attributesOf(field)}
+        value=${wrong.value[field]?.text ?? (isKept ? draft : text)} placeholder=${placeholder} onInput=${onInput} />
+      <${MistakeOf} field=${field} />
+      <${Description} field=${field} />
     </div>
   `;
 }
 
 /** One whole number. */
-export function CountField({ field, label }) {
-  const parse = (typed) => {
-    const value = /^\d+$/.test(typed.trim()) ? Number(typed) : NaN;
-    const mistake = mistakeIn(value, limitsOf(field), true);
-    return mistake ? { mistake } : { value };
-  };
-  const text = String(values.value[field]);
-  return html`<${TypedField} field=${field} label=${label} text=${text} parse=${parse} inputmode="numeric" />`;
-}
+export const CountField = ({ field, label }) => html`
+  <${TypedField} field=${field} label=${label} text=${String(values.value[field])} inputmode="numeric" />
+`;
 
 const joined = (list) => /** @type {SettingValue[]} */ (list).join(", ");
 
-/** One value of a setting, or several with commas between; none where each agent has its own default. */
+/** One value of a setting, or several; none where each agent has its own default. */
 export function ValuesField({ field, setting }) {
-  const standard = defaults.value[field];
-  const isOwn = joined(standard) === "";
-  const parse = (typed) => (isOwn && typed.trim() === "" ? { value: standard } : parseValues(typed, setting));
+  const isOwn = joined(defaults.value[field]) === "";
   return html`
-    <${TypedField} field=${field} label=${shortTitle(setting)} text=${joined(values.value[field])} parse=${parse}
+    <${TypedField} field=${field} label=${shortTitle(setting)} text=${joined(values.value[field])}
       inputmode=${setting.is_number ? "decimal" : "text"} placeholder=${isOwn ? "by default" : undefined} />
   `;
 }
