@@ -108,7 +108,7 @@ const isWithin = (value, { minimum, maximum, excludes_minimum, excludes_maximum 
 export function mistakeIn(value, limits, isInteger) {
   const range = rangeOf(limits);
   const said = range && `, ${range}`;
-  if (!Number.isFinite(value)) return `Enter a number${said}`;
+  if (!Number.isFinite(value)) return `Enter a ${isInteger ? "whole number" : "number"}${said}`;
   if (isInteger && !Number.isInteger(value)) return `Enter a whole number${said}`;
   // Beyond it a number of the page is not exact: another would be sent than was typed.
   if (isInteger && value > Number.MAX_SAFE_INTEGER) return `Must be at most ${whole(Number.MAX_SAFE_INTEGER)}`;

@@ -92,7 +92,7 @@ const PLACE_TITLES = { gait: "Gait", observation: "Observation", robot: "Robot",
  */
 export function fieldTitle(field) {
   const setting = options.value?.settings[field];
-  return PLACE_TITLES[field] ?? (setting ? shortTitle(setting) : field);
+  return PLACE_TITLES[field] ?? (setting ? shortTitle(setting) : LABELS[field] ?? field);
 }
 
 /**

@@ -93,7 +93,7 @@ def test_ten_wrong_values_of_each_field_stay_and_are_explained(
     page.get_by_role("checkbox", name="Feet measured").uncheck()
     expect(page.locator("#wrong-observations")).to_have_text("Choose at least 1 of these")
     assert dashboard.violations() == []
-    page.locator("#held-experiment").get_by_role("button", name="Learning rate α").click()
+    page.locator("#held-experiment").get_by_role("button", name="α").click()
     expect(alpha).to_be_focused()
 
 

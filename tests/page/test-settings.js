@@ -107,6 +107,7 @@ test("a number is refused with the reason", () => {
   assert.equal(mistakeIn(NaN, limits(0, null), false), "Enter a number, at least 0");
   assert.equal(mistakeIn(1.5, limits(1, 10), true), "Enter a whole number, from 1 to 10");
   assert.equal(mistakeIn(NaN, limits(null, null), false), "Enter a number");
+  assert.equal(mistakeIn(NaN, limits(null, null), true), "Enter a whole number");
 });
 
 test("a limit that is not valid itself is refused", () => {

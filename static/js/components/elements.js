@@ -91,12 +91,12 @@ export function Problem({ at }) {
 export const Mistake = ({ id, children }) =>
   children && html`<span class="mistake" role="alert" id=${id}>${children}</span>`;
 
-/** Why the button below is held: each field that is not valid, to go to, and what it must be. */
-export const Held = ({ id, mistakes, onField }) => html`
+/** Why the button above is held: each field that is not valid, to go to, and what it must be. */
+export const Held = ({ id, mistakes, onField, nameOf = labelOf }) => html`
   <ul class="held" id=${id}>
     ${Object.entries(mistakes).map(([field, mistake]) => html`
       <li key=${field}>
-        <button class="link" onClick=${() => onField(field)}>${labelOf(field)}</button>: ${mistake}
+        <button class="link" onClick=${() => onField(field)}>${nameOf(field)}</button>: ${mistake}
       </li>
     `)}
   </ul>

@@ -11,7 +11,9 @@ import { listed, sentence, whole } from "../../format.js";
 import { isNarrow } from "../../page.js";
 import { settingOf, shortTitle } from "../../settings.js";
 import { options } from "../../store.js";
-import { agentTitle, choicesOf, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../../titles.js";
+import {
+  agentTitle, choicesOf, fieldTitle, gaitTitle, observationTitle, robotTitle, simulatorTitle,
+} from "../../titles.js";
 import { goToField, Held, html, Icon, Mistake, Problem } from "../elements.js";
 import { helpFor } from "../fields.js";
 
@@ -47,7 +49,7 @@ const Fields = () => html`
     <${Cards} />
     <div class="pair">
       <${CountField} field="seeds" label="Seeds" />
-      <${CountField} field="seed" label="First seed" />
+      <${CountField} field="seed" label=${FIRST_SEED} />
     </div>
     ${takesField("agents") && html`
       <${CheckList} field="agents" label="Agents" choices=${choicesOf(options.value?.agents, agentTitle)} />
@@ -69,11 +71,15 @@ function StartButton() {
       ${pending.value.experiment ? "Starting…" : html`<${Icon} name="play" />${startLabel()}`}
     </button>
     ${isHeld && html`
-      <${Held} id="held-experiment" mistakes=${mistakes.value}
+      <${Held} id="held-experiment" mistakes=${mistakes.value} nameOf=${nameOf}
         onField=${(field) => goToField(`experiment-${field}`)} />
     `}
   `;
 }
+
+/** A field's name as this form shows it. */
+const nameOf = (field) => (field === "seed" ? FIRST_SEED : fieldTitle(field));
+const FIRST_SEED = "First seed";
 
 const Cards = () => html`
   <fieldset class="cards" role="radiogroup" aria-invalid=${wrong.value.experiment ? "true" : undefined}
