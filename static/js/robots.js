@@ -35,11 +35,20 @@ export const isSame = (one, other) => canonical(one) === canonical(other);
 /** @type {[string, string][]} */
 const UNITS = [["_nm", "N·m"], ["_kg", "kg"], ["_m", "m"], ["_s", "s"]];
 
+/**
+ * A part of a robot in words, and its unit: ["femur", "m"] of `femur_m`.
+ * @param {string} field
+ */
+export function partInWords(field) {
+  const [suffix, unit] = UNITS.find(([ending]) => field.endsWith(ending)) ?? ["", ""];
+  const words = field.slice(0, field.length - suffix.length).replaceAll("_", " ").replace("n legs", "number of legs");
+  return [words, unit];
+}
+
 /** @type {(field: string, value: unknown) => string} */
 function differenceInWords(field, value) {
   if (Array.isArray(value)) return `${value.length} own ${field}`;
-  const [suffix, unit] = UNITS.find(([ending]) => field.endsWith(ending)) ?? ["", ""];
-  const words = field.slice(0, field.length - suffix.length).replaceAll("_", " ").replace("n legs", "number of legs");
+  const [words, unit] = partInWords(field);
   return `${words} ${value}${unit && `\u00a0${unit}`}`;
 }
 

@@ -1,7 +1,7 @@
 // Display names of what the server knows by identifiers, and of experiments' fields, values and runs.
 import { experimentOf } from "./experiments/form.js";
 import { count, sentence } from "./format.js";
-import { customRobotInWords, presetOf } from "./robots.js";
+import { customRobotInWords, partInWords, presetOf } from "./robots.js";
 import { agentOf, shortTitle, titleOf } from "./settings.js";
 import { options } from "./store.js";
 
@@ -60,6 +60,10 @@ export function labelOf(field) {
   return setting ? titleOf(setting) : LABELS[field] ?? field;
 }
 
+const ROBOT_PART = /\brobot\.([a-z_]+)/gi;
+/** @param {string} text */
+const withPartsInWords = (text) => text.replace(ROBOT_PART, (_, part) => `Robot, ${partInWords(part)[0]}`);
+
 /** A path of the API, such as `lanes.0.training.alpha`, and what follows it where it is the subject of a sentence. */
 const PATH = /\b(lanes\.\d+\.(?:training\.)?)?([A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*)(?=( must be | is missing)?)/g;
 
@@ -69,7 +73,7 @@ const PATH = /\b(lanes\.\d+\.(?:training\.)?)?([A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-
  * @param {string} text
  */
 export const inFormWords = (text) =>
-  text.replace(PATH, (...[whole, path, name, verb]) => {
+  withPartsInWords(text).replace(PATH, (...[whole, path, name, verb]) => {
     const field = name.toLowerCase();
     const isField = options.value?.settings[field] || field in LABELS;
     return isField && (path || verb || name.includes("_")) ? labelOf(field) : whole;

@@ -224,6 +224,8 @@ test("errors name fields as the form shows them", () => {
     "Final exploration ε must be from 0 to 1.");
   assert.equal(inFormWords("Leg 2 cannot reach it; choose a smaller grid_side_m than 0.9."),
     "Leg 2 cannot reach it; choose a smaller Grid side than 0.9.");
+  assert.equal(inFormWords("Robot.femur_m must be from 0.001 to 2, not 9."),
+    "Robot, femur must be from 0.001 to 2, not 9.");
   assert.equal(inFormWords("Seeds must be from 1 to 5; 50 steps are too many."),
     "Seeds must be from 1 to 5; 50 steps are too many.");
 });

@@ -5,12 +5,12 @@ import {
   showOnStage, stop,
 } from "../actions.js";
 import { chooseLearner, form, mistakes } from "../form.js";
-import { count, whole } from "../format.js";
+import { count, listed, whole } from "../format.js";
 import { isNarrow } from "../page.js";
 import { interruptedRun, isOperator, myWork, offStage, progress, shownRun, work } from "../selectors.js";
 import { agentOf, learners, ratesInWords } from "../settings.js";
 import { scene } from "../store.js";
-import { gaitTitle } from "../titles.js";
+import { gaitTitle, inFormWords, labelOf } from "../titles.js";
 import { goToField, Held, html, Icon, Problem, ProgressBar } from "./elements.js";
 import { Settings } from "./settings.js";
 
@@ -30,7 +30,10 @@ export function Controls() {
 function FoldedSettings() {
   const [isOpen, setOpen] = useState(false);
   const { gait, steps, agent } = form.value;
-  const about = [gaitTitle(gait), count(steps, "step"), agentOf(agent).title, ...ratesInWords(agent, form.value)];
+  const wrong = Object.keys(mistakes.value).map(labelOf);
+  const about = wrong.length
+    ? [`Not valid: ${listed(wrong)}`]
+    : [gaitTitle(gait), count(steps, "step"), agentOf(agent).title, ...ratesInWords(agent, form.value)];
   const onToggle = ({ target }) => isNarrow.value && setOpen(target.open);
   return html`
     <details class="folded" open=${isOpen || !isNarrow.value} onToggle=${onToggle}>
@@ -155,7 +158,7 @@ function Failure() {
   if (run?.state !== "failed") return null;
   return html`
     <div class="notice bad">
-      <p><b>The ${run.kind} failed.</b> ${run.error}</p>
+      <p><b>The ${run.kind} failed.</b> ${inFormWords(run.error ?? "")}</p>
       <p>Change what it names, or resume it from its last checkpoint. Other runs are not affected.</p>
       ${run.can_resume && html`<${ResumeButton} run=${run} />`}
     </div>

@@ -197,10 +197,16 @@ export function paceOf(run) {
 
 // ---- actions
 
-export const startLabel = () => `Run ${chosenExperiment.value.title}: ${count(trials.value, "trial")}`;
+const hasMistakes = () => Object.keys(mistakes.value).length > 0;
+
+/** Without a number of trials while a field is not valid, by which it would be another. */
+export function startLabel() {
+  const { title } = chosenExperiment.value;
+  return hasMistakes() ? `Run ${title}` : `Run ${title}: ${count(trials.value, "trial")}`;
+}
 
 export const canStart = () =>
-  isOperator.value && Object.keys(mistakes.value).length === 0 && trials.value > 0;
+  isOperator.value && !hasMistakes() && trials.value > 0;
 
 export const start = () =>
   attempt("experiment", async () => {
