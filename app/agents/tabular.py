@@ -50,8 +50,9 @@ Epsilon = Annotated[
 EpsilonStart = Annotated[
     Share,
     Setting(
-        title="Exploration, first episode",
+        title="Initial exploration",
         symbol="ε",
+        quantity="exploration",
         phrase="ε\u00a0from\u00a0{}",
         help="Share of random steps at the beginning of practice.",
         examples=(0.5, 1),
@@ -60,8 +61,9 @@ EpsilonStart = Annotated[
 EpsilonEnd = Annotated[
     Share,
     Setting(
-        title="Exploration, last episode",
+        title="Final exploration",
         symbol="ε",
+        quantity="exploration",
         phrase="ε\u00a0to\u00a0{}",
         help="Share of random steps at the end of practice.",
         examples=(0, 0.1),

@@ -52,6 +52,7 @@ class SettingOption(Answer):
 
     title: str
     symbol: str | None
+    quantity: str | None
     unit: str | None
     help: str
     valid: str = Field(description="the valid values, in words")

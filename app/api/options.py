@@ -256,6 +256,7 @@ def _setting(setting: DeclaredSetting) -> dict[str, Any]:
     return {
         "title": about.title,
         "symbol": about.symbol,
+        "quantity": about.quantity,
         "unit": about.unit,
         "help": about.help,
         "valid": setting.valid,

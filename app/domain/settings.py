@@ -44,6 +44,8 @@ class Setting:
         title: label of its control.
         help: description, one sentence.
         symbol: conventional symbol, such as α.
+        quantity: the part of the title that the symbol stands for, if it is not the whole title:
+            `exploration` of `Final exploration`, which is `Final ε` in short.
         phrase: format string for a value in a report, such as `{} divisions`; by default the
             symbol or title, and the value.
         unit: unit of a number, such as m.
@@ -54,6 +56,7 @@ class Setting:
     title: str
     help: str
     symbol: str | None = None
+    quantity: str | None = None
     phrase: str | None = None
     unit: str | None = None
     live: bool = False

@@ -40,7 +40,7 @@ Divisions = Annotated[
     Ge(MIN_DIVISIONS),
     Le(MAX_DIVISIONS),
     Setting(
-        title="Foot grid, divisions",
+        title="Grid divisions",
         phrase="{}\u00a0divisions",
         help="Points along each side of the foot grid: more choices, more to learn.",
         examples=(2, 3),
@@ -51,7 +51,7 @@ GridSide = Annotated[
     Ge(MIN_SIDE_M),
     Le(MAX_SIDE_M),
     Setting(
-        title="Foot grid, side",
+        title="Grid side",
         phrase="grid\u00a0{}\u00a0m",
         unit="m",
         help="Side of the square in which each foot may be put; every leg must reach all of it.",
@@ -81,7 +81,7 @@ StepsPerEpisode = Annotated[
     _StepCount,
     Setting(
         title="Steps per episode",
-        phrase="{}\u00a0an\u00a0episode",
+        phrase="{}\u00a0steps\u00a0per\u00a0episode",
         help="The share of random steps falls after every so many steps.",
         examples=(25, 50),
     ),
@@ -91,7 +91,7 @@ EvaluateEvery = Annotated[
     Ge(0),
     Le(MAX_STEPS),
     Setting(
-        title="Evaluate every",
+        title="Test every",
         unit="steps",
         help="After every so many steps it shows what it can; 0 is never.",
     ),

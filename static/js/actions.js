@@ -5,8 +5,9 @@ import { configAtEnd } from "./changes.js";
 import { chooseLearner, form, link, mistakes, raceBody, setField, setFields, trainingBody } from "./form.js";
 import { count, listed, whole } from "./format.js";
 import {
-  isActive, isOperator, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, myWork, presetOf, shownRun, work,
+  isActive, isOperator, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, myWork, shownRun, work,
 } from "./selectors.js";
+import { formRobot } from "./robots.js";
 import { agentOf, learns, limitsOf, settingsOf } from "./settings.js";
 import { markDeleted, options, rates, requestRun, requestStage, runs, scene, setEntry, stage } from "./store.js";
 
@@ -87,8 +88,8 @@ export const secondaryActions = computed(() => {
   if (!hasLearner.value) return [];
   /** @type {Action[]} */
   const actions = [];
-  if (isRaceRun.value) actions.push({ label: "Start afresh", run: () => startRace() });
-  else actions.push({ label: "Train only", run: () => startTraining() });
+  if (isRaceRun.value) actions.push({ label: "Start over", run: () => startRace() });
+  else actions.push({ label: "Train, don’t race", run: () => startTraining() });
   const tables = laneTables.value;
   if (tables) actions.push({ label: "Race only", run: () => startRace({ tables }) });
   return actions;
@@ -238,7 +239,7 @@ export function copySettings(run) {
   const racing = run.kind === "race" ? run.config.lanes.map((lane) => lane.agent) : [];
   const known = Object.keys({ ...form.value, ...settingsOf([form.value.agent, ...racing]) });
   const taken = Object.entries(config).filter(([field]) => known.includes(field) && field !== "name");
-  setFields({ ...Object.fromEntries(taken), robot: presetOf(robot) ?? robot ?? form.value.robot });
+  setFields({ ...Object.fromEntries(taken), robot: robot ? formRobot(robot) : form.value.robot });
 }
 
 /** @type {(race: Run) => Omit<Partial<RunConfig>, "lanes"> & { lanes: string[] }} */

@@ -9,7 +9,10 @@ const base = () => new URL("api/v1/", document.baseURI);
 /** An entry of a problem document. @typedef {{ field?: string, loc?: string[], pointer?: string }} FieldError */
 /** @typedef {{ title?: string, detail?: string, errors?: FieldError[] }} ProblemDocument */
 
-/** A failed request. `message` is fit to be shown; `fields` names the form fields that it is about. */
+/**
+ * A failed request. `message` is a sentence in which fields have the names of the API (`messageOf` gives those of the
+ * form); `fields` names the ones that it is about.
+ */
 export class RequestError extends Error {
   /**
    * @param {string} message

@@ -1,9 +1,11 @@
-// The form's values, their query string, and the request bodies that they make.
+// The form's values, what was typed that is none, their query string, and the request bodies that they make.
 import { computed, signal } from "@preact/signals";
-import { learners, learns, settingsOf, valueOf } from "./settings.js";
+import { parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
+import { learners, learns, limitsOf, settingsOf } from "./settings.js";
 import { options, served } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
+/** @import { Parsed } from "./parse.js" */
 /** @import { FormValue, FormValues, SettingValue } from "./types.js" */
 
 /** Empty until the server's options have come; no component shows the form before. */
@@ -11,8 +13,44 @@ const UNKNOWN = /** @type {FormValues} */ ({});
 
 /** What a person or a link has set; all else is the server's default. @type {Signal<Record<string, FormValue>>} */
 export const overrides = signal({});
-/** Field → why its text is not valid; any entry disables the start. @type {Signal<Record<string, string>>} */
-export const mistakes = signal({});
+/**
+ * Field → its text, as it was typed or as a link has it, while it is not valid. The field's value stays the last
+ * valid one until then.
+ * @type {Signal<Record<string, string>>}
+ */
+export const typed = signal({});
+
+// ---- texts as values
+
+/** @param {FormValue | undefined} value */
+const written = (value) =>
+  typeof value === "object" && value !== null && !Array.isArray(value) ? JSON.stringify(value) : String(value ?? "");
+
+/** @param {{ name: string }[]} list */
+const namesOf = (list) => list.map(({ name }) => name);
+
+/** Field that is no declared setting → how its text is read. @type {Record<string, (text: string) => Parsed<any>>} */
+const READERS = {
+  agent: (text) => parseChoice(text, namesOf(learners.value)),
+  gait: (text) => parseChoiceOrParts(text, namesOf(served().gaits)),
+  robot: (text) => parseChoiceOrParts(text, namesOf(served().robots)),
+  simulator: (text) => parseChoice(text, namesOf(served().simulators)),
+  observation: (text) => parseChoice(text, namesOf(served().observations)),
+  lanes: (text) => parseChoices(text, namesOf(served().agents), limitsOf("lanes")),
+  name: (text) => parseName(text, limitsOf("name")),
+};
+
+/**
+ * A text as the value of a field, or why it is none.
+ * @param {string} field
+ * @param {string} text
+ * @param {string[]} agents whose settings the field may be
+ * @returns {Parsed<any>}
+ */
+function read(field, text, agents) {
+  const declared = settingsOf(agents)[field] ?? served().settings[field];
+  return (READERS[field] ?? ((/** @type {string} */ one) => parseSetting(one, declared)))(text);
+}
 
 /**
  * The defaults of the fields that do not depend on the learner.
@@ -35,7 +73,7 @@ function defaultLanes(agent) {
 }
 
 /**
- * Values of an agent's settings: those that are given and of the right kind, else the agent's defaults.
+ * Values of an agent's settings: those that are given and valid for it, else the agent's defaults.
  * @param {string} agent
  * @param {Record<string, FormValue>} given
  * @returns {Record<string, SettingValue>}
@@ -43,8 +81,9 @@ function defaultLanes(agent) {
 const settingValues = (agent, given) =>
   Object.fromEntries(
     Object.entries(settingsOf([agent])).map(([name, setting]) => {
-      const value = name in given ? valueOf(written(given[name]), setting) : undefined;
-      return [name, value === undefined ? setting.default : value];
+      const texts = [typed.value[name], name in given ? written(given[name]) : undefined];
+      const readings = texts.filter((text) => text !== undefined).map((text) => parseSetting(text, setting));
+      return [name, readings.find(({ mistake }) => mistake === undefined)?.value ?? setting.default];
     }),
   );
 
@@ -65,11 +104,43 @@ const commonFields = () => {
 /** The common fields, and the settings of the chosen learner. */
 export const form = computed(() => (options.value ? complete(overrides.value) : UNKNOWN));
 
+/** The learners whose settings the form has: the chosen one, and the others of the race. */
+const learnersInUse = computed(() => [...new Set([form.value.agent, ...form.value.lanes.filter(learns)])]);
+
+/**
+ * The fields whose text is not valid: what was typed, and what is valid for another learner only. Any of them holds
+ * the start.
+ */
+export const wrong = computed(() => {
+  /** @type {Record<string, { text: string, mistake: string }>} */
+  const found = {};
+  if (!options.value) return found;
+  const check = (/** @type {string} */ field, /** @type {string} */ text, /** @type {string[]} */ agents) => {
+    const { mistake } = read(field, text, agents);
+    if (mistake !== undefined) found[field] ??= { text, mistake };
+  };
+  for (const agent of learnersInUse.value) {
+    for (const name of Object.keys(settingsOf([agent]))) {
+      if (name in typed.value) check(name, typed.value[name], [agent]);
+      else if (name in overrides.value) check(name, written(overrides.value[name]), [agent]);
+    }
+  }
+  const common = Object.keys({ ...commonDefaults(), agent: "", lanes: "" });
+  for (const field of common.filter((one) => one in typed.value)) check(field, typed.value[field], []);
+  return found;
+});
+
+/** Field → why its text is not valid; any entry disables the start. */
+export const mistakes = computed(() =>
+  Object.fromEntries(Object.entries(wrong.value).map(([field, { mistake }]) => [field, mistake])),
+);
+
 /**
  * Change fields, and the address with them.
  * @param {Record<string, FormValue>} changes
  */
 export const setFields = (changes) => {
+  typed.value = select(typed.value, (field) => !(field in changes));
   overrides.value = { ...overrides.value, ...changes };
   writeAddress();
 };
@@ -88,23 +159,21 @@ export function chooseLearner(agent) {
 }
 
 /**
- * A record with a message for a field, or without one.
- * @param {Record<string, string>} messages
+ * Take what was typed or chosen in a field: its value if the text is valid, else the text as it is.
  * @param {string} field
- * @param {string | null} message
+ * @param {string} text
  */
-export function withMistake(messages, field, message) {
-  const { [field]: _, ...others } = messages;
-  return message ? { ...others, [field]: message } : others;
+export function enter(field, text) {
+  const { value, mistake } = read(field, text, [form.value.agent]);
+  if (mistake === undefined) {
+    setField(field, value);
+    return;
+  }
+  typed.value = { ...typed.value, [field]: text };
+  writeAddress();
 }
 
-/** @type {(field: string, message: string | null) => void} */
-export const setMistake = (field, message) => (mistakes.value = withMistake(mistakes.value, field, message));
-
 // ---- the address
-
-/** @param {FormValue} value */
-const written = (value) => String(value ?? "");
 
 /** The form, and what is set for other learners of the race. @returns {Record<string, FormValue>} */
 const everyValue = () => {
@@ -114,42 +183,47 @@ const everyValue = () => {
 
 const isChanged = computed(() => {
   const defaults = complete({});
-  return Object.entries(everyValue()).some(([field, value]) => written(value) !== written(defaults[field]));
+  const isOther = (/** @type {[string, FormValue]} */ [field, value]) => written(value) !== written(defaults[field]);
+  return Object.keys(wrong.value).length > 0 || Object.entries(everyValue()).some(isOther);
 });
 
-/** The whole form as a query string; empty texts are left out. */
-export const toQuery = () =>
-  new URLSearchParams(
-    Object.entries(everyValue()).map(([field, value]) => [field, written(value)]).filter(([, value]) => value !== ""),
-  );
+/** The whole form as a query string, what is not valid as it was typed; empty texts are left out. */
+export function toQuery() {
+  const valid = Object.entries(everyValue()).map(([field, value]) => [field, written(value)]);
+  const entries = valid.filter(([field, text]) => text !== "" && !(field in wrong.value));
+  return new URLSearchParams([...entries, ...Object.entries(wrong.value).map(([field, { text }]) => [field, text])]);
+}
 
 /**
- * The fields that a query string sets to something else than the default; unreadable values are skipped.
+ * Set the form to what a query string says; what is not valid is kept as it is. Unknown fields are left out.
  * @param {URLSearchParams} query
- * @returns {Record<string, FormValue>}
  */
-export function fromQuery(query) {
+export function readQuery(query) {
   /** @type {Record<string, FormValue>} */
   const found = {};
-  const agent = query.get("agent") ?? "";
-  if (learners.value.some(({ name }) => name === agent)) found.agent = agent;
-  const lanes = (query.get("lanes") ?? "").split(",").filter(Boolean);
-  if (lanes.length) found.lanes = lanes;
+  /** @type {Record<string, string>} */
+  const texts = {};
+  const take = (/** @type {string} */ field, /** @type {string} */ text, /** @type {string[]} */ agents) => {
+    const { value, mistake } = read(field, text, agents);
+    if (mistake === undefined) found[field] = value;
+    else texts[field] = text;
+  };
+  typed.value = {};
+  // First those on which the others depend.
+  for (const field of ["agent", "lanes"]) if (query.has(field)) take(field, query.get(field) ?? "", []);
   const defaults = complete(found);
-  const declared = { ...served().settings, ...settingsOf([defaults.agent, ...defaults.lanes]) };
+  const agents = [defaults.agent, ...defaults.lanes];
+  const known = { ...defaults, ...served().settings, ...settingsOf(agents) };
   for (const [field, text] of query) {
-    const isKnown = field in defaults || field in declared;
-    const value = field in declared ? valueOf(text, declared[field]) : text;
-    const isFound = field === "agent" || field === "lanes" || value === undefined;
-    if (isKnown && !isFound && value !== defaults[field]) found[field] = value;
+    if (field in known && !(field in found) && !(field in texts)) take(field, text, agents);
   }
-  return found;
+  overrides.value = select(found, (field) => field === "lanes" || written(found[field]) !== written(defaults[field])
+    || (field === "agent" && found.agent !== served().defaults.training.agent));
+  typed.value = texts;
 }
 
 /** Set the fields that the page's address contains. */
-export function readAddress() {
-  overrides.value = fromQuery(new URLSearchParams(location.search));
-}
+export const readAddress = () => readQuery(new URLSearchParams(location.search));
 
 /** Write the form to the page's address; an unchanged form keeps it clean. */
 export function writeAddress() {

@@ -4,6 +4,7 @@ import { getAnyRun, listRuns } from "./api.js";
 import { place } from "./page.js";
 import { everyRun, trainingIds } from "./selectors.js";
 import { connection, damagedRuns, isDeleted, requestRun, requestRuns, runs, stage } from "./store.js";
+import { messageOf } from "./titles.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
@@ -96,7 +97,7 @@ export function makeList(filters) {
       const before = cursor ? pages.value.ids : [];
       pages.value = { filters: wanted, ids: [...before, ...items.map(({ id }) => id)], cursor: next_cursor };
     } catch (failure) {
-      if (number === newest) error.value = /** @type {RequestError} */ (failure).message;
+      if (number === newest) error.value = messageOf(/** @type {RequestError} */ (failure));
     } finally {
       if (number === newest) isLoading.value = false;
     }

@@ -2,11 +2,12 @@
 import { computed, signal } from "@preact/signals";
 import { form } from "./form.js";
 import { count, duration, whole } from "./format.js";
+import { formRobot, isSame } from "./robots.js";
 import { learns } from "./settings.js";
 import { options, role, runs, scene, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { FormValues, RobotConfig, Run, Scene, State } from "./types.js" */
+/** @import { FormValues, GaitConfig, Run, Scene, State } from "./types.js" */
 
 /** @type {Set<State>} */
 const ACTIVE = new Set(["queued", "running", "paused"]);
@@ -155,9 +156,6 @@ export const offStage = computed(() => {
 
 const WALK_FIELDS = ["divisions", "grid_side_m", "observation", "simulator"];
 
-/** @param {RobotConfig | undefined} robot */
-export const presetOf = (robot) => (typeof robot === "string" ? robot : robot?.preset);
-
 /**
  * Whether a training's table can be used with the form's settings.
  * @param {Run} training
@@ -165,8 +163,8 @@ export const presetOf = (robot) => (typeof robot === "string" ? robot : robot?.p
  */
 const fits = (training, values) =>
   hasTable(training) &&
-  training.config.gait === values.gait &&
-  presetOf(training.config.robot) === values.robot &&
+  isSame(training.config.gait, values.gait) &&
+  isSame(formRobot(training.config.robot), formRobot(values.robot)) &&
   WALK_FIELDS.every((field) => [undefined, values[field]].includes(training.config[field]));
 
 /** The trainings whose tables fit the form: those on stage first, then this tab's. */
@@ -199,7 +197,7 @@ export const isRaceRun = computed(() => {
 /**
  * How many transitions a look-ahead agent simulates for one decision.
  * @param {number} depth in steps
- * @param {{ gait: string, divisions: number }} walk
+ * @param {{ gait: GaitConfig, divisions: number }} walk
  */
 export function simulatedPerDecision(depth, { gait, divisions }) {
   const pairs = options.value?.gaits.find(({ name }) => name === gait)?.pairs.length ?? 3;

@@ -1,6 +1,6 @@
 // Settings as the server declares them: their controls, names and limits, and those of each agent.
 import { computed } from "@preact/signals";
-import { whole } from "./format.js";
+import { sentence, whole } from "./format.js";
 import { options, served } from "./store.js";
 
 /** @import { Agent, Limits, SettingOption, SettingValue } from "./types.js" */
@@ -14,19 +14,6 @@ export function kindOf({ is_number, is_boolean, choices }) {
   if (is_boolean) return "switch";
   if (choices.length) return is_number ? "text" : "choice";
   return is_number ? "number" : "text";
-}
-
-/**
- * A text as a value of a setting; undefined if it is none. Limits are not checked.
- * @param {string} text
- * @param {SettingOption} setting
- * @returns {SettingValue | undefined}
- */
-export function valueOf(text, setting) {
-  if (setting.choices.includes(text)) return text;
-  if (kindOf(setting) === "switch") return text === "true" || (text === "false" ? false : undefined);
-  if (!setting.is_number) return setting.choices.length ? undefined : text;
-  return text.trim() === "" || !Number.isFinite(Number(text)) ? undefined : Number(text);
 }
 
 /** A slider divides its range in about so many steps. */
@@ -45,23 +32,29 @@ export function sliderOf({ minimum, maximum, excludes_minimum, excludes_maximum,
 }
 
 /**
- * What the values of a quantity have in common: "Exploration" of "Exploration, first episode".
- * @param {string} title
- */
-export const quantityOf = (title) => title.split(",")[0];
-
-/**
- * A setting's name where there is little room: "α", "ε, first episode".
+ * The quantity of a setting: "Exploration", of which "Final exploration" is one value.
  * @param {SettingOption} setting
  */
-export const shortTitle = ({ title, symbol, unit }) =>
-  symbol ? title.replace(quantityOf(title), symbol) : withUnit(title, unit);
+export const quantityOf = ({ title, quantity }) => sentence(quantity ?? title);
 
 /**
- * A setting's name as a label: "Learning rate α", "Foot grid, side (m)".
+ * A setting's name where there is little room: "α", "Final ε".
  * @param {SettingOption} setting
  */
-export const fullTitle = ({ title, symbol, unit }) => withUnit(symbol ? `${title} ${symbol}` : title, unit);
+export const shortTitle = ({ title, symbol, quantity, unit }) =>
+  symbol ? title.replace(quantity ?? title, symbol) : withUnit(title, unit);
+
+/**
+ * A setting's name in a sentence: "Learning rate α", "Grid side".
+ * @param {SettingOption} setting
+ */
+export const titleOf = ({ title, symbol }) => (symbol ? `${title} ${symbol}` : title);
+
+/**
+ * A setting's name as a label: "Learning rate α", "Grid side (m)".
+ * @param {SettingOption} setting
+ */
+export const fullTitle = (setting) => withUnit(titleOf(setting), setting.unit);
 
 /** @type {(title: string, unit: string | null) => string} */
 const withUnit = (title, unit) => (unit ? `${title} (${unit})` : title);
@@ -115,39 +108,11 @@ const isWithin = (value, { minimum, maximum, excludes_minimum, excludes_maximum 
 export function mistakeIn(value, limits, isInteger) {
   const range = rangeOf(limits);
   const said = range && `, ${range}`;
-  if (!Number.isFinite(value)) return `Enter a number${said}`;
+  if (!Number.isFinite(value)) return `Enter a ${isInteger ? "whole number" : "number"}${said}`;
   if (isInteger && !Number.isInteger(value)) return `Enter a whole number${said}`;
+  // Beyond it a number of the page is not exact: another would be sent than was typed.
+  if (isInteger && value > Number.MAX_SAFE_INTEGER) return `Must be at most ${whole(Number.MAX_SAFE_INTEGER)}`;
   return isWithin(value, limits) ? null : `Must be ${range}`;
-}
-
-/**
- * The numbers of a list with commas, or why it is none.
- * @param {string} typed
- * @param {Limits} limits of each number
- * @param {boolean} isInteger
- * @returns {{ value?: number[], mistake?: string }}
- */
-export function parseNumbers(typed, limits, isInteger) {
-  const found = typed.split(",").map((part) => (part.trim() === "" ? NaN : Number(part)));
-  if (!found.every(Number.isFinite)) return { mistake: "Enter numbers separated by commas" };
-  if (isInteger && !found.every(Number.isInteger)) return { mistake: "Enter whole numbers" };
-  if (!found.every((one) => isWithin(one, limits))) return { mistake: `Each must be ${rangeOf(limits)}` };
-  if (new Set(found).size < found.length) return { mistake: "Enter each number once" };
-  return { value: found };
-}
-
-/**
- * The values of a list with commas, or why it is none.
- * @param {string} typed
- * @param {SettingOption} setting
- * @returns {{ value?: SettingValue[], mistake?: string }}
- */
-export function parseValues(typed, setting) {
-  if (kindOf(setting) === "number") return parseNumbers(typed, setting, setting.is_whole);
-  const found = typed.split(",").map((part) => valueOf(part.trim(), setting));
-  if (found.includes(undefined)) return { mistake: `Each must be ${setting.valid}` };
-  if (new Set(found).size < found.length) return { mistake: "Enter each value once" };
-  return { value: /** @type {SettingValue[]} */ (found) };
 }
 
 // ---- agents, with the settings that each declares

@@ -1,11 +1,11 @@
 // Display names of what the server knows by identifiers, and of experiments' fields, values and runs.
 import { experimentOf } from "./experiments/form.js";
 import { count, sentence } from "./format.js";
-import { presetOf } from "./selectors.js";
-import { agentOf, shortTitle } from "./settings.js";
+import { customRobotInWords, partInWords, presetOf } from "./robots.js";
+import { agentOf, shortTitle, titleOf } from "./settings.js";
 import { options } from "./store.js";
 
-/** @import { Described, Run } from "./types.js" */
+/** @import { Described, GaitConfig, RobotConfig, Run } from "./types.js" */
 
 /** @type {Record<string, string>} */
 const OBSERVATIONS = { measured: "feet measured", commanded: "commands remembered" };
@@ -17,10 +17,15 @@ const CLOCKS = { paper: "paper clock", wall: "real clock", free: "no clock" };
 /** @type {(list: Described[] | undefined, name: string) => Described | undefined} */
 const find = (list, name) => list?.find((one) => one.name === name);
 
-/** @param {string} name */
-export const gaitTitle = (name) => find(options.value?.gaits, name)?.title ?? name;
-/** @param {string} name */
-export const robotTitle = (name) => find(options.value?.robots, name)?.title ?? sentence(name);
+/** @param {GaitConfig} gait */
+export const gaitTitle = (gait) =>
+  typeof gait === "string" ? find(options.value?.gaits, gait)?.title ?? gait : "Custom gait";
+/** @param {RobotConfig} robot */
+export function robotTitle(robot) {
+  const custom = customRobotInWords(robot);
+  const name = presetOf(robot) ?? "own robot";
+  return sentence(custom ?? find(options.value?.robots, name)?.title ?? name);
+}
 /** @param {string} name */
 export const observationTitle = (name) =>
   find(options.value?.observations, name)?.title ?? OBSERVATIONS[name] ?? name;
@@ -32,10 +37,50 @@ export const clockTitle = (name) => find(options.value?.clocks, name)?.title ?? 
 /**
  * [name, title] of each, for a list of choices.
  * @param {Described[] | undefined} list
- * @param {(name: string) => string} titleOf
+ * @param {(name: string) => string} nameOf
  * @returns {[string, string][]}
  */
-export const choicesOf = (list, titleOf) => (list ?? []).map(({ name }) => [name, sentence(titleOf(name))]);
+export const choicesOf = (list, nameOf) => (list ?? []).map(({ name }) => [name, sentence(nameOf(name))]);
+
+// ---- fields
+
+/** @type {Record<string, string>} */
+const LABELS = {
+  gait: "Gait", robot: "Robot", simulator: "Simulator", observation: "Observation", agent: "Learner", lanes: "Lanes",
+  name: "Name", experiment: "Experiment", seeds: "Seeds", gaits: "Gaits", robots: "Robots",
+  observations: "Observation", agents: "Agents",
+};
+
+/**
+ * A field's name as the form shows it: "Learning rate α".
+ * @param {string} field
+ */
+export function labelOf(field) {
+  const setting = options.value?.settings[field];
+  return setting ? titleOf(setting) : LABELS[field] ?? field;
+}
+
+const ROBOT_PART = /\brobot\.([a-z_]+)/gi;
+/** @param {string} text */
+const withPartsInWords = (text) => text.replace(ROBOT_PART, (_, part) => `Robot, ${partInWords(part)[0]}`);
+
+/** A path of the API, such as `lanes.0.training.alpha`, and what follows it where it is the subject of a sentence. */
+const PATH = /\b(lanes\.\d+\.(?:training\.)?)?([A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*)(?=( must be | is missing)?)/g;
+
+/**
+ * A sentence of the server in which fields have their names of the form. A word such as "steps" is a field only
+ * where the sentence is about it; one with an underscore always.
+ * @param {string} text
+ */
+export const inFormWords = (text) =>
+  withPartsInWords(text).replace(PATH, (...[whole, path, name, verb]) => {
+    const field = name.toLowerCase();
+    const isField = options.value?.settings[field] || field in LABELS;
+    return isField && (path || verb || name.includes("_")) ? labelOf(field) : whole;
+  });
+
+/** The message of a failed request. @param {{ message: string }} error */
+export const messageOf = (error) => inFormWords(error.message);
 
 // ---- experiments
 
@@ -51,7 +96,7 @@ const PLACE_TITLES = { gait: "Gait", observation: "Observation", robot: "Robot",
  */
 export function fieldTitle(field) {
   const setting = options.value?.settings[field];
-  return PLACE_TITLES[field] ?? (setting ? shortTitle(setting) : field);
+  return PLACE_TITLES[field] ?? (setting ? shortTitle(setting) : LABELS[field] ?? field);
 }
 
 /**
@@ -101,7 +146,7 @@ const sweptIn = (config) =>
  * @param {Run} run
  */
 export const describeRun = ({ config }) => {
-  const robots = (config.robots ?? []).map((one) => presetOf(one) ?? one.name ?? "own robot");
+  const robots = (config.robots ?? []).map((one) => customRobotInWords(one) ?? presetOf(one) ?? "own robot");
   const observations = (config.observations ?? []).map(observationTitle);
   return [
     ...(config.experiment === "sweep" ? sweptIn(config) : []),

@@ -19,6 +19,8 @@ export type SettingValue = string | number | boolean | null;
 export interface SettingOption extends Limits {
   title: string;
   symbol: string | null;
+  /** The part of the title that the symbol stands for; null if it is all of it. */
+  quantity: string | null;
   unit: string | null;
   help: string;
   /** The valid values in words. */
@@ -94,13 +96,13 @@ export interface Options {
 
 // ---- the forms
 
-export type FormValue = SettingValue | string[] | Exclude<RobotConfig, string>;
+export type FormValue = SettingValue | string[] | Exclude<RobotConfig, string> | Exclude<GaitConfig, string>;
 
 /** The common fields, and the settings of the chosen learner. */
 export interface FormValues {
   /** The learner. */
   agent: string;
-  gait: string;
+  gait: GaitConfig;
   steps: number;
   seed: number;
   observation: string;
@@ -108,7 +110,7 @@ export interface FormValues {
   evaluate_every: number;
   /** "max", or a multiple of real time. */
   pace: number | "max";
-  robot: string;
+  robot: RobotConfig;
   simulator: string;
   divisions: number;
   grid_side_m: number;
@@ -138,7 +140,10 @@ export interface ExperimentValues {
 
 // ---- runs
 
-export type RobotConfig = string | { preset?: string; name?: string };
+/** The name of a preset, or an object with a preset and what differs from it. */
+export type RobotConfig = string | { preset?: string; name?: string; [part: string]: unknown };
+/** The name of a gait, or its parts. */
+export type GaitConfig = string | { [part: string]: unknown };
 
 export interface LaneConfig {
   agent: string;
@@ -148,7 +153,7 @@ export interface LaneConfig {
 /** Trainings, races and experiments have different fields; those of all three stand here. */
 export interface RunConfig {
   agent: string;
-  gait: string;
+  gait: GaitConfig;
   robot: RobotConfig;
   simulator: string;
   observation: string;

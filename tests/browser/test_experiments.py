@@ -134,7 +134,7 @@ def test_links_carry_the_form_and_mistakes_hold_it_back(
     button = page.get_by_role("button", name=re.compile("^Run Sweep"))
     expect(button).to_have_attribute("aria-disabled", "true")
     alpha.fill("0.1, 0.3, 0.6")
-    page.get_by_text("Where and how").click()
+    page.get_by_text("Robots and gaits").click()
     page.get_by_role("checkbox", name="Left-right, mirrored").uncheck()
     expect(button).to_have_text(f"Run Sweep: {3 * (1 + 3 * 30)} trials")
     link = page.url

@@ -155,7 +155,7 @@ def test_the_page_changes_it_during_a_training(
     page = dashboard.page
     page.get_by_text("More settings").click()
     expect(page.get_by_label("Optimism")).to_have_value("0.5")
-    dashboard.button("Train only").click()
+    dashboard.button("Train, don’t race").click()
     expect(page.get_by_role("slider", name="Exploration now ε")).to_be_visible()
     page.get_by_role("slider", name="Patience").fill("0.75")
 

@@ -57,7 +57,7 @@ def test_settings_of_the_learner_act_on_its_training(dashboard: Dashboard, serve
     trace_decay(dashboard).fill("0.5")
     expect(page).to_have_url(re.compile(r"agent=sarsa-lambda.*trace_decay=0\.5"))
 
-    dashboard.button("Train only").click()
+    dashboard.button("Train, don’t race").click()
     expect(page.get_by_role("slider", name="Exploration now ε")).to_be_visible()
     [training] = trainings(dashboard)
     assert training["config"]["agent"] == "sarsa-lambda"

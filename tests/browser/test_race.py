@@ -109,7 +109,7 @@ def overlaps(dashboard: Dashboard) -> list[tuple[str, str]]:
 
 def test_the_values_of_the_state_are_a_table(dashboard: Dashboard, server: Serving) -> None:
     dashboard.open(f"{server.address}?{LONG}")
-    dashboard.button("Train only").click()
+    dashboard.button("Train, don’t race").click()
     values = dashboard.page.locator("table.values")
     expect(values.locator("tbody tr")).to_have_count(3)
     expect(values.locator("td.here")).to_have_count(3)
@@ -213,7 +213,7 @@ def test_a_refusal_stands_beside_the_button(dashboard: Dashboard, server: Servin
     problem = (
         dashboard.page.locator(".actions").get_by_role("alert").filter(has_text="cannot reach")
     )
-    expect(problem).to_contain_text("grid_side_m")
+    expect(problem).to_contain_text("smaller Grid side than")
     assert [c.split()[0] for c in dashboard.complaints] == ["422"]
     dashboard.complaints.clear()
     dashboard.button("Dismiss").click()
@@ -224,14 +224,14 @@ def test_two_operators_and_one_stage(
     dashboard: Dashboard, browser: Browser, server: Serving
 ) -> None:
     dashboard.open(f"{server.address}?{LONG}")
-    dashboard.button("Train only").click()
+    dashboard.button("Train, don’t race").click()
     expect(dashboard.page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
     held = dashboard.get("/api/v1/stage")["run_id"]
 
     with browser.new_context() as context:
         other = Dashboard(context.new_page(), has_3d=False)
         other.open(f"{server.address}?{LONG}")
-        other.button("Train only").click()
+        other.button("Train, don’t race").click()
         expect(other.page.get_by_text("Another run is live on the stage")).to_be_visible()
         assert other.get("/api/v1/stage")["run_id"] == held
         other.button("Show on stage").click()

@@ -40,7 +40,7 @@ def test_a_slider_is_tried_out_and_gone_on_with(dashboard: Dashboard, server: Se
     expect(panel).not_to_contain_text("at most")
 
     expect(dashboard.button("Practise 60 more, don’t race")).to_have_count(0)
-    dashboard.button("Train only").click()
+    dashboard.button("Train, don’t race").click()
     dashboard.button("Practise 60 more, don’t race").click()
     dashboard.eventually(lambda: len(trainings(dashboard)) == 2, "the training that goes on")
     second, first = trainings(dashboard)

@@ -6,7 +6,7 @@
 const described = (name, title = name) => ({ name, title, description: `About ${name}.` });
 
 const SETTING = {
-  title: "", symbol: null, unit: null, help: "", valid: "a number", minimum: null, maximum: null,
+  title: "", symbol: null, quantity: null, unit: null, help: "", valid: "a number", minimum: null, maximum: null,
   excludes_minimum: false, excludes_maximum: false, is_number: true, is_boolean: false,
   is_whole: false, choices: [], default: null, is_live: false,
 };
@@ -20,8 +20,8 @@ const ALPHA = share("Learning rate", "α", { default: 0.3, excludes_minimum: tru
 const LEARNER = {
   alpha: ALPHA,
   gamma: share("Discount", "γ", { default: 0.9, excludes_maximum: true, is_live: true }),
-  epsilon_start: share("Exploration, first episode", "ε", { default: 1 }),
-  epsilon_end: share("Exploration, last episode", "ε", { default: 0 }),
+  epsilon_start: share("Initial exploration", "ε", { quantity: "exploration", default: 1 }),
+  epsilon_end: share("Final exploration", "ε", { quantity: "exploration", default: 0 }),
 };
 const EPSILON = share("Exploration now", "ε", { is_live: true });
 const TRACER = {
@@ -79,13 +79,15 @@ export const OPTIONS = {
     what_if: { seeds: 30 },
   },
   settings: {
-    steps: setting("Practice", { minimum: 1, maximum: 10_000_000, is_whole: true }),
-    ...Object.fromEntries(["seed", "steps_per_episode", "evaluate_every", "divisions", "grid_side_m", "race_steps"]
-      .map((name) => [name, setting(name, {})])),
+    steps: setting("Practice", { minimum: 1, maximum: 10_000_000, is_whole: true, default: 500 }),
+    seed: setting("Seed", { minimum: 0, is_whole: true, default: 0 }),
+    grid_side_m: setting("Grid side", { minimum: 0.01, maximum: 0.1, unit: "m", default: 0.04 }),
+    ...Object.fromEntries(["steps_per_episode", "evaluate_every", "divisions", "race_steps"]
+      .map((name) => [name, setting(name, { minimum: 0, is_whole: true, default: 50 })])),
     pace: setting("Pace", { choices: ["max"], minimum: 0.01, maximum: 1000, default: "max" }),
     ...TRACER, ...LEARNER,
   },
-  limits: { seeds: [1, null], what_if_steps: [1, 2000] },
+  limits: { seeds: [1, null], seed: [0, null], what_if_steps: [1, 2000], lanes: [1, 6], name: [0, 20] },
   help: { alpha: "Learning rate." },
 };
 

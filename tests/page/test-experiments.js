@@ -5,12 +5,12 @@ import {
   bare, factorOf, gaitsOf, greedyTotals, inUnit, placesOf, shown, unit,
 } from "../../static/js/experiments/distances.js";
 import {
-  agentSettings, chooseExperiment, chosenExperiment, parse, readQuery, requestBody, setField, takesField, toQuery,
-  trials, values,
+  agentSettings, chooseExperiment, chosenExperiment, enter, mistakes, readQuery, requestBody, setField, takesField,
+  toQuery, trials, values, wrong,
 } from "../../static/js/experiments/form.js";
 import { paceOf } from "../../static/js/experiments/runs.js";
 import { options } from "../../static/js/store.js";
-import { describeRun, fieldTitle, variedFields } from "../../static/js/titles.js";
+import { describeRun, fieldTitle, inFormWords, robotTitle, variedFields } from "../../static/js/titles.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 /** @import { Setting } from "../../static/js/types.js" */
@@ -60,15 +60,62 @@ test("a link carries the form", () => {
   assert.deepEqual(requestBody(), sent);
 });
 
-test("values have the type of the default; others are skipped", () => {
-  assert.deepEqual(parse("0.1,0.3", [1]), [0.1, 0.3]);
-  assert.deepEqual(parse("a,b", ["c"]), ["a", "b"]);
-  assert.equal(parse("12", 1), 12);
-  assert.equal(parse("1.5", 1), undefined);
-  assert.equal(parse("0.1,oops", [1]), undefined);
-  assert.equal(parse(",", ["c"]), undefined);
-  readQuery(new URLSearchParams("experiment=unknown&seeds=many&blocks=3"));
-  assert.deepEqual(requestBody(), { experiment: "table1" });
+test("what was typed is read, or kept as it is and explained", () => {
+  chooseExperiment("sweep");
+  for (const text of ["0.1 0.3", "0,1; 0,3", "0.1,0.3"]) {
+    enter("alpha", text);
+    assert.deepEqual(values.value.alpha, [0.1, 0.3], text);
+  }
+  for (const text of ["foo", "0,1 x", "1.5", "0.1,"]) {
+    enter("alpha", text);
+    assert.deepEqual([values.value.alpha, wrong.value.alpha.text], [[0.1, 0.3], text]);
+    assert.match(mistakes.value.alpha, /over 0 and at most 1/);
+  }
+  enter("seeds", "12");
+  assert.equal(values.value.seeds, 12);
+  enter("seeds", "1.5");
+  assert.match(mistakes.value.seeds, /whole number/);
+  enter("gaits", "");
+  assert.match(mistakes.value.gaits, /at least 1/);
+  assert.deepEqual(Object.keys(mistakes.value).sort(), ["alpha", "gaits", "seeds"]);
+  chooseExperiment("table1");
+  assert.deepEqual(Object.keys(mistakes.value).sort(), ["gaits", "seeds"]);
+});
+
+test("what is not valid in a link is kept as it is, and stays in the link", () => {
+  const wanted = "experiment=unknown&seeds=many&gaits=wave,ghost&simulator=dream";
+  readQuery(new URLSearchParams(`${wanted}&blocks=3`));
+  assert.deepEqual(Object.keys(mistakes.value).sort(), ["experiment", "gaits", "seeds", "simulator"]);
+  assert.deepEqual([...new URLSearchParams(toQuery())].sort(), [...new URLSearchParams(wanted)].sort());
+  chooseExperiment("sweep");
+  assert.ok(!("experiment" in mistakes.value));
+});
+
+test("a list of which a link could be read in another way is written with semicolons", () => {
+  chooseExperiment("sweep");
+  setField("epsilon_end", [0, 1]);
+  assert.match(query(), /epsilon_end=0%3B1/);
+  readQuery(new URLSearchParams(query()));
+  assert.deepEqual(values.value.epsilon_end, [0, 1]);
+  enter("epsilon_end", "0,1");
+  readQuery(new URLSearchParams(query()));
+  assert.equal(wrong.value.epsilon_end.text, "0,1");
+});
+
+test("values that other agents do not accept are explained", () => {
+  chooseExperiment("sweep");
+  setField("gamma", [0.5, 2]);
+  assert.match(mistakes.value.gamma, /under 1/);
+  setField("agents", ["tracer"]);
+  assert.deepEqual(mistakes.value, {});
+});
+
+test("a name is kept with its spaces while it is typed, and sent without those at its ends", () => {
+  enter("name", "my ");
+  assert.equal(values.value.name, "my ");
+  assert.equal(requestBody().name, "my");
+  enter("name", " ");
+  assert.ok(!("name" in requestBody()));
 });
 
 test("trials are counted before they are started", () => {
@@ -114,7 +161,7 @@ test("agents with other defaults each keep their own, and count only the setting
 
 test("reports name settings as they are declared, and only those that differ", () => {
   assert.deepEqual(["gait", "alpha", "epsilon_end", "unknown"].map(fieldTitle),
-    ["Gait", "α", "ε, last episode", "unknown"]);
+    ["Gait", "α", "Final ε", "unknown"]);
   const rows = [{ agent: "learner", alpha: 0.3, trace: null }, { agent: "tracer", alpha: 0.3, trace: 0.9 }];
   assert.deepEqual(variedFields(rows, ["agent", "alpha", "trace"]), ["agent"]);
   const more = [...rows, { ...rows[1], trace: 0.5 }];
@@ -166,4 +213,23 @@ test("an experiment is described by its seeds, places and simulator", () => {
     describeRun(makeRun({ config: { ...config, experiment: "sweep", alpha: [0.1, 0.3], gamma: [1] } })),
     /^α 0.1, 0.3 · 30 seeds/,
   );
+});
+
+test("a custom robot is told by what differs from its preset", () => {
+  assert.equal(robotTitle({ preset: "stiff" }), "Stiff");
+  assert.equal(robotTitle({ preset: "stiff", femur_m: 0.1, friction: 0.5 }),
+    "Custom: stiff, femur 0.1\u00a0m, friction 0.5");
+});
+
+test("errors name fields as the form shows them", () => {
+  assert.equal(inFormWords("alpha must be a number over 0 and at most 1."),
+    "Learning rate α must be a number over 0 and at most 1.");
+  assert.equal(inFormWords("lanes.0.training.epsilon_end must be from 0 to 1."),
+    "Final exploration ε must be from 0 to 1.");
+  assert.equal(inFormWords("Leg 2 cannot reach it; choose a smaller grid_side_m than 0.9."),
+    "Leg 2 cannot reach it; choose a smaller Grid side than 0.9.");
+  assert.equal(inFormWords("Robot.femur_m must be from 0.001 to 2, not 9."),
+    "Robot, femur must be from 0.001 to 2, not 9.");
+  assert.equal(inFormWords("Seeds must be from 1 to 5; 50 steps are too many."),
+    "Seeds must be from 1 to 5; 50 steps are too many.");
 });

@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  chooseLearner, form, fromQuery, link, mistakes, overrides, raceBody, readAddress, setField, setFields, setMistake,
-  toQuery, trainingBody, whatIfBody,
+  chooseLearner, enter, form, link, mistakes, overrides, raceBody, readAddress, readQuery, setField, setFields,
+  toQuery, trainingBody, typed, whatIfBody, wrong,
 } from "../../static/js/form.js";
 import { options } from "../../static/js/store.js";
 import { visit } from "./browser.js";
@@ -20,7 +20,7 @@ beforeEach(() => {
   visit("/");
   options.value = OPTIONS;
   overrides.value = {};
-  mistakes.value = {};
+  typed.value = {};
 });
 
 test("the form begins with the server's defaults and nothing else", () => {
@@ -42,22 +42,37 @@ test("a form read from its own query is the same form", () => {
   setFields(changes);
   const [before, query] = [form.value, toQuery()];
   overrides.value = {};
-  overrides.value = fromQuery(query);
+  readQuery(query);
   assert.deepEqual(form.value, before);
   assert.deepEqual({ ...before, ...changes }, before);
   setField("pace", "max");
-  assert.ok(!("pace" in fromQuery(toQuery())));
+  readQuery(toQuery());
+  assert.ok(!("pace" in overrides.value));
 });
 
-test("values of an address that cannot be read are skipped", () => {
-  visit("/?alpha=seven&steps=&gamma=0.5&pace=fast&unknown=1&agent=greedy&trace=0.5");
+test("what is not valid in an address is kept as it is, explained, and stays in the address", () => {
+  visit("/?alpha=seven&steps=&gamma=0.5&pace=fast&agent=greedy&gait=nonsense&robot=tank&lanes=greedy,ghost&seed=-5");
   readAddress();
   assert.equal(form.value.gamma, 0.5);
-  assert.equal(form.value.alpha, 0.3);
-  assert.equal(form.value.steps, 500);
-  assert.equal(form.value.pace, "max");
-  assert.equal(form.value.agent, "learner");
+  const texts = Object.fromEntries(Object.entries(wrong.value).map(([field, { text }]) => [field, text]));
+  const expected = {
+    alpha: "seven", steps: "", pace: "fast", agent: "greedy", gait: "nonsense", robot: "tank", lanes: "greedy,ghost",
+    seed: "-5",
+  };
+  assert.deepEqual(texts, expected);
+  assert.ok(Object.values(mistakes.value).every((mistake) => mistake.length > 0));
+  setField("name", "a change of another field");
+  const query = new URLSearchParams(location.search);
+  assert.deepEqual(Object.fromEntries(Object.keys(expected).map((field) => [field, query.get(field)])), expected);
+  setFields({ gait: "wave", robot: "stiff" });
+  assert.ok(!("gait" in mistakes.value) && !("robot" in mistakes.value) && "alpha" in mistakes.value);
+});
+
+test("fields of an address that the form does not have are left out", () => {
+  visit("/?unknown=1&trace=0.5");
+  readAddress();
   assert.ok(!("unknown" in form.value) && !("trace" in form.value));
+  assert.deepEqual(mistakes.value, {});
 });
 
 test("a link to a single setting sets it alone", () => {
@@ -76,9 +91,21 @@ test("another learner brings its own settings and defaults, and keeps what a per
   assert.deepEqual([form.value.alpha, form.value.gamma], [0.6, 0.5]);
 });
 
-test("a value that the chosen learner cannot read is its default", () => {
+test("a value that the chosen learner cannot read is explained, and its default stands until then", () => {
   setFields({ agent: "tracer", kind: 3, trace: "often" });
   assert.deepEqual([form.value.kind, form.value.trace], ["replacing", 0.9]);
+  assert.deepEqual(Object.keys(mistakes.value).sort(), ["kind", "trace"]);
+  assert.equal(wrong.value.trace.text, "often");
+  chooseLearner("learner");
+  assert.deepEqual(mistakes.value, {});
+});
+
+test("settings of the other learners of a race are checked too", () => {
+  setFields({ lanes: ["learner", "tracer"], trace: 7 });
+  assert.match(mistakes.value.trace, /from 0 to 1/);
+  assert.equal(toQuery().get("trace"), "7");
+  setField("lanes", ["learner"]);
+  assert.deepEqual(mistakes.value, {});
 });
 
 test("the chosen learner takes the lane of the one before it, unless it has its own", () => {
@@ -92,10 +119,28 @@ test("the chosen learner takes the lane of the one before it, unless it has its 
   assert.deepEqual(form.value.lanes, ["learner", "tracer"]);
 });
 
-test("a mistake is kept until it is corrected", () => {
-  setMistake("alpha", "Enter a number");
-  assert.deepEqual(mistakes.value, { alpha: "Enter a number" });
-  setMistake("alpha", null);
+test("what was typed is kept as it is until it is valid; the value stays the last valid one", () => {
+  enter("alpha", "0,7");
+  assert.equal(form.value.alpha, 0.7);
+  enter("alpha", "7 ");
+  assert.deepEqual([form.value.alpha, wrong.value.alpha.text], [0.7, "7 "]);
+  assert.match(mistakes.value.alpha, /over 0 and at most 1/);
+  assert.equal(toQuery().get("alpha"), "7 ");
+  enter("alpha", "0.5");
+  assert.deepEqual([form.value.alpha, mistakes.value], [0.5, {}]);
+  enter("lanes", "");
+  assert.match(mistakes.value.lanes, /from 1 to 6/);
+  enter("name", "x".repeat(21));
+  assert.match(mistakes.value.name, /at most 20/);
+});
+
+test("a custom robot and a custom gait are kept whole, also by a link", () => {
+  const robot = { preset: "stiff", femur_m: 0.1, legs: [{ azimuth_deg: 0, radius_m: 0.1 }] };
+  const gait = { right_leg: 1, left_leg: 4, symmetry: "origin" };
+  setFields({ robot, gait });
+  readQuery(toQuery());
+  assert.deepEqual([form.value.robot, form.value.gait], [robot, gait]);
+  assert.deepEqual([trainingBody().robot, trainingBody().gait], [robot, gait]);
   assert.deepEqual(mistakes.value, {});
 });
 
@@ -141,7 +186,7 @@ test("each learner of a race practises with its own settings, and a link has the
   const [learner, tracer] = practices();
   assert.deepEqual([learner?.alpha, learner?.gamma, learner?.trace], [0.3, 0.8, undefined]);
   assert.deepEqual([tracer?.alpha, tracer?.gamma, tracer?.trace], [0.1, undefined, 0.5]);
-  overrides.value = fromQuery(toQuery());
+  readQuery(toQuery());
   assert.deepEqual(practices(), [learner, tracer]);
 });
 

@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  agentOf, beginningOf, fullTitle, furtherSettings, kindOf, limitsOf, mainSettings, mistakeIn, parseNumbers,
-  parseValues, rangeOf, ratesInWords, settingOf, settingsOf, shortTitle, sliderOf, valueOf,
+  agentOf, beginningOf, fullTitle, furtherSettings, kindOf, limitsOf, mainSettings, mistakeIn, quantityOf,
+  rangeOf, ratesInWords, settingOf, settingsOf, shortTitle, sliderOf,
 } from "../../static/js/settings.js";
 import { options } from "../../static/js/store.js";
 import { OPTIONS, setting } from "./options.js";
@@ -21,23 +21,6 @@ test("a declaration decides on the kind of control", () => {
   assert.deepEqual(kinds, ["number", "choice", "switch", "text", "text"]);
 });
 
-test("a text is read as the declaration says", () => {
-  assert.deepEqual(["0.5", "", "x", "Infinity"].map((text) => valueOf(text, NUMBER)),
-    [0.5, undefined, undefined, undefined]);
-  assert.deepEqual(["two", "three"].map((text) => valueOf(text, CHOICE)), ["two", undefined]);
-  assert.deepEqual(["true", "false", "no"].map((text) => valueOf(text, SWITCH)), [true, false, undefined]);
-  assert.equal(valueOf("any words", TEXT), "any words");
-  assert.deepEqual(["max", "2", "min"].map((text) => valueOf(text, MIXED)), ["max", 2, undefined]);
-});
-
-test("lists are read the same way, each value once", () => {
-  assert.deepEqual(parseValues("one, two", CHOICE), { value: ["one", "two"] });
-  assert.deepEqual(parseValues("true,false", SWITCH), { value: [true, false] });
-  assert.match(parseValues("one, three", CHOICE).mistake ?? "", /^Each must be/);
-  assert.match(parseValues("one, one", CHOICE).mistake ?? "", /once/);
-  assert.match(parseValues("2", settingsOf(["learner"]).alpha).mistake ?? "", /at most 1/);
-});
-
 test("a slider has the ends that are valid", () => {
   const { alpha, gamma } = settingsOf(["learner"]);
   assert.deepEqual(sliderOf(alpha), { min: 0.01, max: 1, step: 0.01 });
@@ -49,8 +32,9 @@ test("a slider has the ends that are valid", () => {
 test("names are made of title, symbol and unit", () => {
   const { alpha, epsilon_start: start } = settingsOf(["learner"]);
   assert.deepEqual([shortTitle(alpha), fullTitle(alpha)], ["α", "Learning rate α"]);
-  assert.equal(shortTitle(start), "ε, first episode");
-  assert.equal(shortTitle(setting("Foot grid, side", { unit: "m" })), "Foot grid, side (m)");
+  assert.deepEqual([shortTitle(start), fullTitle(start)], ["Initial ε", "Initial exploration ε"]);
+  assert.deepEqual([quantityOf(start), quantityOf(alpha)], ["Exploration", "Learning rate"]);
+  assert.equal(shortTitle(setting("Grid side", { unit: "m" })), "Grid side (m)");
 });
 
 test("what acts on a running training comes first, with what it replaces", () => {
@@ -123,6 +107,7 @@ test("a number is refused with the reason", () => {
   assert.equal(mistakeIn(NaN, limits(0, null), false), "Enter a number, at least 0");
   assert.equal(mistakeIn(1.5, limits(1, 10), true), "Enter a whole number, from 1 to 10");
   assert.equal(mistakeIn(NaN, limits(null, null), false), "Enter a number");
+  assert.equal(mistakeIn(NaN, limits(null, null), true), "Enter a whole number");
 });
 
 test("a limit that is not valid itself is refused", () => {
@@ -130,13 +115,4 @@ test("a limit that is not valid itself is refused", () => {
   assert.equal(mistakeIn(0, alpha, false), "Must be over 0 and at most 1");
   assert.equal(mistakeIn(1, alpha, false), null);
   assert.equal(mistakeIn(1, limits(0, 1, false, true), false), "Must be from 0 to under 1");
-});
-
-test("lists of numbers are separated by commas, each valid and there once", () => {
-  assert.deepEqual(parseNumbers("0.1, 0.3,0.6", limits(0, 1), false), { value: [0.1, 0.3, 0.6] });
-  assert.match(parseNumbers("0.1, oops", limits(0, 1), false).mistake ?? "", /separated by commas/);
-  assert.match(parseNumbers("0.1,,0.2", limits(0, 1), false).mistake ?? "", /separated by commas/);
-  assert.match(parseNumbers("1.5", limits(1, 10), true).mistake ?? "", /whole/);
-  assert.match(parseNumbers("0.5, 2", limits(0, 1), false).mistake ?? "", /from 0 to 1/);
-  assert.match(parseNumbers("1, 1.0", limits(0, 1), false).mistake ?? "", /once/);
 });

@@ -1,7 +1,8 @@
 // Server-sent events change the store, and the selectors follow.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { form, overrides, setField, setFields } from "../../static/js/form.js";
+import { copySettings } from "../../static/js/actions.js";
+import { form, overrides, setField, setFields, trainingBody } from "../../static/js/form.js";
 import { shownTime } from "../../static/js/race.js";
 import {
   everyRun, hasTable, interruptedRun, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, matchingTable,
@@ -181,6 +182,24 @@ test("a table matches the form by gait, robot, grid, observation and simulator",
   setField("divisions", 3);
   assert.equal(matchingTable.value, null);
   assert.ok(!isRaceRun.value);
+});
+
+test("the settings of a run with a custom robot are taken with all of the robot", () => {
+  const robot = { preset: "stiff", femur_m: 0.1 };
+  const training = makeRun({ config: { ...makeRun({}).config, robot } });
+  const tableId = () => matchingTable.value?.id;
+  const preset = makeRun({ config: { ...makeRun({}).config, robot: { preset: "stiff" } } });
+  show({ runs: [training], stage: { ...STAGE, run_id: training.id } });
+  // A table of another robot is none of the preset's.
+  assert.equal(tableId(), undefined);
+  copySettings(training);
+  assert.deepEqual(trainingBody().robot, robot);
+  assert.equal(tableId(), training.id);
+  show({ runs: [preset], stage: { ...STAGE, run_id: preset.id } });
+  assert.equal(tableId(), undefined);
+  copySettings(preset);
+  assert.equal(trainingBody().robot, "stiff");
+  assert.equal(tableId(), preset.id);
 });
 
 test("a table is of its learner, and each learner of a race needs one", () => {

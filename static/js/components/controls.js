@@ -4,14 +4,14 @@ import {
   canStart, missingLane, pause, pending, primaryAction, resume, resumeRun, runPrimaryAction, secondaryActions,
   showOnStage, stop,
 } from "../actions.js";
-import { form } from "../form.js";
-import { count, sentence, whole } from "../format.js";
+import { chooseLearner, form, mistakes } from "../form.js";
+import { count, listed, sentence, whole } from "../format.js";
 import { isNarrow } from "../page.js";
 import { interruptedRun, isOperator, myWork, offStage, progress, shownRun, work } from "../selectors.js";
-import { agentOf, ratesInWords } from "../settings.js";
+import { agentOf, learners, ratesInWords } from "../settings.js";
 import { scene } from "../store.js";
-import { gaitTitle } from "../titles.js";
-import { html, Icon, Problem, ProgressBar } from "./elements.js";
+import { gaitTitle, inFormWords, labelOf } from "../titles.js";
+import { goToField, Held, html, Icon, Problem, ProgressBar } from "./elements.js";
 import { Settings } from "./settings.js";
 
 export function Controls() {
@@ -30,7 +30,10 @@ export function Controls() {
 function FoldedSettings() {
   const [isOpen, setOpen] = useState(false);
   const { gait, steps, agent } = form.value;
-  const about = [gaitTitle(gait), count(steps, "step"), agentOf(agent).title, ...ratesInWords(agent, form.value)];
+  const wrong = Object.keys(mistakes.value).map(labelOf);
+  const about = wrong.length
+    ? [`Not valid: ${listed(wrong)}`]
+    : [gaitTitle(gait), count(steps, "step"), agentOf(agent).title, ...ratesInWords(agent, form.value)];
   const onToggle = ({ target }) => isNarrow.value && setOpen(target.open);
   return html`
     <details class="folded" open=${isOpen || !isNarrow.value} onToggle=${onToggle}>
@@ -47,11 +50,14 @@ function Actions() {
   const isBusy = Boolean(myWork.value) || pending.value.start;
   const label = isBusy ? busyLabel() : primaryAction.value.label;
   const isDisabled = isBusy || !canStart.value;
+  const isHeld = !isBusy && Object.keys(mistakes.value).length > 0;
   return html`
     <div class="actions">
-      <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${runPrimaryAction}>
+      <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${runPrimaryAction}
+        aria-describedby=${isHeld ? "held-start" : undefined}>
         ${!isBusy && html`<${Icon} name="play" />`}${label}
       </button>
+      ${isHeld && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
       <${Problem} at="start" />
       ${!isBusy && html`<${MissingLane} />`}
       ${!myWork.value && html`<${SecondaryActions} />`}
@@ -64,6 +70,14 @@ function Actions() {
       <${Interrupted} />
     </div>
   `;
+}
+
+/** Focus a field; a setting of another learner of the race has one once that learner is chosen. */
+function showField(field) {
+  const { agent, lanes } = form.value;
+  const owner = learners.value.find(({ name, settings }) => lanes.includes(name) && field in settings);
+  if (owner && !(field in agentOf(agent).settings)) chooseLearner(owner.name);
+  requestAnimationFrame(() => goToField(`field-${field}`));
 }
 
 const busyLabel = () => {
@@ -144,7 +158,7 @@ function Failure() {
   if (run?.state !== "failed") return null;
   return html`
     <div class="notice bad">
-      <p><b>The ${run.kind} failed.</b> ${run.error}</p>
+      <p><b>The ${run.kind} failed.</b> ${inFormWords(run.error ?? "")}</p>
       <p>Change what it names, or resume it from its last checkpoint. Other runs are not affected.</p>
       ${run.can_resume && html`<${ResumeButton} run=${run} />`}
     </div>

@@ -2,6 +2,7 @@
 import htm from "htm";
 import { h } from "preact";
 import { dismissProblem, problems } from "../actions.js";
+import { labelOf, messageOf } from "../titles.js";
 
 export const html = htm.bind(h);
 
@@ -83,12 +84,36 @@ export function Problem({ at }) {
     <div role="alert">
       ${error && html`
         <p class="problem">
-          <span>${error.message}</span>
+          <span>${messageOf(error)}</span>
           <button class="quiet square small" aria-label="Dismiss" onClick=${() => dismissProblem(at)}>✕</button>
         </p>
       `}
     </div>
   `;
+}
+
+/** Why a field's text is not valid, beside the field. */
+export const Mistake = ({ id, children }) =>
+  children && html`<span class="mistake" role="alert" id=${id}>${children}</span>`;
+
+/** Why the button above is held: each field that is not valid, to go to, and what it must be. */
+export const Held = ({ id, mistakes, onField, nameOf = labelOf }) => html`
+  <ul class="held" id=${id}>
+    ${Object.entries(mistakes).map(([field, mistake]) => html`
+      <li key=${field}>
+        <button class="link" onClick=${() => onField(field)}>${nameOf(field)}</button>: ${mistake}
+      </li>
+    `)}
+  </ul>
+`;
+
+/** Focus a field, in whatever is folded around it. @param {string} id */
+export function goToField(id) {
+  const field = document.getElementById(id);
+  for (let around = field?.closest("details"); around; around = around.parentElement?.closest("details")) {
+    around.open = true;
+  }
+  field?.focus();
 }
 
 export const ProgressBar = ({ label, share }) => html`

@@ -5,7 +5,8 @@ import { downloads } from "../api.js";
 import { changesInWords, rateChanges } from "../changes.js";
 import { paceOf } from "../experiments/runs.js";
 import { ago, count, listed, metres, sentence, whole } from "../format.js";
-import { hasTable, isActive, isOperator, presetOf } from "../selectors.js";
+import { formRobot, isSame } from "../robots.js";
+import { hasTable, isActive, isOperator } from "../selectors.js";
 import { agentOf, ratesInWords } from "../settings.js";
 import { clearFilters, filters, isFiltered, runList, shownRuns } from "../runs.js";
 import { served } from "../store.js";
@@ -112,16 +113,15 @@ const StateOf = ({ run: { state, queue_position } }) => html`
   </p>
 `;
 
-const gaitOf = ({ config: { gait } }) => (typeof gait === "string" ? gaitTitle(gait) : "own gait");
+const gaitOf = ({ config: { gait } }) => gaitTitle(gait);
 
 function summaryOf(run) {
   const { config } = run;
   const { robot, simulator, agent } = served().defaults.training;
-  const name = presetOf(config.robot);
   // What is as by default is not named.
   const learner = [undefined, agent].includes(config.agent) ? "" : agentOf(config.agent).title;
   const place = [
-    name === robot ? "" : robotTitle(name ?? config.robot.name ?? "own robot"),
+    isSame(formRobot(config.robot), robot) ? "" : robotTitle(config.robot),
     config.simulator === simulator ? "" : simulatorTitle(config.simulator),
   ];
   const own = run.kind === "race" ? ofRace(config) : ofTraining(run);

@@ -1,17 +1,16 @@
 // The settings of a run. Those of the learner that are live also change a training that runs.
 import { tune } from "../actions.js";
 import { presentRates, rateInWords } from "../changes.js";
-import { chooseLearner, form, setField } from "../form.js";
+import { chooseLearner, enter, form, setField, wrong } from "../form.js";
 import { liveTraining } from "../selectors.js";
 import {
-  agentOf, beginningOf, fullTitle, furtherSettings, kindOf, learners, limitsOf, mainSettings, quantityOf, settingOf,
-  sliderOf,
+  agentOf, beginningOf, fullTitle, furtherSettings, kindOf, learners, mainSettings, quantityOf, settingOf, sliderOf,
 } from "../settings.js";
 import { evaluations, options, served } from "../store.js";
-import { choicesOf, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
+import { choicesOf, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
 import { HexapodGlyph, html } from "./elements.js";
 import {
-  Description, NumberField, SelectField, SettingField, SettingRow, Slider,
+  attributesOf, Description, MistakeOf, NumberField, SelectField, SettingField, SettingRow, Slider,
 } from "./fields.js";
 
 /** @import { Run } from "../types.js" */
@@ -87,18 +86,24 @@ function Chosen({ one: { name, setting, end }, run }) {
     if (run) tune({ [name]: value });
   };
   const value = run ? rateNow(run, name) : form.value[name];
-  const words = end ? { title: quantityOf(setting.title), unit: `to ${form.value[end]}` } : {};
+  const words = end ? { title: quantityOf(setting), unit: `to ${form.value[end]}` } : {};
   return html`<${Row} name=${name} setting=${setting} ...${words} value=${value} onValue=${onValue} />`;
 }
+
+/** Of a rate that follows from a schedule. */
+const SHOWN_DIGITS = 8;
 
 /** A setting of the training that runs with its present value, which the form does not keep. */
 function Present({ name, setting, run }) {
   const { id, config } = run;
   const { step } = sliderOf(setting) ?? { step: 0 };
   const scheduled = evaluations.value[id]?.at(-1)?.[name] ?? beginningOf(config.agent, name, config);
-  const rounded = step && typeof scheduled === "number" ? Math.round(scheduled / step) * step : scheduled;
+  const rounded = step && typeof scheduled === "number"
+    ? Number((Math.round(scheduled / step) * step).toPrecision(SHOWN_DIGITS))
+    : scheduled;
   const value = presentRates(run)[name] ?? rounded;
-  return html`<${Row} name=${name} setting=${setting} value=${value} onValue=${(one) => tune({ [name]: one })} />`;
+  const onValue = (one) => tune({ [name]: one });
+  return html`<${Row} name=${name} setting=${setting} value=${value} onValue=${onValue} isOfForm=${false} />`;
 }
 
 /** A slider for a number with both limits, else the setting's own control. */
@@ -112,18 +117,24 @@ function Row({ name, setting, ...rest }) {
 // ---- the gait, chosen by its drawing
 
 const GaitPicker = () => html`
-  <fieldset aria-describedby="help-gait">
+  <fieldset role="radiogroup" aria-invalid=${wrong.value.gait ? "true" : undefined}
+    aria-describedby=${wrong.value.gait ? "mistake-gait help-gait" : "help-gait"}>
     <legend><h2>Gait</h2></legend>
     <div class="gait-row">
-      ${served().gaits.map((gait) => html`
+      ${served().gaits.map((gait, number) => html`
         <label class="gait" key=${gait.name}>
-          <input class="sr-only" type="radio" name="gait" value=${gait.name}
-            checked=${gait.name === form.value.gait} onChange=${() => setField("gait", gait.name)} />
+          <input class="sr-only" type="radio" name="gait" value=${gait.name} id=${number ? undefined : "field-gait"}
+            checked=${!wrong.value.gait && gait.name === form.value.gait}
+            onChange=${() => setField("gait", gait.name)} />
           <${HexapodGlyph} gait=${gait} />
           <span>${gait.title}</span>
         </label>
       `)}
     </div>
+    ${!wrong.value.gait && typeof form.value.gait !== "string" && html`
+      <p class="notice">${gaitTitle(form.value.gait)}, as in the run whose settings these are.</p>
+    `}
+    <${MistakeOf} field="gait" />
     <${Description} field="gait"
       words=${served().gaits.find(({ name }) => name === form.value.gait)?.description} />
   </fieldset>
@@ -146,7 +157,7 @@ const MoreSettings = () => html`
   <details class="more" onToggle=${onMore}>
     <summary>More settings</summary>
     <div class="more-fields">
-      <${SelectField} field="robot" label="Robot" choices=${choicesOf(options.value?.robots, robotTitle)} />
+      <${SelectField} field="robot" label="Robot" choices=${robotChoices()} />
       <${SelectField} field="simulator" label="Simulator"
         choices=${choicesOf(options.value?.simulators, simulatorTitle)} />
       <${Pace} />
@@ -163,6 +174,13 @@ const MoreSettings = () => html`
     </div>
   </details>
 `;
+
+/** The presets, and a custom robot that a link or a run has brought. */
+function robotChoices() {
+  const { robot } = form.value;
+  const presets = choicesOf(options.value?.robots, robotTitle);
+  return typeof robot === "string" ? presets : [...presets, [robot, robotTitle(robot)]];
+}
 
 function Figure({ field, step }) {
   return html`
@@ -185,29 +203,30 @@ function Pace() {
   return html`<${SelectField} field="pace" label=${settingOf("pace").title} choices=${choices} onValue=${onValue} />`;
 }
 
+/** Any number of lanes can be checked; one that is not valid is explained and holds the start. */
 function Lanes() {
-  const { lanes } = form.value;
-  const { minimum, maximum } = limitsOf("lanes");
+  const kept = wrong.value.lanes;
+  const lanes = kept ? kept.text.split(",").map((name) => name.trim()) : form.value.lanes;
   const names = (options.value?.agents ?? []).map(({ name }) => name);
   const toggle = (name) => {
     const chosen = lanes.includes(name)
       ? lanes.filter((one) => one !== name)
       : names.filter((one) => one === name || lanes.includes(one));
-    const isAllowed = chosen.length >= (minimum ?? 0) && chosen.length <= (maximum ?? Infinity);
-    // A copy draws the refused check box again.
-    setField("lanes", isAllowed ? chosen : [...lanes]);
+    enter("lanes", chosen.filter((one) => names.includes(one)).join(","));
   };
   return html`
     <fieldset class="field wide">
       <legend>Lanes</legend>
       <div class="checks">
-      ${names.map((name) => html`
+      ${names.map((name, number) => html`
         <label class="check">
-          <input type="checkbox" checked=${lanes.includes(name)} onChange=${() => toggle(name)} />
+          <input type="checkbox" checked=${lanes.includes(name)} onChange=${() => toggle(name)}
+            ...${attributesOf("lanes")} id=${number ? undefined : "field-lanes"} />
           ${agentOf(name).title}
         </label>
       `)}
       </div>
+      <${MistakeOf} field="lanes" />
       <${Description} field="lanes" />
     </fieldset>
   `;
@@ -216,9 +235,9 @@ function Lanes() {
 const Name = () => html`
   <div class="field wide">
     <label for="field-name">Name</label>
-    <input type="text" id="field-name" maxlength=${limitsOf("name").maximum} value=${form.value.name}
-      placeholder="optional" aria-describedby="help-name"
-      onInput=${({ target }) => setField("name", target.value)} />
+    <input type="text" ...${attributesOf("name")} value=${wrong.value.name?.text ?? form.value.name}
+      placeholder="optional" onInput=${({ target }) => enter("name", target.value)} />
+    <${MistakeOf} field="name" />
     <${Description} field="name" />
   </div>
 `;

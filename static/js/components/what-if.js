@@ -1,7 +1,7 @@
 // What-if: distances of kinematic robots that practise with these settings, and with the defaults.
 import { useEffect, useState } from "preact/hooks";
 import { canStart, continueTraining } from "../actions.js";
-import { form } from "../form.js";
+import { form, mistakes } from "../form.js";
 import { count, metres, whole } from "../format.js";
 import { isNarrow } from "../page.js";
 import { isOperator, matchingTable, work } from "../selectors.js";
@@ -9,6 +9,7 @@ import { agentOf, learns } from "../settings.js";
 import {
   answer, error, evaluateSettings, isComputing, isCurrent, isPanelOpen, isTooLong, mostSteps, seeds,
 } from "../what-if.js";
+import { messageOf } from "../titles.js";
 import { DotStrip } from "./charts.js";
 import { html } from "./elements.js";
 
@@ -38,9 +39,11 @@ export function WhatIf() {
 
 const teaser = () => `${seeds.value} ideal robots practise ${count(form.value.steps, "step")}`;
 
+const hasMistakes = () => Object.keys(mistakes.value).length > 0;
+
 function Comparison({ onContinue }) {
   const known = answer.value;
-  const isOld = isComputing.value || isTooLong.value || (known && !isCurrent.value);
+  const isOld = isComputing.value || isTooLong.value || hasMistakes() || (known && !isCurrent.value);
   const far = known && HEADROOM * Math.max(known.greedy_m, ...known.chosen.distances_m, ...known.default.distances_m);
   return html`
     <div class=${`trial ${isOld ? "old" : ""}`} aria-busy=${isComputing.value ? "true" : "false"}>
@@ -89,6 +92,9 @@ const Axis = ({ known, far }) => html`
 
 /** How to read the answer, that one is computed, or why there is none; always two lines high. */
 function Status({ known }) {
+  if (hasMistakes()) {
+    return html`<p class="what-if-words" role="status">Settings that are not valid are not tried.</p>`;
+  }
   if (isTooLong.value) {
     const words = `${whole(mostSteps.value)} steps at most: more take too long.`;
     return html`<p class="what-if-words" role="status">${words}</p>`;
@@ -96,7 +102,7 @@ function Status({ known }) {
   if (error.value && !isComputing.value) {
     return html`
       <p class="what-if-words bad" role="alert">
-        <span>${error.value.message}</span> <button class="link" onClick=${evaluateSettings}>Try again</button>
+        <span>${messageOf(error.value)}</span> <button class="link" onClick=${evaluateSettings}>Try again</button>
       </p>
     `;
   }

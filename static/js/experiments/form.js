@@ -1,12 +1,13 @@
 // The form of a new experiment. Only values that differ from the experiment's defaults are kept and sent.
 import { computed, signal } from "@preact/signals";
-import { withMistake } from "../form.js";
-import { presetOf } from "../selectors.js";
-import { learns, settingsOf, valueOf } from "../settings.js";
-import { options } from "../store.js";
+import { parseChoice, parseChoices, parseName, parseNumber, parseValues } from "../parse.js";
+import { presetOf } from "../robots.js";
+import { learns, limitsOf, settingsOf } from "../settings.js";
+import { options, served } from "../store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { ExperimentKind, ExperimentValue, ExperimentValues, SettingOption, SettingValue } from "../types.js" */
+/** @import { Parsed } from "../parse.js" */
+/** @import { ExperimentKind, ExperimentValue, ExperimentValues, SettingValue } from "../types.js" */
 
 // ---- the experiments that the server offers
 
@@ -56,8 +57,12 @@ function countTrials(experiment, values) {
 const chosenName = signal("");
 /** Field → value that differs from the default. @type {Signal<Record<string, ExperimentValue>>} */
 export const overrides = signal({});
-/** Field → why its text is not valid. @type {Signal<Record<string, string>>} */
-export const mistakes = signal({});
+/**
+ * Field → its text, as it was typed or as a link has it, while it is not valid. The field's value stays the last
+ * valid one until then.
+ * @type {Signal<Record<string, string>>}
+ */
+export const typed = signal({});
 
 export const chosenExperiment = computed(() => experimentOf(chosenName.value));
 
@@ -103,10 +108,78 @@ export const values = computed(() => {
 /** The number of trials that it would have. */
 export const trials = computed(() => countTrials(chosenExperiment.value.name, values.value));
 
+// ---- texts as values
+
+/** @param {{ name: string }[] | undefined} list */
+const namesOf = (list) => (list ?? []).map(({ name }) => name);
+
+const SEVERAL = { minimum: 1, maximum: null, excludes_minimum: false, excludes_maximum: false };
+
+/** Field that takes no list of values of a setting → how its text is read. */
+const READERS = /** @type {Record<string, (text: string) => Parsed<ExperimentValue>>} */ ({
+  experiment: (/** @type {string} */ text) => parseChoice(text, namesOf(experiments.value)),
+  simulator: (/** @type {string} */ text) => parseChoice(text, namesOf(served().simulators)),
+  name: (/** @type {string} */ text) => parseName(text, limitsOf("name")),
+  seeds: (/** @type {string} */ text) => parseNumber(text, limitsOf("seeds"), true),
+  seed: (/** @type {string} */ text) => parseNumber(text, limitsOf("seed"), true),
+  gaits: (/** @type {string} */ text) => parseChoices(text, namesOf(served().gaits), SEVERAL),
+  robots: (/** @type {string} */ text) => parseChoices(text, namesOf(served().robots), SEVERAL),
+  observations: (/** @type {string} */ text) => parseChoices(text, namesOf(served().observations), SEVERAL),
+  agents: (/** @type {string} */ text) => parseChoices(text, namesOf(served().agents), SEVERAL),
+});
+
+/** The declaration of a setting: that of the chosen agents, else the first agent's. @type {(field: string) => any} */
+const settingFor = (field) => agentSettings.value[field] ?? everySetting.value[field] ?? served().settings[field];
+
+/**
+ * A text as the value of a field, or why it is none. A setting of which each agent has its own default may be empty.
+ * @param {string} field
+ * @param {string} text
+ * @returns {Parsed<ExperimentValue>}
+ */
+export function parse(field, text) {
+  if (READERS[field]) return READERS[field](text);
+  const isOwn = defaults.value[field]?.toString() === "";
+  return isOwn && text.trim() === "" ? { value: defaults.value[field] } : parseValues(text, settingFor(field));
+}
+
+/** The fields whose text is not valid; any of them holds the start. */
+export const wrong = computed(() => {
+  /** @type {Record<string, { text: string, mistake: string }>} */
+  const found = {};
+  const check = (/** @type {string} */ field, /** @type {string} */ text) => {
+    const { mistake } = parse(field, text);
+    if (mistake !== undefined) found[field] = { text, mistake };
+  };
+  for (const [field, text] of Object.entries(typed.value)) {
+    if (field === "experiment" || takesField(field)) check(field, text);
+  }
+  // What is valid for some agents only, after others were chosen.
+  for (const [field, value] of Object.entries(overrides.value)) {
+    if (takesField(field) && !(field in typed.value)) check(field, joined(value, ", "));
+  }
+  return found;
+});
+
+/** Field → why its text is not valid. */
+export const mistakes = computed(() =>
+  Object.fromEntries(Object.entries(wrong.value).map(([field, { mistake }]) => [field, mistake])),
+);
+
 /** @param {string} name */
 export function chooseExperiment(name) {
   chosenName.value = name;
-  mistakes.value = {};
+  typed.value = without(typed.value, "experiment");
+}
+
+/**
+ * @template Value
+ * @param {Record<string, Value>} record
+ * @param {string} field
+ */
+function without(record, field) {
+  const { [field]: _, ...others } = record;
+  return others;
 }
 
 /**
@@ -114,58 +187,69 @@ export function chooseExperiment(name) {
  * @param {ExperimentValue} value
  */
 export function setField(field, value) {
-  const { [field]: _, ...others } = overrides.value;
+  const others = without(overrides.value, field);
   const isDefault = String(value) === String(defaults.value[field] ?? "");
+  typed.value = without(typed.value, field);
   overrides.value = isDefault ? others : { ...others, [field]: value };
 }
 
-/** @type {(field: string, message: string | null) => void} */
-export const setMistake = (field, message) => (mistakes.value = withMistake(mistakes.value, field, message));
+/**
+ * Take what was typed or chosen in a field: its value if the text is valid, else the text as it is.
+ * @param {string} field
+ * @param {string} text
+ */
+export function enter(field, text) {
+  const { value, mistake } = parse(field, text);
+  if (mistake === undefined) setField(field, value);
+  else typed.value = { ...typed.value, [field]: text };
+}
 
 /** The request's body. @returns {Record<string, ExperimentValue>} */
 export function requestBody() {
-  const own = Object.entries(overrides.value).filter(([field, value]) => takesField(field) && value !== "");
-  return { experiment: chosenExperiment.value.name, ...Object.fromEntries(own) };
+  const own = Object.entries(overrides.value).filter(([field]) => takesField(field));
+  const { name = "", ...others } = Object.fromEntries(own);
+  const trimmed = String(name).trim();
+  return { experiment: chosenExperiment.value.name, ...others, ...(trimmed ? { name: trimmed } : {}) };
 }
 
-/** The form as parameters of an address: [name, value]. */
-export const toQuery = () => [
-  ...(chosenExperiment.value === experiments.value[0] ? [] : [["experiment", chosenExperiment.value.name]]),
-  ...Object.entries(overrides.value).map(([field, value]) => [field, String(value)]),
-];
+/** @type {(value: ExperimentValue, separator: string) => string} */
+const joined = (value, separator) => (Array.isArray(value) ? value.join(separator) : String(value));
 
 /**
- * Set the form from the parameters of an address; unreadable values are skipped.
+ * A value as a text of which there is no other reading: 0 and 1 are "0;1", because "0,1" can be a tenth.
+ * @type {(field: string, value: ExperimentValue) => string}
+ */
+function inAddress(field, value) {
+  const text = joined(value, ",");
+  return parse(field, text).mistake === undefined ? text : joined(value, ";");
+}
+
+/** The form as parameters of an address, what is not valid as it was typed: [name, value]. */
+export const toQuery = () => {
+  const valid = Object.entries(overrides.value).filter(([field]) => !(field in typed.value));
+  const experiment = chosenExperiment.value === experiments.value[0] ? [] : [chosenExperiment.value.name];
+  return [
+    ...experiment.filter(() => !("experiment" in typed.value)).map((name) => ["experiment", name]),
+    ...valid.map(([field, value]) => [field, inAddress(field, value)]),
+    ...Object.entries(typed.value),
+  ];
+};
+
+/**
+ * Set the form from the parameters of an address; what is not valid is kept as it is.
  * @param {URLSearchParams} query
  */
 export function readQuery(query) {
+  const known = ["name", ...experiments.value.flatMap((kind) => kind.fields)];
+  overrides.value = {};
+  typed.value = {};
   chosenName.value = query.get("experiment") ?? "";
-  /** @type {Record<string, ExperimentValue>} */
-  const found = {};
-  for (const kind of experiments.value) {
-    for (const field of ["name", ...kind.fields]) {
-      const given = query.get(field);
-      const value = given === null ? undefined : parse(given, kind.defaults[field], everySetting.value[field]);
-      if (value !== undefined) found[field] = value;
-    }
+  // The agents first, because settings are read as theirs.
+  const fields = ["experiment", "agents", ...query.keys()].filter((field) => query.has(field));
+  for (const field of new Set(fields)) {
+    const text = query.get(field) ?? "";
+    const { value, mistake } = field === "experiment" || known.includes(field) ? parse(field, text) : {};
+    if (mistake !== undefined) typed.value = { ...typed.value, [field]: text };
+    else if (value !== undefined && field !== "experiment") overrides.value = { ...overrides.value, [field]: value };
   }
-  overrides.value = found;
-}
-
-/**
- * A text as a value of the type that the default has, or as a list of values of an agent's setting; undefined for
- * text that is no such value.
- * @param {string} text
- * @param {ExperimentValue | undefined} standard
- * @param {SettingOption} [setting]
- * @returns {ExperimentValue | undefined}
- */
-export function parse(text, standard, setting) {
-  if (typeof standard === "string") return text;
-  if (typeof standard === "number") return /^\d+$/.test(text) ? Number(text) : undefined;
-  const parts = text.split(",").filter((part) => part.trim() !== "");
-  const isNumeric = typeof standard?.[0] === "number";
-  const list = parts.map((part) => (setting ? valueOf(part.trim(), setting) : isNumeric ? Number(part) : part));
-  const isValid = list.length > 0 && !list.some((one) => one === undefined || Number.isNaN(one));
-  return isValid ? /** @type {SettingValue[]} */ (list) : undefined;
 }

@@ -24,7 +24,7 @@ export const wantedRun = signal(null);
 const query = () => {
   const search = new URLSearchParams(toQuery());
   if (wantedRun.value) search.set("run", wantedRun.value);
-  return search.toString().replaceAll("%2C", ",");
+  return search.toString().replaceAll("%2C", ",").replaceAll("%3B", ";");
 };
 
 const currentHash = () => (query() ? `#experiments?${query()}` : "#experiments");
@@ -177,10 +177,16 @@ export function paceOf(run) {
 
 // ---- actions
 
-export const startLabel = () => `Run ${chosenExperiment.value.title}: ${count(trials.value, "trial")}`;
+const hasMistakes = () => Object.keys(mistakes.value).length > 0;
+
+/** Without a number of trials while a field is not valid, by which it would be another. */
+export function startLabel() {
+  const { title } = chosenExperiment.value;
+  return hasMistakes() ? `Run ${title}` : `Run ${title}: ${count(trials.value, "trial")}`;
+}
 
 export const canStart = () =>
-  isOperator.value && Object.keys(mistakes.value).length === 0 && trials.value > 0;
+  isOperator.value && !hasMistakes() && trials.value > 0;
 
 export const start = () =>
   attempt("experiment", async () => {

@@ -2,16 +2,18 @@
 import { useState } from "preact/hooks";
 import { pending, refusedFields } from "../../actions.js";
 import {
-  agentSettings, chooseExperiment, chosenExperiment, defaults, experiments, mistakes, setField, setMistake, takesField,
-  values,
+  agentSettings, chooseExperiment, chosenExperiment, defaults, enter, experiments, mistakes, parse, setField,
+  takesField, values, wrong,
 } from "../../experiments/form.js";
 import { canStart, start, startLabel } from "../../experiments/runs.js";
 import { listed, sentence, whole } from "../../format.js";
 import { isNarrow } from "../../page.js";
-import { limitsOf, mistakeIn, parseValues, settingOf, shortTitle } from "../../settings.js";
+import { settingOf, shortTitle } from "../../settings.js";
 import { options } from "../../store.js";
-import { agentTitle, choicesOf, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../../titles.js";
-import { html, Icon, Problem } from "../elements.js";
+import {
+  agentTitle, choicesOf, fieldTitle, gaitTitle, observationTitle, robotTitle, simulatorTitle,
+} from "../../titles.js";
+import { goToField, Held, html, Icon, Mistake, Problem } from "../elements.js";
 import { helpFor } from "../fields.js";
 
 /** @import { SettingValue } from "../../types.js" */
@@ -46,7 +48,7 @@ const Fields = () => html`
     <${Cards} />
     <div class="pair">
       <${CountField} field="seeds" label="Seeds" />
-      <${CountField} field="seed" label="First seed" />
+      <${CountField} field="seed" label=${FIRST_SEED} />
     </div>
     ${takesField("agents") && html`
       <${CheckList} field="agents" label="Agents" choices=${choicesOf(options.value?.agents, agentTitle)} />
@@ -60,27 +62,40 @@ const Fields = () => html`
 
 function StartButton() {
   const isDisabled = !canStart() || pending.value.experiment;
+  const isHeld = Object.keys(mistakes.value).length > 0;
   return html`
-    <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${() => !isDisabled && start()}>
+    <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${() => !isDisabled && start()}
+      aria-describedby=${isHeld ? "held-experiment" : undefined}>
       ${pending.value.experiment ? "Starting…" : html`<${Icon} name="play" />${startLabel()}`}
     </button>
+    ${isHeld && html`
+      <${Held} id="held-experiment" mistakes=${mistakes.value} nameOf=${nameOf}
+        onField=${(field) => goToField(`experiment-${field}`)} />
+    `}
   `;
 }
 
+/** A field's name as this form shows it. */
+const nameOf = (field) => (field === "seed" ? FIRST_SEED : fieldTitle(field));
+const FIRST_SEED = "First seed";
+
 const Cards = () => html`
-  <fieldset class="cards">
+  <fieldset class="cards" role="radiogroup" aria-invalid=${wrong.value.experiment ? "true" : undefined}
+    aria-describedby=${wrong.value.experiment && "wrong-experiment"}>
     <legend class="sr-only">Experiment</legend>
-    ${experiments.value.map(({ name, title, description }) => html`
+    ${experiments.value.map(({ name, title, description }, number) => html`
       <label class="card" key=${name}>
-        <input class="sr-only" type="radio" name="experiment" checked=${chosenExperiment.value.name === name}
+        <input class="sr-only" type="radio" name="experiment" id=${number ? undefined : "experiment-experiment"}
+          checked=${!wrong.value.experiment && chosenExperiment.value.name === name}
           onChange=${() => chooseExperiment(name)} />
         <b>${title}</b><span>${description}</span>
       </label>
     `)}
+    <${MistakeOf} field="experiment" />
   </fieldset>
 `;
 
-/** Fields that a sweep combines: one value each, or several with commas. */
+/** Fields that a sweep combines: one value each, or several. */
 const Grid = ({ fields }) => fields.length > 0 && html`
   <fieldset class="grid-fields">
     <legend>Every combination of</legend>
@@ -93,7 +108,7 @@ const Grid = ({ fields }) => fields.length > 0 && html`
 /** Gaits, robots, observations and simulator: rarely changed, so one line until opened. */
 const More = () => html`
   <details class="more">
-    <summary>Where and how<span class="dim">${placeSummary()}</span></summary>
+    <summary>Robots and gaits<span class="dim">${placeSummary()}</span></summary>
     <div class="where">
       <${CheckList} field="gaits" label="Gaits" choices=${choicesOf(options.value?.gaits, gaitTitle)} />
       <${CheckList} field="robots" label="Robots" choices=${choicesOf(options.value?.robots, robotTitle)} />
@@ -120,12 +135,17 @@ function placeSummary() {
 const SimulatorField = () => html`
   <div class="field">
     <label for="experiment-simulator">Simulator</label>
-    <select id="experiment-simulator" aria-describedby="about-simulator"
-      onChange=${({ target }) => setField("simulator", target.value)}>
+    <select ...${attributesOf("simulator")} onChange=${({ target }) => setField("simulator", target.value)}>
+      ${wrong.value.simulator && html`
+        <option value="" selected disabled>${wrong.value.simulator.text || "(empty)"}: not valid</option>
+      `}
       ${(options.value?.simulators ?? []).map(({ name }) => html`
-        <option value=${name} selected=${name === values.value.simulator}>${sentence(simulatorTitle(name))}</option>
+        <option value=${name} selected=${!wrong.value.simulator && name === values.value.simulator}>
+          ${sentence(simulatorTitle(name))}
+        </option>
       `)}
     </select>
+    <${MistakeOf} field="simulator" />
     <${Help} field="simulator" />
   </div>
 `;
@@ -133,95 +153,87 @@ const SimulatorField = () => html`
 const NameField = () => html`
   <div class="field">
     <label for="experiment-name">Name</label>
-    <input type="text" id="experiment-name" maxlength=${limitsOf("name").maximum} placeholder="optional"
-      aria-describedby="about-name" value=${values.value.name}
-      onInput=${({ target }) => setField("name", target.value.trim())} />
+    <input type="text" ...${attributesOf("name")} placeholder="optional"
+      value=${wrong.value.name?.text ?? values.value.name} onInput=${({ target }) => enter("name", target.value)} />
+    <${MistakeOf} field="name" />
     <${Help} field="name" />
   </div>
 `;
+
+// ---- what is not valid, and why
+
+/** The attributes of a field's control: its id, whether it is marked, and what describes it. */
+const attributesOf = (field) => ({
+  id: `experiment-${field}`,
+  "aria-invalid": wrong.value[field] || refusedFields("experiment").includes(field) ? "true" : undefined,
+  "aria-describedby": wrong.value[field] ? `wrong-${field} about-${field}` : `about-${field}`,
+});
+
+const MistakeOf = ({ field }) => html`<${Mistake} id=${`wrong-${field}`}>${wrong.value[field]?.mistake}<//>`;
 
 // ---- help: a sentence below each field
 
 const Help = ({ field }) => html`<p class="sentence" id=${`about-${field}`}>${helpFor(field)}</p>`;
 
-// ---- a choice of several out of a few; at least one stays chosen
+// ---- a choice of several out of a few; with none the start is held
 
 /** `choices`: [value, title]. */
 function CheckList({ field, label, choices }) {
-  const chosen = /** @type {string[]} */ (values.value[field]);
-  const toggle = (event, name) => {
+  const chosen = /** @type {string[]} */ (wrong.value[field]?.text.split(",") ?? values.value[field]);
+  const toggle = (name) => {
     const isChosen = (one) => (one === name ? !chosen.includes(one) : chosen.includes(one));
-    const next = choices.map(([one]) => one).filter(isChosen);
-    if (next.length) setField(field, next);
-    else event.target.checked = true;
+    enter(field, choices.map(([one]) => one).filter(isChosen).join(","));
   };
   return html`
     <fieldset class="field" aria-describedby=${`about-${field}`}>
       <legend>${label}</legend>
       <div class="checks">
-        ${choices.map(([name, title]) => html`
+        ${choices.map(([name, title], number) => html`
           <label class="check" key=${name}>
-            <input type="checkbox" checked=${chosen.includes(name)} onChange=${(event) => toggle(event, name)} />
+            <input type="checkbox" checked=${chosen.includes(name)} onChange=${() => toggle(name)}
+              ...${attributesOf(field)} id=${number ? undefined : `experiment-${field}`} />
             ${title}
           </label>
         `)}
       </div>
+      <${MistakeOf} field=${field} />
       <${Help} field=${field} />
     </fieldset>
   `;
 }
 
-// ---- text fields: a whole number, or values with commas; a mistake disables the start
+// ---- text fields: a whole number, or a list of values; what is typed stays as it is
 
-function TypedField({ field, label, text, parse, inputmode, placeholder = undefined }) {
-  const [draft, setDraft] = useState(null);
-  const mistake = mistakes.value[field];
-  const isRefused = refusedFields("experiment").includes(field);
+function TypedField({ field, label, text, inputmode, placeholder = undefined }) {
+  const [draft, setDraft] = useState(/** @type {string | null} */ (null));
+  const isKept = draft !== null && String(parse(field, draft).value) === String(values.value[field]);
   const onInput = ({ target }) => {
     setDraft(target.value);
-    const parsed = parse(target.value);
-    setMistake(field, parsed.mistake ?? null);
-    if (!parsed.mistake) setField(field, parsed.value);
-  };
-  const onBlur = () => {
-    setDraft(null);
-    setMistake(field, null);
+    enter(field, target.value);
   };
   return html`
     <div class="field">
       <label for=${`experiment-${field}`}>${label}</label>
-      <span class="number">
-        <input type="text" inputmode=${inputmode} id=${`experiment-${field}`} value=${draft ?? text}
-          placeholder=${placeholder}
-          aria-invalid=${mistake || isRefused ? "true" : undefined}
-          aria-describedby=${mistake ? `wrong-${field}` : `about-${field}`} onInput=${onInput} onBlur=${onBlur} />
-        ${mistake && html`<span class="mistake" role="alert" id=${`wrong-${field}`}>${mistake}</span>`}
-      </span>
+      <input type="text" inputmode=${inputmode} autocomplete="off" ...${attributesOf(field)}
+        value=${wrong.value[field]?.text ?? (isKept ? draft : text)} placeholder=${placeholder} onInput=${onInput} />
+      <${MistakeOf} field=${field} />
       <${Help} field=${field} />
     </div>
   `;
 }
 
 /** One whole number. */
-function CountField({ field, label }) {
-  const parse = (typed) => {
-    const value = /^\d+$/.test(typed.trim()) ? Number(typed) : NaN;
-    const mistake = mistakeIn(value, limitsOf(field), true);
-    return mistake ? { mistake } : { value };
-  };
-  const text = String(values.value[field]);
-  return html`<${TypedField} field=${field} label=${label} text=${text} parse=${parse} inputmode="numeric" />`;
-}
+const CountField = ({ field, label }) => html`
+  <${TypedField} field=${field} label=${label} text=${String(values.value[field])} inputmode="numeric" />
+`;
 
 const joined = (list) => /** @type {SettingValue[]} */ (list).join(", ");
 
-/** One value of a setting, or several with commas between; none where each agent has its own default. */
+/** One value of a setting, or several; none where each agent has its own default. */
 function ValuesField({ field, setting }) {
-  const standard = defaults.value[field];
-  const isOwn = joined(standard) === "";
-  const parse = (typed) => (isOwn && typed.trim() === "" ? { value: standard } : parseValues(typed, setting));
+  const isOwn = joined(defaults.value[field]) === "";
   return html`
-    <${TypedField} field=${field} label=${shortTitle(setting)} text=${joined(values.value[field])} parse=${parse}
+    <${TypedField} field=${field} label=${shortTitle(setting)} text=${joined(values.value[field])}
       inputmode=${setting.is_number ? "decimal" : "text"} placeholder=${isOwn ? "by default" : undefined} />
   `;
 }
