@@ -99,16 +99,17 @@ export function Slider({ field, setting = settingOf(field), title, unit, value, 
 // ---- a choice out of a list
 
 /** `choices`: [value, title]; `onValue` replaces setting the form's field. */
-export function SelectField({ field, label, choices, onValue = (value) => setField(field, value) }) {
+export function SelectField({
+  field, label, choices, value = form.value[field], onValue = (chosen) => setField(field, chosen),
+}) {
   const help = showHelp(field);
-  const value = String(form.value[field]);
   const onChange = ({ target }) => onValue(choices.find(([one]) => String(one) === target.value)[0]);
   return html`
     <div class="field" onFocusIn=${help} onPointerEnter=${help}>
       <label for=${`field-${field}`}>${label}</label>
       <select id=${`field-${field}`} aria-describedby=${`help-${field}`} onChange=${onChange}>
         ${choices.map(([one, title]) => html`
-          <option value=${String(one)} selected=${String(one) === value}>${title}</option>
+          <option value=${String(one)} selected=${String(one) === String(value)}>${title}</option>
         `)}
       </select>
       <${Description} field=${field} />
