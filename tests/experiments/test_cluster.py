@@ -11,6 +11,7 @@ from typing import Any
 import psutil
 import pytest
 from distributed import Client
+from tornado.iostream import IOStream
 
 from app.domain.errors import InvalidInput
 from app.experiments import cluster
@@ -112,7 +113,8 @@ def test_an_existing_cluster_gives_the_same_results_until_its_scheduler_dies(
 def test_a_scheduler_that_dies_as_the_client_reconnects_is_lost(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def connection_that_closed_meanwhile(*_: object, **__: object) -> None:
+    def connection_that_closed_meanwhile(stream: IOStream, *_: object, **__: object) -> None:
+        stream.close()
         raise ValueError("IOStream is not idle; cannot convert to SSL")
 
     with scheduler(tmp_path, tls=True) as foreign:

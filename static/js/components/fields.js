@@ -113,10 +113,11 @@ export function Slider({
 
 // ---- a choice out of a list
 
-/** `choices`: [value, title]; `onValue` replaces setting the form's field, `words` its help. */
-export function SelectField({ field, label, choices, onValue = (value) => setField(field, value), words }) {
+/** `choices`: [value, title]; `value` and `onValue` replace the form's field, `words` its help. */
+export function SelectField({
+  field, label, choices, value = form.value[field], onValue = (chosen) => setField(field, chosen), words,
+}) {
   const kept = wrong.value[field];
-  const value = kept ? null : textOf(form.value[field]);
   const onChange = ({ target }) => onValue(choices.find(([one]) => textOf(one) === target.value)[0]);
   return html`
     <div class="field">
@@ -124,7 +125,7 @@ export function SelectField({ field, label, choices, onValue = (value) => setFie
       <select ...${attributesOf(field)} onChange=${onChange}>
         ${kept && html`<${InvalidOption} text=${kept.text} />`}
         ${choices.map(([one, title]) => html`
-          <option value=${textOf(one)} selected=${textOf(one) === value}>${title}</option>
+          <option value=${textOf(one)} selected=${!kept && textOf(one) === textOf(value)}>${title}</option>
         `)}
       </select>
       <${MistakeOf} field=${field} />

@@ -64,18 +64,19 @@ function LearnerSettings() {
   ];
 }
 
-/** A live setting's value now: of the training that runs. @type {(run: Run, name: string) => any} */
+/** The pace or a live setting now: of the training that runs. @type {(run: Run, name: string) => any} */
 const rateNow = (run, name) => presentRates(run)[name] ?? run.config[name];
 
 /** What the next training starts with, where the one that runs has other values. */
 function NextRates({ run }) {
   /** @type {Record<string, any>} */
   const values = form.value;
-  const names = Object.keys(agentOf(run.config.agent).live_settings).filter((name) => name in values);
+  const live = [...Object.keys(agentOf(run.config.agent).live_settings), "pace"];
+  const names = live.filter((name) => name in values);
   const other = names.filter((name) => rateNow(run, name) !== values[name]);
   if (!other.length) return null;
   const words = other.map((name) => rateInWords(values.agent, { name, value: values[name] }));
-  return html`<p class="next-rates dim">The sliders show the training that runs. The next starts with
+  return html`<p class="next-rates dim">These are the values of the training that runs. The next one starts with
     ${" "}${words.join(", ")}.</p>`;
 }
 
@@ -194,13 +195,15 @@ function Figure({ field, step }) {
 }
 
 function Pace() {
-  const { pace } = form.value;
+  const run = liveTraining.value;
+  const pace = run ? rateNow(run, "pace") : form.value.pace;
   const choices = PACES.some(([one]) => one === pace) ? PACES : [...PACES, [pace, `×${pace}`]];
   const onValue = (value) => {
     setField("pace", value);
     tune({ pace: value });
   };
-  return html`<${SelectField} field="pace" label=${settingOf("pace").title} choices=${choices} onValue=${onValue} />`;
+  return html`<${SelectField} field="pace" label=${settingOf("pace").title} choices=${choices} value=${pace}
+    onValue=${onValue} />`;
 }
 
 /** Any number of lanes can be checked; one that is not valid is explained and holds the start. */
