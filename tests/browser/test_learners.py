@@ -135,9 +135,9 @@ def test_a_sweep_varies_the_settings_of_its_agents(dashboard: Dashboard, server:
     assert run["config"]["trace_decay"] == [0.5, 0.9]
     assert run["progress"] == {"done": 7, "total": 7}
     table = page.get_by_role("table").filter(has_text="Total distance")
-    expect(table.get_by_role("columnheader", name="λ", exact=True)).to_be_visible()
-    expect(table.get_by_role("row", name=re.compile(r"^Q-learning –"))).to_have_count(1)
-    expect(table.get_by_role("row", name=re.compile(r"^Sarsa\(λ\) 0\.[59]"))).to_have_count(2)
+    expect(table.get_by_role("columnheader", name="Agent, λ", exact=True)).to_be_visible()
+    expect(table.get_by_role("row", name=re.compile(r"^Q-learning \d"))).to_have_count(1)
+    expect(table.get_by_role("row", name=re.compile(r"^Sarsa\(λ\), λ\s0\.[59]"))).to_have_count(2)
     assert dashboard.violations() == []
     page.get_by_role("checkbox", name="Sarsa(λ)").uncheck()
     expect(decays).to_have_count(0)
