@@ -5,7 +5,7 @@ from itertools import combinations
 from urllib.parse import urlencode
 
 import pytest
-from playwright.sync_api import Browser, Route, expect
+from playwright.sync_api import Browser, Page, Route, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving
@@ -40,6 +40,30 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     ).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("^The race after .*Two-step"))).to_be_visible()
     expect(dashboard.rows.filter(has_text="Two-step").locator(".aside").last).to_have_text("936")
+    check_crosshairs(page)
+    assert dashboard.violations() == []
+    expect(dashboard.button("Play again for everyone")).to_be_visible()
+    timeline_end = page.locator(".seek .num").last.inner_text()
+    expect(dashboard.rows.filter(has_text="Two-step")).to_contain_text(f"6 steps in {timeline_end}")
+    check_widths_of_the_scoreboard(dashboard)
+    page.evaluate("scrollTo(0, 0)")
+    for width, height in ((390, 844), (844, 390)):
+        page.set_viewport_size({"width": width, "height": height})
+        dashboard.eventually(lambda: overlaps(dashboard) == [], "labels apart from each other")
+        expect(dashboard.primary).to_be_in_viewport(ratio=1)
+
+    expect(dashboard.primary).to_have_text("Practise 40 more, race again")
+    dashboard.primary.click()
+    expect(page.locator(".start-list, .board").first).to_contain_text("80 steps of practice")
+    expect(dashboard.primary).to_have_text("Practise 40 more, race again")
+
+    runs = dashboard.get("/api/v1/trainings")["items"]
+    assert [run["progress"]["done"] for run in runs] == [40, 40]
+    assert runs[0]["config"]["continue_from"] == runs[1]["id"]
+
+
+def check_crosshairs(page: Page) -> None:
+    """Read the values of both charts by pointer, keys and finger."""
     curve = page.get_by_role("slider", name="Values of the learning curve")
     curve.hover()
     expect(curve.locator(".readout")).to_contain_text(
@@ -58,14 +82,14 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     race.dispatch_event("pointerdown", finger)
     race.dispatch_event("pointerleave", finger)
     expect(race.locator(".readout")).to_contain_text(re.compile(r"^0\.0\ss.*Two-step 0\.00\sm"))
-    assert dashboard.violations() == []
-    expect(dashboard.button("Play again for everyone")).to_be_visible()
-    timeline_end = page.locator(".seek .num").last.inner_text()
-    expect(dashboard.rows.filter(has_text="Two-step")).to_contain_text(f"6 steps in {timeline_end}")
+
+
+def check_widths_of_the_scoreboard(dashboard: Dashboard) -> None:
+    """Check that its columns stay in its panel; the viewport has another size then."""
     for width in (390, 1100, 1280, 1440):
-        page.set_viewport_size({"width": width, "height": 900})
+        dashboard.page.set_viewport_size({"width": width, "height": 900})
         # As wide as they get: backwards, after slow decisions with many simulated transitions.
-        page.locator(".board tr:not(.under)").evaluate_all(
+        dashboard.page.locator(".board tr:not(.under)").evaluate_all(
             """rows => rows.forEach(({cells}) => {
                 const widest = ["−0.36 m", "−0.36 m", "120 ms", "46 800"];
                 [...cells].slice(2).forEach((cell, n) => {
@@ -75,19 +99,6 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
         )
         board, panel = dashboard.box(".board"), dashboard.box(".scoreboard")
         assert board["x"] + board["width"] <= panel["x"] + panel["width"] - 16
-    for width, height in ((390, 844), (844, 390)):
-        page.set_viewport_size({"width": width, "height": height})
-        dashboard.eventually(lambda: overlaps(dashboard) == [], "labels apart from each other")
-        expect(dashboard.primary).to_be_in_viewport(ratio=1)
-
-    expect(dashboard.primary).to_have_text("Practise 40 more, race again")
-    dashboard.primary.click()
-    expect(page.locator(".start-list, .board").first).to_contain_text("80 steps of practice")
-    expect(dashboard.primary).to_have_text("Practise 40 more, race again")
-
-    runs = dashboard.get("/api/v1/trainings")["items"]
-    assert [run["progress"]["done"] for run in runs] == [40, 40]
-    assert runs[0]["config"]["continue_from"] == runs[1]["id"]
 
 
 def overlaps(dashboard: Dashboard) -> list[tuple[str, str]]:

@@ -1,9 +1,10 @@
 // The race at the moment that is shown: timeline, standings, headline.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { clipped, distanceAt, headline, isTimedOut, shownTime, standings, timeSpent } from "../../static/js/race.js";
+import {
+  clipped, distanceAt, flatParts, headline, isTimedOut, ruleOf, shownTime, standings, timeSpent,
+} from "../../static/js/race.js";
 import { applyEvent, options } from "../../static/js/store.js";
-import { flatParts, ruleOf } from "../../static/js/verdict.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 /** @import { TimelinePoint } from "../../static/js/types.js" */

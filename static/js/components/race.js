@@ -3,13 +3,14 @@ import { useMemo } from "preact/hooks";
 import uPlot from "uplot";
 import { form } from "../form.js";
 import { clockTime, count, decision, metres, whole } from "../format.js";
-import { clipped, distanceAt, headline, isTimedOut, raceScene, shownTime, standings, timeline } from "../race.js";
+import {
+  clipped, distanceAt, flatParts, headline, isTimedOut, raceScene, ruleOf, shownTime, standings, timeline,
+} from "../race.js";
 import { clock, isActive, raceInView, simulatedPerDecision } from "../selectors.js";
 import { agentOf, learns } from "../settings.js";
 import { runs } from "../store.js";
 import { clockTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
-import { flatParts, ruleOf } from "../verdict.js";
 import { AsTable, Empty, Plot } from "./charts.js";
 import { html, Icon } from "./elements.js";
 
