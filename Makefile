@@ -13,6 +13,8 @@ DQN_STAMP := $(VENV)/.installed-dqn
 # The tools that check the page. Node and npm come with the tools of the tests, from the Python registry.
 PAGE_STAMP := node_modules/.installed
 TORCH := torch==2.13.0
+# One more than the cores of a small machine: a third of the tests' time is waiting.
+TEST_PROCESSES := 3
 
 # Python compiles what it imports by itself; most of what is installed is never imported. Where the
 # environment forbids it to keep the result, as many containers do, each process compiles again:
@@ -38,7 +40,7 @@ venv: $(DQN_STAMP) $(PAGE_STAMP) ## Make or update .venv with everything a devel
 .PHONY: test
 test: ## Run every check; this is the gate
 	@$(MAKE) --no-print-directory --jobs=3 check test-page browser
-	$(BIN)/python -m pytest --numprocesses 2
+	$(BIN)/python -m pytest --numprocesses $(TEST_PROCESSES)
 
 .PHONY: check
 check: $(DQN_STAMP) ## Check the Python code: format, linter, types, import contracts
