@@ -37,7 +37,7 @@ WALKERS = at_length(
     [
         (name, gait)
         for name, gait in EVERY_ROBOT_AND_GAIT
-        if name == "compliant" or gait in (GAITS[0], EXCEPTIONAL)
+        if name in ("stiff", "compliant") or gait in (GAITS[0], EXCEPTIONAL)
     ],
     EVERY_ROBOT_AND_GAIT,
 )

@@ -5,6 +5,7 @@ set aside: it is named in the summary and in the report, and all others complete
 that they have without it. In full: on MuJoCo, with five poisonous trials among a hundred.
 """
 
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -64,7 +65,7 @@ def test_a_trial_that_kills_its_worker_three_times_is_set_aside_and_the_rest_com
     reasons = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
     assert reasons == dict.fromkeys(keys, "it ended its worker's process 3 times")
     assert summary["trials"]["done"] == len(trials) - len(poisonous)
-    report = page(summary)
+    report = unescape(page(summary))
     for one in summary["trials"]["set_aside"]:
         assert f"{one['label']} was set aside: {one['reason']}" in report
     poison(tmp_path, [])
