@@ -24,6 +24,8 @@ H_M = 0.02
 GREEDY_H = 24.833
 MEASURED_STEPS = at_length((250, 500), (250, 500, 1000))
 NINE_CELLS_STEPS = at_length((500,), (250, 500, 1000))
+COMMANDED_STEPS = at_length((1000,), (500, 1000))
+BLOCK_STEPS = at_length((250, 500), (250, 500, 750, 1000))
 WORKERS = 2
 
 
@@ -80,7 +82,7 @@ def kinematic_rows(seed: int) -> dict[str, float]:
         found[f"measured {steps}"] = practise(_kinematic(seed, steps, "measured"))
     for steps in NINE_CELLS_STEPS:
         found[f"nine cells {steps}"] = practise(_kinematic(seed, steps, "measured", 3))
-    for steps in (500, 1000):
+    for steps in COMMANDED_STEPS:
         found[f"commanded {steps}"] = practise(_kinematic(seed, steps, "commanded"))
     return {name: metres / H_M for name, metres in {**found, **_blocks(seed)}.items()}
 
@@ -89,7 +91,7 @@ def _blocks(seed: int) -> dict[str, float]:
     """As the paper's Figure 4: learn 250 steps, save, load, learn 250 more."""
     config, found = _kinematic(seed, 250, "commanded"), {}
     table: Checkpoint | None = None
-    for steps in (250, 500, 750, 1000):
+    for steps in BLOCK_STEPS:
         learner = build_learner(config, table)
         for _ in train(learner, config):
             pass

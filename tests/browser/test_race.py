@@ -12,7 +12,7 @@ from tests.browser.serving import Serving
 
 pytestmark = pytest.mark.timeout(300)
 
-SHORT = urlencode({"steps": 40, "evaluate_every": 20, "race_steps": 6})
+SHORT = urlencode({"steps": 20, "evaluate_every": 10, "race_steps": 3})
 LONG = urlencode({"steps": 100_000, "pace": 8})
 
 
@@ -23,15 +23,15 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     expect(page.locator(".chip").first).to_have_text("On the start line")
     before = dashboard.picture()
 
-    expect(dashboard.primary).to_have_text("Train 40 steps, then race")
+    expect(dashboard.primary).to_have_text("Train 20 steps, then race")
     dashboard.primary.click()
 
-    expect(page.locator(".chip").first).to_contain_text("of 40")
+    expect(page.locator(".chip").first).to_contain_text("of 20")
     expect(page.get_by_role("table", name="Standings")).to_be_visible()
     dashboard.eventually(lambda: dashboard.picture() != before, "the robots move in the canvas")
     dashboard.eventually(dashboard.has_figures, "the scoreboard fills")
     headline = page.locator(".headline")
-    verdict = re.compile(r"(wins|tie).*: −?0\.\d\d\sm when .* had used its 6 steps$")
+    verdict = re.compile(r"(wins|tie).*: −?0\.\d\d\sm when .* had used its 3 steps$")
     expect(headline).to_have_text(verdict)
     expect(page.get_by_role("status").filter(has_text=verdict)).to_be_attached()
     expect(page.locator(".scoreboard")).to_contain_text("The furthest at time-out wins")
@@ -39,12 +39,12 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
         page.get_by_role("img", name=re.compile("^Learning curve: .*greedy gets"))
     ).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("^The race after .*Two-step"))).to_be_visible()
-    expect(dashboard.rows.filter(has_text="Two-step").locator(".aside").last).to_have_text("936")
+    expect(dashboard.rows.filter(has_text="Two-step").locator(".aside").last).to_have_text("468")
     check_crosshairs(page)
     assert dashboard.violations() == []
     expect(dashboard.button("Play again for everyone")).to_be_visible()
     timeline_end = page.locator(".seek .num").last.inner_text()
-    expect(dashboard.rows.filter(has_text="Two-step")).to_contain_text(f"6 steps in {timeline_end}")
+    expect(dashboard.rows.filter(has_text="Two-step")).to_contain_text(f"3 steps in {timeline_end}")
     check_widths_of_the_scoreboard(dashboard)
     page.evaluate("scrollTo(0, 0)")
     for width, height in ((390, 844), (844, 390)):
@@ -52,13 +52,13 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
         dashboard.eventually(lambda: overlaps(dashboard) == [], "labels apart from each other")
         expect(dashboard.primary).to_be_in_viewport(ratio=1)
 
-    expect(dashboard.primary).to_have_text("Practise 40 more, race again")
+    expect(dashboard.primary).to_have_text("Practise 20 more, race again")
     dashboard.primary.click()
-    expect(page.locator(".start-list, .board").first).to_contain_text("80 steps of practice")
-    expect(dashboard.primary).to_have_text("Practise 40 more, race again")
+    expect(page.locator(".start-list, .board").first).to_contain_text("40 steps of practice")
+    expect(dashboard.primary).to_have_text("Practise 20 more, race again")
 
     runs = dashboard.get("/api/v1/trainings")["items"]
-    assert [run["progress"]["done"] for run in runs] == [40, 40]
+    assert [run["progress"]["done"] for run in runs] == [20, 20]
     assert runs[0]["config"]["continue_from"] == runs[1]["id"]
 
 
@@ -74,7 +74,7 @@ def check_crosshairs(page: Page) -> None:
         "aria-valuetext", re.compile(r"^0 steps: Q-learning 0\.00\sm, Greedy \d\.\d\d\sm$")
     )
     curve.press("ArrowRight")
-    expect(curve).to_have_attribute("aria-valuetext", re.compile("^20 steps: "))
+    expect(curve).to_have_attribute("aria-valuetext", re.compile("^10 steps: "))
     race = page.get_by_role("slider", name="Values of the race")
     box = race.bounding_box()
     assert box is not None
@@ -102,10 +102,11 @@ def check_widths_of_the_scoreboard(dashboard: Dashboard) -> None:
 
 
 def overlaps(dashboard: Dashboard) -> list[tuple[str, str]]:
-    """Pairs of the stage's labels and chips that lie on each other."""
+    """Pairs of the stage's labels and chips that lie on each other, or what is missing."""
     frame = dashboard.page.frame_locator(".picture iframe")
     labels = frame.locator(".labels > div:not([hidden])").all()
-    assert len(labels) >= 3
+    if len(labels) < 3:
+        return [("labels", f"{len(labels)} are shown")]
     chips = dashboard.page.locator(".stage .chip").all()
     boxes = [(one.inner_text(), box) for one in (*labels, *chips) if (box := one.bounding_box())]
     return [

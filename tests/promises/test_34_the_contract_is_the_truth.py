@@ -36,8 +36,8 @@ from tests.promises.contract_checks import CHECK
 from tests.promises.length import at_length
 from tests.served import Served, serving_from
 
-CASES = at_length(3000, 5000)
-MOST_PER_OPERATION = at_length(3, 100)
+CASES = at_length(2000, 5000)
+MOST_PER_OPERATION = at_length(1, 100)
 TOKEN = "a-token-for-the-contract"
 ENDLESS = "/api/v1/events"
 ROOT = Path(__file__).parents[2]

@@ -11,6 +11,8 @@ import pytest
 from app.domain.gait import NAMED_GAITS
 from app.domain.types import FloatArray
 from tests.figures import (
+    BLOCK_STEPS,
+    COMMANDED_STEPS,
     GREEDY_H,
     H_M,
     MEASURED_STEPS,
@@ -69,13 +71,13 @@ def test_measured_q_learning_on_nine_cells(rows: Rows, steps: int) -> None:
     assert share(rows[f"nine cells {steps}"]) == pytest.approx(percent, rel=0.05)
 
 
-def test_commanded_q_learning(rows: Rows) -> None:
-    after_500, after_1000 = (interquartile_mean(rows[f"commanded {n}"]) for n in (500, 1000))
+@pytest.mark.parametrize("steps", COMMANDED_STEPS)
+def test_commanded_q_learning(rows: Rows, steps: int) -> None:
+    least_h, most_h, percent = {500: (3.2, 3.2, 13), 1000: (4.4, 4.9, 19)}[steps]
+    commanded = rows[f"commanded {steps}"]
 
-    assert after_500 == pytest.approx(3.2, rel=0.2)
-    assert 0.8 * 4.4 <= after_1000 <= 1.2 * 4.9
-    assert share(rows["commanded 500"]) == pytest.approx(13, rel=0.2)
-    assert share(rows["commanded 1000"]) == pytest.approx(19, rel=0.2)
+    assert 0.8 * least_h <= interquartile_mean(commanded) <= 1.2 * most_h
+    assert share(commanded) == pytest.approx(percent, rel=0.2)
 
 
 def test_commanded_q_learning_is_heavy_tailed(rows: Rows) -> None:
@@ -86,8 +88,8 @@ def test_commanded_q_learning_is_heavy_tailed(rows: Rows) -> None:
     assert (shares > 0.8).mean() > 0.05
 
 
-@pytest.mark.parametrize(("steps", "distance_h"), [(250, 3.3), (500, 3.6), (750, 5.4), (1000, 6.9)])
-def test_commanded_q_learning_in_blocks_with_epsilon_restarted(
-    rows: Rows, steps: int, distance_h: float
-) -> None:
+@pytest.mark.parametrize("steps", BLOCK_STEPS)
+def test_commanded_q_learning_in_blocks_with_epsilon_restarted(rows: Rows, steps: int) -> None:
+    distance_h = {250: 3.3, 500: 3.6, 750: 5.4, 1000: 6.9}[steps]
+
     assert interquartile_mean(rows[f"block {steps}"]) == pytest.approx(distance_h, rel=0.2)
