@@ -153,7 +153,9 @@ def test_picture_changes_with_the_scene(viewer: Frame, viser_server: InProcessVi
     wait_until(lambda: drawn_pixels(viewer) > 2 * before)
 
 
-def test_no_controls_of_viser_are_visible(viewer: Frame) -> None:
+def test_only_the_scene_is_visible_in_the_theme_of_the_dashboard_which_gets_the_keys(
+    dashboard: Page, viewer: Frame
+) -> None:
     shown = viewer.evaluate(
         """() => [...document.querySelectorAll("#root *, body > *")]
             .filter((element) => element.checkVisibility() && element.innerText?.trim())
@@ -163,34 +165,6 @@ def test_no_controls_of_viser_are_visible(viewer: Frame) -> None:
     assert shown == []
     assert viewer.locator("[title='About Viser']").is_hidden()
 
-
-def test_view_changes_without_a_reload(dashboard: Page, viewer: Frame, served: ServedHub) -> None:
-    wait_until_centred_on(viewer, 1, 0.5)
-    viewer.evaluate("window.sameDocument = true")
-
-    dashboard.evaluate("show({ view: '2' })")
-
-    wait_until_centred_on(viewer, 2, 0)
-    assert viewer.evaluate("window.sameDocument")
-    assert served.hub.counters.viewers == 1
-
-
-def test_view_survives_a_reconnection(dashboard: Page, viewer: Frame, upstream: Upstream) -> None:
-    dashboard.evaluate("show({ view: '2' })")
-    wait_until_centred_on(viewer, 2, 0)
-    viewer.evaluate("__viserMutable.nodePoseData['/world'].position = [9, 9, 9]")
-    dashboard.evaluate("heard.length = 0")
-
-    # The hub loses viser, and then makes its viewers reconnect.
-    upstream.lose()
-
-    dashboard.wait_for_function("heard.some((message) => message.status === 'connected')")
-    wait_until_centred_on(viewer, 2, 0)
-    statuses = [message["status"] for message in received_messages(dashboard, "hexapods:status")]
-    assert statuses[0] == "reconnecting"
-
-
-def test_theme_follows_the_dashboard(dashboard: Page, viewer: Frame) -> None:
     def background() -> str:
         return str(viewer.evaluate("getComputedStyle(document.documentElement).backgroundColor"))
 
@@ -209,6 +183,39 @@ def test_theme_follows_the_dashboard(dashboard: Page, viewer: Frame) -> None:
         }"""
     )
     assert opaque == []
+
+    dashboard.locator("iframe").click()
+    for key in (" ", "r", "3", "?", "Control+y", "ArrowUp", "Shift", "Escape"):
+        dashboard.keyboard.press(key)
+
+    dashboard.wait_for_function("heard.some((message) => message.key === 'Escape')")
+    keys = received_messages(dashboard, "hexapods:key")
+    assert [message["key"] for message in keys] == [" ", "r", "3", "?", "Escape"]
+    assert keys[2] == {"type": "hexapods:key", "key": "3", "code": "Digit3", "shiftKey": False}
+
+
+def test_view_changes_without_a_reload_and_survives_a_reconnection(
+    dashboard: Page, viewer: Frame, served: ServedHub, upstream: Upstream
+) -> None:
+    wait_until_centred_on(viewer, 1, 0.5)
+    viewer.evaluate("window.sameDocument = true")
+
+    dashboard.evaluate("show({ view: '2' })")
+
+    wait_until_centred_on(viewer, 2, 0)
+    assert viewer.evaluate("window.sameDocument")
+    assert served.hub.counters.viewers == 1
+
+    viewer.evaluate("__viserMutable.nodePoseData['/world'].position = [9, 9, 9]")
+    dashboard.evaluate("heard.length = 0")
+
+    # The hub loses viser, and then makes its viewers reconnect.
+    upstream.lose()
+
+    dashboard.wait_for_function("heard.some((message) => message.status === 'connected')")
+    wait_until_centred_on(viewer, 2, 0)
+    statuses = [message["status"] for message in received_messages(dashboard, "hexapods:status")]
+    assert statuses[0] == "reconnecting"
 
 
 def test_labels_follow_the_theme_and_do_not_overlap(
@@ -243,17 +250,6 @@ def test_labels_follow_the_theme_and_do_not_overlap(
     wait_until(lambda: "Another" in labels.all_inner_texts())
     plates[0].remove()
     wait_until(lambda: "Another" not in labels.all_inner_texts())
-
-
-def test_shortcuts_are_forwarded_to_the_dashboard(dashboard: Page, viewer: Frame) -> None:
-    dashboard.locator("iframe").click()
-    for key in (" ", "r", "3", "?", "Control+y", "ArrowUp", "Shift", "Escape"):
-        dashboard.keyboard.press(key)
-
-    dashboard.wait_for_function("heard.some((message) => message.key === 'Escape')")
-    keys = received_messages(dashboard, "hexapods:key")
-    assert [message["key"] for message in keys] == [" ", "r", "3", "?", "Escape"]
-    assert keys[2] == {"type": "hexapods:key", "key": "3", "code": "Digit3", "shiftKey": False}
 
 
 def test_page_of_another_version_reloads_once(
