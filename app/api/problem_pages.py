@@ -20,6 +20,7 @@ class ProblemPages:
     """
 
     def __init__(self, app: ASGIApp) -> None:
+        """Wrap an app."""
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:

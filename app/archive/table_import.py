@@ -44,7 +44,7 @@ def import_table(
     run = Run(
         id=jobs.new_id(),
         kind="training",
-        name=check_name(name or "") or f"Imported, {step:,} steps, {config.resolved_gait.name}",
+        name=check_name(name or "") or f"Imported, {step:,} steps: {config.resolved_gait.title}",
         state="finished",
         config=config,
         done=step,

@@ -76,6 +76,11 @@ class Gait:
     azimuths_deg: tuple[float, ...]
     pairs: tuple[Pair, ...]
 
+    @property
+    def title(self) -> str:
+        """The display name; a user's own gait keeps its name."""
+        return GAIT_TITLES.get(self.name, self.name)
+
 
 def gait_spec(gait: str | GaitSpec) -> GaitSpec:
     """Return the specification of a named gait; a specification is returned unchanged.

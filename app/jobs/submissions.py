@@ -73,7 +73,7 @@ def new_training(start: TrainingStart, store: RunStore, new_id: Callable[[], str
     return Run(
         id=new_id(),
         kind="training",
-        name=start.name or f"{config.steps:,} steps, {config.resolved_gait.name}",
+        name=start.name or f"{config.steps:,} steps: {config.resolved_gait.title}",
         config=config,
         continued_from=start.continue_from,
         total=config.steps,
@@ -103,7 +103,7 @@ def new_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> li
     race = Run(
         id=new_id(),
         kind="race",
-        name=start.name or f"Race, {config.resolved_gait.name}",
+        name=start.name or f"Race: {config.resolved_gait.title}",
         config=config,
         lane_training_ids=tuple(ids.get(n, lane.training_id) for n, lane in enumerate(start.lanes)),
         waiting_for=tuple(ids.values()),

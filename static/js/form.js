@@ -19,6 +19,8 @@ export const overrides = signal({});
  * @type {Signal<Record<string, string>>}
  */
 export const typed = signal({});
+/** What a link says that is no field of the form, as "alhpa=0.5". @type {Signal<string[]>} */
+export const unknownParts = signal([]);
 
 // ---- texts as values
 
@@ -195,7 +197,7 @@ export function toQuery() {
 }
 
 /**
- * Set the form to what a query string says; what is not valid is kept as it is. Unknown fields are left out.
+ * Set the form to what a query string says; what is not valid is kept as it is, and unknown fields are told.
  * @param {URLSearchParams} query
  */
 export function readQuery(query) {
@@ -217,6 +219,7 @@ export function readQuery(query) {
   for (const [field, text] of query) {
     if (field in known && !(field in found) && !(field in texts)) take(field, text, agents);
   }
+  unknownParts.value = [...query].filter(([field]) => !(field in known)).map((part) => part.join("="));
   overrides.value = select(found, (field) => field === "lanes" || written(found[field]) !== written(defaults[field])
     || (field === "agent" && found.agent !== served().defaults.training.agent));
   typed.value = texts;

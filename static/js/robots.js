@@ -60,5 +60,5 @@ export function customRobotInWords(robot) {
   const differs = differences(robot);
   if (!differs.length) return null;
   const parts = differs.map(([field, value]) => differenceInWords(field, value));
-  return `custom: ${[presetOf(robot) ?? "stiff", ...parts].join(", ")}`;
+  return `custom: ${[presetOf(robot), ...parts].filter(Boolean).join(", ")}`;
 }

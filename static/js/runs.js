@@ -65,6 +65,8 @@ export const stageIds = computed(() => {
  * @typedef {{ kind: Kind | "", state: State | "", search: string }} Filters
  */
 
+const SEARCH_PAUSE_MS = 250;
+
 /** @type {Filters} */
 const NO_FILTERS = { kind: "", state: "", search: "" };
 
@@ -128,8 +130,6 @@ export function makeList(filters) {
     },
   };
 }
-
-const SEARCH_PAUSE_MS = 250;
 
 // ---- the list of the Runs view
 

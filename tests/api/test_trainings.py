@@ -27,6 +27,7 @@ def test_training_needs_only_a_gait(api: Api) -> None:
     api.stop(run)
     config = run["config"]
     assert run["kind"] == "training"
+    assert run["name"] == "500 steps: Front-back, mirrored"
     assert run["state"] == "queued"
     assert run["progress"] == {"done": 0, "total": 500}
     assert (config["steps"], config["alpha"], config["gamma"]) == (500, 0.3, 0.9)

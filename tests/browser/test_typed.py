@@ -113,7 +113,11 @@ def test_a_link_is_kept_as_it_says(dashboard: Dashboard, shared_server: Serving)
         "robot": "tank",
         "lanes": "greedy,ghost",
     }
-    dashboard.open(f"{shared_server.address}?{urlencode(wrong)}")
+    dashboard.open(f"{shared_server.address}?{urlencode({**wrong, 'alhpa': '0.5'})}")
+    unknown = page.locator(".notice").filter(has_text="alhpa=0.5")
+    expect(unknown).to_be_visible()
+    unknown.get_by_role("button", name="Dismiss").click()
+    expect(unknown).to_have_count(0)
     page.get_by_text("More settings").click()
     for field in wrong:
         expect(page.locator(f"#mistake-{field}")).to_be_visible()

@@ -6,7 +6,7 @@ import {
 } from "../../static/js/experiments/distances.js";
 import {
   agentSettings, chooseExperiment, chosenExperiment, enter, mistakes, readQuery, requestBody, setField, takesField,
-  toQuery, trials, values, wrong,
+  toQuery, trials, unknownParts, values, wrong,
 } from "../../static/js/experiments/form.js";
 import { paceOf } from "../../static/js/experiments/runs.js";
 import { options } from "../../static/js/store.js";
@@ -87,8 +87,11 @@ test("what is not valid in a link is kept as it is, and stays in the link", () =
   readQuery(new URLSearchParams(`${wanted}&blocks=3`));
   assert.deepEqual(Object.keys(mistakes.value).sort(), ["experiment", "gaits", "seeds", "simulator"]);
   assert.deepEqual([...new URLSearchParams(toQuery())].sort(), [...new URLSearchParams(wanted)].sort());
+  assert.deepEqual(unknownParts.value, ["blocks=3"]);
   chooseExperiment("sweep");
   assert.ok(!("experiment" in mistakes.value));
+  readQuery(new URLSearchParams("experiment=sweep&run=a&alhpa=0.5"));
+  assert.deepEqual(unknownParts.value, ["alhpa=0.5"]);
 });
 
 test("a list of which a link could be read in another way is written with semicolons", () => {

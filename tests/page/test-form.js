@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
   chooseLearner, enter, form, link, mistakes, overrides, raceBody, readAddress, readQuery, setField, setFields,
-  toQuery, trainingBody, typed, whatIfBody, wrong,
+  toQuery, trainingBody, typed, unknownParts, whatIfBody, wrong,
 } from "../../static/js/form.js";
 import { options } from "../../static/js/store.js";
 import { visit } from "./browser.js";
@@ -196,4 +196,12 @@ test("a what-if does not depend on seed, pace, name and simulator", () => {
   assert.deepEqual(whatIfBody(), before);
   setField("alpha", 0.9);
   assert.notDeepEqual(whatIfBody(), before);
+});
+
+test("what a link says that is no field is told, until another link is read", () => {
+  readQuery(new URLSearchParams("alhpa=0.5&alpha=0.4"));
+  assert.deepEqual(unknownParts.value, ["alhpa=0.5"]);
+  assert.equal(form.value.alpha, 0.4);
+  readQuery(new URLSearchParams("alpha=0.4"));
+  assert.deepEqual(unknownParts.value, []);
 });

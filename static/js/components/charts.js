@@ -6,14 +6,13 @@ import { shownTheme } from "../page.js";
 import { largest, percent, shareOf, swarm, thinned, ticks } from "../scale.js";
 import { Crosshair } from "./crosshair.js";
 import { html } from "./elements.js";
-import { lineLabels, roomFor } from "./line-labels.js";
+import { FONT, lineLabels, roomFor } from "./line-labels.js";
 
 /** @import { EndLabel, Mark } from "./line-labels.js" */
 
 // ---- lines
 
 const HEIGHT = 216;
-const FONT = "12px system-ui, sans-serif";
 const X_AXIS = { size: 26, labelSize: 18 };
 const Y_AXIS_PX = 44;
 const TOP_PX = 20;

@@ -4,14 +4,14 @@ import {
   canStart, missingLane, pause, pending, primaryAction, resume, resumeRun, runPrimaryAction, secondaryActions,
   showOnStage, stop,
 } from "../actions.js";
-import { chooseLearner, form, mistakes } from "../form.js";
+import { chooseLearner, form, mistakes, unknownParts } from "../form.js";
 import { count, listed, sentence, whole } from "../format.js";
 import { isNarrow } from "../page.js";
 import { interruptedRun, isOperator, myWork, offStage, progress, shownRun, work } from "../selectors.js";
 import { agentOf, learners, ratesInWords } from "../settings.js";
 import { scene } from "../store.js";
 import { gaitTitle, inFormWords, labelOf } from "../titles.js";
-import { goToField, Held, html, Icon, Problem, ProgressBar } from "./elements.js";
+import { goToField, Held, html, Icon, Problem, ProgressBar, UnknownParts } from "./elements.js";
 import { Settings } from "./settings.js";
 
 export function Controls() {
@@ -58,6 +58,7 @@ function Actions() {
         ${!isBusy && html`<${Icon} name="play" />`}${label}
       </button>
       ${isHeld && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
+      <${UnknownParts} parts=${unknownParts} />
       <${Problem} at="start" />
       ${!isBusy && html`<${MissingLane} />`}
       ${!myWork.value && html`<${SecondaryActions} />`}

@@ -2,6 +2,7 @@
 import htm from "htm";
 import { h } from "preact";
 import { dismissProblem, problems } from "../actions.js";
+import { listed } from "../format.js";
 import { labelOf, messageOf } from "../titles.js";
 
 export const html = htm.bind(h);
@@ -95,6 +96,15 @@ export function Problem({ at }) {
 /** Why a field's text is not valid, beside the field. */
 export const Mistake = ({ id, children }) =>
   children && html`<span class="mistake" role="alert" id=${id}>${children}</span>`;
+
+/** What the link says that the form does not know, until it is dismissed. `parts`: signal of texts. */
+export const UnknownParts = ({ parts }) =>
+  parts.value.length > 0 && html`
+    <div class="notice" role="status">
+      <p>The link also says ${listed(parts.value)}, which is no setting here and has no effect.</p>
+      <button class="link" onClick=${() => (parts.value = [])}>Dismiss</button>
+    </div>
+  `;
 
 /** Why the button above is held: each field that is not valid, to go to, and what it must be. */
 export const Held = ({ id, mistakes, onField, nameOf = labelOf }) => html`

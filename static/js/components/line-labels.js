@@ -20,7 +20,8 @@ import { placeCaptions, placeLabels } from "../labels.js";
  * @property {number[]} [dash]
  */
 
-const FONT = "12px system-ui, sans-serif";
+/** Of all texts of a chart. */
+export const FONT = "12px system-ui, sans-serif";
 const LABEL_WEIGHT = 600;
 const LINE_PX = 16;
 const CAPTION_PX = 14;

@@ -93,7 +93,7 @@ function RunRow({ run }) {
     <li class="run">
       <${StateOf} run=${run} />
       <div class="what">
-        <p><b>${title}</b> ${!title.includes(run.config.gait) && html`<span class="dim">${gaitOf(run)}</span>`}</p>
+        <p><b>${title}</b> ${!title.includes(gaitOf(run)) && html`<span class="dim">${gaitOf(run)}</span>`}</p>
         <p class="dim">${summaryOf(run)}</p>
         ${run.error && html`<p class="bad">${run.error}</p>`}
       </div>

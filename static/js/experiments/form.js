@@ -63,6 +63,8 @@ export const overrides = signal({});
  * @type {Signal<Record<string, string>>}
  */
 export const typed = signal({});
+/** What a link says that is no field of the form, as "alhpa=0.5". @type {Signal<string[]>} */
+export const unknownParts = signal([]);
 
 export const chosenExperiment = computed(() => experimentOf(chosenName.value));
 
@@ -236,7 +238,7 @@ export const toQuery = () => {
 };
 
 /**
- * Set the form from the parameters of an address; what is not valid is kept as it is.
+ * Set the form from the parameters of an address; what is not valid is kept as it is, and unknown ones are told.
  * @param {URLSearchParams} query
  */
 export function readQuery(query) {
@@ -252,4 +254,6 @@ export function readQuery(query) {
     if (mistake !== undefined) typed.value = { ...typed.value, [field]: text };
     else if (value !== undefined && field !== "experiment") overrides.value = { ...overrides.value, [field]: value };
   }
+  const isUnknown = (/** @type {string} */ field) => ![...known, "experiment", "run"].includes(field);
+  unknownParts.value = [...query].filter(([field]) => isUnknown(field)).map((part) => part.join("="));
 }

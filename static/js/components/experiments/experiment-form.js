@@ -3,7 +3,7 @@ import { useState } from "preact/hooks";
 import { pending, refusedFields } from "../../actions.js";
 import {
   agentSettings, chooseExperiment, chosenExperiment, defaults, enter, experiments, mistakes, parse, setField,
-  takesField, values, wrong,
+  takesField, unknownParts, values, wrong,
 } from "../../experiments/form.js";
 import { canStart, start, startLabel } from "../../experiments/runs.js";
 import { listed, sentence, whole } from "../../format.js";
@@ -13,7 +13,7 @@ import { options } from "../../store.js";
 import {
   agentTitle, choicesOf, fieldTitle, gaitTitle, observationTitle, robotTitle, simulatorTitle,
 } from "../../titles.js";
-import { goToField, Held, html, Icon, Mistake, Problem } from "../elements.js";
+import { goToField, Held, html, Icon, Mistake, Problem, UnknownParts } from "../elements.js";
 import { helpFor } from "../fields.js";
 
 /** @import { SettingValue } from "../../types.js" */
@@ -56,6 +56,7 @@ const Fields = () => html`
     <${Grid} fields=${gridOf(true)} />
     <${More} />
     <${StartButton} />
+    <${UnknownParts} parts=${unknownParts} />
     <${Problem} at="experiment" />
   </div>
 `;
