@@ -13,6 +13,7 @@ from app.domain.motion import StepMotion, StepPlan, ease, recorded_substeps
 from app.domain.robot import Robot
 from app.domain.simulator import Expansion, Motion, Step
 from app.domain.types import Action, Cells, FloatArray
+from app.domain.world import UNDISTURBED, World
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,9 +33,18 @@ class KinematicState:
 class KinematicSimulator:
     """Implements `Simulator` by the kinematic law: a step's reward is the body's displacement."""
 
-    def __init__(self, robot: Robot, gait: Gait, grid: FootGrid) -> None:
+    def __init__(
+        self, robot: Robot, gait: Gait, grid: FootGrid, world: World = UNDISTURBED
+    ) -> None:
+        """Create the simulator.
+
+        Raises:
+            Unreachable: if a cell of the grid is out of a leg's reach.
+            InvalidInput: if something happens that this simulator does not know.
+        """
         check_reach(robot, gait, grid)
-        self.robot, self.gait, self.grid = robot, gait, grid
+        world.check(robot, "kinematic")
+        self.robot, self.gait, self.grid, self.world = robot, gait, grid, world
         self._motion = StepMotion(robot, gait, grid)
 
     def rest(self) -> KinematicState:
@@ -50,10 +60,16 @@ class KinematicSimulator:
         return Step(after, plan.advance_m, motion)
 
     def expand(
-        self, states: Sequence[KinematicState], actions: Sequence[Action]
+        self,
+        states: Sequence[KinematicState],
+        actions: Sequence[Action],
+        as_of: int | None = None,  # noqa: ARG002  # no condition changes a step here
     ) -> Expansion[KinematicState]:
         steps = [self.step(s, a) for s, a in zip(states, actions, strict=True)]
         return Expansion([s.state for s in steps], np.array([s.reward_m for s in steps]))
+
+    def has_fallen(self, state: KinematicState) -> bool:  # noqa: ARG002  # it has no weight
+        return False
 
     def pair_offsets(self, state: KinematicState) -> Sequence[tuple[float, float]]:
         return list(zip(state.feet.lateral_m, state.feet.forward_m, strict=True))

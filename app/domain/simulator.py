@@ -10,6 +10,7 @@ from app.domain.gait import Gait
 from app.domain.grid import FootGrid
 from app.domain.robot import Robot
 from app.domain.types import Action, Cells, FloatArray
+from app.domain.world import World
 
 RECORDING_HZ = 50
 
@@ -70,6 +71,7 @@ class Simulator(Protocol[S]):
     robot: Robot
     gait: Gait
     grid: FootGrid
+    world: World
 
     def rest(self) -> S:
         """Return the state at rest on the start line, with every foot at home."""
@@ -81,12 +83,22 @@ class Simulator(Protocol[S]):
             Diverged: if the physics diverges; the message names the step.
         """
 
-    def expand(self, states: Sequence[S], actions: Sequence[Action]) -> Expansion[S]:
-        """Carry out one action from each state, with the results of `step`.
+    def expand(
+        self, states: Sequence[S], actions: Sequence[Action], as_of: int | None = None
+    ) -> Expansion[S]:
+        """Carry out one action from each state, with the results of `step` but without pushes.
+
+        Args:
+            states: n states.
+            actions: one action for each.
+            as_of: the step whose conditions hold for all; None for each state's own step.
 
         Raises:
             Diverged: if the physics diverges.
         """
+
+    def has_fallen(self, state: S) -> bool:
+        """Whether the torso lies on the ground."""
 
     def pair_offsets(self, state: S) -> Sequence[tuple[float, float]]:
         """Return the feet's actual offsets (x, y) from home in the robot frame [m], per pair.

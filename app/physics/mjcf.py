@@ -6,8 +6,11 @@ import mujoco
 import numpy as np
 
 from app.assets import models_dir
+from app.domain.disturbances import Payload
 from app.domain.kinematics import JOINT_LIMITS_RAD
 from app.domain.robot import Robot
+from app.domain.world import UNDISTURBED, World
+from app.physics.conditions import apply_conditions
 
 LINKS = ("coxa", "femur", "tibia")
 VISIBLE_GROUP = 1
@@ -15,12 +18,38 @@ VISIBLE_GROUP = 1
 
 
 @lru_cache(maxsize=32)
-def compile_model(robot: Robot) -> mujoco.MjModel:
-    """Compile the model of a robot on flat ground, upright over the origin; cached, read-only.
+def compile_visual_model(robot: Robot) -> mujoco.MjModel:
+    """Compile the model of a robot as it is drawn, upright over the origin; cached, read-only.
 
     Naming scheme: body, joint and actuator `leg1_femur`, geom `leg1_foot`.
     """
     return robot_spec(robot).compile()
+
+
+def compile_model(
+    robot: Robot, conditions: World = UNDISTURBED, forward_deg: float = 90.0
+) -> mujoco.MjModel:
+    """Compile the model that is simulated, without geoms that are only drawn; cached, read-only.
+
+    Models of one robot have states of one layout, whatever its conditions.
+
+    Args:
+        robot: the robot.
+        conditions: what holds all the time, a result of `World.as_of`.
+        forward_deg: azimuth of the gait's forward direction in the body frame, for a payload.
+    """
+    is_loaded = conditions.one_of(Payload) is not None
+    return _compile_model(robot, conditions, forward_deg if is_loaded else 90.0)
+
+
+@lru_cache(maxsize=64)
+def _compile_model(robot: Robot, conditions: World, forward_deg: float) -> mujoco.MjModel:
+    spec = robot_spec(robot)
+    for geom in spec.geoms:
+        if geom.contype == 0 and geom.conaffinity == 0:  # those that are only drawn
+            spec.delete(geom)
+    apply_conditions(spec, robot, conditions, forward_deg)
+    return spec.compile()
 
 
 def robot_spec(robot: Robot) -> mujoco.MjSpec:
@@ -52,6 +81,7 @@ def _shape_torso(spec: mujoco.MjSpec, robot: Robot) -> None:
             geom.size = geom.size * [wide, high, 1]
         geom.pos = geom.pos * [wide, wide, high]
     spec.geom("torso").mass = robot.torso_kg
+    _set_friction(spec.geom("torso"), robot)
 
 
 def _leg_spec(robot: Robot) -> mujoco.MjSpec:
@@ -64,11 +94,16 @@ def _leg_spec(robot: Robot) -> mujoco.MjSpec:
         _stretch(spec.body(link), length / end.pos[0])
         end.pos = [length, 0, 0]
         spec.geom(link).mass = getattr(robot, f"{link}_kg")
+        _set_friction(spec.geom(link), robot)
         _set_servo(spec, link, robot)
     foot = spec.geom("foot")
     foot.mass, foot.size = robot.foot_kg, [robot.foot_radius_m, 0, 0]
-    foot.friction = [robot.friction, *foot.friction[1:]]
+    _set_friction(foot, robot)
     return spec
+
+
+def _set_friction(geom: mujoco.MjsGeom, robot: Robot) -> None:
+    geom.friction = [robot.friction, *geom.friction[1:]]
 
 
 def _stretch(body: mujoco.MjsBody, factor: float) -> None:
@@ -86,3 +121,8 @@ def _set_servo(spec: mujoco.MjSpec, link: str, robot: Robot) -> None:
     servo.gainprm[0] = robot.servo_kp
     servo.biasprm[1:3] = -robot.servo_kp, -robot.servo_kv
     servo.forcerange = [-robot.servo_torque_nm, robot.servo_torque_nm]
+
+
+def joint_index(leg: int, link: str) -> int:
+    """Return the index of a joint among all joints and servos; legs count from 1."""
+    return (leg - 1) * len(LINKS) + LINKS.index(link)

@@ -2,13 +2,15 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
 from mujoco.batch import Batch
 
+from app.domain.disturbances import DeadBand, Delay, Push, Rough, Stuck
 from app.domain.errors import Diverged
 from app.domain.feet import Feet
 from app.domain.gait import Gait
@@ -18,7 +20,9 @@ from app.domain.motion import StepMotion, StepPlan, recorded_substeps
 from app.domain.robot import Robot
 from app.domain.simulator import Expansion, Motion, Step
 from app.domain.types import Action, Cells, FloatArray
-from app.physics.mjcf import compile_model
+from app.domain.world import UNDISTURBED, World
+from app.physics.conditions import ROUGH_PERIOD_M, direction
+from app.physics.mjcf import compile_model, joint_index
 
 SETTLE_S = 1.0
 """Time that the robot stands before a walk, until servo torques and contact forces settle."""
@@ -34,17 +38,34 @@ class MujocoState:
         feet: foot offsets without slip, from which the next step is planned.
         distance_m: displacement of the torso's centre along the track (world +y).
         steps: taken since rest.
+        origin_m: position of the row's origin in the world (x, y); on rough ground, which repeats,
+            the row is moved by whole periods so that the robot stays on one of them.
+        delayed: servo targets that were not yet received [rad], (k, 3 · legs); only with a delay.
     """
 
     row: FloatArray
     feet: Feet
     distance_m: float = 0.0
     steps: int = 0
+    origin_m: tuple[float, float] = (0.0, 0.0)
+    delayed: FloatArray | None = None
 
     @property
     def commanded(self) -> Cells:
         """The cell that each pair was last sent to."""
         return self.feet.commanded
+
+
+_TOUCHING_M = 0.002
+"""Height of the torso over the ground below which it lies there."""
+
+
+class _Batches(NamedTuple):
+    """Simulations of one model."""
+
+    single: Batch
+    many: Batch
+    """Grows with the number of states of `expand`."""
 
 
 class MujocoSimulator:
@@ -55,22 +76,31 @@ class MujocoSimulator:
     Args:
         robot, gait, grid: the walking problem.
         threads: number of threads of `expand`; 0 for one per core. Results do not depend on it.
+        world: what happens to the robot and the ground, by step.
 
     Raises:
         Unreachable: if a cell of the grid is out of a leg's reach.
+        InvalidInput: if something cannot happen to this robot.
     """
 
-    def __init__(self, robot: Robot, gait: Gait, grid: FootGrid, threads: int = 1) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        gait: Gait,
+        grid: FootGrid,
+        threads: int = 1,
+        world: World = UNDISTURBED,
+    ) -> None:
         check_reach(robot, gait, grid)
+        world.check(robot, "mujoco")
         _silence_mujoco_log()
-        self.robot, self.gait, self.grid = robot, gait, grid
-        self.model = compile_model(robot)
+        self.robot, self.gait, self.grid, self.world = robot, gait, grid, world
+        self.model = self._model(world.as_of(0))
         self._motion = StepMotion(robot, gait, grid)
         self._substeps = robot.swing_substeps + robot.shift_substeps
         self._recorded_substeps = recorded_substeps(robot)
         self._threads = threads
-        self._step_batch = Batch(self.model, 1, 1)
-        self._expand_batch = self._step_batch
+        self._batches: dict[World, _Batches] = {}
         forward = np.deg2rad(gait.forward_deg)
         self._forward = float(np.cos(forward)), float(np.sin(forward))
         self._joints = slice(
@@ -85,11 +115,18 @@ class MujocoSimulator:
         """The settled state with every foot at home, over the origin."""
         standing = self._motion.legs.joint_angles(np.zeros((len(self.robot.legs), 3))).ravel()
         half = np.deg2rad(90 - self.gait.forward_deg) / 2
+        conditions = self.world.as_of(0)
         batch = Batch(self.model, 1, 1)
         qpos = batch.bind("qpos")[0]
         qpos[:7] = 0, 0, self.robot.body_height_m + self.robot.foot_radius_m, 1, 0, 0, 0
+        rough = conditions.one_of(Rough)
+        if rough:
+            qpos[2] += rough.amplitude_m  # so that no foot begins in the ground
         qpos[3], qpos[6] = np.cos(half), np.sin(half)
         qpos[7:] = standing
+        for stuck in conditions.all_of(Stuck):
+            joint = joint_index(stuck.leg, stuck.joint)
+            standing[joint] = qpos[7 + joint] = stuck.angle_rad
         batch.rollout(round(SETTLE_S / self.robot.dt_s), standing[None, None], record=())
         self._check(batch, [0.0], [0])
         batch.bind("time")[0] = 0
@@ -97,28 +134,76 @@ class MujocoSimulator:
         return MujocoState(_read_only_copy(batch.state[0]), self._motion.at_home())
 
     def step(self, state: MujocoState, action: Action, record: bool = False) -> Step[MujocoState]:
-        (end,), (reward,), recorded = self._advance(self._step_batch, [state], [action], record)
+        conditions = self.world.as_of(state.steps)
+        batch = self._batches_of(conditions).single
+        pushes = self.world.pushes_at(state.steps)
+        moved = self._onto_period(state, conditions)
+        (end,), (reward,), recorded = self._advance(
+            batch, conditions, [moved], [action], record=record, pushes=pushes
+        )
         motion = None
         if record:
-            recorded_qpos = recorded["qpos"][0, self._recorded_substeps].astype(np.float32)
+            recorded_qpos = recorded["qpos"][0, self._recorded_substeps]
+            if moved.origin_m != (0.0, 0.0):
+                recorded_qpos[:, :2] += moved.origin_m
             motion = Motion(
-                ((self._recorded_substeps + 1) * self.robot.dt_s).astype(np.float32), recorded_qpos
+                ((self._recorded_substeps + 1) * self.robot.dt_s).astype(np.float32),
+                recorded_qpos.astype(np.float32),
             )
         return Step(end, reward, motion)
 
     def expand(
-        self, states: Sequence[MujocoState], actions: Sequence[Action]
+        self,
+        states: Sequence[MujocoState],
+        actions: Sequence[Action],
+        as_of: int | None = None,
     ) -> Expansion[MujocoState]:
         if not states:
             return Expansion([], np.empty(0))
-        if len(states) > self._expand_batch.nsim:
-            self._expand_batch = Batch(self.model, len(states), self._threads)
-        ends, rewards, _ = self._advance(self._expand_batch, states, actions, record=False)
+        if as_of is None and self.world:
+            return self._expand_by_conditions(states, actions)
+        conditions = self.world.as_of(as_of or 0)
+        batch = self._batches_of(conditions, len(states)).many
+        moved = [self._onto_period(state, conditions) for state in states]
+        ends, rewards, _ = self._advance(batch, conditions, moved, actions, record=False)
         return Expansion(ends, np.array(rewards))
 
+    def _expand_by_conditions(
+        self, states: Sequence[MujocoState], actions: Sequence[Action]
+    ) -> Expansion[MujocoState]:
+        """Carry out each action under the conditions of its own step."""
+        by_step: dict[int, list[int]] = {}
+        for number, state in enumerate(states):
+            by_step.setdefault(state.steps, []).append(number)
+        ends: dict[int, MujocoState] = {}
+        rewards = np.empty(len(states))
+        for step, numbers in by_step.items():
+            own = [states[i] for i in numbers]
+            expansion = self.expand(own, [actions[i] for i in numbers], step)
+            ends |= dict(zip(numbers, expansion.states, strict=True))
+            rewards[numbers] = expansion.rewards_m
+        return Expansion([ends[i] for i in range(len(states))], rewards)
+
     def commands(self, states: Sequence[MujocoState], actions: Sequence[Action]) -> FloatArray:
-        """Return the servo targets over a step from each state, (n, substeps, 3 · legs) [rad]."""
+        """Return the servo targets over a step from each state, (n, substeps, 3 · legs) [rad].
+
+        They are those of an undisturbed robot.
+        """
         return self._motion.joint_targets(self._plans(states, actions))
+
+    def _model(self, conditions: World) -> mujoco.MjModel:
+        return compile_model(self.robot, conditions, self.gait.forward_deg)
+
+    def _batches_of(self, conditions: World, count: int = 1) -> _Batches:
+        """Return the simulations of these conditions, with room for so many states."""
+        batches = self._batches.get(conditions)
+        if batches is None:
+            single = Batch(self._model(conditions), 1, 1)
+            batches = self._batches[conditions] = _Batches(single, single)
+        if count > batches.many.nsim:
+            many = Batch(batches.single.model, count, self._threads)
+            batches = self._batches[conditions] = batches._replace(many=many)
+        return batches
 
     def _plans(self, states: Sequence[MujocoState], actions: Sequence[Action]) -> list[StepPlan]:
         return [self._motion.plan(s.feet, a) for s, a in zip(states, actions, strict=True)]
@@ -126,9 +211,12 @@ class MujocoSimulator:
     def _advance(
         self,
         batch: Batch,
+        conditions: World,
         states: Sequence[MujocoState],
         actions: Sequence[Action],
+        *,
         record: bool,
+        pushes: Sequence[Push] = (),
     ) -> tuple[list[MujocoState], list[float], dict[str, FloatArray]]:
         """Plan and simulate a step from each state; return ends, rewards, and `qpos` if recorded.
 
@@ -138,20 +226,79 @@ class MujocoSimulator:
         plans, count = self._plans(states, actions), len(states)
         for simulation, state in enumerate(states):
             batch.state[simulation] = state.row
+        for push in pushes:
+            change = push.impulse_ns / float(batch.model.body_mass.sum())
+            batch.bind("qvel")[:count, :2] += change * direction(push.direction_deg)
+        targets, delayed = self._received(batch, conditions, states, plans)
         recorded = batch.rollout(
             self._substeps,
-            self._motion.joint_targets(plans),
+            targets,
             record=("qpos",) if record else (),
             ids=None if count == batch.nsim else np.arange(count),
         )
         after = _read_only_copy(batch.state[:count])
         ends = [
-            MujocoState(row, plan.end, float(row[2]), state.steps + 1)
-            for row, plan, state in zip(after, plans, states, strict=True)
+            MujocoState(
+                row,
+                plan.end,
+                float(row[2]) + state.origin_m[1],
+                state.steps + 1,
+                state.origin_m,
+                late,
+            )
+            for row, plan, state, late in zip(after, plans, states, delayed, strict=True)
         ]
         rewards = [self._reward(s.row, row) for s, row in zip(states, after, strict=True)]
         self._check(batch, rewards, [end.steps for end in ends])
         return ends, rewards, recorded
+
+    def _received(
+        self,
+        batch: Batch,
+        conditions: World,
+        states: Sequence[MujocoState],
+        plans: Sequence[StepPlan],
+    ) -> tuple[FloatArray, Sequence[FloatArray | None]]:
+        """Return the targets that the servos act on, and those that they receive after the step.
+
+        Returns:
+            targets (n, substeps, 3 · legs) [rad], and for each state those delayed.
+        """
+        targets = self._motion.joint_targets(plans)
+        delayed: list[FloatArray | None] = [None] * len(plans)
+        delay, dead_band = conditions.one_of(Delay), conditions.one_of(DeadBand)
+        late_count = round(delay.seconds / self.robot.dt_s) if delay else 0
+        if late_count == 0 and not dead_band and not conditions.all_of(Stuck):
+            return targets, delayed
+        held = np.array(batch.bind("ctrl")[: len(plans)])  # the last targets before the step
+        if late_count:
+            before = np.repeat(held[:, None], late_count, 1)
+            for number, state in enumerate(states):
+                if state.delayed is not None and len(state.delayed) == late_count:
+                    before[number] = state.delayed
+            stream = np.concatenate((before, targets), 1)
+            targets, rest = stream[:, : self._substeps], stream[:, self._substeps :]
+            delayed = [_read_only_copy(late) for late in rest]
+        if dead_band:
+            for substep in range(self._substeps):
+                wanted = targets[:, substep]
+                held = np.where(np.abs(wanted - held) > dead_band.radians, wanted, held)
+                targets[:, substep] = held
+        for stuck in conditions.all_of(Stuck):
+            targets[:, :, joint_index(stuck.leg, stuck.joint)] = stuck.angle_rad
+        return targets, delayed
+
+    def _onto_period(self, state: MujocoState, conditions: World) -> MujocoState:
+        """Move a state by whole periods of rough ground to the one around the origin."""
+        if conditions.one_of(Rough) is None:
+            return state
+        shift = ROUGH_PERIOD_M * np.round(state.row[1:3] / ROUGH_PERIOD_M)
+        if not shift.any():
+            return state
+        row = state.row.copy()
+        row[1:3] -= shift
+        x, y = np.add(state.origin_m, shift).tolist()
+        return replace(state, row=_read_only_copy(row), origin_m=(x, y))
 
     def _reward(self, before: FloatArray, after: FloatArray) -> float:
         """Return the displacement along the robot's horizontal forward direction at the start [m].
@@ -181,6 +328,15 @@ class MujocoSimulator:
             "lower servo_kp or heavier links"
         )
 
+    def has_fallen(self, state: MujocoState) -> bool:
+        """Whether the lowest point of the torso is as low as ground or bumps reach."""
+        _, _, z, _, x, y, _ = state.row[1:8].tolist()
+        upright = 1 - 2 * (x * x + y * y)  # cosine of the torso's tilt
+        tilt = math.sqrt(max(0.0, 1 - upright * upright))
+        robot, rough = self.robot, self.world.as_of(max(0, state.steps - 1)).one_of(Rough)
+        low = z - abs(upright) * robot.torso_half_height_m - tilt * robot.torso_radius_m
+        return bool(low <= (rough.amplitude_m if rough else 0.0) + _TOUCHING_M)
+
     def pair_offsets(self, state: MujocoState) -> Sequence[tuple[float, float]]:
         feet = self._motion.legs.foot_offsets(state.row[self._joints].tolist())
         offsets = []
@@ -190,22 +346,30 @@ class MujocoSimulator:
         return offsets
 
     def pose(self, state: MujocoState) -> FloatArray:
-        return state.row[1 : 1 + self.model.nq].copy()
+        pose: FloatArray = state.row[1 : 1 + self.model.nq].copy()
+        pose[:2] += state.origin_m
+        return pose
 
     def dump(self, state: MujocoState) -> dict[str, FloatArray]:
         return {
             "row": state.row.copy(),
             "feet": state.feet.as_array(),
             "travel": np.array([state.distance_m, state.steps]),
+            **({} if state.delayed is None else {"delayed": state.delayed.copy()}),
+            **({"origin": np.array(state.origin_m)} if any(state.origin_m) else {}),
         }
 
     def load(self, arrays: dict[str, FloatArray]) -> MujocoState:
         distance, steps = arrays["travel"].tolist()
+        x, y = arrays["origin"].tolist() if "origin" in arrays else (0.0, 0.0)
+        delayed = arrays.get("delayed")
         return MujocoState(
             _read_only_copy(arrays["row"]),
             Feet.from_array(arrays["feet"]),
             distance,
             int(steps),
+            (x, y),
+            None if delayed is None else _read_only_copy(delayed),
         )
 
 

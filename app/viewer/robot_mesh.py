@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from app.domain.robot import Robot
 from app.domain.types import FloatArray, IntArray
-from app.physics.mjcf import VISIBLE_GROUP, compile_model
+from app.physics.mjcf import VISIBLE_GROUP, compile_visual_model
 from app.viewer.shapes import Shape, antenna, geom_shape, joined
 
 _UNPAINTED = ("servo", "hip", "knee", "belly", "deck", "foot", "bracket")
@@ -52,7 +52,7 @@ class RobotMesh:
     """
 
     def __init__(self, robot: Robot) -> None:
-        self._model = compile_model(robot)
+        self._model = compile_visual_model(robot)
         self._data = mujoco.MjData(self._model)
         self.parts = _parts(robot)
 
@@ -73,7 +73,7 @@ class RobotMesh:
 @lru_cache(maxsize=8)
 def _parts(robot: Robot) -> tuple[Part, ...]:
     """Return the parts of a robot; links of equal shape share one, whatever the number of legs."""
-    model = compile_model(robot)
+    model = compile_visual_model(robot)
     links: dict[tuple[int, bool], list[Shape]] = {}
     for geom in np.flatnonzero(model.geom_group == VISIBLE_GROUP):
         link, shape = _on_link(model, int(geom))

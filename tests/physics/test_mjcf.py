@@ -10,7 +10,7 @@ from app.assets import models_dir
 from app.domain.gait import NAMED_GAITS, resolve
 from app.domain.kinematics import JOINT_LIMITS_RAD, Legs
 from app.domain.robot import Robot, ring, robot
-from app.physics.mjcf import LINKS, VISIBLE_GROUP, compile_model, robot_spec
+from app.physics.mjcf import LINKS, VISIBLE_GROUP, compile_model, compile_visual_model, robot_spec
 
 
 @pytest.fixture(scope="module")
@@ -55,17 +55,26 @@ def test_inertias_are_those_of_the_collision_shapes(model: Any) -> None:
     assert model.body("leg1_tibia").inertia.max() == pytest.approx(rod, rel=0.2)
 
 
-def test_visual_geoms_have_no_mass_and_no_contacts(model: Any) -> None:
-    visual = model.geom_group == VISIBLE_GROUP
-    feet = np.array([model.geom(i).name.endswith("_foot") for i in range(model.ngeom)])
+def test_all_that_has_mass_touches_the_ground_alone(model: Any) -> None:
     ground = np.array([model.geom(i).name == "ground" for i in range(model.ngeom)])
 
-    assert feet.sum() == 6
-    assert (model.geom_contype[feet] == 1).all()
-    assert (model.geom_contype[~feet] == 0).all()
+    assert ground.sum() == 1
+    assert (model.geom_contype[~ground] == 1).all()
     assert (model.geom_conaffinity[~ground] == 0).all()
-    assert visual.sum() > 6 * 8
-    assert model.body_mass.sum() == pytest.approx(2.16)  # including the visual geoms
+    assert model.geom("ground").contype == 0
+    assert model.geom("ground").conaffinity == 1
+    assert (model.geom_priority[~ground] > model.geom("ground").priority).all()
+
+
+def test_what_is_only_drawn_has_no_mass_and_is_not_simulated(model: Any) -> None:
+    drawn = compile_visual_model(Robot())
+    only_drawn = (drawn.geom_contype == 0) & (drawn.geom_conaffinity == 0)
+
+    assert only_drawn.sum() > 6 * 8
+    assert (drawn.geom_group[only_drawn] == VISIBLE_GROUP).all()
+    assert model.ngeom == drawn.ngeom - only_drawn.sum() == 1 + 1 + 6 * 4
+    for field in ("body_mass", "body_inertia", "body_ipos", "body_iquat"):
+        assert (getattr(model, field) == getattr(drawn, field)).all(), field
 
 
 @pytest.mark.parametrize("name", ["stiff", "compliant", "slippery"])

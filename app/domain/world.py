@@ -1,0 +1,231 @@
+"""Worlds: what a robot walks in and what has happened to it.
+
+A `World` is a frozen value beside the robot. `World.as_of(step)` are the conditions of one step: a
+world whose disturbances all hold from the start, by which physics models are compiled and cached.
+"""
+
+from bisect import bisect_right
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple, TypeVar
+
+from app.domain.disturbances import (
+    Disturbance,
+    Friction,
+    Key,
+    Limp,
+    Lost,
+    Patch,
+    Payload,
+    Push,
+    Repair,
+    Rough,
+    SensorNoise,
+    Slope,
+    Stuck,
+    Weak,
+    disturbance,
+)
+from app.domain.errors import InvalidInput, UnknownName
+from app.domain.robot import Robot
+
+MAX_DISTURBANCES = 20
+KINEMATIC_KINDS = (SensorNoise.kind,)
+"""Kinds that the kinematic simulator knows, which has no ground and no servos."""
+D = TypeVar("D", bound=Disturbance)
+
+
+@dataclass(frozen=True)
+class World:
+    """Disturbances of a walk. The default is flat ground and a robot as it was built.
+
+    A later disturbance replaces an earlier one of the same thing, such as of a leg.
+
+    Raises:
+        InvalidInput: if two disturbances contradict each other.
+    """
+
+    disturbances: tuple[Disturbance, ...] = ()
+
+    def __post_init__(self) -> None:
+        for number, one in enumerate(self.disturbances):
+            for other in self.disturbances[:number]:
+                _check_compatible(other, one)
+
+    def __bool__(self) -> bool:
+        return bool(self.disturbances)
+
+    def __add__(self, more: Iterable[Disturbance]) -> "World":
+        return World((*self.disturbances, *more))
+
+    def check(self, robot: Robot, simulator: str, steps: int | None = None) -> None:
+        """Check that a simulator can show it to a robot, in a walk of so many steps.
+
+        Raises:
+            InvalidInput: if not; the message names what is valid.
+        """
+        if len(self.disturbances) > MAX_DISTURBANCES:
+            raise InvalidInput(
+                f"a run has at most {MAX_DISTURBANCES} disturbances, not {len(self.disturbances)}"
+            )
+        for one in self.disturbances:
+            one.check(robot)
+            if simulator == "kinematic" and one.kind not in KINEMATIC_KINDS:
+                raise InvalidInput(
+                    f"the kinematic simulator knows no {one.kind}, only "
+                    f"{', '.join(KINEMATIC_KINDS)}; choose the simulator mujoco"
+                )
+            if steps is not None and one.at_step >= steps:
+                raise InvalidInput(
+                    f"{one.kind}: at_step must be from 0 to {steps - 1:,}, the last step of this "
+                    f"run, not {one.at_step:,}"
+                )
+
+    @cached_property
+    def change_steps(self) -> tuple[int, ...]:
+        """The steps after the start in which conditions change, ascending."""
+        ends = {one.until_step for one in self.disturbances if one.until_step is not None}
+        begins = {one.at_step for one in self.disturbances if one.at_step > 0}
+        return tuple(sorted(begins | ends))
+
+    @cached_property
+    def _conditions(self) -> tuple["World", ...]:
+        """The conditions from the start, and from each of `change_steps`."""
+        return tuple(self._conditions_at(step) for step in (0, *self.change_steps))
+
+    def as_of(self, step: int) -> "World":
+        """Return the conditions of a step as a world that stays so: leg by leg, without pushes."""
+        if not self.disturbances:
+            return self
+        return self._conditions[bisect_right(self.change_steps, step)]
+
+    def _conditions_at(self, step: int) -> "World":
+        newest: dict[Key, Disturbance] = {}
+        for one in sorted(self.disturbances, key=lambda one: one.at_step):
+            if not one.holds_at(step) or isinstance(one, Push):
+                continue
+            for key, part in one.parts().items():
+                for covered in [old for old in newest if old[: len(key)] == key]:
+                    del newest[covered]
+                newest[key] = replace(part, at_step=0, until_step=None)
+        lasting = [one for one in newest.values() if not isinstance(one, Repair)]
+        return World(tuple(sorted(lasting, key=repr)))  # one order, so that equal ones are equal
+
+    def pushes_at(self, step: int) -> tuple[Push, ...]:
+        """Return the pushes at the beginning of a step."""
+        return tuple(push for push in self.all_of(Push) if push.at_step == step)
+
+    def all_of(self, kind: type[D]) -> tuple[D, ...]:
+        """Return the disturbances of a kind."""
+        return tuple(one for one in self.disturbances if isinstance(one, kind))
+
+    def one_of(self, kind: type[D]) -> D | None:
+        """Return the first disturbance of a kind; None without one."""
+        return next(iter(self.all_of(kind)), None)
+
+
+UNDISTURBED = World()
+
+
+def world(data: Iterable[Mapping[str, Any]]) -> World:
+    """Build a world from user input, a list of disturbances.
+
+    Raises:
+        UnknownName, InvalidInput: if a disturbance is not valid, or two contradict each other.
+    """
+    return World(tuple(disturbance(one) for one in data))
+
+
+def _check_compatible(one: Disturbance, other: Disturbance) -> None:
+    """Check that two disturbances can hold together, or that the later replaces the earlier.
+
+    Raises:
+        InvalidInput: if they contradict each other.
+    """
+    first, second = sorted((one, other), key=lambda d: d.at_step)
+    if isinstance(one, Push) or isinstance(other, Push) or not first.holds_at(second.at_step):
+        return
+    is_later = second.at_step > first.at_step
+    if isinstance(one, Patch) and isinstance(other, Patch):
+        if (one.from_m, one.to_m) != (other.from_m, other.to_m):
+            is_contradiction = one.from_m < other.to_m and other.from_m < one.to_m
+        else:
+            is_contradiction = not is_later
+    elif {type(one), type(other)} == {Patch, Rough}:
+        is_contradiction = True  # patches lie on flat ground
+    else:
+        replaces = is_later and (not isinstance(first, Lost) or isinstance(second, Lost | Repair))
+        shared = any(
+            key[: len(other_key)] == other_key or other_key[: len(key)] == key
+            for key in first.parts()
+            for other_key in second.parts()
+        )
+        is_contradiction = shared and not replaces
+    if is_contradiction:
+        raise InvalidInput(
+            f"{first.kind} at step {first.at_step:,} and {second.kind} at step "
+            f"{second.at_step:,} contradict each other; let one end before the other begins, or "
+            "leave one out"
+        )
+
+
+class NamedWorld(NamedTuple):
+    """A world with a name, for users to choose.
+
+    Attributes:
+        title: its name on the page.
+        help: one sentence.
+        world: its disturbances, from the start.
+    """
+
+    title: str
+    help: str
+    world: World
+
+
+WORLDS: Mapping[str, NamedWorld] = {
+    "flat": NamedWorld("Flat ground", "Nothing happens to the robot.", World()),
+    "slope": NamedWorld(
+        "Slope", "The track rises by 8°.", World((Slope(degrees=8.0),))
+    ),
+    "rough": NamedWorld(
+        "Rough ground", "Bumps of up to 15 mm.", World((Rough(amplitude_m=0.015),))
+    ),
+    "ice": NamedWorld(
+        "Ice", "The ground grips a tenth as well.", World((Friction(value=0.1),))
+    ),
+    "patch": NamedWorld(
+        "Icy patch", "Ice between 0.1 and 0.25 m of the track.",
+        World((Patch(from_m=0.1, to_m=0.25, friction=0.05),)),
+    ),
+    "payload": NamedWorld(
+        "Payload", "1 kg on the right side.", World((Payload(kg=1.0, x_m=0.08),))
+    ),
+    "limp-pair": NamedWorld(
+        "Two limp legs", "Legs 1 and 4 have no power.", World((Limp(legs=(1, 4)),))
+    ),
+    "stuck-leg": NamedWorld(
+        "Stuck leg", "The femur of leg 2 is stuck.",
+        World((Stuck(leg=2, joint="femur", angle_rad=-0.9),)),
+    ),
+    "lost-leg": NamedWorld("Lost leg", "Leg 2 is gone.", World((Lost(legs=(2,)),))),
+    "weak": NamedWorld(
+        "Weak servos", "All servos have a third of their torque.",
+        World((Weak(legs=(1, 2, 3, 4, 5, 6), torque_share=0.33),)),
+    ),
+    "noise": NamedWorld(
+        "Sensor noise", "Feet are measured 4 mm wrong.", World((SensorNoise(sd_m=0.004),))
+    ),
+}  # fmt: skip
+
+
+def named_world(name: str) -> World:
+    """Return a world by its name.
+
+    Raises:
+        UnknownName: if there is none of this name.
+    """
+    if name not in WORLDS:
+        raise UnknownName("world", name, WORLDS)
+    return WORLDS[name].world

@@ -1,0 +1,100 @@
+"""Kinds of disturbances: their limits, their text on a command line, and their JSON."""
+
+import pytest
+
+from app.domain.disturbances import (
+    KINDS,
+    Disturbance,
+    Limp,
+    Slope,
+    Stuck,
+    as_mapping,
+    disturbance,
+    parse_disturbance,
+)
+from app.domain.errors import InvalidInput, UnknownName
+from app.domain.robot import Robot
+
+ONE_OF_EACH = (
+    "limp:legs=1,4:at=25",
+    "stuck:leg=2:joint=femur:angle_rad=-0.9",
+    "lost:legs=2",
+    "weak:legs=1,2,3:torque_share=0.5:until=9",
+    "repair:legs=1:at=30",
+    "slope:degrees=8:direction_deg=90",
+    "rough:amplitude_m=0.01:seed=3",
+    "friction:value=0.1",
+    "patch:from_m=0.1:to_m=0.2:friction=0.05",
+    "payload:kg=1:x_m=0.08",
+    "push:impulse_ns=2:direction_deg=-90:at=4",
+    "sensor-noise:sd_m=0.004",
+    "delay:seconds=0.02",
+    "dead-band:radians=0.05",
+)
+
+
+def test_there_is_an_example_of_every_kind() -> None:
+    assert [text.split(":")[0] for text in ONE_OF_EACH] == list(KINDS)
+
+
+@pytest.mark.parametrize("text", ONE_OF_EACH)
+def test_text_and_json_give_the_same_disturbance(text: str) -> None:
+    parsed = parse_disturbance(text)
+
+    assert disturbance(as_mapping(parsed)) == parsed
+    assert parsed.title
+    assert parsed.help.endswith(".")
+    parsed.check(Robot())
+
+
+def test_fields_are_numbers_of_their_types() -> None:
+    assert parse_disturbance("limp:legs=4,1:at=25") == Limp(legs=(1, 4), at_step=25)
+    slope = disturbance({"kind": "slope", "degrees": 8})
+    assert repr(slope) == repr(Slope(degrees=8.0, at_step=0, until_step=None))
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("fire", "choose one of: limp, stuck"),
+        ("limp", "limp needs legs"),
+        ("limp:legs=", "list of numbers of legs, such as 1,4"),
+        ("limp:legs=1,1", "different numbers from 1 to 12"),
+        ("limp:legs=13", "different numbers from 1 to 12"),
+        ("limp:legs=1:legs=2", "give each field once"),
+        ("limp:legs=1:at", "give each field once"),
+        ("limp:legs=1:at=-1", "at_step must be a whole number of at least 0"),
+        ("limp:legs=1:at=9:until=9", "until_step must be over at_step, 9, not 9"),
+        ("limp:legs=1:angle=9", "choose one of: at_step, until_step, legs"),
+        ("slope:degrees=80", "degrees must be a number from 0 to 30"),
+        ("slope:degrees=nan", "degrees must be a number from 0 to 30"),
+        ("stuck:leg=2:joint=knee:angle_rad=0", "joint must be coxa, or femur, or tibia"),
+        ("stuck:leg=2:joint=tibia:angle_rad=1", "the tibia turns from -2.8 to 0 rad, not to 1"),
+        ("patch:from_m=1:to_m=1:friction=1", "to_m must be over from_m, 1"),
+        ("push:impulse_ns=1:until=3", "leave out until_step"),
+        ("sensor-noise:sd_m=-0.001", "sd_m must be a number from 0 to 0.05 m"),
+        ("delay:seconds=1", "seconds must be a number from 0 to 0.1 s"),
+        ("weak:legs=1:torque_share=0", "torque_share must be a number over 0 and at most 1"),
+    ],
+)
+def test_what_is_not_valid_is_refused_by_name(text: str, complaint: str) -> None:
+    with pytest.raises(InvalidInput, match=complaint):
+        parse_disturbance(text)
+
+
+@pytest.mark.parametrize("legs", ["1,4", 1, [], [True], [1.5], ["1"], None])
+def test_legs_are_a_list_of_whole_numbers(legs: object) -> None:
+    with pytest.raises(InvalidInput, match="list of numbers of legs"):
+        disturbance({"kind": "limp", "legs": legs})
+
+
+@pytest.mark.parametrize("given", [{}, {"kind": None}, {"kind": ["limp"]}, {"kind": "Limp"}])
+def test_a_kind_is_needed(given: dict[str, object]) -> None:
+    with pytest.raises(UnknownName, match="unknown disturbance"):
+        disturbance(given)
+
+
+@pytest.mark.parametrize("one", [Limp(legs=(7,)), Stuck(leg=7, joint="coxa", angle_rad=0)])
+def test_a_leg_that_is_not_there_is_refused(one: Disturbance) -> None:
+    with pytest.raises(InvalidInput, match="there is no leg 7; this robot has legs 1 to 6"):
+        one.check(Robot())

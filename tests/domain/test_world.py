@@ -1,0 +1,124 @@
+"""Worlds: which disturbances hold in a step, and which contradict each other."""
+
+import pytest
+
+from app.domain.disturbances import (
+    Friction,
+    Limp,
+    Lost,
+    Patch,
+    Push,
+    Repair,
+    Rough,
+    SensorNoise,
+    Slope,
+    Stuck,
+    Weak,
+)
+from app.domain.errors import InvalidInput, UnknownName
+from app.domain.robot import Robot
+from app.domain.world import MAX_DISTURBANCES, UNDISTURBED, WORLDS, World, named_world, world
+
+HELD = {"leg": 2, "joint": "femur", "angle_rad": -0.9}
+
+
+def test_the_conditions_of_a_step_hold_from_the_start() -> None:
+    steep, limp = Slope(degrees=8, until_step=30), Limp(legs=(1, 4), at_step=10)
+    made = World((steep, limp))
+
+    assert made.change_steps == (10, 30)
+    assert made.as_of(0) == made.as_of(9) == World((Slope(degrees=8),))
+    both = {Slope(degrees=8), Limp(legs=(1,)), Limp(legs=(4,))}
+    assert set(made.as_of(10).disturbances) == set(made.as_of(29).disturbances) == both
+    assert set(made.as_of(30).disturbances) == {Limp(legs=(1,)), Limp(legs=(4,))}
+    assert made.as_of(10).as_of(99) == made.as_of(10)
+
+
+def test_equal_conditions_are_equal_however_they_came_about() -> None:
+    early = World((Limp(legs=(1, 4)), Slope(degrees=8)))
+    late = World((Slope(degrees=8, at_step=3), Limp(legs=(4,), at_step=5), Limp(legs=(1,))))
+
+    assert early.as_of(0) == late.as_of(5)
+    assert hash(early.as_of(0)) == hash(late.as_of(5))
+
+
+def test_a_later_one_replaces_an_earlier_one_of_the_same_thing() -> None:
+    made = World(
+        (
+            Limp(legs=(1, 4)),
+            Weak(legs=(4,), torque_share=0.5, at_step=5),
+            Friction(value=0.1),
+            Friction(value=0.5, at_step=5, until_step=8),
+            Repair(legs=(1, 4), at_step=10),
+        )
+    )
+
+    assert set(made.as_of(5).disturbances) == {
+        Limp(legs=(1,)),
+        Weak(legs=(4,), torque_share=0.5),
+        Friction(value=0.5),
+    }
+    assert Friction(value=0.1) in made.as_of(8).disturbances
+    assert made.as_of(10) == World((Friction(value=0.1),))
+
+
+def test_a_repaired_leg_has_no_stuck_joint() -> None:
+    made = World((Stuck(**HELD), Repair(legs=(2,), at_step=1)))  # type: ignore[arg-type]
+
+    assert made.as_of(0) == World((Stuck(**HELD),))  # type: ignore[arg-type]
+    assert made.as_of(1) == UNDISTURBED
+
+
+def test_a_push_is_in_one_step_and_not_among_the_conditions() -> None:
+    made = World((Push(impulse_ns=1, at_step=3), Push(impulse_ns=2, at_step=3)))
+
+    assert made.as_of(3) == UNDISTURBED
+    assert [push.impulse_ns for push in made.pushes_at(3)] == [1, 2]
+    assert made.pushes_at(2) == made.pushes_at(4) == ()
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (Slope(degrees=1), Slope(degrees=2)),
+        (Limp(legs=(1, 2)), Lost(legs=(2, 3))),
+        (Lost(legs=(2,)), Limp(legs=(2,), at_step=9)),
+        (Lost(legs=(2,)), Stuck(**HELD, at_step=9)),  # type: ignore[arg-type]
+        (Limp(legs=(2,), at_step=9), Repair(legs=(2,), at_step=9)),
+        (Patch(from_m=0, to_m=1, friction=0.1), Patch(from_m=0.5, to_m=2, friction=1)),
+        (Patch(from_m=0, to_m=1, friction=0.1), Rough(amplitude_m=0.01, at_step=5)),
+    ],
+)
+def test_contradictions_are_refused(one: object, other: object) -> None:
+    for pair in ((one, other), (other, one)):
+        with pytest.raises(InvalidInput, match="contradict each other"):
+            World(pair)  # type: ignore[arg-type]
+
+
+def test_what_ended_contradicts_nothing() -> None:
+    assert World((Lost(legs=(2,), until_step=9), Limp(legs=(2,), at_step=9)))
+    assert World((Slope(degrees=1, until_step=9), Slope(degrees=2, at_step=9)))
+
+
+def test_a_run_refuses_what_it_cannot_show() -> None:
+    with pytest.raises(InvalidInput, match="kinematic simulator knows no slope, only sensor-noise"):
+        named_world("slope").check(Robot(), "kinematic")
+    named_world("noise").check(Robot(), "kinematic")
+    late = World((Limp(legs=(1,), at_step=50),))
+    with pytest.raises(InvalidInput, match="at_step must be from 0 to 49, the last step"):
+        late.check(Robot(), "mujoco", steps=50)
+    late.check(Robot(), "mujoco", steps=51)
+    many = World(tuple(SensorNoise(sd_m=0.001, at_step=i) for i in range(MAX_DISTURBANCES + 1)))
+    with pytest.raises(InvalidInput, match="at most 20 disturbances, not 21"):
+        many.check(Robot(), "mujoco")
+
+
+def test_named_worlds_suit_the_robot() -> None:
+    for one in WORLDS.values():
+        assert one.title
+        assert one.help.endswith(".")
+        one.world.check(Robot(), "mujoco")
+    assert named_world("flat") == UNDISTURBED
+    with pytest.raises(UnknownName, match="unknown world 'moon'; choose one of: flat, slope"):
+        named_world("moon")
+    assert world([{"kind": "limp", "legs": [1, 4]}]) == named_world("limp-pair")
