@@ -4,6 +4,7 @@ The only module that imports the concrete simulators; loops and commands use wha
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,14 @@ from app.domain.observation import Observation
 from app.domain.settings import complete
 from app.domain.simulator import Simulator
 from app.physics.mujoco_simulator import MujocoSimulator
-from app.runs.config import RaceConfig, TrainingConfig, WalkingProblem, agent_settings
+from app.runs.config import (
+    LaneConfig,
+    RaceConfig,
+    TrainingConfig,
+    WalkingProblem,
+    agent_settings,
+    check_lane,
+)
 from app.runs.seeding import LEARNING, RACING, generator
 from app.runs.tables import Checkpoint, check_fits, continue_from, load_agent
 from app.runs.training import Learner, evaluate, measure_baseline
@@ -54,12 +62,7 @@ def build_learner(
         Unreachable: if the robot's legs cannot reach the grid.
     """
     simulator = build_simulator(config, threads)
-    declared = agent_settings(config.agent)
-    # Earlier versions stored the settings of Q-learning with every agent.
-    own = {name: value for name, value in config.settings.items() if name in declared}
-    settings = complete(declared, own, config.agent)
-    fields = {name: value for name, value in vars(config).items() if name != "settings"}
-    offered = {**fields, **settings}
+    offered = _offered_by(config)
     rng = generator(config.seed, LEARNING)
     walker = _walker(
         simulator, config.agent, config.observation, rng=rng, offered=offered, explore=True
@@ -102,23 +105,62 @@ def build_walkers(
         threads: number of threads of look-ahead in MuJoCo; 0 for one per core.
 
     Raises:
+        UnknownName, InvalidInput: if a lane's agent or one of its settings is invalid.
         TableMismatch: if a table is of another walking problem or agent.
     """
     simulator = build_simulator(config, threads)
     walkers = []
     for number, (lane, table) in enumerate(zip(config.lanes, tables, strict=True)):
-        trained_config: Mapping[str, Any] = {}
-        if table is not None:
+        check_lane(lane, has_training=table is not None)
+        if table is None:
+            offered = _offered_in(config, lane)
+        else:
             check_fits(table, config, lane.observation)
-            trained_config = table.meta["config"]
-        rng = generator(config.seed, RACING, number)
+            offered = table.meta["config"]
         walker = _walker(
-            simulator, lane.agent, lane.observation, rng=rng, offered=trained_config, explore=False
+            simulator,
+            lane.agent,
+            lane.observation,
+            rng=generator(config.seed, RACING, number),
+            offered=offered,
+            explore=lane.keep_learning,
         )
         if table is not None:
             load_agent(walker.agent, table)
+        walker.keeps_learning = lane.keep_learning
         walkers.append(walker)
     return walkers
+
+
+def _offered_by(config: TrainingConfig) -> dict[str, Any]:
+    """Return what a training offers to its agent's constructor: its fields and the settings."""
+    declared = agent_settings(config.agent)
+    # Earlier versions stored the settings of Q-learning with every agent.
+    own = {name: value for name, value in config.settings.items() if name in declared}
+    settings = complete(declared, own, config.agent)
+    return {
+        **{name: value for name, value in vars(config).items() if name != "settings"},
+        **settings,
+    }
+
+
+def _offered_in(config: RaceConfig, lane: LaneConfig) -> Mapping[str, Any]:
+    """Return what a race offers to the agent of a lane without a table.
+
+    To one that keeps learning this is what a training of as many steps would offer.
+    """
+    if not lane.keep_learning:
+        return complete(agent_settings(lane.agent), lane.settings, lane.agent)
+    walk = {one.name: getattr(config, one.name) for one in fields(WalkingProblem)}
+    training = TrainingConfig(
+        **walk,
+        steps=config.steps,
+        seed=config.seed,
+        observation=lane.observation,
+        agent=lane.agent,
+        settings=lane.settings,
+    )
+    return _offered_by(training)
 
 
 def finish_training(

@@ -4,9 +4,11 @@ The colours are those of the Okabe–Ito palette, which colour-blind viewers can
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
 
-from app.agents.registry import OURS, registered
+from app.agents.registry import OURS, registered, settings_of
 
 _COLOR = re.compile("#[0-9A-Fa-f]{6}")
 _FURTHER_COLORS = ("#CC79A7", "#D55E00", "#F0E442", "#0072B2")
@@ -20,6 +22,34 @@ def title_of(agent: str) -> str:
 def description_of(agent: str) -> str:
     """Return the description of a registered agent, one sentence."""
     return _attribute(agent, "description") or "An agent of an installed package."
+
+
+def name_of(
+    agent: str,
+    settings: Mapping[str, Any] = MappingProxyType({}),
+    keep_learning: bool | None = None,
+    title: str | None = None,
+) -> str:
+    """Return an agent's title with its settings in short: `Beam, width 8, depth 3`.
+
+    Args:
+        agent: a name; `my.module:Agent` is not imported, and so has no settings here.
+        settings: values by name. Of a learner, those that differ from the defaults are shown.
+        keep_learning: whether it learns in the race; shown if that is not the agent's default.
+        title: replaces the agent's title.
+    """
+    parts = [title or title_of(agent)]
+    found = None if ":" in agent else OURS.get(agent) or registered().get(agent)
+    if found is not None:
+        shows_all = not getattr(found, "learns", True)
+        parts += [
+            one.describe(settings[name])
+            for name, one in settings_of(found).items()
+            if name in settings and (shows_all or settings[name] != one.default)
+        ]
+    if keep_learning not in (None, bool(getattr(found, "keeps_learning", False))):
+        parts.append("keeps learning" if keep_learning else "frozen")
+    return ", ".join(parts)
 
 
 def colors_of(agents: Sequence[str]) -> list[str]:

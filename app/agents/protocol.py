@@ -5,7 +5,8 @@ An agent is a class. Its constructor's parameters are passed by name (dependency
 - `rng`: a `numpy.random.Generator`, the only source of randomness;
 - `problem`: the size and geometry of the walking problem (`Problem`);
 - `expand`: a simulator for look-ahead (`Expand`);
-- `explore`: False in evaluations and races, where the agent should not explore;
+- `explore`: False where the agent should not explore: in evaluations, and in races unless its lane
+  keeps learning;
 - a field of the training's config by its name, such as `steps` or `steps_per_episode`.
 
 A parameter that is declared with its limits, title and help (`app.domain.settings`) is a setting:
@@ -15,13 +16,15 @@ class state the rest:
 
 - `title`, `description`, `color`: its appearance;
 - `learns = False`: practice does not change it;
-- `needs_practice = True`: it races only with what it has learned;
+- `needs_practice = True`: it races only with what it has learned, or learning in the race;
+- `keeps_learning = True`: in a race it keeps learning, unless the lane says otherwise;
 - `is_on_policy = True`: it chooses its next action before it learns from the last one, so that a
   changed exploration rate acts a step later.
 
-Optional methods: those of `Tunable`, `Valuing` and `Tabular`, and `check_state(state)`, a static
-method that raises `ValueError` or `InvalidInput` for a state that `load` cannot restore, such as
-one in an untrusted file.
+Optional methods: those of `Tunable`, `Valuing` and `Tabular`, and two static methods:
+`check_state(state)` raises `ValueError` or `InvalidInput` for a state that `load` cannot restore,
+such as one in an untrusted file; `check_problem(problem, **settings)` raises `InvalidInput` for
+settings that are too much for a problem, before a run is queued.
 """
 
 from collections.abc import Callable, Sequence

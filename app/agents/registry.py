@@ -10,8 +10,8 @@ from functools import cache
 from importlib.metadata import entry_points
 from typing import Any
 
-from app.agents.lookahead import Greedy, TwoStep
-from app.agents.protocol import Agent
+from app.agents.lookahead import Greedy, LookAhead, TwoStep
+from app.agents.protocol import Agent, Problem
 from app.agents.q_learning import QLearning
 from app.agents.sarsa_lambda import SarsaLambda
 from app.agents.tabular import TabularLearner
@@ -33,6 +33,7 @@ OURS: Mapping[str, AgentClass] = {
     "sarsa-lambda": SarsaLambda,
     "greedy": Greedy,
     "two-step": TwoStep,
+    "look-ahead": LookAhead,
 }
 _CLASS_PATH = re.compile(r"[\w.]+:\w+")
 
@@ -102,6 +103,26 @@ def needs_practice(name: str) -> bool:
         UnknownName, InvalidInput: as `find`.
     """
     return bool(getattr(find(name), "needs_practice", False))
+
+
+def keeps_learning(name: str) -> bool:
+    """Whether a lane of an agent keeps learning by default: its class sets `keeps_learning = True`.
+
+    Raises:
+        UnknownName, InvalidInput: as `find`.
+    """
+    return bool(getattr(find(name), "keeps_learning", False))
+
+
+def check_problem(name: str, problem: Problem, settings: Mapping[str, Any]) -> None:
+    """Check by the agent's `check_problem`, if it has one, that its settings fit a problem.
+
+    Raises:
+        UnknownName, InvalidInput: as `find`, or if they do not.
+    """
+    check = getattr(find(name), "check_problem", None)
+    if check is not None:
+        check(problem, **settings)
 
 
 def settings_of(agent: AgentClass) -> Mapping[str, DeclaredSetting]:

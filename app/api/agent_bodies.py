@@ -106,13 +106,19 @@ def _training_body(agent: str, practice: type[PracticeBody]) -> type[TrainingBod
 
 def _lane_body(agent: str, practice: type[PracticeBody]) -> type[LaneBody]:
     description = Field(description=VALID["training"])
-    fields: dict[str, Any] = {"training": (Annotated[practice | None, description], None)}
+    training: dict[str, Any] = {"training": (Annotated[practice | None, description], None)}
+    settings: dict[str, Any] = {
+        # None of them required: a lane with training has them from there.
+        name: (_field([one]), None if one.default is REQUIRED else one.default)
+        for name, one in agent_settings(agent).items()
+    }
     return create_model(
         f"{_camel_case(agent)}Lane",
         __base__=LaneBody,
         __doc__=LaneBody.__doc__,
         agent=(_literal(agent), ...),
-        **(fields if learns(agent) else {}),
+        **(training if learns(agent) else {}),
+        **settings,
     )
 
 

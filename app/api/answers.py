@@ -85,9 +85,16 @@ class TrainingConfigView(WalkView):
 
 
 class LaneView(Answer):
-    """A lane of a race, with the id of the training whose Q-table it uses."""
+    """A lane of a race, with the id of the training whose Q-table it uses.
+
+    The settings of an agent without training are further members, by name.
+    """
+
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, Value]
 
     agent: str
+    keep_learning: bool
     observation: Observation
     training_id: str | None
 

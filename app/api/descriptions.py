@@ -10,7 +10,7 @@ from app.domain.settings import declared_fields
 from app.domain.text import MAX_NAME, NAMES
 from app.experiments.config import EXPERIMENTS, MAX_SEEDS
 from app.runs.clocks import CLOCKS
-from app.runs.config import MAX_LANES, SIMULATORS, TrainingConfig
+from app.runs.config import MAX_LANES, SIMULATORS, LaneConfig, TrainingConfig
 from app.storage.run import KINDS, STATES
 
 MAX_PAGE = 100
@@ -43,7 +43,10 @@ VALID: Mapping[str, str] = {
     "robots": f"a list, each {_one_of(PRESETS)}, or an object that says what differs from one",
     "agents": "a list of agents' names; GET /api/v1/options lists them",
     "workers": "a whole number, from 1 to the number of cores",
-    "lanes": f"a list of 1 to {MAX_LANES} lanes, each {{agent, training_id or training}}",
+    "lanes": (
+        f"a list of 1 to {MAX_LANES} lanes, each {{agent, and training_id, training or settings}}"
+    ),
+    "keep_learning": declared_fields(LaneConfig)["keep_learning"].valid,
     "run_id": "the id of a run",
     "time_s": "a number of seconds, 0 or more",
     "playing": "true or false",

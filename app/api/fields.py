@@ -22,7 +22,7 @@ from app.domain.errors import InvalidInput, UnknownName
 from app.domain.robot import AZIMUTH, MAX_LEGS, MIN_LEGS, MOUNT_RADIUS, PRESETS, RANGES
 from app.domain.settings import DeclaredSetting, declared_fields
 from app.domain.text import MAX_NAME, check_name, invisible_ranges
-from app.runs.config import RaceConfig, TrainingConfig
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
 
 
 def _name(text: str) -> str:
@@ -94,6 +94,7 @@ Name = Annotated[
 RunId = Annotated[str, Field(min_length=1, max_length=64)]
 
 _TRAINING, _RACE = declared_fields(TrainingConfig), declared_fields(RaceConfig)
+_LANE = declared_fields(LaneConfig)
 Steps = Annotated[int, Declared(_TRAINING["steps"])]
 RaceSteps = Annotated[int, Declared(_RACE["steps"])]
 StepsPerEpisode = Annotated[int, Declared(_TRAINING["steps_per_episode"])]
@@ -101,6 +102,7 @@ EvaluateEvery = Annotated[int, Declared(_TRAINING["evaluate_every"])]
 Seed = Annotated[int, Declared(_TRAINING["seed"])]
 Divisions = Annotated[int, Declared(_TRAINING["divisions"])]
 GridSide = Annotated[float, Declared(_TRAINING["grid_side_m"])]
+KeepLearning = Annotated[bool, Declared(_LANE["keep_learning"])]
 Pace = Annotated[Literal["max"] | float, Declared(_TRAINING["pace"])]
 
 

@@ -74,6 +74,7 @@ class AgentOption(Described):
     title: str
     learns: bool
     needs_practice: bool
+    keeps_learning: bool
     color: str
     settings: dict[str, SettingOption]
     live_settings: dict[str, SettingOption]

@@ -9,7 +9,7 @@ from starlette.responses import JSONResponse, Response
 
 from app import __version__
 from app.agents.appearance import colors_of, description_of, title_of
-from app.agents.registry import OURS, learns, needs_practice
+from app.agents.registry import OURS, keeps_learning, learns, needs_practice
 from app.api.deps import ServicesDep
 from app.api.option_answers import OptionsView
 from app.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
@@ -192,6 +192,7 @@ def _agents(names: Collection[str]) -> list[dict[str, Any]]:
             "description": description_of(name),
             "learns": learns(name),
             "needs_practice": needs_practice(name),
+            "keeps_learning": keeps_learning(name),
             "color": color,
             "settings": {n: _setting(one) for n, one in agent_settings(name).items()},
             "live_settings": {

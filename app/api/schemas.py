@@ -12,6 +12,7 @@ from app.api.fields import (
     Divisions,
     EvaluateEvery,
     GridSide,
+    KeepLearning,
     Name,
     Pace,
     RaceSteps,
@@ -146,18 +147,23 @@ class TrainingBody(PracticeBody, WalkBody):
 
 
 class LaneBody(Body):
-    """A lane; a learning agent needs either `training_id` or `training`."""
+    """A lane, with its agent's settings unless they are those of its training.
+
+    Q-learning and its like need `training_id`, `training`, or `keep_learning`.
+    """
 
     agent: str
     training_id: Annotated[RunId | None, Field(description=VALID["training_id"])] = None
     training: Annotated[PracticeBody | None, Field(description=VALID["training"])] = None
+    keep_learning: KeepLearning | None = None
 
     def start(self, walk: WalkingProblem, seed: int) -> LaneStart:
         """Convert to the request of the service."""
-        if self.training is None:
-            return LaneStart(self.agent, self.training_id)
-        training = self.training.practice(walk, self.agent, seed)
-        return LaneStart(self.agent, self.training_id, training)
+        given = self.model_fields_set - set(LaneBody.model_fields)
+        settings = {name: getattr(self, name) for name in given}
+        practice = self.training
+        training = None if practice is None else practice.practice(walk, self.agent, seed)
+        return LaneStart(self.agent, self.training_id, training, self.keep_learning, settings)
 
 
 class RaceBody(WalkBody):

@@ -28,7 +28,7 @@ from app.domain.text import check_name
 from app.experiments.config import ExperimentConfig
 from app.jobs.submissions import MAX_WORKERS, check_walk, plan_of
 from app.runs.clocks import CLOCKS
-from app.runs.config import MAX_LANES, RaceConfig, TrainingConfig
+from app.runs.config import MAX_LANES, RaceConfig, TrainingConfig, check_lane
 from app.storage.errors import Conflict
 from app.storage.run import (
     CONFIGS,
@@ -239,6 +239,8 @@ def _check_lanes(run: Run) -> None:
     agents = [lane.agent for lane in run.config.lanes]
     if len(run.lane_training_ids) != len(agents):
         raise ValueError("its lanes do not fit together")
+    for config, training_id in zip(run.config.lanes, run.lane_training_ids, strict=True):
+        check_lane(config, has_training=training_id is not None)
     for lane, agent in zip((run.result or {"lanes": ()})["lanes"], agents, strict=False):
         if lane["agent"] != agent or lane["clocks"].keys() != set(CLOCKS):
             raise ValueError("its result is of other lanes")

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import re
 import time
 from collections.abc import Sequence
 from typing import Any
@@ -20,12 +21,15 @@ from app.cli.terminal import progress, show_lanes
 from app.domain.errors import InvalidInput
 from app.domain.settings import declared_fields
 from app.runs.clocks import CLOCKS, check_clock
-from app.runs.config import LaneConfig, RaceConfig, as_json
+from app.runs.config import LaneConfig, RaceConfig, agent_settings, as_json, lane_config
 from app.runs.racing import record_race
 from app.runs.recording import LaneRecording
 from app.runs.results import race_result
 from app.runs.tables import Checkpoint
 from app.runs.walker import Walker
+
+_SETTING = re.compile(r",\s*([^\W\d]\w*)=")
+"""A setting in a lane, `,name=`; its value ends before the next."""
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
@@ -37,8 +41,9 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         "--lane",
         action="append",
         required=True,
-        metavar="AGENT[=Q.NPZ]",
-        help="once for each lane: greedy, two-step, q-learning=q.npz, my.module:Agent[=q.npz]",
+        metavar="AGENT[=Q.NPZ][,SETTING=VALUE]",
+        help="once for each lane: greedy, look-ahead,depth=3, q-learning=q.npz, "
+        "q-learning=q.npz,keep_learning=true, my.module:Agent[=q.npz]",
     )
     add_settings(parser, declared_fields(RaceConfig), ("steps", "seed"))
     parser.add_argument("--clock", default="paper", help=f"to show: {', '.join(CLOCKS)}")
@@ -65,23 +70,32 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps({"config": as_json(config), "result": result}))
     else:
-        show_lanes(result, options.clock)
+        show_lanes(config, result, options.clock)
     return 0
 
 
 def _lane(text: str, observation: Any) -> tuple[LaneConfig, Checkpoint | None]:
-    agent, _, path = text.partition("=")
-    if not path:
-        if needs_practice(agent):
-            raise InvalidInput(
-                f"a {agent} lane needs its table: --lane {agent}=q.npz "
-                "(hexapods train --out q.npz makes one)"
-            )
-        return LaneConfig(agent=agent, observation=observation), None
-    table = read_table(path)
-    if table.meta["agent"] != agent:
-        raise InvalidInput(f"{path} was learned by {table.meta['agent']}, not by {agent}")
-    return LaneConfig(agent=agent, observation=table.meta["observation"]), table
+    """Parse `AGENT[=Q.NPZ][,NAME=VALUE]…`; any other comma belongs to the path."""
+    head, *given = _SETTING.split(text)
+    agent, _, path = head.partition("=")
+    values = dict(zip(given[::2], given[1::2], strict=True))
+    declared = {**declared_fields(LaneConfig), **agent_settings(agent)}
+    settings: dict[str, Any] = {
+        name: declared[name].parse(value) if name in declared else value
+        for name, value in values.items()
+    }
+    table = read_table(path) if path else None
+    if table is not None:
+        if table.meta["agent"] != agent:
+            raise InvalidInput(f"{path} was learned by {table.meta['agent']}, not by {agent}")
+        observation = table.meta["observation"]
+    lane = lane_config(agent, observation=observation, has_training=table is not None, **settings)
+    if needs_practice(agent) and table is None and not lane.keep_learning:
+        raise InvalidInput(
+            f"a {agent} lane needs its table: --lane {agent}=q.npz (hexapods train --out q.npz "
+            f"makes one), or learns in the race: --lane {agent},keep_learning=true"
+        )
+    return lane, table
 
 
 def _race(walkers: Sequence[Walker], config: RaceConfig) -> list[LaneRecording]:

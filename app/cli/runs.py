@@ -18,6 +18,7 @@ from app.cli.terminal import show_lanes, show_table
 from app.domain.errors import InvalidInput
 from app.events.damage import as_shown
 from app.events.run_view import run_view
+from app.runs.config import RaceConfig
 from app.settings import Settings, read_settings
 from app.storage.errors import NotFound
 from app.storage.json_text import json_text
@@ -146,8 +147,8 @@ def _show(options: argparse.Namespace) -> int:
     for name, value in view.items():
         if value:
             print(f"{name:>18}  {value if isinstance(value, str) else json.dumps(value)}")
-    if result and "lanes" in result:
-        show_lanes(result, "paper")
+    if result and isinstance(run, Run) and isinstance(run.config, RaceConfig):
+        show_lanes(run.config, result, "paper")
     elif result:
         print(f"{'result':>18}  {json.dumps(result)}")
     return 0

@@ -17,6 +17,9 @@ from rich.progress import (
 from rich.table import Table
 from rich.text import Text
 
+from app.agents.appearance import name_of
+from app.runs.config import RaceConfig
+
 
 class _Rate(ProgressColumn):
     """Progress column with the rate per second."""
@@ -72,14 +75,16 @@ def show_table(
     Console(file=sys.stdout).print(table)
 
 
-def show_lanes(result: dict[str, Any], clock: str) -> None:
+def show_lanes(config: RaceConfig, result: dict[str, Any], clock: str) -> None:
     """Print the result of a race as a table, ranked under a clock."""
     rows = []
-    for lane in sorted(result["lanes"], key=lambda lane: lane["clocks"][clock]["rank"]):
+    lanes = zip(config.lanes, result["lanes"], strict=True)
+    for own, lane in sorted(lanes, key=lambda both: both[1]["clocks"][clock]["rank"]):
+        name = name_of(own.agent, own.settings, own.keep_learning, title=own.agent)
         timed, total = lane["clocks"][clock], lane["total_distance_m"]
         rows.append(
             (
-                f"{timed['rank']}. {lane['agent']}",
+                f"{timed['rank']}. {name}",
                 f"{timed['finished_distance_m']:.2f} m",
                 lane["failure"] if total is None else f"{total:.2f} m",
                 f"{timed['elapsed_s']:.1f} s",

@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from app.agents.registry import learns
+from app.agents.registry import check_problem, learns
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.kinematics import check_reach
 from app.domain.observation import Observation
@@ -16,7 +16,13 @@ from app.domain.robot import Robot
 from app.domain.settings import SettingValues, Value
 from app.experiments.config import GRID, MAX_TRIALS, ExperimentConfig
 from app.experiments.trial import TrialConfig
-from app.runs.config import TrainingConfig, WalkingProblem, agent_settings, training_config
+from app.runs.config import (
+    TrainingConfig,
+    WalkingProblem,
+    agent_settings,
+    problem_of,
+    training_config,
+)
 
 Role = Literal["learner", "reference", "timed"]
 """`learner`: one trial per seed; `reference`: a deterministic look-ahead agent, one trial; `timed`:
@@ -205,6 +211,7 @@ def _setting(place: _Scenario, agent: str, blocks: int, values: Mapping[str, Val
     training = training_config(
         **vars(place.walk), observation=place.observation, agent=agent, evaluate_every=0, **values
     )
+    check_problem(agent, problem_of(training), training.settings)
     own = {name: one.default for name, one in agent_settings(agent).items()}
     defaults = {name: getattr(TrainingConfig, name) for name in GRID} | own
     parts = [training.resolved_gait.name, place.observation, place.robot]

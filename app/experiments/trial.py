@@ -9,6 +9,7 @@ from typing import Any
 
 from app.assembly import build_learner, build_walkers
 from app.domain.errors import Diverged
+from app.domain.settings import SettingValues
 from app.runs.clocks import Timetable, distance_at
 from app.runs.config import RACE_STEPS, LaneConfig, RaceConfig, TrainingConfig, WalkingProblem
 from app.runs.racing import record_race
@@ -132,11 +133,13 @@ def _race(
 ) -> list[LaneRecording]:
     training = config.training
     walk = {name: getattr(training, name) for name in WalkingProblem.__dataclass_fields__}
-    lanes = tuple(
-        LaneConfig(agent=agent, observation=training.observation)
-        for agent in (training.agent, *config.rivals)
+    own = LaneConfig(
+        agent=training.agent,
+        observation=training.observation,
+        settings=training.settings if table is None else SettingValues(),
     )
-    race = RaceConfig(**walk, lanes=lanes, seed=training.seed)
+    rivals = (LaneConfig(agent=one, observation=training.observation) for one in config.rivals)
+    race = RaceConfig(**walk, lanes=(own, *rivals), seed=training.seed)
     walkers = build_walkers(race, [table, *(None for _ in config.rivals)], threads=1)
     *_, recorded = record_race(walkers, race, timer)
     return recorded

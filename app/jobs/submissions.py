@@ -2,17 +2,24 @@
 
 import math
 import os
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 from app.agents.q_table import MAX_VALUES
-from app.agents.registry import learns, needs_practice
+from app.agents.registry import check_problem, learns, needs_practice
 from app.domain.errors import InvalidInput, TableMismatch
 from app.domain.kinematics import check_reach
-from app.domain.observation import Observation
 from app.experiments.config import GRID, ExperimentConfig
 from app.experiments.plan import Plan
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, WalkingProblem
+from app.runs.config import (
+    LaneConfig,
+    RaceConfig,
+    TrainingConfig,
+    WalkingProblem,
+    lane_config,
+    problem_of,
+)
 from app.runs.tables import Checkpoint, check_fits
 from app.storage.database.store import RunStore
 from app.storage.run import Run
@@ -36,11 +43,23 @@ class TrainingStart:
 
 @dataclass(frozen=True)
 class LaneStart:
-    """Request for a lane: with a training's table, with a training to run first, or neither."""
+    """Request for a lane: with a training's table, with a training to run first, or neither.
+
+    Attributes:
+        keep_learning: whether the agent learns in the race; None for the agent's default.
+        settings: the agent's settings that are given with the lane, by name.
+    """
 
     agent: str
     training_id: str | None = None
     training: TrainingStart | None = None
+    keep_learning: bool | None = None
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def has_training(self) -> bool:
+        """Whether it races with what it has learned in a training."""
+        return self.training_id is not None or self.training is not None
 
 
 @dataclass(frozen=True)
@@ -64,6 +83,7 @@ def new_training(start: TrainingStart, store: RunStore, new_id: Callable[[], str
     if not learns(config.agent):
         raise InvalidInput(f"{config.agent} does not learn, so it cannot be trained")
     check_walk(config)
+    check_problem(config.agent, problem_of(config), config.settings)
     if start.continue_from is not None:
         table = load_table(store, start.continue_from)
         check_fits(table, config, config.observation)
@@ -89,15 +109,13 @@ def new_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> li
     check_walk(start.walk)
     trainings: dict[int, Run] = {}
     lanes: list[LaneConfig] = []
-    observation: Observation
     for number, lane in enumerate(start.lanes):
-        table = _lane_table(lane, number, start.walk, store)
+        try:
+            lanes.append(_lane(lane, start.walk, store))
+        except InvalidInput as error:
+            raise InvalidInput(f"lane {number + 1}: {error}") from error
         if lane.training is not None:
             trainings[number] = new_training(lane.training, store, new_id)
-            observation = lane.training.config.observation
-        else:
-            observation = table.meta["observation"] if table else "measured"
-        lanes.append(LaneConfig(agent=lane.agent, observation=observation))
     config = RaceConfig(**vars(start.walk), lanes=tuple(lanes), steps=start.steps, seed=start.seed)
     ids = {number: training.id for number, training in trainings.items()}
     race = Run(
@@ -130,27 +148,39 @@ def check_walk(walk: WalkingProblem) -> None:
         )
 
 
-def _lane_table(
-    lane: LaneStart, number: int, walk: WalkingProblem, store: RunStore
-) -> Checkpoint | None:
-    """Return the table of a lane's training; None if it has none (yet)."""
-    can_learn = learns(lane.agent)
-    has_practice = lane.training_id is not None or lane.training is not None
-    if has_practice and not can_learn:
-        raise InvalidInput(f"lane {number + 1}: {lane.agent} does not learn, so it takes no table")
+def _lane(lane: LaneStart, walk: WalkingProblem, store: RunStore) -> LaneConfig:
+    """Return the config of a lane.
+
+    Raises:
+        InvalidInput, TableMismatch, NotFound, Conflict: if it cannot race.
+    """
+    if lane.has_training and not learns(lane.agent):
+        raise InvalidInput(f"{lane.agent} does not learn, so it takes no table")
     if lane.training_id is not None and lane.training is not None:
-        raise InvalidInput(f"lane {number + 1}: give training_id or training, not both")
-    if needs_practice(lane.agent) and not has_practice:
+        raise InvalidInput("give training_id or training, not both")
+    observation = LaneConfig.observation
+    if lane.training is not None:
+        observation = lane.training.config.observation
+    elif lane.training_id is not None:
+        table = load_table(store, lane.training_id)
+        check_fits(table, walk)
+        _check_agent(table, lane.agent, lane.training_id)
+        observation = table.meta["observation"]
+    config = lane_config(
+        lane.agent,
+        observation=observation,
+        keep_learning=lane.keep_learning,
+        has_training=lane.has_training,
+        **lane.settings,
+    )
+    if needs_practice(lane.agent) and not (lane.has_training or config.keep_learning):
         raise InvalidInput(
-            f"lane {number + 1}: {lane.agent} races with what it has learned: give training_id, "
-            "a training that is finished or stopped, or training, one that is to come first"
+            f"{lane.agent} races with what it has learned: give training_id, a training that is "
+            "finished or stopped, training, one that is to come first, or keep_learning"
         )
-    if lane.training_id is None:
-        return None
-    table = load_table(store, lane.training_id)
-    check_fits(table, walk)
-    _check_agent(table, lane.agent, lane.training_id)
-    return table
+    if not lane.has_training:
+        check_problem(lane.agent, problem_of(walk), config.settings)
+    return config
 
 
 def _check_agent(table: Checkpoint, agent: str, training_id: str) -> None:

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, get_args
 from annotated_types import Ge, Le
 
 from app.agents import registry
+from app.agents.protocol import Problem
 from app.domain.errors import HexapodError, InvalidInput, UnknownName
 from app.domain.gait import Gait, GaitSpec, resolve
 from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M, FootGrid
@@ -112,6 +113,13 @@ RaceSteps = Annotated[
     Le(MAX_RACE_STEPS),
     Setting(title="Steps of the race", help="How many steps each robot has in the race."),
 ]
+KeepLearning = Annotated[
+    bool,
+    Setting(
+        title="Keeps learning",
+        help="Whether it learns from each step of the race too; without practice it begins there.",
+    ),
+]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -156,6 +164,11 @@ class WalkingProblem:
         return resolve(self.gait, self.robot.azimuths_deg)
 
 
+def problem_of(walk: WalkingProblem) -> Problem:
+    """Return the size and geometry of a walking problem, as agents know it."""
+    return Problem(walk.resolved_gait.pairs, walk.grid.cells)
+
+
 @dataclass(frozen=True, kw_only=True)
 class TrainingConfig(WalkingProblem):
     """Config of a training. The defaults are the paper's; `training_config` adds agent settings.
@@ -190,10 +203,10 @@ _TRAINING_FIELDS = frozenset(one.name for one in fields(TrainingConfig))
 
 _RESERVED = """
 a agents b beats_greedy beats_greedy_total blocks changes continue_from distances_m elapsed_s
-experiment failed finished from gaits greedy_m h half_side_m help high high_m iqm_m json key lanes
-low low_m mean_m n name observations out points_m practice probability published reaches_greedy
-relative relative_finished retry robots role run scheduler seeds start step table tls_ca tls_cert
-tls_key total training training_id verdict walk walkers workers
+experiment failed finished from gaits greedy_m h half_side_m help high high_m iqm_m json
+keep_learning key lanes low low_m mean_m n name observations out points_m practice probability
+published reaches_greedy relative relative_finished retry robots role run scheduler seeds start
+step table tls_ca tls_cert tls_key total training training_id verdict walk walkers workers
 """
 RESERVED = frozenset(_RESERVED.split())
 """Names that mean something else beside the settings in requests, answers, files or commands."""
@@ -256,18 +269,81 @@ def training_config(agent: str = TrainingConfig.agent, **given: Any) -> Training
 
 @dataclass(frozen=True, kw_only=True)
 class LaneConfig:
-    """Config of one lane of a race.
+    """Config of one lane of a race. `lane_config` adds the agent's defaults.
 
     Attributes:
         agent: a registered name or `my.module:Agent`.
         observation: observation mode; for a trained agent that of its table.
+        keep_learning: whether the agent learns from each step of the race.
+        settings: the agent's settings by name; none for a trained agent, which has those of its
+            training.
     """
 
     agent: str
     observation: Observation = "measured"
+    keep_learning: KeepLearning = False
+    settings: SettingValues[Value] = field(default_factory=SettingValues)
 
     def __post_init__(self) -> None:
         check_observation(self.observation)
+        declared_fields(LaneConfig)["keep_learning"].check(self.keep_learning)
+
+
+_LANE_FIELDS = frozenset(one.name for one in fields(LaneConfig)) - {"settings"}
+
+
+def lane_config(
+    agent: str,
+    *,
+    observation: Observation = LaneConfig.observation,
+    keep_learning: bool | None = None,
+    has_training: bool = False,
+    **settings: Any,
+) -> LaneConfig:
+    """Create the config of a lane, with its agent's settings validated and completed.
+
+    Args:
+        agent: a registered name or `my.module:Agent`.
+        observation: observation mode.
+        keep_learning: whether the agent learns in the race; None for the agent's default.
+        has_training: whether the agent races with what it learned in a training.
+        settings: the agent's settings by name.
+
+    Raises:
+        UnknownName, InvalidInput: if the agent, a setting or a value is invalid.
+    """
+    if keep_learning is None:
+        keep_learning = registry.keeps_learning(agent)
+    lane = LaneConfig(
+        agent=agent,
+        observation=observation,
+        keep_learning=keep_learning,
+        settings=SettingValues(settings),
+    )
+    check_lane(lane, has_training)
+    if has_training:
+        return lane
+    return replace(lane, settings=complete(agent_settings(agent), settings, agent))
+
+
+def check_lane(lane: LaneConfig, has_training: bool) -> None:
+    """Check a lane against its agent, which is imported.
+
+    Raises:
+        UnknownName, InvalidInput: if the agent does not exist, does not learn but should, or does
+            not have these settings.
+    """
+    if lane.keep_learning and not registry.learns(lane.agent):
+        raise InvalidInput(
+            f"{lane.agent} does not learn, so it cannot keep learning; leave out keep_learning"
+        )
+    if has_training and lane.settings:
+        raise InvalidInput(
+            "a lane with training takes its settings from there; leave out "
+            + ", ".join(lane.settings)
+        )
+    if not has_training:
+        complete(agent_settings(lane.agent), lane.settings, lane.agent)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -303,14 +379,25 @@ def as_json(config: WalkingProblem) -> dict[str, Any]:
     if isinstance(config.gait, GaitSpec):
         data["gait"] = {k: v for k, v in asdict(config.gait).items() if v is not None}
     if isinstance(config, RaceConfig):
-        data["lanes"] = [asdict(lane) for lane in config.lanes]
+        data["lanes"] = [_lane_as_json(lane) for lane in config.lanes]
     return data
+
+
+def _lane_as_json(lane: LaneConfig) -> dict[str, Any]:
+    return {name: getattr(lane, name) for name in sorted(_LANE_FIELDS)} | dict(lane.settings)
+
+
+def _lane_from_json(data: Mapping[str, Any]) -> LaneConfig:
+    own = {name: value for name, value in data.items() if name in _LANE_FIELDS}
+    settings = {name: value for name, value in data.items() if name not in _LANE_FIELDS}
+    return LaneConfig(**own, settings=SettingValues(settings))
 
 
 def config_from_json(data: Mapping[str, Any]) -> TrainingConfig | RaceConfig:
     """Parse the output of `as_json`; a config with lanes is that of a race.
 
-    Keys that are no field of a training are its agent's settings; the agent is not imported.
+    Keys that are no field of a training, or of a lane, are its agent's settings; the agent is not
+    imported.
 
     Raises:
         InvalidInput: if a value is invalid.
@@ -318,7 +405,7 @@ def config_from_json(data: Mapping[str, Any]) -> TrainingConfig | RaceConfig:
     """
     values = {**data, "gait": gait_from_json(data["gait"]), "robot": robot(data["robot"])}
     if "lanes" in values:
-        lanes = tuple(LaneConfig(**lane) for lane in values.pop("lanes"))
+        lanes = tuple(_lane_from_json(lane) for lane in values.pop("lanes"))
         return RaceConfig(**values, lanes=lanes)
     settings = {name: values.pop(name) for name in list(values) if name not in _TRAINING_FIELDS}
     return TrainingConfig(**values, settings=SettingValues(settings))

@@ -17,20 +17,25 @@ def race(walkers: Sequence[Walker], steps: int, timer: Callable[[], float]) -> I
     """Run every lane for `steps` steps, one step of each in turn (round-robin).
 
     A lane whose agent raises or whose physics diverges yields `LaneFailed` and stops; the others
-    continue.
+    continue. A walker that `keeps_learning` learns from each step before it decides on the next, as
+    in a training; the time that this takes is part of that decision.
 
     Args:
         walkers: one per lane, at rest.
         steps: number of steps of each lane.
         timer: clock in seconds that measures decisions, such as `time.perf_counter`.
     """
-    running = dict(enumerate(walkers))
+    running: dict[int, tuple[Walker, LaneStep | None]] = {
+        lane: (walker, None) for lane, walker in enumerate(walkers)
+    }
     for step in range(1, steps + 1):
-        for lane, walker in list(running.items()):
-            record = _lane_step(lane, step, walker, timer)
+        for lane, (walker, last) in list(running.items()):
+            record = _lane_step(lane, step, walker, last, timer)
             yield record
             if isinstance(record, LaneFailed):
                 del running[lane]
+            else:
+                running[lane] = walker, record
 
 
 def record_race(
@@ -49,13 +54,21 @@ def record_race(
         yield lanes
 
 
-def _lane_step(lane: int, step: int, walker: Walker, timer: Callable[[], float]) -> RaceRecord:
+def _lane_step(
+    lane: int, step: int, walker: Walker, last: LaneStep | None, timer: Callable[[], float]
+) -> RaceRecord:
+    """Take a step of a lane; `last` is the one before it, from which the agent may learn first."""
     observation, transitions_before = walker.observed, walker.transitions
+    next_action, learning_s = None, 0.0
     try:
+        if last is not None and walker.keeps_learning:
+            started_s = timer()
+            next_action = walker.learn(last.observation, last.action, last.reward_m)
+            learning_s = timer() - started_s
         knowledge = walker.knowledge()
         started_s = timer()
-        action = walker.decide()
-        decision_s = timer() - started_s
+        action = walker.decide() if next_action is None else next_action
+        decision_s = learning_s + timer() - started_s
     except HexapodError as error:
         return LaneFailed(lane, step, str(error))
     except Exception as error:  # a user-supplied agent may raise anything

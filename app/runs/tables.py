@@ -126,13 +126,14 @@ def agent_state(checkpoint: Checkpoint) -> Arrays:
 
 
 def load_agent(agent: Agent, checkpoint: Checkpoint) -> None:
-    """Load the agent's state in a checkpoint into an agent of the same class.
+    """Load a copy of the agent's state in a checkpoint into an agent of the same class.
 
     Raises:
         TableMismatch: if the checkpoint is of another agent.
     """
     try:
-        agent.load(agent_state(checkpoint))
+        # A copy, which the agent may change: others race with the same checkpoint.
+        agent.load({name: array.copy() for name, array in agent_state(checkpoint).items()})
     except (IndexError, KeyError, TypeError, ValueError) as error:
         raise TableMismatch(
             f"{type(agent).__name__} cannot load what {checkpoint.meta['agent']} has learned; "

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from app.agents.protocol import Transition
 from app.domain.simulator import Motion
 from app.domain.types import Action
 from app.runs.config import RACE_STEPS, TrainingConfig
@@ -102,18 +101,8 @@ def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> S
     action = walker.decide() if learner.next_action is None else learner.next_action
     step = walker.carry_out(action, record)
     learner.next_action = None
-    if getattr(walker.agent, "is_on_policy", False):
-        learner.next_epsilon, learner.next_action = learner.epsilon, walker.decide()
-    walker.agent.learn(
-        Transition(
-            observation,
-            action,
-            step.reward_m,
-            walker.observed,
-            walker.legal,
-            learner.next_action,
-        )
-    )
+    learner.next_epsilon = learner.epsilon  # before it learns, as an on-policy agent chooses then
+    learner.next_action = walker.learn(observation, action, step.reward_m)
     learner.step += 1
     learner.episode_reward_m += step.reward_m
     distance = walker.state.distance_m

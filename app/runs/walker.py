@@ -4,12 +4,17 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, cast
 
-from app.agents.protocol import Agent, Node, Valuing
+import numpy as np
+
+from app.agents.protocol import Agent, Node, Transition, Valuing
 from app.domain.errors import IllegalAction
 from app.domain.observation import Observation, legal_actions, observe
 from app.domain.simulator import Simulator, Step, WalkState
 from app.domain.types import Action, Cells, FloatArray
 from app.runs.records import ActionValues
+
+_MAX_BATCH = 2048
+"""Transitions simulated at once: the servo targets of one take some 10 kB."""
 
 
 class FutureNode:
@@ -50,9 +55,15 @@ class SimulatorExpand:
             the resulting nodes, and the rewards [m], (n,).
         """
         states = [cast(FutureNode, node).state for node in nodes]
-        expansion = self._simulator.expand(states, actions)
+        ends: list[FutureNode] = []
+        rewards: list[FloatArray] = []
+        for first in range(0, len(states), _MAX_BATCH):
+            part = slice(first, first + _MAX_BATCH)
+            expansion = self._simulator.expand(states[part], actions[part])
+            ends += [FutureNode(self, state) for state in expansion.states]
+            rewards.append(expansion.rewards_m)
         self.transitions += len(actions)
-        return [FutureNode(self, state) for state in expansion.states], expansion.rewards_m
+        return ends, np.concatenate(rewards) if rewards else np.empty(0)
 
     def at(self, state: WalkState) -> None:
         """Set the current state of the robot, the root of the search."""
@@ -71,6 +82,7 @@ class Walker:
         simulator: simulates steps.
         agent: chooses actions.
         observation: observation mode.
+        keeps_learning: whether the agent learns in a race.
         state: current state of the simulation.
         observed: current observation, the cell of each leg pair.
         legal: legal actions in the current state.
@@ -82,8 +94,10 @@ class Walker:
         agent: Agent,
         observation: Observation,
         expand: SimulatorExpand | None = None,
+        keeps_learning: bool = False,
     ) -> None:
         self.simulator, self.agent, self.observation = simulator, agent, observation
+        self.keeps_learning = keeps_learning
         self._expand = expand
         self.place(simulator.rest())
 
@@ -127,6 +141,26 @@ class Walker:
         step = self.simulator.step(self.state, action, record)
         self.place(step.state)
         return step
+
+    def learn(self, observation: Cells, action: Action, reward_m: float) -> Action | None:
+        """Let the agent learn from the step that was just carried out.
+
+        Args:
+            observation: observation before the step.
+            action: the step's action.
+            reward_m: its reward [m].
+
+        Returns:
+            the action that an on-policy agent has chosen to take next; None for other agents.
+
+        Raises:
+            IllegalAction: if that action is not legal.
+        """
+        next_action = self.decide() if getattr(self.agent, "is_on_policy", False) else None
+        self.agent.learn(
+            Transition(observation, action, reward_m, self.observed, self.legal, next_action)
+        )
+        return next_action
 
     def knowledge(self) -> ActionValues | None:
         """Return the action values of the current state; None if the agent has none."""

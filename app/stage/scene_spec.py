@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from app.agents.appearance import colors_of, title_of
+from app.agents.appearance import colors_of, name_of, title_of
 from app.domain.errors import Unreachable
 from app.domain.gait import Gait
 from app.domain.grid import FootGrid
@@ -20,13 +20,13 @@ PAPERS_LANES = ("q-learning", "greedy", "two-step")
 
 def race_scene(config: RaceConfig) -> SceneSpec:
     """Return the scene of a race: one lane per agent, from left to right."""
-    lane_specs = _lane_specs([lane.agent for lane in config.lanes])
+    lane_specs = _lane_specs(config.lanes)
     return SceneSpec("race", config.robot, config.resolved_gait, config.grid, lane_specs)
 
 
 def training_scene(config: TrainingConfig) -> SceneSpec:
     """Return the scene of a training: one lane."""
-    lane_specs = _lane_specs([config.agent])
+    lane_specs = (LaneSpec(config.agent, title_of(config.agent), *colors_of([config.agent])),)
     return SceneSpec("training", config.robot, config.resolved_gait, config.grid, lane_specs)
 
 
@@ -35,9 +35,7 @@ def idle_scene() -> SceneSpec:
     """Return the scene of the idle stage: the paper's three agents."""
     lanes = tuple(LaneConfig(agent=agent) for agent in PAPERS_LANES)
     config = RaceConfig(gait="left-right-origin", lanes=lanes)
-    return SceneSpec(
-        "idle", config.robot, config.resolved_gait, config.grid, _lane_specs(PAPERS_LANES)
-    )
+    return SceneSpec("idle", config.robot, config.resolved_gait, config.grid, _lane_specs(lanes))
 
 
 def rest_pose(spec: SceneSpec) -> FloatArray:
@@ -58,10 +56,12 @@ def _rest_pose(robot: Robot, gait: Gait, grid: FootGrid) -> FloatArray:
     return pose
 
 
-def _lane_specs(agents: Sequence[str]) -> tuple[LaneSpec, ...]:
-    names = [title_of(agent) for agent in agents]
+def _lane_specs(lanes: Sequence[LaneConfig]) -> tuple[LaneSpec, ...]:
+    """Return the specs of lanes; equal names are numbered."""
+    colors = colors_of([lane.agent for lane in lanes])
+    names = [name_of(lane.agent, lane.settings, lane.keep_learning) for lane in lanes]
     lane_specs = []
-    for lane, (agent, color) in enumerate(zip(agents, colors_of(agents), strict=True)):
-        name, before = names[lane], names[:lane].count(names[lane])
-        lane_specs.append(LaneSpec(agent, f"{name} {before + 1}" if before else name, color))
+    for number, (lane, color) in enumerate(zip(lanes, colors, strict=True)):
+        name, before = names[number], names[:number].count(names[number])
+        lane_specs.append(LaneSpec(lane.agent, f"{name} {before + 1}" if before else name, color))
     return tuple(lane_specs)

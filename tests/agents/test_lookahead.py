@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from app.agents.lookahead import Greedy, LookAhead, TwoStep
-from app.agents.protocol import Node
+from app.agents.protocol import Node, Problem
+from app.domain.errors import InvalidInput
 from app.domain.gait import NAMED_GAITS, resolve
 from app.domain.grid import FootGrid
 from app.domain.kinematic import KinematicSimulator
@@ -42,6 +43,21 @@ def test_at_three_divisions_there_are_24_actions() -> None:
     robot.decide()
 
     assert expand.transitions == 24 + 24 * 24
+
+
+@pytest.mark.parametrize(
+    ("divisions", "depth", "message"),
+    [
+        (2, 5, "depth 5 would simulate 271,452 transitions.*40,000: choose depth 4 or less"),
+        (3, 4, "with 24 actions in each state.*choose depth 3 or less, or fewer divisions"),
+        (8, 3, "choose depth 2 or less"),
+    ],
+)
+def test_tree_that_is_too_large_is_refused(divisions: int, depth: int, message: str) -> None:
+    problem = Problem(((1, 4), (2, 5), (3, 6)), FootGrid(divisions=divisions).cells)
+
+    with pytest.raises(InvalidInput, match=message):
+        LookAhead(TrapDoor(), depth, problem)
 
 
 @pytest.mark.parametrize(("depth", "transitions"), [(1, 600), (2, 7_800)])

@@ -84,6 +84,44 @@ def test_lane_uses_the_observation_of_its_table(api: Api) -> None:
     assert (training["config"]["seed"], race["config"]["seed"]) == (3, 9)
 
 
+def test_lane_has_settings_of_its_own(api: Api) -> None:
+    lanes = [{"agent": "look-ahead", "depth": 1}, {"agent": "look-ahead", "depth": 2}]
+    race = api.finished(api.race(lanes=lanes, steps=3))
+    assert [lane["depth"] for lane in race["config"]["lanes"]] == [1, 2]
+    transitions = [lane["simulated_transitions"] for lane in race["result"]["lanes"]]
+    assert transitions == [3 * 12, 3 * 156]
+
+
+def test_lane_may_learn_in_the_race_without_practice(api: Api) -> None:
+    lane = {"agent": "q-learning", "keep_learning": True, "epsilon_start": 0.1}
+    race = api.finished(api.race(lanes=[lane], steps=10))
+    assert race["waiting_for"] == []
+    (shown,) = race["config"]["lanes"]
+    assert (shown["training_id"], shown["keep_learning"]) == (None, True)
+    assert (shown["alpha"], shown["epsilon_start"]) == (0.3, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("lane", "names"),
+    [
+        ({"agent": "look-ahead", "depth": 0}, "lanes.0.depth must be a whole number from 1 to 10"),
+        ({"agent": "look-ahead", "depth": 5}, "Lane 1: depth 5 would simulate 271,452"),
+        ({"agent": "look-ahead", "width": 5}, "unknown field 'width'"),
+        ({"agent": "greedy", "keep_learning": True}, "Lane 1: greedy does not learn, so it cannot"),
+        ({"agent": "greedy", "keep_learning": 1}, "keep_learning must be true or false"),
+        ({"agent": "q-learning"}, "Lane 1: q-learning races with what it has learned"),
+        (
+            {"agent": "q-learning", "training": {}, "alpha": 0.5},
+            "Lane 1: a lane with training takes its settings from there; leave out alpha",
+        ),
+    ],
+)
+def test_lane_with_wrong_settings_is_refused_in_one_sentence(
+    api: Api, lane: dict[str, Any], names: str
+) -> None:
+    refused(api.call("POST", "/races", json={**WALK, "lanes": [lane]}), 422, names)
+
+
 def test_race_can_continue_an_earlier_training(api: Api, raced: dict[str, Any]) -> None:
     before = raced["config"]["lanes"][0]["training_id"]
     practice = {**PRACTICE, "continue_from": before}
@@ -195,7 +233,8 @@ def test_all_options_can_be_started(api: Api) -> None:
             api.stop(api.start("/trainings", body))
     learns = {agent["name"]: agent["learns"] for agent in options["agents"]}
     learners = {"q-learning": True, "sarsa-lambda": True}
-    assert learns == {**learners, "greedy": False, "two-step": False}
+    searchers = dict.fromkeys(("greedy", "two-step", "look-ahead"), False)
+    assert learns == learners | searchers
     api.stop(api.start("/trainings", options["defaults"]["training"]))
     assert set(options["limits"]) <= set(options["help"])
 

@@ -225,6 +225,10 @@ def test_invalid_run_json_of_a_training_is_refused(
         lambda content: content["run"]["config"]["lanes"].reverse(),
         _set("steps", 3, "run", "config"),
         _set("divisions", 3, "run", "config"),
+        lambda content: content["run"]["config"]["lanes"][0].update(alpha=0.5),
+        lambda content: content["run"]["config"]["lanes"][0].update(keep_learning="yes"),
+        lambda content: content["run"]["config"]["lanes"][1].update(depth=2),
+        lambda content: content["run"]["config"]["lanes"][1].update(keep_learning=True),
     ],
 )
 def test_invalid_run_json_of_a_race_is_refused(source: RunStore, change: Change) -> None:

@@ -58,6 +58,25 @@ def test_race_of_a_table_against_look_ahead(folder: Path) -> None:
     assert "Ranked at time-out, free clock" in shown.stdout
 
 
+def test_lanes_take_settings_and_keep_learning(folder: Path) -> None:
+    lanes = (
+        "look-ahead,depth=2",
+        "q-learning=q.npz,keep_learning=true",
+        "q-learning,keep_learning=true,alpha=0.5",
+    )
+    race = ("race", *QUICK, "--steps", "5", *(part for lane in lanes for part in ("--lane", lane)))
+    printed = output(*race, folder=folder)
+    settings = [
+        (one.get("depth"), one["keep_learning"], one.get("alpha"))
+        for one in printed["config"]["lanes"]
+    ]
+    assert settings == [(2, False, None), (None, True, None), (None, True, 0.5)]
+    assert printed["result"]["lanes"][0]["simulated_transitions"] == 5 * 156
+    shown = hexapods(*race, folder=folder).stdout.replace("\u00a0", " ")
+    assert "look-ahead, depth 2" in shown
+    assert "q-learning, α 0.5, keeps learning" in shown
+
+
 def test_the_example_agent_learns_and_races(tmp_path: Path) -> None:
     example = EXAMPLES / "my_agent.py"
     assert len(example.read_text("utf-8").splitlines()) <= 40
@@ -106,7 +125,7 @@ def test_custom_robot_and_gait_are_accepted(tmp_path: Path) -> None:
         ((*GAIT, "--observation", "guessed"), "measured, commanded"),
         (
             (*GAIT, "--agent", "skynet"),
-            "sarsa-lambda, greedy, two-step, my.module:Agent",
+            "sarsa-lambda, greedy, two-step, look-ahead, ",
         ),
         ((*GAIT, "--agent", "no_module:Agent"), "cannot import no_module"),
         ((*GAIT, "--from", "missing.npz"), "missing.npz"),
@@ -129,6 +148,12 @@ def test_invalid_input_to_train_is_refused_in_one_sentence(
         ((*QUICK, "--divisions", "3", "--lane", "q-learning=q.npz"), "divisions 2"),
         ((*QUICK, *(["--lane", "greedy"] * 7)), "1 to 6 lanes"),
         ((*QUICK, "--lane", "greedy", "--clock", "cuckoo"), "paper, wall, free"),
+        ((*QUICK, "--lane", "look-ahead,depth=0"), "depth must be a whole number from 1 to 10"),
+        ((*QUICK, "--lane", "look-ahead,depth=deep"), "depth must be a whole number from 1 to 10"),
+        ((*QUICK, "--lane", "look-ahead,depth=5"), "choose depth 4 or less"),
+        ((*QUICK, "--lane", "greedy,depth=2"), "greedy has no settings"),
+        ((*QUICK, "--lane", "greedy,keep_learning=true"), "greedy does not learn"),
+        ((*QUICK, "--lane", "q-learning=q.npz,alpha=0.5"), "leave out alpha"),
         ((*QUICK,), "--lane"),
     ],
 )

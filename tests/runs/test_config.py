@@ -22,6 +22,7 @@ from app.runs.config import (
     changeable_settings,
     config_from_json,
     gait_from_json,
+    lane_config,
     training_config,
     usable_agents,
 )
@@ -146,10 +147,71 @@ def test_config_in_plain_types_is_valid_json_and_has_the_same_gait(
             gait=GaitSpec(1, 3, "vertical"), robot=robot({"n_legs": 8, "femur_m": 0.1})
         ),
         RaceConfig(gait=GAIT, lanes=(*LANES, LaneConfig(agent="x", observation="commanded"))),
+        RaceConfig(
+            gait=GAIT,
+            lanes=(
+                lane_config("look-ahead", depth=2),
+                lane_config("q-learning", keep_learning=True, alpha=0.5),
+            ),
+        ),
     ],
 )
 def test_config_round_trips_through_json(config: TrainingConfig | RaceConfig) -> None:
     assert config_from_json(json.loads(json.dumps(as_json(config)))) == config
+
+
+def test_lane_in_plain_types_has_its_settings_as_flat_fields() -> None:
+    race = RaceConfig(gait=GAIT, lanes=(lane_config("look-ahead", depth=2),))
+    assert as_json(race)["lanes"] == [
+        {"agent": "look-ahead", "observation": "measured", "keep_learning": False, "depth": 2}
+    ]
+
+
+def test_race_of_an_earlier_version_has_lanes_that_do_not_keep_learning() -> None:
+    stored = {**as_json(RaceConfig(gait=GAIT, lanes=LANES))}
+    stored["lanes"] = [{"agent": "greedy", "observation": "measured"}]
+    assert config_from_json(stored) == RaceConfig(gait=GAIT, lanes=LANES)
+
+
+def test_lane_has_the_defaults_of_its_agent() -> None:
+    assert dict(lane_config("look-ahead").settings) == {"depth": 3}
+    assert lane_config("q-learning", keep_learning=True).settings["alpha"] == 0.3
+    eager = f"{__name__}:Eager"
+    assert lane_config(eager).keep_learning
+    assert not lane_config(eager, keep_learning=False).keep_learning
+    assert not lane_config("q-learning", has_training=True).keep_learning
+    assert dict(lane_config("q-learning", has_training=True).settings) == {}
+
+
+class Eager(Restless):
+    """An agent that learns in a race unless it is told otherwise."""
+
+    keeps_learning = True
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({"agent": "look-ahead", "depth": 0}, "depth must be a whole number from 1 to 10, not 0"),
+        ({"agent": "look-ahead", "width": 2}, "unknown setting of look-ahead 'width'.*: depth"),
+        ({"agent": "greedy", "depth": 2}, "greedy has no settings, so none named 'depth'"),
+        (
+            {"agent": "greedy", "keep_learning": True},
+            "greedy does not learn, so it cannot keep learning; leave out keep_learning",
+        ),
+        (
+            {"agent": "q-learning", "has_training": True, "alpha": 0.1, "gamma": 0.5},
+            "a lane with training takes its settings from there; leave out alpha, gamma",
+        ),
+        (
+            {"agent": "q-learning", "has_training": True, "keep_learning": 1},
+            "keep_learning must be true or false, not 1",
+        ),
+    ],
+)
+def test_invalid_lane_is_refused_with_the_valid_values(asked: dict[str, Any], message: str) -> None:
+    with pytest.raises(InvalidInput, match=message):
+        lane_config(**asked)
 
 
 class Older(Restless):

@@ -8,13 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.assembly import build_walkers
+from app.agents.protocol import Transition
+from app.assembly import build_learner, build_walkers
 from app.domain.simulator import WalkState
 from app.physics.mujoco_simulator import MujocoState
-from app.runs.config import LaneConfig, RaceConfig
+from app.runs.config import LaneConfig, RaceConfig, lane_config, training_config
 from app.runs.racing import race, record_race
-from app.runs.records import LaneFailed, LaneStep, RaceRecord
+from app.runs.records import LaneFailed, LaneStep, RaceRecord, StepTaken
 from app.runs.results import race_result
+from app.runs.seeding import RACING, generator
+from app.runs.tables import snapshot, to_bytes
+from app.runs.training import train
+from tests.own_agents import Restless
 
 
 def ticking(tick_s: float = 1.0) -> Callable[[], float]:
@@ -153,6 +158,83 @@ def with_a_broken_joint(state: WalkState) -> MujocoState:
     row = state.row.copy()
     row[9] = np.nan
     return replace(state, row=row)
+
+
+@pytest.mark.parametrize("agent", ["q-learning", "sarsa-lambda"])
+def test_lane_that_keeps_learning_learns_as_a_training_does(agent: str) -> None:
+    """Without practice: the same settings, steps and generator give the same steps and values."""
+    lane = lane_config(agent, keep_learning=True, alpha=0.5, epsilon_start=0.3)
+    asked = replace(config("greedy", steps=60, seed=5), lanes=(LaneConfig(agent="greedy"), lane))
+    raced = [r for r in of_lane(run(asked), 1) if isinstance(r, LaneStep)]
+    practice = training_config(
+        agent,
+        gait=asked.gait,
+        simulator="kinematic",
+        steps=60,
+        evaluate_every=0,
+        **lane.settings,
+    )
+    learner = build_learner(practice)
+    learner.rng.bit_generator.state = generator(5, RACING, 1).bit_generator.state
+    trained = [r for r in train(learner, practice, record=True) if isinstance(r, StepTaken)]
+
+    for one, other in zip(raced, trained, strict=True):
+        assert (one.observation, one.action, one.reward_m) == (
+            other.observation,
+            other.action,
+            other.reward_m,
+        )
+        assert one.knowledge is not None
+        assert other.knowledge is not None
+        np.testing.assert_array_equal(one.knowledge.values, other.knowledge.values)
+
+
+def test_race_does_not_change_the_table_that_its_lanes_learn_from() -> None:
+    practice = training_config(
+        gait="left-right-origin", simulator="kinematic", steps=100, evaluate_every=0
+    )
+    learner = build_learner(practice)
+    for _ in train(learner, practice):
+        pass
+    table = snapshot(learner, practice)
+    before = to_bytes(table)
+    lanes = tuple(
+        lane_config("q-learning", keep_learning=learns, has_training=True)
+        for learns in (True, False)
+    )
+    asked = replace(config("greedy", steps=20), lanes=lanes)
+    walkers = build_walkers(asked, [table, table])
+    records = list(race(walkers, 20, ticking()))
+
+    assert to_bytes(table) == before
+    visits = [walker.agent.state()["n"].sum() for walker in walkers]
+    assert visits == [119, 100]  # after the last step nothing is left to decide
+    assert not any(isinstance(record, LaneFailed) for record in records)
+
+
+def test_learning_belongs_to_the_next_decision() -> None:
+    lane = lane_config("q-learning", keep_learning=True)
+    records = run(replace(config("greedy", steps=3), lanes=(lane,)))
+
+    assert [r.decision_s for r in records if isinstance(r, LaneStep)] == [1, 2, 2]  # ticks
+
+
+def test_agent_that_fails_to_learn_ends_its_own_lane_only() -> None:
+    lane = lane_config(f"{__name__}:Unteachable", keep_learning=True)
+    asked = replace(config("greedy", steps=3), lanes=(lane, LaneConfig(agent="greedy")))
+    records = run(asked)
+
+    _, failed = of_lane(records, 0)
+    assert isinstance(failed, LaneFailed)
+    assert (failed.step, failed.reason) == (2, "its agent failed: RuntimeError: too hard")
+    assert len(of_lane(records, 1)) == 3
+
+
+class Unteachable(Restless):
+    """Breaks when it should learn."""
+
+    def learn(self, transition: Transition) -> None:
+        raise RuntimeError("too hard")
 
 
 def test_recording_has_every_step_and_the_reason_of_a_failure() -> None:
