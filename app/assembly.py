@@ -27,7 +27,7 @@ from app.runs.config import (
 from app.runs.seeding import LEARNING, RACING, generator
 from app.runs.tables import Checkpoint, check_fits, continue_from, load_agent
 from app.runs.training import Learner, evaluate, measure_baseline
-from app.runs.walker import SimulatorExpand, Walker
+from app.runs.walker import Readings, SimulatorExpand, Walker
 
 
 def build_simulator(walk: WalkingProblem, threads: int = 1) -> Simulator[Any]:
@@ -195,11 +195,14 @@ def _walker(
     expand = None
     if "expand" in registry.parameter_names(agent_class):
         expand = SimulatorExpand(simulator, observation)
+    readings = Readings(simulator)
     arguments = {
         **offered,
         "rng": rng,
         "problem": Problem(simulator.gait.pairs, simulator.grid.cells),
         "explore": explore,
         "expand": expand,
+        "observe": readings,
     }
-    return Walker(simulator, registry.build(agent_class, arguments), observation, expand)
+    agent = registry.build(agent_class, arguments)
+    return Walker(simulator, agent, observation, expand, readings)

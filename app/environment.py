@@ -64,7 +64,7 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
             simulator: `mujoco` or `kinematic`.
             divisions: points along a side of the foot grid.
             grid_side_m: side length of the foot grid.
-            observation: `measured` or `commanded`, how the state is read.
+            observation: `measured`, `commanded` or `planned`, how the state is read.
 
         Raises:
             InvalidInput: if a value is invalid; the message names the valid ones.

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.agents.lookahead import LookAhead
-from app.agents.protocol import AgentState, Expand, Problem, Transition
+from app.agents.protocol import AgentState, Expand, Observe, Problem, Transition
+from app.domain.observation import OBSERVATIONS
 from app.domain.types import Action, Cells
 
 
@@ -41,6 +42,22 @@ class Plain(Restless):
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         pair, cell = super().act(observation, legal)
         return (np.int64(pair), np.int64(cell))  # type: ignore[return-value]
+
+
+class Attentive(Restless):
+    """Reads its state in every way, before and after each step."""
+
+    def __init__(self, rng: np.random.Generator, problem: Problem, observe: Observe) -> None:
+        super().__init__(rng, problem)
+        self._observe = observe
+        self.read: list[dict[str, Cells]] = []
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        self.read.append({how: self._observe(how) for how in OBSERVATIONS})
+        return super().act(observation, legal)
+
+    def learn(self, transition: Transition) -> None:
+        self.read.append({how: self._observe(how) for how in OBSERVATIONS})
 
 
 class Needy(Restless):

@@ -6,11 +6,13 @@ from typing import Any
 import pytest
 
 from app.agents.lookahead import Greedy, TwoStep
+from app.agents.protocol import Transition
 from app.agents.q_learning import QLearning
 from app.assembly import build_learner, build_simulator, build_walkers
 from app.domain.errors import InvalidInput, TableMismatch, UnknownName, Unreachable
 from app.domain.gait import GaitSpec
 from app.domain.kinematic import KinematicSimulator
+from app.domain.observation import OBSERVATIONS, Observation, observe
 from app.domain.robot import robot
 from app.physics.mujoco_simulator import MujocoSimulator
 from app.runs.config import LaneConfig, RaceConfig, WalkingProblem, training_config
@@ -166,3 +168,23 @@ def test_user_defined_gait_walks() -> None:
 
     assert 0.03 < walker.state.distance_m < 0.07
     assert abs(walker.simulator.pose(walker.state)[0]) < 0.01
+
+
+@pytest.mark.parametrize("observation", OBSERVATIONS)
+def test_agent_may_read_the_current_state_in_every_way(observation: Observation) -> None:
+    config = training_config(
+        gait="left-right-vertical", agent="tests.own_agents:Attentive", observation=observation
+    )
+    learner = build_learner(config)
+    walker, simulator = learner.walker, learner.walker.simulator
+    assert isinstance(walker.agent, own_agents.Attentive)
+    expected = []
+    for _ in range(30):
+        expected.append({how: observe(simulator, walker.state, how) for how in OBSERVATIONS})
+        before, action = walker.observed, walker.decide()
+        step = walker.carry_out(action)
+        walker.agent.learn(Transition(before, action, step.reward_m, walker.observed, walker.legal))
+        expected.append({how: observe(simulator, walker.state, how) for how in OBSERVATIONS})
+
+    assert walker.agent.read == expected
+    assert any(len(set(read.values())) > 1 for read in walker.agent.read)

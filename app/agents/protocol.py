@@ -5,6 +5,7 @@ An agent is a class. Its constructor's parameters are passed by name (dependency
 - `rng`: a `numpy.random.Generator`, the only source of randomness;
 - `problem`: the size and geometry of the walking problem (`Problem`);
 - `expand`: a simulator for look-ahead (`Expand`);
+- `observe`: reads the current state in other ways than the run's observation (`Observe`);
 - `explore`: False where the agent should not explore: in evaluations, and in races unless its lane
   keeps learning;
 - a field of the training's config by its name, such as `steps` or `steps_per_episode`.
@@ -33,10 +34,16 @@ from typing import Any, NamedTuple, Protocol, runtime_checkable
 from numpy.typing import NDArray
 
 from app.agents.q_table import QTable
+from app.domain.observation import Observation
 from app.domain.types import Action, Cells, FloatArray
 
 AgentState = dict[str, NDArray[Any]]
 """Complete state of an agent as named arrays, for checkpoint files."""
+
+
+Observe = Callable[[Observation], Cells]
+"""Returns the cells of the robot's current state by any observation: in `act` those before the
+action, in `learn` those after it."""
 
 
 class Problem(NamedTuple):

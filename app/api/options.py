@@ -58,7 +58,7 @@ def get_options(services: ServicesDep) -> Response:
 _EXPERIMENTS = {
     "table1": (
         "The paper's Table 1: Q-learning after 500 and after 1,000 steps beside greedy and "
-        "two-step, in all four gaits, for both readings of the state."
+        "two-step, in all four gaits, with the feet measured and with the commands remembered."
     ),
     "figure4": (
         "The paper's Figure 4: practice in blocks of 250 steps up to 2,000, the table saved and "
@@ -91,6 +91,7 @@ _ROBOTS = {
 _OBSERVATIONS = {
     "measured": "Where the feet are, by the joint angles.",
     "commanded": "Where the feet were last sent; the body's drift is not seen.",
+    "planned": "Where the feet would be if nothing had slipped, reckoned from the commands.",
 }
 _CLOCKS = {
     "paper": "A decision costs a share of a step's time for every future that was simulated.",

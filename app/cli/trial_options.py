@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from app.cli.options import integer, read_gait, read_robot, split
 from app.domain.gait import NAMED_GAITS, GaitSpec
-from app.domain.observation import OBSERVATIONS
+from app.domain.observation import OBSERVATIONS, PAPER_OBSERVATIONS
 from app.domain.robot import PRESETS, Robot
 from app.experiments.cluster import ClusterSpec
 from app.runs.config import SIMULATORS
@@ -31,7 +31,7 @@ def add_trial_options(parser: argparse.ArgumentParser, observations: str, robots
     parser.add_argument(
         "--observation",
         action="append",
-        help=f"both, or of {', '.join(OBSERVATIONS)} (default {observations})",
+        help=f"both of the paper's, all, or of {', '.join(OBSERVATIONS)} (default {observations})",
     )
     parser.add_argument(
         "--robot",
@@ -88,7 +88,8 @@ def _gaits(text: str) -> Sequence[str | GaitSpec]:
 
 
 def _observations(text: str) -> Sequence[str]:
-    return list(OBSERVATIONS) if text in ("both", "all") else split(text)
+    named = {"both": PAPER_OBSERVATIONS, "all": OBSERVATIONS}
+    return named[text] if text in named else split(text)
 
 
 def _robots(text: str) -> Sequence[Robot]:

@@ -1,7 +1,8 @@
-"""Observations of an agent: one cell per leg pair, measured or commanded; and the legal actions.
+"""Observations of an agent, one cell per leg pair in three readings; and the legal actions.
 
 After each step the body re-centres over the feet, so a foot's actual offset from home drifts from
-its commanded cell. The paper does not say which of the two its state holds.
+its commanded cell. The paper does not say which of the two its state holds. Dead reckoning is in
+between: it follows the drift, but from the commands alone.
 """
 
 from functools import lru_cache
@@ -12,11 +13,15 @@ from app.domain.errors import UnknownName
 from app.domain.simulator import S, Simulator
 from app.domain.types import Action, Cells
 
-Observation = Literal["measured", "commanded"]
+Observation = Literal["measured", "commanded", "planned"]
 """`measured`: the cell nearest to where the pair's feet are, by forward kinematics.
-`commanded`: the cell that the pair was last sent to; aliased, so not Markov."""
+`commanded`: the cell that the pair was last sent to; aliased, so not Markov.
+`planned`: the cell nearest to where the pair's feet would be if nothing had slipped or given way
+(dead reckoning from the commands); it does not depend on sensors, nor on what a leg really did."""
 
 OBSERVATIONS: tuple[Observation, ...] = get_args(Observation)
+PAPER_OBSERVATIONS: tuple[Observation, ...] = ("measured", "commanded")
+"""The observations that the paper may have meant; its experiments are repeated with both."""
 
 
 def check_observation(name: str) -> None:
@@ -34,6 +39,9 @@ def observe(simulator: Simulator[S], state: S, how: Observation) -> Cells:
     if how == "commanded":
         return state.commanded
     nearest = simulator.grid.nearest
+    if how == "planned":
+        feet = state.feet
+        return tuple(map(nearest, feet.lateral_m, feet.forward_m))
     return tuple(nearest(x, y) for x, y in simulator.pair_offsets(state))
 
 

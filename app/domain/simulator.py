@@ -6,6 +6,7 @@ from typing import Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from app.domain.feet import Feet
 from app.domain.gait import Gait
 from app.domain.grid import FootGrid
 from app.domain.robot import Robot
@@ -17,6 +18,10 @@ RECORDING_HZ = 50
 
 class WalkState(Protocol):
     """Immutable state of a walk between two steps; simulators add the fields that they need."""
+
+    @property
+    def feet(self) -> Feet:
+        """Foot offsets by dead reckoning: where the feet would be if nothing had slipped."""
 
     @property
     def commanded(self) -> Cells:

@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args
 
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import NAMED_GAITS, GaitSpec
-from app.domain.observation import OBSERVATIONS, Observation
+from app.domain.observation import PAPER_OBSERVATIONS, Observation
 from app.domain.robot import Robot, as_mapping, robot
 from app.domain.settings import REQUIRED, DeclaredSetting, SettingValues, Value
 from app.runs.config import (
@@ -56,7 +56,7 @@ class ExperimentConfig:
     seed: int = 0
     agents: tuple[str, ...] = ("q-learning",)
     gaits: tuple[str | GaitSpec, ...] = tuple(NAMED_GAITS)
-    observations: tuple[Observation, ...] = OBSERVATIONS
+    observations: tuple[Observation, ...] = PAPER_OBSERVATIONS
     robots: tuple[Robot, ...] = (Robot(),)
     simulator: SimulatorName = "mujoco"
     steps: tuple[int, ...] = (TrainingConfig.steps,)

@@ -13,6 +13,7 @@ _NO_BREAK_SPACE = "\u00a0"
 OBSERVATION_LABELS: Mapping[str, str] = {
     "measured": "feet measured",
     "commanded": "commands remembered",
+    "planned": "feet as planned",
 }
 """Label of each observation."""
 

@@ -176,7 +176,7 @@ class TrainingConfig(WalkingProblem):
     Attributes:
         steps: number of learning steps.
         seed: seed of all random generators of the run.
-        observation: observation mode, `measured` or `commanded`.
+        observation: observation mode, `measured`, `commanded` or `planned`.
         settings: the agent's settings by name; the agent's default applies to a missing one.
         steps_per_episode: number of steps for which ε is constant.
         evaluate_every: steps between two evaluations; 0 for none.

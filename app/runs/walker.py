@@ -29,6 +29,25 @@ class FutureNode:
         return self._expand.legal(self.state)
 
 
+class Readings:
+    """The observations of a robot's current state, each read at most once per state."""
+
+    def __init__(self, simulator: Simulator[Any]) -> None:
+        self._simulator = simulator
+        self.at(simulator.rest())
+
+    def at(self, state: WalkState) -> None:
+        """Set the current state of the robot."""
+        self._state = state
+        self._read: dict[Observation, Cells] = {}
+
+    def __call__(self, how: Observation) -> Cells:
+        """Return the cells that an agent observes in the current state, one per pair."""
+        if how not in self._read:
+            self._read[how] = observe(self._simulator, self._state, how)
+        return self._read[how]
+
+
 class SimulatorExpand:
     """Implements the `Expand` protocol by simulation, and counts simulated transitions.
 
@@ -94,17 +113,19 @@ class Walker:
         agent: Agent,
         observation: Observation,
         expand: SimulatorExpand | None = None,
+        readings: Readings | None = None,
         keeps_learning: bool = False,
     ) -> None:
         self.simulator, self.agent, self.observation = simulator, agent, observation
         self.keeps_learning = keeps_learning
-        self._expand = expand
+        self._expand, self._readings = expand, readings or Readings(simulator)
         self.place(simulator.rest())
 
     def place(self, state: WalkState) -> None:
         """Set the current state, and update the observation and the legal actions."""
         self.state = state
-        self.observed: Cells = observe(self.simulator, state, self.observation)
+        self._readings.at(state)
+        self.observed: Cells = self._readings(self.observation)
         self.legal = legal_actions(self.observed, len(self.simulator.grid))
         if self._expand:
             self._expand.at(state)

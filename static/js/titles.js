@@ -8,7 +8,9 @@ import { options } from "./store.js";
 /** @import { Described, GaitConfig, RobotConfig, Run } from "./types.js" */
 
 /** @type {Record<string, string>} */
-const OBSERVATIONS = { measured: "feet measured", commanded: "commands remembered" };
+const OBSERVATIONS = {
+  measured: "feet measured", commanded: "commands remembered", planned: "feet as planned",
+};
 /** @type {Record<string, string>} */
 const SIMULATORS = { mujoco: "MuJoCo physics", kinematic: "ideal (no slip)" };
 /** @type {Record<string, string>} */

@@ -134,7 +134,7 @@ def test_full_disk_ends_the_sweep_and_finished_trials_are_stored(tmp_path: Path)
         (("experiment", "table1", "--seed", "-1"), "at least 0"),
         (("experiment", "table1", "--gait", "moonwalk"), "left-right-origin"),
         (("experiment", "table1", "--gait", "all,all"), "gaits names something twice"),
-        (("experiment", "table1", "--observation", "guessed"), "measured, commanded"),
+        (("experiment", "table1", "--observation", "guessed"), "measured, commanded, planned"),
         (("experiment", "table1", "--robot", "stiff,sloth"), "stiff, compliant, slippery"),
         (("experiment", "table1", "--robot", "stiff,stiff"), "robots names something twice"),
         (("experiment", "table1", "--simulator", "matrix"), "mujoco, kinematic"),

@@ -1,4 +1,6 @@
-"""The two observations of a state, and its legal actions."""
+"""The observations of a state, and its legal actions."""
+
+from dataclasses import replace
 
 import pytest
 
@@ -7,20 +9,22 @@ from app.domain.gait import resolve
 from app.domain.grid import FootGrid
 from app.domain.kinematic import KinematicSimulator
 from app.domain.observation import OBSERVATIONS, check_observation, legal_actions, observe
-from app.domain.robot import Robot
+from app.domain.robot import PRESETS, Robot
 from app.domain.types import Action
+from app.physics.mujoco_simulator import MujocoSimulator
 
 HOME, FRONT_LEFT, FRONT_RIGHT, BACK_LEFT, BACK_RIGHT = range(5)
 
 
+GAIT = resolve("left-right-origin", Robot().azimuths_deg)
+
+
 @pytest.fixture
 def simulator() -> KinematicSimulator:
-    return KinematicSimulator(
-        Robot(), resolve("left-right-origin", Robot().azimuths_deg), FootGrid()
-    )
+    return KinematicSimulator(Robot(), GAIT, FootGrid())
 
 
-def test_at_rest_both_observations_are_home(simulator: KinematicSimulator) -> None:
+def test_at_rest_every_observation_is_home(simulator: KinematicSimulator) -> None:
     for how in OBSERVATIONS:
         assert observe(simulator, simulator.rest(), how) == (HOME, HOME, HOME)
 
@@ -52,6 +56,29 @@ def test_a_pair_that_drifted_far_enough_is_measured_at_the_back(
 
     assert observe(simulator, state, "commanded")[2] == FRONT_LEFT
     assert observe(simulator, state, "measured")[2] == BACK_LEFT
+
+
+def test_without_slip_the_feet_are_where_they_were_planned(simulator: KinematicSimulator) -> None:
+    state = simulator.rest()
+    for step in range(24):
+        state = simulator.step(state, Action(step % 3, 1 + step % 4)).state
+        assert observe(simulator, state, "planned") == observe(simulator, state, "measured")
+
+
+def test_dead_reckoning_does_not_see_what_physics_did_to_the_feet() -> None:
+    """Servos too weak to lift a leg leave the feet at home; the plan has them elsewhere."""
+    weak = replace(PRESETS["stiff"], servo_kp=0.1, servo_torque_nm=0.01)
+    real, ideal = (
+        MujocoSimulator(weak, GAIT, FootGrid()),
+        KinematicSimulator(weak, GAIT, FootGrid()),
+    )
+    state, plan = real.rest(), ideal.rest()
+    for step in range(4):
+        action = Action(step % 3, 1 + step)
+        state, plan = real.step(state, action).state, ideal.step(plan, action).state
+
+    assert observe(real, state, "planned") == observe(ideal, plan, "measured")
+    assert observe(real, state, "measured") != observe(real, state, "planned")
 
 
 def test_every_cell_but_the_observed_one_is_legal_for_each_pair() -> None:

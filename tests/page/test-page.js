@@ -34,6 +34,7 @@ test("addresses of files are escaped part by part", () => {
 
 test("names of the vocabulary, unless the server has a title", () => {
   assert.equal(observationTitle("commanded"), "commands remembered");
+  assert.equal(observationTitle("planned"), "feet as planned");
   assert.equal(simulatorTitle("mujoco"), "MuJoCo physics");
   assert.deepEqual(["paper", "wall", "free"].map(clockTitle), ["paper clock", "real clock", "no clock"]);
   assert.equal(gaitTitle("wave"), "The wave");

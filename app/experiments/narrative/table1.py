@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from statistics import fmean, median
 from typing import Any
 
+from app.domain.observation import PAPER_OBSERVATIONS
 from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.claims.distance_to_paper import closeness, compare_closeness
 from app.experiments.formatting import (
@@ -69,10 +70,11 @@ def _more_practice_worse(cases: Sequence[Case]) -> list[str]:
 
 
 def compare_observations(cases: Sequence[Case]) -> str | None:
-    """Compare the two observations, and name the one closer to the printed numbers."""
+    """Compare the paper's two observations; name the one closer to the printed numbers."""
     by_robot: dict[str, list[Case]] = {}
     for case in cases:
-        by_robot.setdefault(case.robot, []).append(case)
+        if case.observation in PAPER_OBSERVATIONS:
+            by_robot.setdefault(case.robot, []).append(case)
     sentences = []
     for robot, pair in by_robot.items():
         pools = [(case, case.pool(1000)) for case in pair]

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 
 import pytest
 
+from app.domain.observation import OBSERVATIONS
 from app.experiments.plan import Setting
 from tests.experiments.made import ROBOTS, around, summary_of
 
@@ -51,6 +52,14 @@ def test_the_observation_closer_to_the_printed_numbers_is_named() -> None:
     text = text_under(summary, "Two readings of the same robot")
     assert "are nearer to those with commands remembered" in text
     assert "0 of the 8 printed distances lie within the central 95 % of the seeds with feet" in text
+
+
+def test_only_the_papers_two_observations_are_compared_with_it() -> None:
+    config = {"robots": ROBOTS[:1], "observations": OBSERVATIONS}
+    summary = summary_of("table1", lambda _: around(0.3, 0.1), seeds=10, **config)
+    text = text_under(summary, "Two readings of the same robot")
+    assert "feet measured" in text
+    assert "feet as planned" not in text
 
 
 def test_equal_observations_leave_the_closer_one_not_established() -> None:
