@@ -3,8 +3,8 @@
 The only module that imports the concrete simulators; loops and commands use what it builds.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import fields
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from app.domain.kinematic import KinematicSimulator
 from app.domain.observation import Observation
 from app.domain.settings import complete
 from app.domain.simulator import Simulator
+from app.domain.world import UNDISTURBED, World
 from app.physics.mujoco_simulator import MujocoSimulator
 from app.runs.config import (
     LaneConfig,
@@ -24,10 +25,13 @@ from app.runs.config import (
     agent_settings,
     check_lane,
 )
-from app.runs.seeding import LEARNING, RACING, generator
+from app.runs.seeding import EVALUATION, LEARNING, RACING, SENSING, generator
 from app.runs.tables import Checkpoint, check_fits, continue_from, load_agent
 from app.runs.training import Learner, evaluate, measure_baseline
 from app.runs.walker import Readings, SimulatorExpand, Walker
+
+_NOT_OFFERED = ("settings", "world")
+"""Fields of a training that its agent's constructor does not get: no agent is told of the world."""
 
 
 def build_simulator(walk: WalkingProblem, threads: int = 1) -> Simulator[Any]:
@@ -42,8 +46,8 @@ def build_simulator(walk: WalkingProblem, threads: int = 1) -> Simulator[Any]:
     """
     gait, grid = walk.resolved_gait, walk.grid
     if walk.simulator == "kinematic":
-        return KinematicSimulator(walk.robot, gait, grid)
-    return MujocoSimulator(walk.robot, gait, grid, threads)
+        return KinematicSimulator(walk.robot, gait, grid, walk.world)
+    return MujocoSimulator(walk.robot, gait, grid, threads, walk.world)
 
 
 def build_learner(
@@ -61,19 +65,32 @@ def build_learner(
         TableMismatch: if the table is of another walking problem or agent.
         Unreachable: if the robot's legs cannot reach the grid.
     """
-    simulator = build_simulator(config, threads)
     offered = _offered_by(config)
     rng = generator(config.seed, LEARNING)
     walker = _walker(
-        simulator, config.agent, config.observation, rng=rng, offered=offered, explore=True
+        build_simulator(config, threads),
+        config.agent,
+        config.observation,
+        rng=rng,
+        sensors=_sensors(config.seed),
+        offered=offered,
+        explore=True,
     )
+    simulators: dict[World, Simulator[Any]] = {}
 
-    def evaluator(evaluation_rng: np.random.Generator) -> Walker:
+    def simulator_of(world: World) -> Simulator[Any]:
+        if world not in simulators:
+            simulators.clear()  # only that of the world as it is stays in memory
+            simulators[world] = build_simulator(replace(config, world=world), threads)
+        return simulators[world]
+
+    def evaluator(world: World, evaluation_rng: np.random.Generator) -> Walker:
         copy = _walker(
-            simulator,
+            simulator_of(world),
             config.agent,
             config.observation,
             rng=evaluation_rng,
+            sensors=_sensors(config.seed, EVALUATION),
             offered=offered,
             explore=False,
         )
@@ -84,8 +101,16 @@ def build_learner(
             copy.agent.load(walker.agent.state())
         return copy
 
-    def baseline() -> Walker:
-        return _walker(simulator, "greedy", "measured", rng=rng, offered={}, explore=False)
+    def baseline(world: World) -> Walker:
+        return _walker(
+            simulator_of(world),
+            "greedy",
+            "measured",
+            rng=rng,
+            sensors=_sensors(config.seed, EVALUATION),
+            offered={},
+            explore=False,
+        )
 
     learner = Learner(walker, rng, evaluator, baseline)
     if table is not None:
@@ -122,14 +147,33 @@ def build_walkers(
             lane.agent,
             lane.observation,
             rng=generator(config.seed, RACING, number),
+            sensors=_sensors(config.seed, RACING, number),
             offered=offered,
             explore=lane.keep_learning,
+            planner=_planner(config, lane, simulator, threads),
         )
         if table is not None:
             load_agent(walker.agent, table)
         walker.keeps_learning = lane.keep_learning
         walkers.append(walker)
     return walkers
+
+
+def _planner(
+    config: RaceConfig, lane: LaneConfig, simulator: Simulator[Any], threads: int
+) -> Simulator[Any]:
+    """Return the simulator that a lane's search plans with; see `LaneConfig.plans_with`."""
+    if lane.plans_with == "world":
+        return simulator
+    known = config.world.at_start if lane.plans_with is None else UNDISTURBED
+    if known == config.world:
+        return simulator
+    return build_simulator(replace(config, world=known), threads)
+
+
+def _sensors(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
+    """Return what makes the generator of a walk's errors of measurement after so many steps."""
+    return lambda steps: generator(seed, SENSING, *key, steps)
 
 
 def _offered_by(config: TrainingConfig) -> dict[str, Any]:
@@ -139,7 +183,7 @@ def _offered_by(config: TrainingConfig) -> dict[str, Any]:
     own = {name: value for name, value in config.settings.items() if name in declared}
     settings = complete(declared, own, config.agent)
     return {
-        **{name: value for name, value in vars(config).items() if name != "settings"},
+        **{name: value for name, value in vars(config).items() if name not in _NOT_OFFERED},
         **settings,
     }
 
@@ -152,6 +196,7 @@ def _offered_in(config: RaceConfig, lane: LaneConfig) -> Mapping[str, Any]:
     if not lane.keep_learning:
         return complete(agent_settings(lane.agent), lane.settings, lane.agent)
     walk = {one.name: getattr(config, one.name) for one in fields(WalkingProblem)}
+    walk["world"] = UNDISTURBED  # no agent is told of it
     training = TrainingConfig(
         **walk,
         steps=config.steps,
@@ -171,12 +216,14 @@ def finish_training(
     Without `measure_reference`, `greedy_distance_m` is None unless it was measured before.
     """
     distance = evaluate(learner, config, learner.epsilon).distance_m
-    if learner.greedy_distance_m is None and measure_reference:
-        measure_baseline(learner)
-    agent = learner.walker.agent
+    conditions = learner.conditions(config.steps)
+    is_measured = learner.greedy_distance_m is not None and learner.measured_in == conditions
+    if measure_reference and not is_measured:
+        measure_baseline(learner, conditions)
+    agent, is_known = learner.walker.agent, is_measured or measure_reference
     return {
         "distance_m": distance,
-        "greedy_distance_m": learner.greedy_distance_m,
+        "greedy_distance_m": learner.greedy_distance_m if is_known else None,
         "q_table_sha256": agent.table.sha256() if isinstance(agent, Tabular) else None,
     }
 
@@ -187,15 +234,20 @@ def _walker(
     observation: Observation,
     *,
     rng: np.random.Generator,
+    sensors: Callable[[int], np.random.Generator],
     offered: Mapping[str, Any],
     explore: bool,
+    planner: Simulator[Any] | None = None,
 ) -> Walker:
-    """Create a walker; its agent gets a simulator only if its constructor has `expand`."""
+    """Create a walker; its agent gets a simulator only if its constructor has `expand`.
+
+    That is `planner`, by default the simulator of the walk itself.
+    """
     agent_class = registry.find(agent_name)
     expand = None
     if "expand" in registry.parameter_names(agent_class):
-        expand = SimulatorExpand(simulator, observation)
-    readings = Readings(simulator)
+        expand = SimulatorExpand(planner or simulator, observation)
+    readings = Readings(simulator, sensors)
     arguments = {
         **offered,
         "rng": rng,

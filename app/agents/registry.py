@@ -105,6 +105,15 @@ def needs_practice(name: str) -> bool:
     return bool(getattr(find(name), "needs_practice", False))
 
 
+def searches(name: str) -> bool:
+    """Whether an agent plans with a simulator: its constructor has the parameter `expand`.
+
+    Raises:
+        UnknownName, InvalidInput: as `find`.
+    """
+    return "expand" in parameter_names(find(name))
+
+
 def keeps_learning(name: str) -> bool:
     """Whether a lane of an agent keeps learning by default: its class sets `keeps_learning = True`.
 

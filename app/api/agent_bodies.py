@@ -10,44 +10,12 @@ from pydantic_core import core_schema
 from app.agents.registry import learns
 from app.api.descriptions import VALID
 from app.api.experiment_body import ExperimentBody, one_or_more
-from app.api.fields import Declared
+from app.api.fields import Declared, TaggedUnion
 from app.api.schemas import ChangeBody, LaneBody, PracticeBody, RaceBody, TrainingBody
-from app.domain.errors import UnknownName
 from app.domain.settings import REQUIRED, DeclaredSetting
 from app.experiments.config import settings_by_name
 from app.runs.config import MAX_LANES, TrainingConfig, agent_settings, changeable_settings
 from app.stage.scene_spec import PAPERS_LANES
-
-
-class AgentUnion:
-    """Annotation: a tagged union of body models, discriminated by the field `agent`.
-
-    A body whose agent is not registered raises `UnknownName`.
-    """
-
-    def __init__(self, models: Mapping[str, type[Any]], default: str | None = None) -> None:
-        """Create the union.
-
-        Args:
-            models: body model by agent name.
-            default: agent of a body without `agent`; by default the first.
-        """
-        self._models, self._default = models, default or next(iter(models))
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        choices = {name: handler.generate_schema(model) for name, model in self._models.items()}
-        # The default agent's model rejects a body that is no object or lacks a required agent.
-        return core_schema.tagged_union_schema(choices, discriminator=self._agent_of)
-
-    def _agent_of(self, value: Any) -> str:
-        agent = value.get("agent") if isinstance(value, dict) else getattr(value, "agent", None)
-        if not isinstance(agent, str):
-            return self._default
-        if agent not in self._models:
-            raise UnknownName("agent", agent, self._models)
-        return agent
 
 
 class AgentBodies:
@@ -67,7 +35,7 @@ class AgentBodies:
         practices = {agent: _practice_body(agent) for agent in agents}
         trainings = {agent: _training_body(agent, body) for agent, body in practices.items()}
         lanes = {agent: _lane_body(agent, body) for agent, body in practices.items()}
-        self.training = AgentUnion(trainings, TrainingConfig.agent)
+        self.training = TaggedUnion(trainings, "agent", "agent", TrainingConfig.agent)
         self.race = ValidatedAs(_race_body(lanes))
         self.experiment = ValidatedAs(_experiment_body(agents))
         self.change = ValidatedAs(_change_body(agents))
@@ -132,7 +100,7 @@ def _race_body(lanes: Mapping[str, type[LaneBody]]) -> type[RaceBody]:
         ]
 
     limits = Field(min_length=1, max_length=MAX_LANES, description=VALID["lanes"])
-    lane = Annotated[LaneBody, AgentUnion(lanes)]
+    lane = Annotated[LaneBody, TaggedUnion(lanes, "agent", "agent")]
     kind = Annotated[list[lane], limits]
     fields: dict[str, Any] = {"lanes": (kind, Field(default_factory=papers_lanes))}
     return create_model("RaceBody", __base__=RaceBody, __doc__=RaceBody.__doc__, **fields)

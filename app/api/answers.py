@@ -58,6 +58,16 @@ class GaitParts(Answer):
 Gait = str | GaitParts
 
 
+class DisturbanceView(Answer):
+    """What happens from a step on; the fields of its kind are further members, by name."""
+
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, Value | list[int]]
+
+    kind: str
+    at_step: Annotated[int, Field(ge=0)]
+
+
 class WalkView(Answer):
     """The walking problem: gait, robot, simulator and foot grid."""
 
@@ -66,6 +76,7 @@ class WalkView(Answer):
     simulator: SimulatorName
     divisions: int
     grid_side_m: float
+    disturbances: list[DisturbanceView]
 
 
 class TrainingConfigView(WalkView):
@@ -95,6 +106,7 @@ class LaneView(Answer):
 
     agent: str
     keep_learning: bool
+    plans_with: Literal["world", "nominal"] | None
     observation: Observation
     training_id: str | None
 
@@ -166,6 +178,7 @@ class Change(BaseModel):
     __pydantic_extra__: dict[str, Value]
 
     step: Count
+    disturbance: DisturbanceView | None = None
 
 
 class TrainingView(RunView):

@@ -3,11 +3,13 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from app.domain import disturbances
 from app.domain.gait import NAMED_GAITS
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS
 from app.domain.settings import declared_fields
 from app.domain.text import MAX_NAME, NAMES
+from app.domain.world import MAX_DISTURBANCES, WORLDS
 from app.experiments.config import EXPERIMENTS, MAX_SEEDS
 from app.runs.clocks import CLOCKS
 from app.runs.config import MAX_LANES, SIMULATORS, LaneConfig, TrainingConfig
@@ -46,6 +48,12 @@ VALID: Mapping[str, str] = {
     "lanes": (
         f"a list of 1 to {MAX_LANES} lanes, each {{agent, and training_id, training or settings}}"
     ),
+    "world": f"the name of a world: {_one_of(WORLDS)}",
+    "disturbances": (
+        f"a list of at most {MAX_DISTURBANCES}, each {{kind, at_step, until_step}} and the fields "
+        f"of its kind: {', '.join(disturbances.KINDS)}"
+    ),
+    "plans_with": declared_fields(LaneConfig)["plans_with"].valid,
     "keep_learning": declared_fields(LaneConfig)["keep_learning"].valid,
     "run_id": "the id of a run",
     "time_s": "a number of seconds, 0 or more",

@@ -1,5 +1,6 @@
 """Field types and the base class of request bodies."""
 
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import (
@@ -103,6 +104,7 @@ Seed = Annotated[int, Declared(_TRAINING["seed"])]
 Divisions = Annotated[int, Declared(_TRAINING["divisions"])]
 GridSide = Annotated[float, Declared(_TRAINING["grid_side_m"])]
 KeepLearning = Annotated[bool, Declared(_LANE["keep_learning"])]
+PlansWith = Annotated[Any, Declared(_LANE["plans_with"])]
 Pace = Annotated[Literal["max"] | float, Declared(_TRAINING["pace"])]
 
 
@@ -167,3 +169,40 @@ class Body(BaseModel):
             # Passed as a value, as a name with braces is no valid template.
             raise PydanticCustomError("unknown_field", "{message}", {"message": message})
         return value
+
+
+class TaggedUnion:
+    """Annotation: a union of body models, discriminated by a field of text.
+
+    A body whose field names no model raises `UnknownName`.
+    """
+
+    def __init__(
+        self, models: Mapping[str, type[Any]], field: str, noun: str, default: str | None = None
+    ) -> None:
+        """Create the union.
+
+        Args:
+            models: body model by value of the field.
+            field: name of the field.
+            noun: what it names, for the error.
+            default: value of a body without the field; by default the first.
+        """
+        self._models, self._field, self._noun = models, field, noun
+        self._default = default or next(iter(models))
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        choices = {name: handler.generate_schema(model) for name, model in self._models.items()}
+        # The default model rejects a body that is no object or lacks a required field.
+        return core_schema.tagged_union_schema(choices, discriminator=self._tag_of)
+
+    def _tag_of(self, value: Any) -> str:
+        is_object = isinstance(value, dict)
+        tag = value.get(self._field) if is_object else getattr(value, self._field, None)
+        if not isinstance(tag, str):
+            return self._default
+        if tag not in self._models:
+            raise UnknownName(self._noun, tag[:MAX_NAME], self._models)
+        return tag

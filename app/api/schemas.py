@@ -1,13 +1,14 @@
 """Request bodies as Pydantic models, each converted to the dataclass that a service takes."""
 
+from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
 from app.api.descriptions import VALID
+from app.api.disturbance_body import Disturbances, Leg, world_of
 from app.api.fields import (
-    INTEGRAL,
     Body,
     Divisions,
     EvaluateEvery,
@@ -15,6 +16,7 @@ from app.api.fields import (
     KeepLearning,
     Name,
     Pace,
+    PlansWith,
     RaceSteps,
     RobotBody,
     RunId,
@@ -26,7 +28,8 @@ from app.api.fields import (
 from app.domain.errors import InvalidInput
 from app.domain.gait import NAMED_GAITS, GaitSpec, Symmetry
 from app.domain.observation import Observation
-from app.domain.robot import MAX_LEGS, robot
+from app.domain.robot import robot
+from app.domain.world import WORLDS
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
 from app.runs.clocks import Clock
 from app.runs.config import (
@@ -37,9 +40,10 @@ from app.runs.config import (
     training_config,
 )
 
-Leg = Annotated[
-    # The upper limit depends on the robot, so the domain validates it.
-    int, Field(strict=True, json_schema_extra={"minimum": 1, "maximum": MAX_LEGS}), INTEGRAL
+WorldName = Annotated[
+    str,
+    WithJsonSchema({"type": "string", "enum": list(WORLDS)}),
+    Field(description=VALID["world"]),
 ]
 
 
@@ -86,12 +90,14 @@ class WalkBody(Body):
     simulator: SimulatorName = WalkingProblem.simulator
     divisions: Divisions = WalkingProblem.divisions
     grid_side_m: GridSide = WalkingProblem.grid_side_m
+    world: WorldName | None = None
+    disturbances: Annotated[Disturbances, Field(default_factory=list)]
 
     def walk(self) -> WalkingProblem:
         """Convert to the walking problem.
 
         Raises:
-            InvalidInput: if gait or robot is not valid.
+            InvalidInput: if gait, robot or world is not valid.
         """
         return WalkingProblem(
             gait=self.gait.spec() if isinstance(self.gait, GaitBody) else self.gait,
@@ -99,6 +105,7 @@ class WalkBody(Body):
             simulator=self.simulator,
             divisions=self.divisions,
             grid_side_m=self.grid_side_m,
+            world=world_of(self.world, self.disturbances),
         )
 
 
@@ -156,6 +163,7 @@ class LaneBody(Body):
     training_id: Annotated[RunId | None, Field(description=VALID["training_id"])] = None
     training: Annotated[PracticeBody | None, Field(description=VALID["training"])] = None
     keep_learning: KeepLearning | None = None
+    plans_with: PlansWith | None = None
 
     def start(self, walk: WalkingProblem, seed: int) -> LaneStart:
         """Convert to the request of the service."""
@@ -163,7 +171,14 @@ class LaneBody(Body):
         settings = {name: getattr(self, name) for name in given}
         practice = self.training
         training = None if practice is None else practice.practice(walk, self.agent, seed)
-        return LaneStart(self.agent, self.training_id, training, self.keep_learning, settings)
+        return LaneStart(
+            self.agent,
+            self.training_id,
+            training,
+            self.keep_learning,
+            self.plans_with,
+            settings,
+        )
 
 
 class RaceBody(WalkBody):
@@ -181,7 +196,9 @@ class RaceBody(WalkBody):
             InvalidInput: if the values are not valid together.
         """
         walk = self.walk()
-        lanes = [lane.start(walk, self.seed) for lane in self.lanes]
+        # Practice comes before: in the world as it is at the start of the race.
+        practice = replace(walk, world=walk.world.at_start)
+        lanes = [lane.start(practice, self.seed) for lane in self.lanes]
         return RaceStart(walk, lanes, self.steps, self.seed, self.name or None)
 
 

@@ -6,12 +6,14 @@ from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.agent_bodies import AgentBodies
-from app.api.answers import ExperimentView, RaceView, TrainingView, WhatIfView
+from app.api.answers import DisturbanceView, ExperimentView, RaceView, TrainingView, WhatIfView
 from app.api.contract import LOCATION, answers
 from app.api.deps import ServicesDep, StartRequestDep
+from app.api.disturbance_body import AnyDisturbance
 from app.api.experiment_body import ExperimentBody
 from app.api.runs import RunPath, accepted, find
 from app.api.schemas import ChangeBody, RaceBody, TrainingBody
+from app.domain.disturbances import as_mapping
 from app.domain.errors import InvalidInput
 
 
@@ -50,6 +52,26 @@ def start_routes(bodies: AgentBodies) -> APIRouter:
         """Apply the change between two steps, and record it with the step's number in `changes`."""
         find(services, "training", run_id)
         return JSONResponse(services.jobs.view(services.jobs.change(run_id, body.changes())))
+
+    @router.post(
+        "/trainings/{run_id}/disturbances",
+        tags=["trainings"],
+        status_code=202,
+        summary="Let something happen while it runs",
+        response_model=DisturbanceView,
+        responses=answers(202),
+    )
+    def disturb_training(services: ServicesDep, run_id: RunPath, body: AnyDisturbance) -> Response:
+        """Let it happen from the next step on, and return it with that step.
+
+        Leave out `at_step`. A later disturbance of the same thing replaces an earlier one, and
+        `repair` ends what happened to legs.
+        """
+        find(services, "training", run_id)
+        if "at_step" in body.model_fields_set:
+            raise InvalidInput("it happens at the next step; leave out at_step")
+        made = services.jobs.disturb(run_id, body.disturbance())
+        return JSONResponse(as_mapping(made), 202)
 
     @router.post(
         "/races",

@@ -8,11 +8,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from app.domain.disturbances import KINDS, parse_disturbance
 from app.domain.errors import HexapodError, InvalidInput
 from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS, Robot, robot
 from app.domain.settings import REQUIRED, DeclaredSetting, Value, declared_fields
+from app.domain.world import WORLDS, World, named_world
 from app.experiments.config import settings_by_name
 from app.runs.config import (
     SIMULATORS,
@@ -40,6 +42,14 @@ def add_walk_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--simulator", default="mujoco", help=" or ".join(SIMULATORS))
     add_settings(parser, declared_fields(WalkingProblem))
+    parser.add_argument("--world", help=f"{', '.join(WORLDS)}")
+    parser.add_argument(
+        "--disturb",
+        action="append",
+        default=[],
+        metavar="KIND:FIELD=VALUE:at=STEP:until=STEP",
+        help=f"what happens, such as limp:legs=1,4:at=25; once for each: {', '.join(KINDS)}",
+    )
 
 
 def add_settings(
@@ -169,7 +179,14 @@ def walk_from(options: argparse.Namespace) -> dict[str, Any]:
         "simulator": options.simulator,
         "divisions": options.divisions,
         "grid_side_m": options.grid_side_m,
+        "world": _read_world(options.world, options.disturb),
     }
+
+
+def _read_world(name: str | None, texts: Sequence[str]) -> World:
+    """Return the world of this name, if any, with what else happens."""
+    start = named_world(name).disturbances if name is not None else ()
+    return World((*start, *map(parse_disturbance, texts)))
 
 
 def read_gait(text: str) -> str | GaitSpec:

@@ -11,7 +11,7 @@ from typing import Literal, get_args
 
 from app.domain.errors import UnknownName
 from app.domain.simulator import S, Simulator
-from app.domain.types import Action, Cells
+from app.domain.types import Action, Cells, FloatArray
 
 Observation = Literal["measured", "commanded", "planned"]
 """`measured`: the cell nearest to where the pair's feet are, by forward kinematics.
@@ -34,15 +34,27 @@ def check_observation(name: str) -> None:
         raise UnknownName("observation", name, OBSERVATIONS)
 
 
-def observe(simulator: Simulator[S], state: S, how: Observation) -> Cells:
-    """Return the cells that an agent observes in a state, one per pair."""
+def observe(
+    simulator: Simulator[S], state: S, how: Observation, error_m: FloatArray | None = None
+) -> Cells:
+    """Return the cells that an agent observes in a state, one per pair.
+
+    Args:
+        simulator: simulates the robot.
+        state: of the robot.
+        how: observation mode.
+        error_m: errors of the measured offsets, (pairs, 2) [m]; None for none.
+    """
     if how == "commanded":
         return state.commanded
     nearest = simulator.grid.nearest
     if how == "planned":
         feet = state.feet
         return tuple(map(nearest, feet.lateral_m, feet.forward_m))
-    return tuple(nearest(x, y) for x, y in simulator.pair_offsets(state))
+    offsets = simulator.pair_offsets(state)
+    if error_m is not None:
+        offsets = [(x + dx, y + dy) for (x, y), (dx, dy) in zip(offsets, error_m, strict=True)]
+    return tuple(nearest(x, y) for x, y in offsets)
 
 
 @lru_cache(maxsize=1 << 10)

@@ -105,12 +105,31 @@ class World:
         for one in sorted(self.disturbances, key=lambda one: one.at_step):
             if not one.holds_at(step) or isinstance(one, Push):
                 continue
+            for covered in [key for key in newest if _covers(one, key)]:
+                del newest[covered]
             for key, part in one.parts().items():
-                for covered in [old for old in newest if old[: len(key)] == key]:
-                    del newest[covered]
                 newest[key] = replace(part, at_step=0, until_step=None)
         lasting = [one for one in newest.values() if not isinstance(one, Repair)]
         return World(tuple(sorted(lasting, key=repr)))  # one order, so that equal ones are equal
+
+    def then(self, one: Disturbance) -> "World":
+        """Return the world in which something else happens, after what begins in the same step.
+
+        Raises:
+            InvalidInput: if it contradicts the others.
+        """
+        kept: list[Disturbance] = []
+        for other in self.disturbances:
+            parts, begins_too = other.parts(), other.at_step == one.at_step
+            rest = [p for k, p in parts.items() if not (begins_too and _covers(one, k))]
+            kept += [other] if len(rest) == len(parts) else rest
+        return World((*kept, one))
+
+    @property
+    def at_start(self) -> "World":
+        """What holds from the start, for good and as it was given; without pushes."""
+        early = (d for d in self.disturbances if d.at_step == 0 and not isinstance(d, Push))
+        return World(tuple(replace(one, until_step=None) for one in early))
 
     def pushes_at(self, step: int) -> tuple[Push, ...]:
         """Return the pushes at the beginning of a step."""
@@ -137,6 +156,11 @@ def world(data: Iterable[Mapping[str, Any]]) -> World:
     return World(tuple(disturbance(one) for one in data))
 
 
+def _covers(one: Disturbance, key: Key) -> bool:
+    """Whether a disturbance replaces an earlier one of this key: of a leg all of its joints."""
+    return any(key[: len(own)] == own for own in one.parts())
+
+
 def _check_compatible(one: Disturbance, other: Disturbance) -> None:
     """Check that two disturbances can hold together, or that the later replaces the earlier.
 
@@ -156,10 +180,8 @@ def _check_compatible(one: Disturbance, other: Disturbance) -> None:
         is_contradiction = True  # patches lie on flat ground
     else:
         replaces = is_later and (not isinstance(first, Lost) or isinstance(second, Lost | Repair))
-        shared = any(
-            key[: len(other_key)] == other_key or other_key[: len(key)] == key
-            for key in first.parts()
-            for other_key in second.parts()
+        shared = any(_covers(first, key) for key in second.parts()) or any(
+            _covers(second, key) for key in first.parts()
         )
         is_contradiction = shared and not replaces
     if is_contradiction:

@@ -51,6 +51,14 @@ machine a silent process may still work."""
 _logger = logging.getLogger(__name__)
 
 
+class Acknowledgement:
+    """The answer of a job's process to a change, once it was received."""
+
+    def __init__(self) -> None:
+        self.received = threading.Event()
+        self.changed: Changed | None = None
+
+
 class Job:
     """One run and the worker process that computes it.
 
@@ -111,7 +119,7 @@ class Job:
         self._started_s = time.monotonic()
         self._started_at = max(datetime.now(UTC), run.started_at or run.created_at)
         self._store, self._recordings, self._bus = store, recordings, bus
-        self._acknowledgements: dict[int, threading.Event] = {}
+        self._acknowledgements: dict[int, Acknowledgement] = {}
         self._tokens = itertools.count()
         self._has_begun = False
         self._published_s = 0.0
@@ -146,17 +154,17 @@ class Job:
         else:
             self.process.kill()
 
-    def tune(self, changes: Mapping[str, Any], within_s: float) -> threading.Event:
-        """Change learning rates or pace after the current step.
+    def tune(self, changes: Mapping[str, Any], within_s: float) -> Acknowledgement:
+        """Change learning rates or pace, or let something happen, after the current step.
 
         Args:
-            changes: values of settings by name.
+            changes: values of settings by name, or `disturbance` in plain types.
             within_s: time after which the process discards the command [s].
 
         Returns:
-            an event that is set once the process has acknowledged the change.
+            what is set once the process has acknowledged the change.
         """
-        token, acknowledged = next(self._tokens), threading.Event()
+        token, acknowledged = next(self._tokens), Acknowledgement()
         self._acknowledgements[token] = acknowledged
         self.process.send(Command("tune", token, changes, time.monotonic() + within_s))
         return acknowledged
@@ -320,14 +328,23 @@ class Job:
                 self.publish()
 
     def _handle_change(self, changed: Changed) -> None:
+        if changed.refusal is not None:
+            self._acknowledge(changed)
+            return
         change = {"step": changed.step, **changed.changes}
         # After a resume the stored changes may include later ones that are still to be replayed.
         changes = tuple(sorted((*self.last.changes, change), key=itemgetter("step")))
         self._store.update(self.run_id, changes=changes)
         self._progress.clear()
-        self._publish_event("rates", **change)
+        if "disturbance" not in change:
+            self._publish_event("rates", **change)
         self.publish(changes=changes)
-        self._acknowledgements.pop(changed.token).set()
+        self._acknowledge(changed)
+
+    def _acknowledge(self, changed: Changed) -> None:
+        acknowledged = self._acknowledgements.pop(changed.token)
+        acknowledged.changed = changed
+        acknowledged.received.set()
 
     def _handle_end(self, ended: Ended) -> None:
         lanes = self._recordings.race(self.run_id)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Literal
 
 from app.agents.protocol import Agent, AgentState, Transition, Tunable
+from app.domain.errors import InvalidInput
 from app.domain.types import Action, Cells
 from app.jobs.messages import Batch, Changed, Checkpointed, Command, Message
 from app.runs.recording import NEWEST_STEPS
@@ -27,7 +28,9 @@ class JobControl:
     Attributes:
         stopped: whether a `stop` command arrived: end with the results so far.
         exiting: whether `checkpoint_and_exit` arrived: end with a checkpoint, to be resumed later.
-        changes: changes of rates and pace during the run, each with the number of steps done.
+        changes: changes of rates and pace and disturbances during the run, each with the number of
+            steps done.
+        disturb: lets something happen to a training, given in plain types.
     """
 
     def __init__(
@@ -41,6 +44,7 @@ class JobControl:
         """
         self.stopped = self.exiting = False
         self.changes: list[dict[str, Any]] = []
+        self.disturb: Callable[[Mapping[str, Any]], None] = _refuse
         self.send = send
         self._commands = commands
         self._paused = False
@@ -212,7 +216,11 @@ class JobControl:
     def _tune(self, command: Command, step: int, agent: object) -> None:
         if time.monotonic() > command.expires_s:
             return  # its sender has reported a timeout, so that nothing may change
-        self._apply(command.changes, step, agent)
+        try:
+            self._apply(command.changes, step, agent)
+        except InvalidInput as error:  # it fitted when the server checked it, some steps ago
+            self.send(Changed(command.token, step, {}, str(error)))
+            return
         self.send(Changed(command.token, step, dict(command.changes)))
 
     def _replay_due(self, step: int, agent: object) -> None:
@@ -221,12 +229,21 @@ class JobControl:
             self._apply({k: v for k, v in change.items() if k != "step"}, step, agent)
 
     def _apply(self, changes: Mapping[str, Any], step: int, agent: object) -> None:
-        rates = {name: value for name, value in changes.items() if name != "pace"}
+        if "disturbance" in changes:
+            self.disturb(changes["disturbance"])
+        others = ("pace", "disturbance")
+        rates = {name: value for name, value in changes.items() if name not in others}
         if rates and isinstance(agent, Tunable):
             agent.tune(**rates)
         if "pace" in changes:
             self.keep_pace(changes["pace"], self._step_s)
+        if "disturbance" in changes:  # as it happens
+            changes = {**changes, "disturbance": {**changes["disturbance"], "at_step": step}}
         self.changes.append({"step": step, **changes})
+
+
+def _refuse(disturbance: Mapping[str, Any]) -> None:
+    raise InvalidInput(f"{disturbance['kind']} can only happen to a training")
 
 
 def _without_dropped_steps(

@@ -3,12 +3,15 @@
 import logging
 import threading
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
-from app.domain.errors import HexapodError, UnknownName
+from app.domain.disturbances import Disturbance, as_mapping
+from app.domain.errors import HexapodError, InvalidInput, UnknownName
 from app.events.bus import EventBus
 from app.events.run_view import run_view
 from app.jobs.job import Job
+from app.jobs.messages import Changed
 from app.jobs.queue import RunQueue
 from app.jobs.submissions import (
     ExperimentStart,
@@ -20,7 +23,7 @@ from app.jobs.submissions import (
 )
 from app.jobs.supervisor import STUCK_S, Supervisor
 from app.jobs.tasks import resumed_runs
-from app.runs.config import changeable_settings
+from app.runs.config import TrainingConfig, changeable_settings
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, NotAnswering, StorageFailed
 from app.storage.recordings import Recordings
@@ -36,6 +39,7 @@ from app.storage.run import (
     IdempotencyKey,
     Run,
     State,
+    world_of,
 )
 from app.storage.run_ids import RunIds
 
@@ -254,6 +258,53 @@ class Jobs:
             NotAnswering: if its process does not acknowledge in time; nothing is changed then.
             Busy: if too many changes wait for acknowledgement.
         """
+
+        def checked(run: Run) -> Mapping[str, Any]:
+            agent = getattr(run.config, "agent", "")
+            valid = changeable_settings(agent)
+            for name in changes:
+                if name not in valid:
+                    raise UnknownName(f"live setting of {agent}", name, valid)
+            return {name: valid[name].normalized(changes[name]) for name in changes}
+
+        self._change_live(run_id, checked)
+        return self._store.get(run_id)
+
+    def disturb(self, run_id: str, given: Disturbance) -> Disturbance:
+        """Let something happen to a training from its next step on, and wait for it.
+
+        Args:
+            run_id: id of the training.
+            given: what happens; its `at_step` is replaced.
+
+        Returns:
+            the disturbance, with the step in which it begins.
+
+        Raises:
+            NotFound: if there is no such run.
+            Conflict: if it neither runs nor is paused.
+            InvalidInput: if it cannot happen to this robot, or contradicts what else happens.
+            NotAnswering: if its process does not acknowledge in time; nothing happens then.
+            Busy: if too many changes wait for acknowledgement.
+        """
+
+        def checked(run: Run) -> Mapping[str, Any]:
+            config = run.config
+            if isinstance(config, TrainingConfig):
+                soon = replace(given, at_step=min(run.done, config.steps - 1))
+                world_of(run).then(soon).check(config.robot, config.simulator, config.steps)
+            return {"disturbance": as_mapping(given)}
+
+        step = self._change_live(run_id, checked).step
+        return replace(given, at_step=step)
+
+    def _change_live(self, run_id: str, checked: Callable[[Run], Mapping[str, Any]]) -> Changed:
+        """Send a change to a training's process, and wait for the acknowledgement.
+
+        Args:
+            run_id: id of the training.
+            checked: returns the changes, or raises if they are not valid for the run.
+        """
         if not self._pending_changes.acquire(blocking=False):
             raise Busy(
                 f"{MAX_PENDING_CHANGES} changes wait to be obeyed, which is the most; try again", 1
@@ -261,14 +312,9 @@ class Jobs:
         try:
             with self._changed:
                 job = self._live_job(run_id, LIVE, "changed")
-                agent = getattr(self._store.get(run_id).config, "agent", "")
-                valid = changeable_settings(agent)
-                for name in changes:
-                    if name not in valid:
-                        raise UnknownName(f"live setting of {agent}", name, valid)
-                changes = {name: valid[name].normalized(changes[name]) for name in changes}
-                acknowledged = job.tune(changes, _ACKNOWLEDGE_S) if job.is_answering else None
-            if acknowledged is None or not acknowledged.wait(_ACKNOWLEDGE_S):
+                changes = checked(self._store.get(run_id))
+                sent = job.tune(changes, _ACKNOWLEDGE_S) if job.is_answering else None
+            if sent is None or not sent.received.wait(_ACKNOWLEDGE_S) or sent.changed is None:
                 raise NotAnswering(
                     f"the process of training {run_id} does not answer, so nothing was changed; "
                     "if that lasts it is ended, and the training can be resumed",
@@ -276,7 +322,9 @@ class Jobs:
                 )
         finally:
             self._pending_changes.release()
-        return self._store.get(run_id)
+        if sent.changed.refusal is not None:
+            raise InvalidInput(sent.changed.refusal)
+        return sent.changed
 
     def delete(self, run_id: str) -> None:
         """Delete a run that has ended.

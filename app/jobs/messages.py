@@ -103,6 +103,8 @@ class Changed(NamedTuple):
     token: int
     step: int
     changes: Mapping[str, Any]
+    refusal: str | None = None
+    """Why nothing was changed, a sentence."""
 
 
 class Checkpointed(NamedTuple):

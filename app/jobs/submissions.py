@@ -47,6 +47,7 @@ class LaneStart:
 
     Attributes:
         keep_learning: whether the agent learns in the race; None for the agent's default.
+        plans_with: what a searcher knows; see `LaneConfig`.
         settings: the agent's settings that are given with the lane, by name.
     """
 
@@ -54,6 +55,7 @@ class LaneStart:
     training_id: str | None = None
     training: TrainingStart | None = None
     keep_learning: bool | None = None
+    plans_with: str | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -170,6 +172,7 @@ def _lane(lane: LaneStart, walk: WalkingProblem, store: RunStore) -> LaneConfig:
         lane.agent,
         observation=observation,
         keep_learning=lane.keep_learning,
+        plans_with=lane.plans_with,
         has_training=lane.has_training,
         **lane.settings,
     )

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.assembly import build_learner, build_walkers, finish_training
+from app.domain.disturbances import disturbance
 from app.domain.errors import HexapodError
 from app.events import logs
 from app.jobs.experiment_worker import experiment
@@ -83,6 +84,7 @@ def _train(task: TrainingTask, control: JobControl) -> None:
     if task.checkpoint is not None:
         restore(learner, task.checkpoint)
         made = task.checkpoint.meta["changes"]
+    control.disturb = lambda given: learner.disturb(disturbance(given), config)
     control.restore_changes(made, task.changes, learner.step, walker.agent)
     control.send(Began((rest_qpos,), learner.step))
     control.checkpoint_regularly(lambda: Checkpointed(_saved(learner, task, control), learner.step))
@@ -122,8 +124,8 @@ def _interruptible(learner: Learner, control: JobControl) -> Learner:
             )
         return walker
 
-    learner.evaluator = lambda rng: interruptible(evaluator(rng))
-    learner.baseline = lambda: interruptible(baseline())
+    learner.evaluator = lambda world, rng: interruptible(evaluator(world, rng))
+    learner.baseline = lambda world: interruptible(baseline(world))
     return learner
 
 

@@ -12,6 +12,7 @@ from annotated_types import Ge, Le
 
 from app.agents import registry
 from app.agents.protocol import Problem
+from app.domain import disturbances
 from app.domain.errors import HexapodError, InvalidInput, UnknownName
 from app.domain.gait import Gait, GaitSpec, resolve
 from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M, FootGrid
@@ -25,6 +26,7 @@ from app.domain.settings import (
     complete,
     declared_fields,
 )
+from app.domain.world import UNDISTURBED, World, world
 
 _log = logging.getLogger(__name__)
 SimulatorName = Literal["mujoco", "kinematic"]
@@ -113,6 +115,13 @@ RaceSteps = Annotated[
     Le(MAX_RACE_STEPS),
     Setting(title="Steps of the race", help="How many steps each robot has in the race."),
 ]
+PlansWith = Annotated[
+    Literal["world", "nominal"],
+    Setting(
+        title="Plans with",
+        help="The world as it is, or the robot and flat ground as if nothing had happened.",
+    ),
+]
 KeepLearning = Annotated[
     bool,
     Setting(
@@ -132,10 +141,11 @@ class WalkingProblem:
         simulator: `mujoco` (physics) or `kinematic` (ideal, no slip).
         divisions: points along each side of the foot grid.
         grid_side_m: side of the foot grid [m].
+        world: what happens to the robot and the ground, by step.
 
     Raises:
         UnknownName: if the gait or the simulator is unknown.
-        InvalidInput: if a value is out of its limits, or the gait does not fit the robot.
+        InvalidInput: if a value is out of its limits, or gait or world do not fit the robot.
     """
 
     gait: str | GaitSpec
@@ -143,6 +153,7 @@ class WalkingProblem:
     simulator: SimulatorName = "mujoco"
     divisions: Divisions = FootGrid.divisions
     grid_side_m: GridSide = FootGrid.side_m
+    world: World = UNDISTURBED
 
     def __post_init__(self) -> None:
         if self.simulator not in SIMULATORS:
@@ -152,6 +163,7 @@ class WalkingProblem:
             setting.check(getattr(self, setting.name))
         resolve(self.gait, self.robot.azimuths_deg)
         FootGrid(self.grid_side_m, self.divisions)
+        self.world.check(self.robot, self.simulator, getattr(self, "steps", None))
 
     @property
     def grid(self) -> FootGrid:
@@ -202,11 +214,12 @@ _TRAINING_FIELDS = frozenset(one.name for one in fields(TrainingConfig))
 
 
 _RESERVED = """
-a agents b beats_greedy beats_greedy_total blocks changes continue_from distances_m elapsed_s
-experiment failed finished from gaits greedy_m h half_side_m help high high_m iqm_m json
-keep_learning key lanes low low_m mean_m n name observations out points_m practice probability
-published reaches_greedy relative relative_finished retry robots role run scheduler seeds start
-step table tls_ca tls_cert tls_key total training training_id verdict walk walkers workers
+a agents b beats_greedy beats_greedy_total blocks branch_from changes continue_from distances_m
+disturbances elapsed_s experiment failed finished from gaits greedy_m h half_side_m help high high_m
+iqm_m json keep_learning key lanes low low_m mean_m n name observations out plans_with points_m
+practice probability published reaches_greedy relative relative_finished retry robots role run
+scheduler seeds start step table tls_ca tls_cert tls_key total training training_id verdict walk
+walkers workers world
 """
 RESERVED = frozenset(_RESERVED.split())
 """Names that mean something else beside the settings in requests, answers, files or commands."""
@@ -275,6 +288,9 @@ class LaneConfig:
         agent: a registered name or `my.module:Agent`.
         observation: observation mode; for a trained agent that of its table.
         keep_learning: whether the agent learns from each step of the race.
+        plans_with: of a searcher, what it knows: `world` is the world as it is in each step,
+            `nominal` the robot and flat ground as if nothing had happened; None is the world as it
+            was at the start, since nobody tells a robot what happens later.
         settings: the agent's settings by name; none for a trained agent, which has those of its
             training.
     """
@@ -282,11 +298,13 @@ class LaneConfig:
     agent: str
     observation: Observation = "measured"
     keep_learning: KeepLearning = False
+    plans_with: PlansWith | None = None
     settings: SettingValues[Value] = field(default_factory=SettingValues)
 
     def __post_init__(self) -> None:
         check_observation(self.observation)
-        declared_fields(LaneConfig)["keep_learning"].check(self.keep_learning)
+        for setting in declared_fields(LaneConfig).values():
+            setting.check(getattr(self, setting.name))
 
 
 _LANE_FIELDS = frozenset(one.name for one in fields(LaneConfig)) - {"settings"}
@@ -297,6 +315,7 @@ def lane_config(
     *,
     observation: Observation = LaneConfig.observation,
     keep_learning: bool | None = None,
+    plans_with: str | None = None,
     has_training: bool = False,
     **settings: Any,
 ) -> LaneConfig:
@@ -306,6 +325,7 @@ def lane_config(
         agent: a registered name or `my.module:Agent`.
         observation: observation mode.
         keep_learning: whether the agent learns in the race; None for the agent's default.
+        plans_with: what a searcher knows; see `LaneConfig`.
         has_training: whether the agent races with what it learned in a training.
         settings: the agent's settings by name.
 
@@ -318,6 +338,7 @@ def lane_config(
         agent=agent,
         observation=observation,
         keep_learning=keep_learning,
+        plans_with=plans_with,  # type: ignore[arg-type]  # it is checked
         settings=SettingValues(settings),
     )
     check_lane(lane, has_training)
@@ -337,6 +358,8 @@ def check_lane(lane: LaneConfig, has_training: bool) -> None:
         raise InvalidInput(
             f"{lane.agent} does not learn, so it cannot keep learning; leave out keep_learning"
         )
+    if lane.plans_with is not None and not registry.searches(lane.agent):
+        raise InvalidInput(f"{lane.agent} plans with no simulator; leave out plans_with")
     if has_training and lane.settings:
         raise InvalidInput(
             "a lane with training takes its settings from there; leave out "
@@ -376,6 +399,8 @@ def as_json(config: WalkingProblem) -> dict[str, Any]:
         value = getattr(config, one.name)
         data |= value if isinstance(value, SettingValues) else {one.name: value}
     data["robot"] = as_mapping(config.robot)
+    del data["world"]
+    data["disturbances"] = [disturbances.as_mapping(one) for one in config.world.disturbances]
     if isinstance(config.gait, GaitSpec):
         data["gait"] = {k: v for k, v in asdict(config.gait).items() if v is not None}
     if isinstance(config, RaceConfig):
@@ -404,6 +429,7 @@ def config_from_json(data: Mapping[str, Any]) -> TrainingConfig | RaceConfig:
         KeyError, TypeError, ValueError: if it is not the output of `as_json`.
     """
     values = {**data, "gait": gait_from_json(data["gait"]), "robot": robot(data["robot"])}
+    values["world"] = world(values.pop("disturbances", ()))  # earlier versions had none
     if "lanes" in values:
         lanes = tuple(_lane_from_json(lane) for lane in values.pop("lanes"))
         return RaceConfig(**values, lanes=lanes)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-LEARNING, EVALUATION, RACING = range(3)
+LEARNING, EVALUATION, RACING, SENSING = range(4)
 
 
 def generator(seed: int, *key: int) -> np.random.Generator:

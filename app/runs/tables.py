@@ -18,8 +18,10 @@ import numpy as np
 from app.agents.protocol import Agent, Tabular
 from app.agents.q_table import check_arrays, check_size
 from app.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
+from app.domain.disturbances import as_mapping
 from app.domain.errors import DamagedFile, TableMismatch
 from app.domain.grid import FootGrid
+from app.domain.world import world
 from app.runs import seeding
 from app.runs.config import TrainingConfig, WalkingProblem, as_json
 from app.runs.recording import Arrays
@@ -70,6 +72,8 @@ def snapshot(learner: Learner, config: TrainingConfig, **more: Any) -> Checkpoin
         **_next_step(learner),
         "rng": seeding.dump(learner.rng),
         "config": as_json(config),
+        "disturbances": [as_mapping(one) for one in learner.world.disturbances],
+        "measured_in": [as_mapping(one) for one in learner.measured_in.disturbances],
         **more,
     }
     return Checkpoint(json.loads(json.dumps(meta)), {**agent, **state})
@@ -88,6 +92,9 @@ def restore(learner: Learner, checkpoint: Checkpoint) -> None:
         IllegalAction: if the stored next action is not legal in the restored state.
     """
     walker, meta = learner.walker, checkpoint.meta
+    # Earlier versions knew no disturbances.
+    walker.simulator.world = world(meta.get("disturbances", ()))
+    learner.measured_in = world(meta.get("measured_in", ()))
     walker.agent.load(checkpoint.part(_AGENT))
     walker.place(walker.simulator.load(checkpoint.part(_STATE)))
     seeding.load(learner.rng, meta["rng"])

@@ -1,13 +1,15 @@
 """Training loop (paper, Algorithm 1), and evaluation of the learned policy."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from app.domain.disturbances import Disturbance
 from app.domain.simulator import Motion
 from app.domain.types import Action
+from app.domain.world import UNDISTURBED, World
 from app.runs.config import RACE_STEPS, TrainingConfig
 from app.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
 from app.runs.seeding import EVALUATION, generator
@@ -21,12 +23,13 @@ class Learner:
     Attributes:
         walker: the robot that practises, with its agent.
         rng: the generator that the agent learns with.
-        evaluator: makes a walker at rest that does its best with what was learned so far, and
-            learns nothing; its chance comes from the generator that it is given.
-        baseline: makes the walker of the one-step look-ahead agent on the same robot.
+        evaluator: makes a walker at rest, in a world, that does its best with what was learned so
+            far and learns nothing; its chance comes from the generator that it is given.
+        baseline: makes the walker of the one-step look-ahead agent, which knows the world.
         step: how many steps it has learned.
         episode_reward_m: earned since the episode began.
         greedy_distance_m: of the baseline, once it was measured.
+        measured_in: the world in which the baseline was measured.
         due_epsilon: ε of the newest step while its evaluation is yet to come; None if none is.
         next_action: the action that an on-policy agent has chosen to take next.
         next_epsilon: ε when it was chosen.
@@ -34,11 +37,12 @@ class Learner:
 
     walker: Walker
     rng: np.random.Generator
-    evaluator: Callable[[np.random.Generator], Walker]
-    baseline: Callable[[], Walker]
+    evaluator: Callable[[World, np.random.Generator], Walker]
+    baseline: Callable[[World], Walker]
     step: int = 0
     episode_reward_m: float = 0.0
     greedy_distance_m: float | None = None
+    measured_in: World = UNDISTURBED
     due_epsilon: float | None = None
     next_action: Action | None = None
     next_epsilon: float = 0.0
@@ -50,14 +54,41 @@ class Learner:
             return self.next_epsilon
         return float(getattr(self.walker.agent, "epsilon", 0.0))
 
+    @property
+    def world(self) -> World:
+        """All that happens in the training, including what was added while it ran."""
+        return self.walker.simulator.world
+
+    def conditions(self, steps: int) -> World:
+        """Return what holds in the next step, or after the last of `steps` steps in that one."""
+        return self.world.as_of(min(self.step, steps - 1))
+
+    def disturb(self, disturbance: Disturbance, config: TrainingConfig) -> None:
+        """Let something happen from the next step on; an evaluation in the new world is due.
+
+        Args:
+            disturbance: what happens; its `at_step` is replaced by the next step.
+            config: the training's config.
+
+        Raises:
+            InvalidInput: if it cannot happen to this robot, contradicts the world, or the training
+                has no more steps.
+        """
+        world = self.world.then(replace(disturbance, at_step=self.step))
+        world.check(config.robot, config.simulator, config.steps)
+        self.walker.simulator.world = world
+        self.walker.place(self.walker.state)
+        if config.evaluate_every > 0:
+            self.due_epsilon = self.epsilon
+
 
 def train(
     learner: Learner, config: TrainingConfig, record: bool = False
 ) -> Iterator[TrainingRecord]:
     """Continue a training until `config.steps` steps are learned, and yield its records.
 
-    The last record is an evaluation unless `config.evaluate_every` is 0; the reference is yielded
-    once, before the first evaluation.
+    The last record is an evaluation unless `config.evaluate_every` is 0, and there is one where
+    conditions change. The reference is yielded before the first evaluation in each world.
 
     Args:
         learner: the training's state, which is updated.
@@ -67,31 +98,33 @@ def train(
     Raises:
         Diverged: if the physics diverges.
     """
-    yield from _evaluate_if_due(learner, config, record)
-    while learner.step < config.steps:
+    while True:
+        yield from _evaluate_if_due(learner, config, record)
+        if learner.step == config.steps:
+            return
         epsilon, episode = learner.epsilon, learner.step // config.steps_per_episode
         taken, earned_m = _practise(learner, episode, epsilon, record), learner.episode_reward_m
         has_ended = learner.step % config.steps_per_episode == 0 or learner.step == config.steps
         # Complete the state before the yield: the caller may checkpoint the learner there.
-        learner.due_epsilon = epsilon if _is_due(learner.step, config) else None
+        learner.due_epsilon = epsilon if _is_due(learner, config) else None
         if has_ended:
             learner.episode_reward_m = 0.0
         yield taken
         if has_ended:
             yield EpisodeEnded(episode, learner.step, epsilon, earned_m)
-        yield from _evaluate_if_due(learner, config, record)
 
 
 def _evaluate_if_due(
     learner: Learner, config: TrainingConfig, record: bool
 ) -> Iterator[Reference | Evaluated]:
-    if learner.due_epsilon is None:
-        return
-    if learner.greedy_distance_m is None:
-        yield measure_baseline(learner)
-    evaluated = evaluate(learner, config, learner.due_epsilon, record)
-    learner.due_epsilon = None
-    yield evaluated
+    while learner.due_epsilon is not None:
+        conditions = learner.conditions(config.steps)
+        if learner.greedy_distance_m is None or learner.measured_in != conditions:
+            yield measure_baseline(learner, conditions)
+        evaluated = evaluate(learner, config, learner.due_epsilon, record)
+        if learner.conditions(config.steps) == conditions:  # nothing happened meanwhile
+            learner.due_epsilon = None
+            yield evaluated
 
 
 def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> StepTaken:
@@ -119,10 +152,10 @@ def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> S
     )
 
 
-def measure_baseline(learner: Learner) -> Reference:
-    """Run the baseline (one-step look-ahead) once, and store its distance in the learner."""
-    distance, _ = walk(learner.baseline(), record=False)
-    learner.greedy_distance_m = distance
+def measure_baseline(learner: Learner, conditions: World) -> Reference:
+    """Run the baseline (one-step look-ahead) in a world, and store its distance in the learner."""
+    distance, _ = walk(learner.baseline(conditions), record=False)
+    learner.greedy_distance_m, learner.measured_in = distance, conditions
     return Reference(distance)
 
 
@@ -131,8 +164,8 @@ def evaluate(
 ) -> Evaluated:
     """Evaluate the policy learned so far: 50 steps from rest at ε = 0; the learner is unchanged.
 
-    The random generator is derived from seed and step, so a result does not depend on the number
-    of earlier evaluations.
+    It walks in the world as it is, which does not change meanwhile. The random generator is derived
+    from seed and step, so a result does not depend on the number of earlier evaluations.
 
     Args:
         learner: the training's state.
@@ -140,7 +173,8 @@ def evaluate(
         epsilon: ε of the practice, for the record.
         record: whether to include the motion.
     """
-    evaluator = learner.evaluator(generator(config.seed, EVALUATION, learner.step))
+    rng = generator(config.seed, EVALUATION, learner.step)
+    evaluator = learner.evaluator(learner.conditions(config.steps), rng)
     distance, motion = walk(evaluator, record)
     return Evaluated(learner.step, epsilon, distance, motion)
 
@@ -162,6 +196,7 @@ def _concatenate(motions: list[Motion]) -> Motion:
     return Motion(*(np.concatenate(column) for column in columns))
 
 
-def _is_due(step: int, config: TrainingConfig) -> bool:
-    every = config.evaluate_every
-    return every > 0 and (step % every == 0 or step == config.steps)
+def _is_due(learner: Learner, config: TrainingConfig) -> bool:
+    step, every, world = learner.step, config.evaluate_every, learner.world
+    is_change = step in world.change_steps and step < config.steps
+    return every > 0 and (step % every == 0 or step == config.steps or is_change)

@@ -1,12 +1,13 @@
 """Walker: a simulator, its current state and an agent, as driven by both loops."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, cast
 
 import numpy as np
 
 from app.agents.protocol import Agent, Node, Transition, Valuing
+from app.domain.disturbances import SensorNoise
 from app.domain.errors import IllegalAction
 from app.domain.observation import Observation, legal_actions, observe
 from app.domain.simulator import Simulator, Step, WalkState
@@ -20,8 +21,15 @@ _MAX_BATCH = 2048
 class FutureNode:
     """Node of a search tree: a simulated future state, with lazily computed legal actions."""
 
-    def __init__(self, expand: "SimulatorExpand", state: WalkState) -> None:
+    def __init__(
+        self,
+        expand: "SimulatorExpand",
+        state: WalkState,
+        legal: Sequence[Action] | None = None,
+    ) -> None:
         self.state, self._expand = state, expand
+        if legal is not None:
+            self.legal = legal
 
     @cached_property
     def legal(self) -> Sequence[Action]:
@@ -30,26 +38,48 @@ class FutureNode:
 
 
 class Readings:
-    """The observations of a robot's current state, each read at most once per state."""
+    """The observations of a robot's current state, each read at most once per state.
 
-    def __init__(self, simulator: Simulator[Any]) -> None:
-        self._simulator = simulator
+    Args:
+        simulator: simulates the robot.
+        sensors: makes the generator of the errors of measurement after so many steps, where sensors
+            are noisy; None for no errors.
+    """
+
+    def __init__(
+        self,
+        simulator: Simulator[Any],
+        sensors: Callable[[int], np.random.Generator] | None = None,
+    ) -> None:
+        self._simulator, self._sensors = simulator, sensors
         self.at(simulator.rest())
 
     def at(self, state: WalkState) -> None:
         """Set the current state of the robot."""
         self._state = state
         self._read: dict[Observation, Cells] = {}
+        self._error_m = self._error()
+
+    def _error(self) -> FloatArray | None:
+        """Draw the errors of measurement, (pairs, 2) [m]: the same for all readings of a state."""
+        steps = self._state.steps
+        noise = self._simulator.world.as_of(steps).one_of(SensorNoise)
+        if noise is None or self._sensors is None:
+            return None
+        return self._sensors(steps).normal(0, noise.sd_m, (len(self._simulator.gait.pairs), 2))
 
     def __call__(self, how: Observation) -> Cells:
         """Return the cells that an agent observes in the current state, one per pair."""
         if how not in self._read:
-            self._read[how] = observe(self._simulator, self._state, how)
+            self._read[how] = observe(self._simulator, self._state, how, self._error_m)
         return self._read[how]
 
 
 class SimulatorExpand:
     """Implements the `Expand` protocol by simulation, and counts simulated transitions.
+
+    All of a search holds under the conditions of the step that is about to be taken: nothing that
+    is to come is foreseen.
 
     Attributes:
         transitions: number of transitions simulated so far.
@@ -78,15 +108,17 @@ class SimulatorExpand:
         rewards: list[FloatArray] = []
         for first in range(0, len(states), _MAX_BATCH):
             part = slice(first, first + _MAX_BATCH)
-            expansion = self._simulator.expand(states[part], actions[part])
+            expansion = self._simulator.expand(
+                states[part], actions[part], as_of=self.here.state.steps
+            )
             ends += [FutureNode(self, state) for state in expansion.states]
             rewards.append(expansion.rewards_m)
         self.transitions += len(actions)
         return ends, np.concatenate(rewards) if rewards else np.empty(0)
 
-    def at(self, state: WalkState) -> None:
-        """Set the current state of the robot, the root of the search."""
-        self.here = FutureNode(self, state)
+    def at(self, state: WalkState, legal: Sequence[Action]) -> None:
+        """Set the current state of the robot, the root of the search, and its legal actions."""
+        self.here = FutureNode(self, state, legal)
 
     def legal(self, state: WalkState) -> Sequence[Action]:
         """Return the legal actions in a state."""
@@ -114,6 +146,7 @@ class Walker:
         observation: Observation,
         expand: SimulatorExpand | None = None,
         readings: Readings | None = None,
+        *,
         keeps_learning: bool = False,
     ) -> None:
         self.simulator, self.agent, self.observation = simulator, agent, observation
@@ -128,7 +161,7 @@ class Walker:
         self.observed: Cells = self._readings(self.observation)
         self.legal = legal_actions(self.observed, len(self.simulator.grid))
         if self._expand:
-            self._expand.at(state)
+            self._expand.at(state, self.legal)
 
     @property
     def transitions(self) -> int:

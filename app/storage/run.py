@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from typing import Any, Literal, NamedTuple, get_args
 
+from app.domain.disturbances import disturbance
+from app.domain.world import UNDISTURBED, World
 from app.experiments import config as experiments
 from app.experiments.config import ExperimentConfig
 from app.runs.config import RaceConfig, TrainingConfig, as_json, config_from_json
@@ -153,6 +155,19 @@ class Content:
     evaluations: Sequence[Mapping[str, Any]] = ()
     trials: Sequence[Mapping[str, Any]] = ()
     artifacts: Mapping[str, bytes] = field(default_factory=dict)
+
+
+def world_of(run: Run) -> World:
+    """Return all that happens in a training or race, including what was added while it ran.
+
+    Raises:
+        InvalidInput: if what is stored is damaged.
+    """
+    world = getattr(run.config, "world", UNDISTURBED)
+    for change in run.changes:
+        if "disturbance" in change:
+            world = world.then(disturbance(change["disturbance"]))
+    return world
 
 
 def config_as_json(config: Config) -> dict[str, Any]:

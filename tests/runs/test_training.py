@@ -10,6 +10,7 @@ import pytest
 from app.agents.q_learning import QLearning
 from app.assembly import build_learner, finish_training
 from app.domain.errors import IllegalAction
+from app.domain.world import World
 from app.runs import seeding
 from app.runs.config import SIMULATORS, SimulatorName, TrainingConfig, training_config
 from app.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
@@ -222,9 +223,9 @@ def test_pending_evaluation_is_repeated_after_resume() -> None:
     first = build_learner(config)
     evaluator = first.evaluator
 
-    def saving(rng: np.random.Generator) -> Walker:
+    def saving(world: World, rng: np.random.Generator) -> Walker:
         saved.append(to_bytes(snapshot(first, config)))
-        return evaluator(rng)
+        return evaluator(world, rng)
 
     first.evaluator = saving
     list(train(first, config))
