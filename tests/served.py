@@ -81,7 +81,7 @@ class Served:
         waiting = patience.Patience()
         while not is_so(now := self.look(run)):
             waiting.check(now)
-            time.sleep(0.02)
+            time.sleep(0.1)
         return now
 
     def after_step(self, run: dict[str, Any], step: int) -> dict[str, Any]:

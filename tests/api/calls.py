@@ -55,7 +55,7 @@ class Api:
         while not condition(now := self.look(run)):
             assert now["state"] not in ENDED, now
             patience.check(now)
-            time.sleep(0.01)
+            time.sleep(0.03)
         return now
 
     def ended(self, run: dict[str, Any]) -> dict[str, Any]:

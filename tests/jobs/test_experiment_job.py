@@ -150,7 +150,7 @@ def test_full_disk_fails_the_run_which_resumes_once_there_is_space(store: RunSto
 
 def test_invalid_trials_are_set_aside_and_the_others_are_kept(jobs: Jobs, store: RunStore) -> None:
     config = sweep(agents=("q-learning", "tests.own_agents:Clumsy"))
-    run = wait_until_ended(store, jobs.experiment(ExperimentStart(config, name="Mine")))
+    run = wait_until_ended(store, jobs.experiment(ExperimentStart(config, name="Mine", workers=1)))
     assert (run.name, run.state, run.done) == ("Mine", "finished", run.total)
     assert run.result is not None
     assert run.result["trials"] == {"done": 4, "total": 7, "failed": 0, "set_aside": 3}

@@ -14,7 +14,7 @@ def wait_until(is_so: Callable[[], Any]) -> None:
     deadline = time.monotonic() + LONG_S
     while not is_so():
         assert time.monotonic() < deadline
-        time.sleep(0.005)
+        time.sleep(0.02)
 
 
 def wait_until_ended(store: RunStore, run: Run) -> Run:
@@ -22,7 +22,7 @@ def wait_until_ended(store: RunStore, run: Run) -> Run:
     stall_check = Patience()
     while (now := store.get(run.id)).state in NOT_ENDED:
         stall_check.check((now.state, now.done))
-        time.sleep(0.005)
+        time.sleep(0.02)
     return now
 
 

@@ -37,7 +37,7 @@ WALKERS = at_length(
     [
         (name, gait)
         for name, gait in EVERY_ROBOT_AND_GAIT
-        if name in ("stiff", "compliant") or gait in (GAITS[0], EXCEPTIONAL)
+        if name in ("stiff", "compliant") or gait == (EXCEPTIONAL if name == "soft" else GAITS[0])
     ],
     EVERY_ROBOT_AND_GAIT,
 )

@@ -17,7 +17,7 @@ from tests.browser.serving import Serving
 from tests.promises.length import at_length
 
 PAYLOADS = 200
-ON_STAGE = at_length(3, PAYLOADS)
+ON_STAGE = at_length(1, PAYLOADS)
 """Number of payloads shown on stage, as 3D label and as caption."""
 
 RUNS = "window.xss=1"
@@ -56,6 +56,9 @@ def payloads() -> list[str]:
     found = [prefix + tag.replace("{}", RUNS) for prefix, tag in product(PREFIXES, TAGS)]
     return list(dict.fromkeys(name[:100] for name in found))[:PAYLOADS]
 
+
+BREAKS_OUT = payloads()[100]
+"""A script after the end of an attribute; in text, a script too."""
 
 WATCH = """
 window.violations = [];
@@ -154,7 +157,7 @@ def test_no_payload_in_a_run_name_is_executed(
 @pytest.mark.parametrize("path", ["docs", "nothing/", "viewer/", "api/v1/trainings/", "?x="])
 def test_no_payload_in_a_url_is_executed(page: Page, quiet_server: Serving, path: str) -> None:
     watched = Watched(page)
-    for payload in payloads()[:: at_length(100, 1)]:
+    for payload in at_length([BREAKS_OUT], payloads()):
         page.goto(quiet_server.address + path + html.escape(payload).replace("#", "%23"))
         page.goto(quiet_server.address + path + payload.replace("#", "%23"))
         watched.check()

@@ -1,7 +1,7 @@
 """The specification's figures for the kinematic simulator, over a thousand seeds.
 
 Distances are over 50 steps from rest, in units of h, half the side of the foot grid. All rows share
-one pass over the seeds: a minute on two idle cores. The gate's shorter form has 400 seeds, fewer
+one pass over the seeds: a minute on two idle cores. The gate's shorter form has 240 seeds, fewer
 practices of other lengths, and the same tolerances.
 """
 
@@ -24,7 +24,7 @@ from tests.figures import (
 )
 from tests.promises.length import at_length
 
-SEEDS = at_length(400, 1000)
+SEEDS = at_length(240, 1000)
 Rows = dict[str, FloatArray]
 
 pytestmark = pytest.mark.timeout(1800)

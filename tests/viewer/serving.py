@@ -91,7 +91,7 @@ def wait_until(predicate: Callable[[], object]) -> None:
     while not predicate():
         if time.monotonic() > end:
             raise TimeoutError
-        time.sleep(0.005)
+        time.sleep(0.02)
 
 
 class ServedHub:
