@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from statistics import fmean, median
 from typing import Any
 
+from app.domain.text import metres
 from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.claims.distance_to_paper import closeness, compare_closeness
 from app.experiments.formatting import (
@@ -12,7 +13,6 @@ from app.experiments.formatting import (
     gait_name,
     gait_name_with_papers,
     listed,
-    metres,
     percent,
     shares,
 )
