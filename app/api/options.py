@@ -57,11 +57,11 @@ def get_options(services: ServicesDep) -> Response:
 
 _EXPERIMENTS = {
     "table1": (
-        "The paper's Table 1: Q-learning after 500 and after 1,000 steps beside greedy and "
+        "The paper’s Table 1: Q-learning after 500 and after 1000 steps beside greedy and "
         "two-step, in all four gaits, with the feet measured and with the commands remembered."
     ),
     "figure4": (
-        "The paper's Figure 4: practice in blocks of 250 steps up to 2,000, the table saved and "
+        "The paper’s Figure 4: practice in blocks of 250 steps up to 2000, the table saved and "
         "loaded in between, and greedy as the line to reach."
     ),
     "sweep": (
@@ -115,7 +115,7 @@ _HELP = {
     "seeds": "How often each setting is tried, each time with other random numbers.",
     "gaits": "Which gaits are tried.",
     "robots": "Which robots are tried.",
-    "observations": "Which readings of the state are tried.",
+    "observations": "Which observations are tried.",
     "agents": "Which agents learn or search, and are compared with each other.",
     "settings": "Combinations of values; each is tried over all seeds.",
     "trials": "Settings times seeds; agents that look ahead are tried once.",

@@ -1,4 +1,4 @@
-"""Validation and escaping of text that users see: allowed characters in names, and CSV cells."""
+"""Text that users see: allowed characters in names, CSV cells, and how numbers are written."""
 
 import sys
 import unicodedata
@@ -60,6 +60,7 @@ def _is_invisible(character: str) -> bool:
     return unicodedata.category(character) in _INVISIBLE or character in _BLANK_LETTERS
 
 
+_SMALLEST_GROUPED = 10_000
 _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 """First characters of spreadsheet formulas; the last four are full-width forms of the first."""
 
@@ -81,3 +82,13 @@ def is_formula(cell: str) -> bool:
     except ValueError:
         return True
     return cell[0] not in "+-"
+
+
+def whole(number: int) -> str:
+    """Format a whole number, from 10 000 on in groups of digits with thin spaces between."""
+    return f"{number:,}".replace(",", "\u202f") if abs(number) >= _SMALLEST_GROUPED else f"{number}"
+
+
+def metres(value: float) -> str:
+    """Format a distance to the centimetre, `0.36 m`; never `-0.00 m`, with U+2212 as the minus."""
+    return f"{round(value, 2) + 0.0:.2f}\u00a0m".replace("-", "−")

@@ -5,6 +5,7 @@ from typing import Any
 
 from app.domain.gait import GAIT_TITLES
 from app.domain.settings import declared_fields
+from app.domain.text import metres
 from app.experiments.published import GAITS
 from app.experiments.statistics import Interval
 from app.runs.config import TrainingConfig, agent_settings
@@ -37,11 +38,6 @@ def gait_name_with_papers(gait: str) -> str:
 def percent(value: float) -> str:
     """Format a share as `74 %`, with a no-break space."""
     return f"{100 * value:.0f}{_NO_BREAK_SPACE}%"
-
-
-def metres(value: float) -> str:
-    """Format a distance to the centimetre, `0.36 m`; never `-0.00 m`."""
-    return f"{number(value)}{_NO_BREAK_SPACE}m"
 
 
 def number(value: float, digits: int = 2) -> str:

@@ -10,6 +10,7 @@ from app.agents.q_table import MAX_VALUES
 from app.agents.registry import check_problem, learns, needs_practice
 from app.domain.errors import InvalidInput, TableMismatch
 from app.domain.kinematics import check_reach
+from app.domain.text import whole
 from app.experiments.config import GRID, ExperimentConfig
 from app.experiments.plan import Plan
 from app.runs.config import (
@@ -95,7 +96,7 @@ def new_training(start: TrainingStart, store: RunStore, new_id: Callable[[], str
     return Run(
         id=new_id(),
         kind="training",
-        name=start.name or f"{config.steps:,} steps: {config.resolved_gait.title}",
+        name=start.name or f"{whole(config.steps)} steps: {config.resolved_gait.title}",
         config=config,
         continued_from=start.continue_from,
         total=config.steps,
@@ -226,7 +227,7 @@ def new_experiment(start: ExperimentStart, new_id: Callable[[], str]) -> Run:
     cores = os.cpu_count() or 1
     if workers is not None and workers > cores:
         raise InvalidInput(f"workers must be from 1 to {cores}, the cores of this machine")
-    seeds = "1 seed" if config.seeds == 1 else f"{config.seeds:,} seeds"
+    seeds = "1 seed" if config.seeds == 1 else f"{whole(config.seeds)} seeds"
     return Run(
         id=new_id(),
         kind="experiment",

@@ -76,7 +76,7 @@ PracticeSteps = Annotated[
         title="Practice",
         phrase="{}\u00a0steps",
         unit="steps",
-        help="How many steps it practises; the paper uses 500 and 1,000.",
+        help="How many steps it practises; the paper uses 500 and 1000.",
         examples=(500, 1000),
     ),
 ]

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import viser
 
+from app.domain.text import metres, whole
 from app.stage.scene_spec import rest_pose
 from app.stage.stage_frame import Ghost, SceneSpec, StageFrame
 from app.viewer.colormap import rgb
@@ -75,7 +76,7 @@ class PhotoFinish(_Temporary):
             )
             self._server.scene.add_label(
                 f"{self._root}/far{number}",
-                f"{rank}.  {distance_m:.2f} m",
+                f"{rank}.  {metres(distance_m)}",
                 position=(x, -0.02, 0.0),
                 anchor="top-center",
                 font_screen_scale=_TEXT_SCALE,
@@ -139,7 +140,7 @@ class Ghosts(_Temporary):
             )
         self._server.scene.add_label(
             f"{self._root}/robot/label",
-            f"{ghost.distance_m:.2f} m\nafter {ghost.step} steps",
+            f"{metres(ghost.distance_m)}\nafter {whole(ghost.step)} steps",
             position=(0.0, ghost.distance_m, 0.22),
             anchor="bottom-center",
             font_screen_scale=1.35,

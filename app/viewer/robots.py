@@ -7,6 +7,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from app.domain.text import metres
 from app.runs.clocks import FINISH_LINE_M
 from app.stage.stage_frame import LaneSpec, LaneView, SceneSpec, StageFrame
 from app.viewer.colormap import Rgb, mix, rgb
@@ -85,7 +86,7 @@ def label_text(lane_spec: LaneSpec, lane: LaneView) -> str:
         return f"{lane_spec.name}\ncannot go on"
     if lane.step == 0:
         return lane_spec.name
-    distance = f"{lane.distance_m:.2f} m".replace("-0.00", "0.00")
+    distance = metres(lane.distance_m)
     lines = [lane_spec.name, f"{distance}, {'done' if lane.done else f'step {lane.step}'}"]
     if lane.thinking:
         futures = f" {lane.futures}/{lane.futures_total}" if lane.futures else "…"

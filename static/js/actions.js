@@ -2,7 +2,9 @@
 import { computed, signal } from "@preact/signals";
 import * as api from "./api.js";
 import { configAtEnd } from "./changes.js";
-import { chooseLearner, form, link, mistakes, raceBody, setField, setFields, trainingBody } from "./form.js";
+import {
+  chooseLearner, form, link, mistakes, raceBody, setField, setFields, trainingBody, validSteps,
+} from "./form.js";
 import { count, listed, whole } from "./format.js";
 import {
   isActive, isOperator, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, myWork, shownRun, work,
@@ -69,18 +71,24 @@ export const missingLane = computed(() => {
   return { words: `${title} is not in the race; ${others} will learn and race.`, action: isFull ? null : action };
 });
 
+/** "Practise 500 more" */
+export const practiseMore = () => {
+  const steps = validSteps();
+  return steps === null ? "Practise more" : `Practise ${whole(steps)} more`;
+};
+
 /** The action of the primary button. @type {Signal<Action>} */
 export const primaryAction = computed(() => {
-  const { steps } = form.value;
   if (!hasLearner.value) return { label: "Race", run: () => startRace() };
   const tables = laneTables.value;
   if (isRaceRun.value && tables) {
     return {
-      label: `Practise ${whole(steps)} more, race again`,
+      label: `${practiseMore()}, race again`,
       run: () => startRace({ continued: tables }),
     };
   }
-  return { label: `Train ${count(steps, "step")}, then race`, run: () => startRace() };
+  const steps = validSteps();
+  return { label: `Train${steps === null ? "" : ` ${count(steps, "step")}`}, then race`, run: () => startRace() };
 });
 
 /** The other ways to start. @type {Signal<Action[]>} */

@@ -137,6 +137,9 @@ export const mistakes = computed(() =>
   Object.fromEntries(Object.entries(wrong.value).map(([field, { mistake }]) => [field, mistake])),
 );
 
+/** The steps of practice; null while their field has a text that is none. @returns {number | null} */
+export const validSteps = () => ("steps" in mistakes.value ? null : form.value.steps);
+
 /**
  * Change fields, and the address with them.
  * @param {Record<string, FormValue>} changes

@@ -89,7 +89,8 @@ function viridis(share) {
  */
 export function valueColours(value, low, high) {
   const rgb = viridis(high > low ? (value - low) / (high - low) : 0);
-  return { background: `rgb(${rgb.join(" ")})`, color: luminance(rgb) > 0.18 ? "#10141a" : "#fff" };
+  // Where black and white are equally far, either has a contrast of 4.58; a dark grey would have less than 4.5.
+  return { background: `rgb(${rgb.join(" ")})`, color: luminance(rgb) > 0.179 ? "#000" : "#fff" };
 }
 
 /**

@@ -78,6 +78,43 @@
     }
   };
 
+  // A playback has no worker: its messages go straight to the client's queue, the same objects again each time that
+  // the recording is played or sought, so they are copied.
+  const copyOf = (message) => {
+    const copy = { ...message };
+    for (const part of ["props", "updates"]) if (message[part]) copy[part] = { ...message[part] };
+    return copy;
+  };
+
+  /** Take labels out of all that is pushed; the recording's first message begins it anew. */
+  const watchQueue = (queue) => {
+    let first = null;
+    const waiting = queue.splice(0);
+    queue.push = (...messages) => {
+      const copies = messages.map((message) => {
+        first ??= message;
+        if (message === first) [...labels.keys()].forEach(remove);
+        const copy = copyOf(message);
+        take(copy);
+        return copy;
+      });
+      return Array.prototype.push.apply(queue, copies);
+    };
+    queue.push(...waiting);
+  };
+
+  if (new URLSearchParams(location.search).has("playbackPath")) {
+    let mutable;
+    Object.defineProperty(window, "__viserMutable", {
+      configurable: true,
+      get: () => mutable,
+      set: (value) => {
+        mutable = value;
+        watchQueue(value.messageQueue);
+      },
+    });
+  }
+
   addEventListener("message", ({ origin, source, data }) => {
     if (origin !== location.origin || source !== parent || data?.type !== "hexapods:show") return;
     covered = data.covered ?? covered;
@@ -103,8 +140,15 @@
   const inOrder = () => [...labels.values()].sort((a, b) => isFixed(a) - isFixed(b));
   const isFixed = ({ anchor }) => anchor.startsWith("center");
 
+  /** Size of the picture [px]; below that of a playback is its seek bar. */
+  const pictureSize = () => {
+    const { clientWidth, clientHeight } = window.__viserMutable.canvas;
+    return { width: clientWidth, height: clientHeight };
+  };
+
   const place = () => {
     const { camera } = window.__viserMutable;
+    const picture = pictureSize();
     const taken = [...covered];
     for (const label of inOrder()) {
       const { element } = label;
@@ -113,8 +157,8 @@
       element.hidden = !isInView;
       if (!isInView) continue;
       label.size ??= sizeOf(element);
-      const at = { x: ((point.x + 1) / 2) * innerWidth, y: ((1 - point.y) / 2) * innerHeight };
-      const box = label.size.height > 0 && roomFor(label, at, taken);
+      const at = { x: ((point.x + 1) / 2) * picture.width, y: ((1 - point.y) / 2) * picture.height };
+      const box = label.size.height > 0 && roomFor(label, at, taken, picture);
       element.hidden = !box;
       if (!box) continue;
       taken.push(box);
@@ -140,17 +184,17 @@
   };
 
   /** The free box that is nearest to a label's point: above or below it; null if there is none. */
-  const roomFor = ({ anchor, size: { width, height } }, { x, y }, taken) => {
-    const left = Math.max(EDGE_PX, Math.min(x - width / 2, innerWidth - width - EDGE_PX));
+  const roomFor = ({ anchor, size: { width, height } }, { x, y }, taken, picture) => {
+    const left = Math.max(EDGE_PX, Math.min(x - width / 2, picture.width - width - EDGE_PX));
     const offset = { bottom: -height, center: -height / 2, top: 0 }[anchor.split("-")[0]];
     const boxAt = (top) => ({ left, top, right: left + width, bottom: top + height });
     const blocking = (box) => taken.find((one) => intersects(one, box));
     const search = (direction) => {
-      let box = boxAt(Math.round(Math.max(EDGE_PX, Math.min(y + offset, innerHeight - height - EDGE_PX))));
+      let box = boxAt(Math.round(Math.max(EDGE_PX, Math.min(y + offset, picture.height - height - EDGE_PX))));
       for (let other = blocking(box); other; other = blocking(box)) {
         if (!direction) return null;
         box = boxAt(direction < 0 ? Math.floor(other.top) - GAP_PX - height : Math.ceil(other.bottom) + GAP_PX);
-        if (box.top < 0 || box.bottom > innerHeight) return null;
+        if (box.top < 0 || box.bottom > picture.height) return null;
       }
       return box;
     };

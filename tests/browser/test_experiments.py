@@ -92,6 +92,7 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
         visit(dashboard, server, **ENDLESS)
         dashboard.button("Run Sweep: 5001 trials").click()
         expect(head(dashboard)).to_contain_text("a second")
+        expect(head(dashboard)).to_be_in_viewport(ratio=1)
         expect(page.get_by_role("img", name=re.compile(r"^\d+ seeds, typically"))).to_be_visible()
         server.kill()
         expect(page.locator(".cut-off-note")).to_be_visible()

@@ -26,6 +26,7 @@ def test_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
     assert page.url == server.address
     page.get_by_role("link", name="Runs").click()
     expect(page.get_by_text("No runs yet.")).to_be_visible()
+    expect(page.locator(".no-runs")).to_contain_text("or its report. Start the first one.")
 
 
 def test_the_first_lesson_is_skipped_once_and_opened_again(
@@ -70,6 +71,10 @@ def test_the_button_and_the_scoreboard_stay_in_view(
     expect(page.get_by_label("Robot")).to_be_in_viewport(ratio=1)
     expect(dashboard.primary).to_be_in_viewport(ratio=1)
     expect(page.get_by_role("region", name="Scoreboard")).to_be_in_viewport(ratio=1)
+
+    practice = page.get_by_role("spinbutton", name="Practice, as a number")
+    practice.fill("10000000")
+    assert practice.evaluate("field => field.scrollWidth <= field.clientWidth")
 
     page.set_viewport_size({"width": 1920, "height": 1080})
     for link, left, right in (
@@ -169,6 +174,8 @@ def test_a_phone_needs_no_scrolling_sideways(
 
         page.goto(f"{shared_server.address}#runs")
         assert dashboard.scroll_width() == PHONE["width"]
+        head, kinds = dashboard.box(".runs-head"), dashboard.box(".runs-head .segments")
+        assert kinds["x"] + kinds["width"] <= head["x"] + head["width"]
         assert dashboard.complaints == []
 
 

@@ -43,6 +43,7 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     check_crosshairs(page)
     assert dashboard.violations() == []
     expect(dashboard.button("Play again for everyone")).to_be_visible()
+    expect(page.locator(".next-move")).to_contain_text("Q-learning would move legs")
     timeline_end = page.locator(".seek .num").last.inner_text()
     expect(dashboard.rows.filter(has_text="Two-step")).to_contain_text(f"3 steps in {timeline_end}")
     page.evaluate("scrollTo(0, 0)")

@@ -1,11 +1,11 @@
-"""Names contain no invisible characters."""
+"""Names contain no invisible characters, and numbers are written as on the page."""
 
 import unicodedata
 
 import pytest
 
 from app.domain.errors import InvalidInput
-from app.domain.text import check_name, visible
+from app.domain.text import check_name, metres, visible, whole
 
 BIDI = [*map(chr, range(0x202A, 0x202F)), *map(chr, range(0x2066, 0x206A)), "\u200e", "\u200f"]
 HIDDEN = [*BIDI, "\u061c", "\u200b", "\u200d", "\u2060", "\ufeff", "\u00ad", "\U000e0041", "\u2028"]
@@ -28,3 +28,21 @@ def test_all_other_characters_are_allowed_in_names(name: str) -> None:
 def test_a_long_name_is_refused() -> None:
     with pytest.raises(InvalidInput, match="at most 100"):
         check_name("x" * 101)
+
+
+def test_digits_are_grouped_from_ten_thousand_on_without_commas() -> None:
+    assert [whole(number) for number in (0, 1000, 9999, 10_000, -1_234_567)] == [
+        "0",
+        "1000",
+        "9999",
+        "10\u202f000",
+        "-1\u202f234\u202f567",
+    ]
+
+
+def test_distances_have_a_true_minus_and_no_negative_zero() -> None:
+    assert [metres(value) for value in (0.376, -0.012, -0.001)] == [
+        "0.38\u00a0m",
+        "−0.01\u00a0m",
+        "0.00\u00a0m",
+    ]

@@ -34,6 +34,19 @@ test("dots at one place lie alternately on both sides", () => {
 
 test("values are dark to light, with text that can be read on them", () => {
   assert.deepEqual(valueColours(0, 0, 1), { background: "rgb(68 1 84)", color: "#fff" });
-  assert.deepEqual(valueColours(7, 0, 1), { background: "rgb(253 231 37)", color: "#10141a" });
+  assert.deepEqual(valueColours(7, 0, 1), { background: "rgb(253 231 37)", color: "#000" });
   assert.equal(valueColours(3, 3, 3).background, "rgb(68 1 84)");
 });
+
+test("the text of every value has the contrast that WCAG asks for", () => {
+  for (let value = 0; value <= 1; value += 0.001) {
+    const { background, color } = valueColours(value, 0, 1);
+    const [r, g, b] = (background.match(/\d+/g) ?? []).map(Number);
+    const luminance = 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
+    const contrast = color === "#fff" ? 1.05 / (luminance + 0.05) : (luminance + 0.05) / 0.05;
+    assert.ok(contrast >= 4.5, `${contrast} on ${background}`);
+  }
+});
+
+/** A channel of sRGB, 0 to 255, as WCAG makes it linear. @param {number} channel */
+const linear = (channel) => (channel <= 10 ? channel / 255 / 12.92 : ((channel / 255 + 0.055) / 1.055) ** 2.4);

@@ -1,8 +1,8 @@
 // Server-sent events change the store, and the selectors follow.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { copySettings } from "../../static/js/actions.js";
-import { form, overrides, setField, setFields, trainingBody } from "../../static/js/form.js";
+import { copySettings, primaryAction } from "../../static/js/actions.js";
+import { enter, form, overrides, setField, setFields, trainingBody, typed } from "../../static/js/form.js";
 import { shownTime } from "../../static/js/race.js";
 import {
   everyRun, hasTable, interruptedRun, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, matchingTable,
@@ -30,6 +30,7 @@ const raceOf = (/** @type {{ id: string }} */ training, changes = {}) =>
 beforeEach(() => {
   options.value = OPTIONS;
   overrides.value = {};
+  typed.value = {};
   show({});
 });
 
@@ -182,6 +183,20 @@ test("a table matches the form by gait, robot, grid, observation and simulator",
   setField("divisions", 3);
   assert.equal(matchingTable.value, null);
   assert.ok(!isRaceRun.value);
+});
+
+test("the button names no number of steps while the field has a text that is none", () => {
+  const label = () => primaryAction.value.label;
+  assert.equal(label(), "Train 500 steps, then race");
+  enter("steps", "abc");
+  assert.equal(label(), "Train, then race");
+  const training = makeRun({});
+  const race = raceOf(training);
+  show({ runs: [training, race], stage: { ...STAGE, run_id: race.id } });
+  assert.equal(label(), "Practise more, race again");
+  enter("alpha", "seven");
+  enter("steps", "750");
+  assert.equal(label(), "Practise 750 more, race again");
 });
 
 test("the settings of a run with a custom robot are taken with all of the robot", () => {

@@ -376,8 +376,10 @@ def test_recording_plays_with_a_seek_bar(
 ) -> None:
     viser_server = start_viser()
     serializer = viser_server.get_scene_serializer()
+    label = viser_server.scene.add_label("/world/label", "step 0")
     for step in range(10):
         viser_server.scene.add_box("/world/step", dimensions=(step + 1, 1, 1))
+        label.text = f"step {step}"
         serializer.insert_sleep(0.1)
     recording.data = serializer.serialize()
     viser_server.stop()
@@ -387,3 +389,11 @@ def test_recording_plays_with_a_seek_bar(
     wait_for_node(page, "/world/step")
     page.wait_for_selector(".mantine-Slider-root", state="visible")
     assert served.hub.counters.viewers == 0
+    # Its labels are the page's own and not viser's, also when it begins again.
+    for text in ("step 9", "step 0", "step 9"):
+        page.wait_for_function(
+            "text => document.querySelector('.labels > div:not([hidden])')?.textContent === text",
+            arg=text,
+        )
+    label_of_viser = "window.__viserSceneTree.getState()['/world/label'].message.props.text"
+    assert page.evaluate(label_of_viser) == ""

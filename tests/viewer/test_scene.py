@@ -115,7 +115,7 @@ def test_lanes_are_side_by_side_with_their_labels(server: InProcessViser) -> Non
     assert xs[2] > 2 * spec.robot.home_radius_m, "they cannot touch"
     assert scene.follow_position("4") is None
     labels = [m["text"] for n, m in scene_nodes(server).items() if n.endswith("/plate")]
-    assert labels == [f"{lane_spec.name}\n0.00 m, step 3" for lane_spec in spec.lane_specs]
+    assert labels == [f"{lane_spec.name}\n0.00\u00a0m, step 3" for lane_spec in spec.lane_specs]
 
 
 def test_start_and_finish_lines_are_labelled_and_coloured(server: InProcessViser) -> None:
@@ -227,7 +227,7 @@ def test_photo_finish_shows_distances_and_is_removed(server: InProcessViser) -> 
 
     scene.draw(replace(frame, phase="photo-finish"))
     texts = [m["text"] for n, m in scene_nodes(server).items() if "/photo/far" in n]
-    assert texts == ["1.  0.38 m", "2.  -0.01 m"]
+    assert texts == ["1.  0.38\u00a0m", "2.  −0.01\u00a0m"]
 
     scene.draw(frame)
     assert not [name for name in scene_nodes(server) if "/photo" in name]
@@ -240,7 +240,7 @@ def test_photo_finish_is_redrawn_under_another_clock(server: InProcessViser) -> 
     scene.draw(replace(frame, phase="photo-finish", lanes=retimed))
 
     texts = [m["text"] for n, m in scene_nodes(server).items() if "/photo/far" in n]
-    assert texts == ["2.  0.25 m"] * 3
+    assert texts == ["2.  0.25\u00a0m"] * 3
 
 
 def test_a_flag_at_the_finish_line_shows_who_crossed_it(server: InProcessViser) -> None:

@@ -5,11 +5,12 @@ from typing import Any
 
 import numpy as np
 
+from app.domain.text import metres
 from app.domain.types import FloatArray
 from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.claims.gaits import ODD_GAIT, gait_claims
 from app.experiments.claims.judging import Claim, Finding
-from app.experiments.formatting import gait_name_with_papers, metres, percent, shares
+from app.experiments.formatting import gait_name_with_papers, percent, shares
 from app.experiments.measures import WALKER_SHARE
 from app.experiments.statistics import (
     Interval,

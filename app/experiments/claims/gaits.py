@@ -4,10 +4,11 @@ from functools import partial
 
 import numpy as np
 
+from app.domain.text import metres
 from app.domain.types import FloatArray
 from app.experiments.claims.cases import Case
 from app.experiments.claims.judging import Claim, Finding
-from app.experiments.formatting import gait_name_with_papers, metres, percent, shares, span
+from app.experiments.formatting import gait_name_with_papers, percent, shares, span
 from app.experiments.published import GAITS
 from app.experiments.statistics import (
     Interval,

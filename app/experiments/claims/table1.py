@@ -5,6 +5,7 @@ from functools import partial
 from statistics import fmean, median
 from typing import Any
 
+from app.domain.text import metres
 from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.claims.gaits import gait_claims
 from app.experiments.claims.judging import Claim, Finding
@@ -13,7 +14,6 @@ from app.experiments.formatting import (
     distance,
     gait_name_with_papers,
     listed,
-    metres,
     percent,
     shares,
 )

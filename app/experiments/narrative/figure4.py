@@ -4,8 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from app.agents.appearance import title_of
+from app.domain.text import metres
 from app.experiments.claims.cases import PAPERS_AGENT, Case
-from app.experiments.formatting import counted, gait_name, listed, metres, percent
+from app.experiments.formatting import counted, gait_name, listed, percent
 from app.experiments.narrative.gaits import ODD_GAIT_HEADING, explain_odd_gait
 
 Curve = Mapping[str, Any]

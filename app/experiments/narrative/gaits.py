@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 
+from app.domain.text import metres
 from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.claims.gaits import ODD_GAIT, OTHER_GAITS, SLOW_RATIO, odd_gait_ratio
-from app.experiments.formatting import gait_name_with_papers, listed, metres, shares, span
+from app.experiments.formatting import gait_name_with_papers, listed, shares, span
 from app.experiments.published import published
 
 STEPS = 500

@@ -4,10 +4,10 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from app.agents.appearance import title_of
+from app.domain.text import metres
 from app.experiments.claims.cases import Case
 from app.experiments.formatting import (
     counted,
-    metres,
     parameter_text,
     percent,
     shares,

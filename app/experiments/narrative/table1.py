@@ -5,6 +5,7 @@ from statistics import fmean, median
 from typing import Any
 
 from app.domain.observation import PAPER_OBSERVATIONS
+from app.domain.text import metres
 from app.experiments.claims.cases import PAPERS_AGENT, Case
 from app.experiments.claims.distance_to_paper import closeness, compare_closeness
 from app.experiments.formatting import (
@@ -13,7 +14,6 @@ from app.experiments.formatting import (
     gait_name,
     gait_name_with_papers,
     listed,
-    metres,
     percent,
     shares,
 )

@@ -9,8 +9,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from app.agents.appearance import title_of
+from app.domain.text import metres
 from app.experiments.claims.cases import Case
-from app.experiments.formatting import gait_name, metres
+from app.experiments.formatting import gait_name
 from app.experiments.report.drawing import INK, MUTED, Picture, agent_colours, figure, style_axes
 
 Curve = Mapping[str, Any]

@@ -8,8 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from app.agents.appearance import title_of
+from app.domain.text import metres
 from app.experiments.claims.cases import Case
-from app.experiments.formatting import gait_name, gait_name_with_papers, metres
+from app.experiments.formatting import gait_name, gait_name_with_papers
 from app.experiments.report.drawing import (
     INK,
     MUTED,

@@ -46,6 +46,8 @@ Assumed by `client`:
   class names of its page.
 - labels_are_taken_out: the worker posts messages as `message_batch`, which the client reads after
   `static/viewer/labels.js` has emptied the labels in it, and `__viserMutable` has the camera, the
-  scene, of which `onAfterRender` is free, and the poses and objects of scene nodes by name.
+  canvas, the scene, of which `onAfterRender` is free, and the poses and objects of scene nodes by
+  name. A playback pushes its messages to the `messageQueue` there, the first one again whenever it
+  begins again; it is assigned to the window before the queue is read.
 - batched_colors_are_linear: colours of batched meshes are taken as linear, all others as sRGB.
 """

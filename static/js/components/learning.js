@@ -164,8 +164,9 @@ function NextMove({ known }) {
   if (pair < 0) return null;
   const value = values_m[pair][cell] ?? 0;
   const tried = visits?.[pair]?.[cell] ?? 0;
-  const name = scene.value?.lanes?.[lane]?.name ?? agentOf(agent).title;
-  const move = `${name} will move legs ${pairs[pair].join(" and ")} to ${placeName(known, cell, " mm")}`;
+  const { name = agentOf(agent).title, done = false } = scene.value?.lanes?.[lane] ?? {};
+  const legs = pairs[pair].join(" and ");
+  const move = `${name} ${done ? "would" : "will"} move legs ${legs} to ${placeName(known, cell, " mm")}`;
   const times = tried === 1 ? "once" : count(tried, "time");
   return html`
     <b>${move}${value < best.value ? " to explore" : ""}.</b> ${tried

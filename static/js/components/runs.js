@@ -67,8 +67,8 @@ function NoRuns() {
 const FirstVisit = () => html`
   <p><b>No runs yet.</b></p>
   <p>
-    Every training, race and experiment is kept here, with its curve, its table, its recording or its report.
-    <a href="#">Start the first one</a>.
+    Every training, race and experiment is kept here, with its curve, its table, its recording or its
+    report. <a href="#">Start the first one</a>.
   </p>
 `;
 

@@ -1,7 +1,7 @@
 // What-if: distances of kinematic robots that practise with these settings, and with the defaults.
 import { useEffect, useState } from "preact/hooks";
-import { canStart, continueTraining } from "../actions.js";
-import { form, mistakes } from "../form.js";
+import { canStart, continueTraining, practiseMore } from "../actions.js";
+import { form, mistakes, validSteps } from "../form.js";
 import { count, metres, whole } from "../format.js";
 import { isNarrow } from "../page.js";
 import { isOperator, matchingTable, work } from "../selectors.js";
@@ -37,7 +37,10 @@ export function WhatIf() {
   `;
 }
 
-const teaser = () => `${seeds.value} ideal robots practise ${count(form.value.steps, "step")}`;
+const teaser = () => {
+  const steps = validSteps();
+  return `${seeds.value} ideal robots practise${steps === null ? "" : ` ${count(steps, "step")}`}`;
+};
 
 const hasMistakes = () => Object.keys(mistakes.value).length > 0;
 
@@ -138,7 +141,7 @@ function Continue({ onContinue }) {
     <div class="row">
       <button class="secondary" aria-disabled=${canStart.value ? undefined : "true"} onClick=${onClick}
         title="Continues the newest table that fits with these settings, and starts no race">
-        Practise ${whole(form.value.steps)} more, don’t race
+        ${practiseMore()}, don’t race
       </button>
     </div>
   `;

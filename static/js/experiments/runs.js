@@ -188,10 +188,12 @@ export function startLabel() {
 export const canStart = () =>
   isOperator.value && !hasMistakes() && trials.value > 0;
 
+/** Start an experiment and choose it; its id, or null if it was refused. */
 export const start = () =>
   attempt("experiment", async () => {
     const run = await requestRun(() => api.startExperiment(requestBody()));
     wantedRun.value = run.id;
+    return run.id;
   });
 
 /** @type {(run: Run, verb: Verb) => Promise<void | null>} */

@@ -406,8 +406,12 @@ def test_labels_are_taken_out(client: str) -> None:
         "nodeRefFromName",
         "nodePoseData",
         "requestRender",
+        "canvas:null",
+        "messageQueue:[]",
     ):
         assert part in client
+    # The one function by which messages of the websocket and of a recording reach the queue.
+    assert re.search(r"let n=e\.messageQueue.{,200}n\.push\(r\)", client)
     assert re.search(r"isScene===!0&&\w+\.onAfterRender\(", client)
     assert ".onAfterRender=" not in client
 

@@ -61,11 +61,18 @@ const Fields = () => html`
   </div>
 `;
 
+/** Start, and show the report, which a long form has scrolled away. */
+async function startAndShow() {
+  if (await start() === null) return;
+  requestAnimationFrame(() => document.querySelector(".report-head")?.scrollIntoView({ block: "nearest" }));
+}
+
 function StartButton() {
   const isDisabled = !canStart() || pending.value.experiment;
   const isHeld = Object.keys(mistakes.value).length > 0;
+  const onClick = () => !isDisabled && startAndShow();
   return html`
-    <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${() => !isDisabled && start()}
+    <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${onClick}
       aria-describedby=${isHeld ? "held-experiment" : undefined}>
       ${pending.value.experiment ? "Starting…" : html`<${Icon} name="play" />${startLabel()}`}
     </button>
