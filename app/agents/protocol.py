@@ -19,9 +19,10 @@ class state the rest:
 - `is_on_policy = True`: it chooses its next action before it learns from the last one, so that a
   changed exploration rate acts a step later.
 
-Optional methods: those of `Tunable`, `Valuing` and `Tabular`, and `check_state(state)`, a static
-method that raises `ValueError` or `InvalidInput` for a state that `load` cannot restore, such as
-one in an untrusted file.
+Optional methods: those of `Tunable`, `Valuing` and `Tabular`, and two static ones:
+`check_state(state)` raises `ValueError` or `InvalidInput` for a state that `load` cannot restore,
+such as one in an untrusted file; `check_problem(problem)` raises `InvalidInput` for a problem that
+is too large for it.
 """
 
 from collections.abc import Callable, Sequence
@@ -100,7 +101,10 @@ class Valuing(Protocol):
 
 @runtime_checkable
 class Tabular(Protocol):
-    """Agent whose learned state is a Q-table only."""
+    """Agent whose greedy policy follows from a Q-table, beside which it may have learned more.
+
+    Its `state` includes the table as `QTable.dump` returns it.
+    """
 
     table: QTable
 
@@ -108,7 +112,7 @@ class Tabular(Protocol):
         """Share the table of another agent of this class, to evaluate it without a copy."""
 
     def continue_from(self, state: AgentState) -> None:
-        """Load the values and visits of a state, but not its settings or schedule position."""
+        """Load what was learned of a state, but not its settings or schedule position."""
 
 
 class Node(Protocol):

@@ -187,7 +187,8 @@ def _run(fields: _EndedRun, agents: Collection[str]) -> Run:
     _check_agents(config, agents)
     if isinstance(config, TrainingConfig):
         check_settings(config)
-    if isinstance(config, ExperimentConfig):
+        check_walk(config, config.agent)
+    elif isinstance(config, ExperimentConfig):
         if plan_of(config).total != fields.total:
             raise ValueError("its total is not that of its trials")
     else:

@@ -36,7 +36,7 @@ def import_table(
         StorageFull: if there is too little disk space; nothing is left behind then.
     """
     checkpoint, meta, config = checked_table(data, "the file", agents)
-    check_walk(config)
+    check_walk(config, config.agent)
     digest = None
     if "where" in tables.agent_state(checkpoint):
         digest = tables.table_of(checkpoint).sha256()

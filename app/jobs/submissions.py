@@ -5,8 +5,9 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+from app.agents.protocol import Problem
 from app.agents.q_table import MAX_VALUES
-from app.agents.registry import learns, needs_practice
+from app.agents.registry import check_problem, learns, needs_practice
 from app.domain.errors import InvalidInput, TableMismatch
 from app.domain.kinematics import check_reach
 from app.domain.observation import Observation
@@ -63,7 +64,7 @@ def new_training(start: TrainingStart, store: RunStore, new_id: Callable[[], str
     config = start.config
     if not learns(config.agent):
         raise InvalidInput(f"{config.agent} does not learn, so it cannot be trained")
-    check_walk(config)
+    check_walk(config, config.agent)
     if start.continue_from is not None:
         table = load_table(store, start.continue_from)
         check_fits(table, config, config.observation)
@@ -112,12 +113,16 @@ def new_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> li
     return [*trainings.values(), race]
 
 
-def check_walk(walk: WalkingProblem) -> None:
-    """Check that the robot reaches its foot grid, and that a table of it would fit into memory.
+def check_walk(walk: WalkingProblem, agent: str | None = None) -> None:
+    """Check that the robot reaches its foot grid, and that what is learned would fit into memory.
+
+    Args:
+        walk: the walking problem.
+        agent: the agent that is to learn it; None for any.
 
     Raises:
         Unreachable: if a leg cannot reach a cell.
-        InvalidInput: if there are too many states.
+        InvalidInput: if there are too many states, for a Q-table or for the agent.
     """
     gait, grid = walk.resolved_gait, walk.grid
     check_reach(walk.robot, gait, grid)
@@ -128,6 +133,8 @@ def check_walk(walk: WalkingProblem) -> None:
             f"{pairs} leg pairs on {cells} cells have {values:,} state-action values; the most is "
             f"{MAX_VALUES:,}: choose fewer divisions or fewer legs"
         )
+    if agent is not None:
+        check_problem(agent, Problem(gait.pairs, grid.cells))
 
 
 def _lane_table(
@@ -218,8 +225,8 @@ def plan_of(config: ExperimentConfig) -> Plan:
             "fewer values, or use `hexapods sweep`"
         )
     plan = Plan(config)
-    for walk in {_walk(setting.training) for setting in plan.settings}:
-        check_walk(walk)
+    for agent, walk in {(s.training.agent, _walk(s.training)) for s in plan.settings}:
+        check_walk(walk, agent)
     return plan
 
 

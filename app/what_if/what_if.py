@@ -132,7 +132,7 @@ def _check_limits(training: TrainingConfig) -> None:
         raise InvalidInput(
             f"a what-if practises at most {MAX_STEPS:,} steps, not {training.steps:,}"
         )
-    check_walk(training)
+    check_walk(training, training.agent)
     pairs, cells = len(training.resolved_gait.pairs), len(training.grid)
     values = cells**pairs * pairs * cells
     if values > MAX_VALUES:
