@@ -1,6 +1,7 @@
 """Titles, descriptions and colours of agents for the stage, the page and reports.
 
-The colours are those of the Okabe–Ito palette, which colour-blind viewers can distinguish.
+The paper's agents have colours of the Okabe–Ito palette, which colour-blind viewers can
+distinguish; it has too few for all agents, so the others are distinct for most viewers only.
 """
 
 import re

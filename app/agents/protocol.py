@@ -110,7 +110,10 @@ class Valuing(Protocol):
 
 @runtime_checkable
 class Tabular(Protocol):
-    """Agent whose learned state is a Q-table only."""
+    """Agent whose greedy policy follows from a Q-table, beside which it may have learned more.
+
+    Its `state` includes the table as `QTable.dump` returns it.
+    """
 
     table: QTable
 
@@ -118,7 +121,7 @@ class Tabular(Protocol):
         """Share the table of another agent of this class, to evaluate it without a copy."""
 
     def continue_from(self, state: AgentState) -> None:
-        """Load the values and visits of a state, but not its settings or schedule position."""
+        """Load what was learned of a state, but not its settings or schedule position."""
 
 
 class Node(Protocol):

@@ -13,7 +13,5 @@ class QLearning(TabularLearner):
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Q(s, a) ← (1 − α) Q(s, a) + α (r + γ max Q(s′, ·)). No state is terminal."""
-        best = max(self.table.values_of(transition.next_observation, transition.next_legal))
-        sample = transition.reward_m + self._gamma * best
-        values, _ = self.table.row(state)
-        values[column] = (1 - self._alpha) * values[column] + self._alpha * sample
+        target = transition.reward_m + self._gamma * self._best_next(transition)
+        self._move_towards(state, column, target)

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from itertools import product
 from typing import Any
 
@@ -68,6 +69,14 @@ class QTable:
         cells = self.cells
         return [row[pair * cells + cell] for pair, cell in actions]
 
+    def best(self, state: int) -> float:
+        """Return the highest value of a legal action in a state given by its index."""
+        slot = self._slots[state]
+        if slot == _NO_SLOT:
+            return 0.0
+        row: list[float] = self._q[slot].tolist()
+        return max([row[column] for column in legal_columns(state, self.pairs, self.cells)])
+
     def values(self, observation: Cells) -> FloatArray:
         """Return the action values in a state, (pairs, cells), NaN where illegal."""
         return self._row(self._q, observation)
@@ -111,22 +120,30 @@ class QTable:
         return digest.hexdigest()
 
     def dump(self) -> dict[str, NDArray[np.generic]]:
-        """Return the visited entries in sparse form (see `table_rows`)."""
-        visited = sum(np.count_nonzero(n) for n in self._in_parts(self._n))
-        where = np.empty(visited, np.int64)
-        q, n = np.empty(visited), np.empty(visited, np.uint32)
-        states, begin = np.flatnonzero(self._slots != _NO_SLOT), 0
-        for first in range(0, len(states), _ROWS_AT_ONCE):
+        """Return the entries that were visited or have a value, sparse (see `table_rows`)."""
+        states, size = np.flatnonzero(self._slots != _NO_SLOT), 0
+        parts = range(0, len(states), _ROWS_AT_ONCE)
+        for first in parts:
+            size += int(np.count_nonzero(self._is_used(states[first : first + _ROWS_AT_ONCE])))
+        where, begin = np.empty(size, np.int64), 0
+        q, n = np.empty(size), np.empty(size, np.uint32)
+        for first in parts:
             some = states[first : first + _ROWS_AT_ONCE]
             slots = self._slots[some]
-            visits = self._n[slots]
-            row, column = np.nonzero(visits)
+            row, column = np.nonzero(self._is_used(some))
             end = begin + len(row)
             where[begin:end] = some[row] * self.actions + column
             q[begin:end] = self._q[slots[row], column]
-            n[begin:end] = visits[row, column]
+            n[begin:end] = self._n[slots[row], column]
             begin = end
         return {"shape": np.array([self.pairs, self.cells]), "where": where, "q": q, "n": n}
+
+    def values_at(self, where: NDArray[np.int64]) -> FloatArray:
+        """Return the values of entries given by their flat indices, as in `dump`."""
+        states, columns = np.divmod(where, self.actions)
+        slots = self._slots[states]
+        values: FloatArray = np.where(slots == _NO_SLOT, 0.0, self._q[slots, columns])
+        return values
 
     def load(self, arrays: dict[str, NDArray[np.generic]]) -> None:
         """Replace all values and visits by the output of `dump`.
@@ -150,10 +167,11 @@ class QTable:
         self._used += len(new)
         return self._slots[states]
 
-    def _in_parts(self, table: NDArray[np.uint32]) -> Iterator[NDArray[np.uint32]]:
-        """Iterate over the rows in use, in blocks."""
-        for first in range(0, self._used, _ROWS_AT_ONCE):
-            yield table[first : min(first + _ROWS_AT_ONCE, self._used)]
+    def _is_used(self, states: NDArray[np.intp]) -> NDArray[np.bool_]:
+        """Whether the entries of some states were visited or have a value, (states, actions)."""
+        slots = self._slots[states]
+        used: NDArray[np.bool_] = (self._n[slots] > 0) | (self._q[slots] != 0)
+        return used
 
     def _row(self, table: NDArray[Any], observation: Cells) -> FloatArray:
         slot = self._slots[self.index(observation)]
@@ -161,6 +179,16 @@ class QTable:
         row = row.reshape(self.pairs, self.cells)
         row[range(self.pairs), observation] = np.nan
         return row
+
+
+@lru_cache(maxsize=1 << 12)
+def legal_columns(state: int, pairs: int, cells: int) -> tuple[int, ...]:
+    """Return the columns of the legal actions in a state given by its index, in order."""
+    columns = []
+    for pair in range(pairs):
+        present = state // cells ** (pairs - 1 - pair) % cells
+        columns += [pair * cells + cell for cell in range(cells) if cell != present]
+    return tuple(columns)
 
 
 def check_size(pairs: int, cells: int) -> None:
@@ -198,3 +226,16 @@ def check_arrays(arrays: Mapping[str, NDArray[np.generic]], pairs: int, cells: i
         raise TableMismatch("the table has values for states that do not exist")
     if not np.all(np.diff(where) > 0):
         raise TableMismatch(NOT_RISING)
+
+
+def check_places(places: NDArray[Any], count: int, shape: NDArray[Any]) -> None:
+    """Check that places are the (state, column) of `count` entries of a table, (count, 2).
+
+    Raises:
+        ValueError: if they are not.
+    """
+    pairs, cells = shape.tolist()
+    if places.shape != (count, 2) or places.dtype.kind != "i":
+        raise ValueError("its steps are no list of states and actions")
+    if (places < 0).any() or (places >= [cells**pairs, pairs * cells]).any():
+        raise ValueError("it has steps from states that do not exist")

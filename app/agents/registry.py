@@ -10,9 +10,18 @@ from functools import cache
 from importlib.metadata import entry_points
 from typing import Any
 
+from app.agents.double_q import DoubleQ
+from app.agents.dyna_q import DynaQ, DynaQPlus
+from app.agents.expected_sarsa import ExpectedSarsa
 from app.agents.lookahead import Greedy, LookAhead, TwoStep
+from app.agents.n_step_sarsa import NStepSarsa
+from app.agents.posterior_sampling import PosteriorSampling
+from app.agents.prioritized_sweeping import PrioritizedSweeping
 from app.agents.protocol import Agent, Problem
+from app.agents.q_lambda import QLambda
 from app.agents.q_learning import QLearning
+from app.agents.r_max import RMax
+from app.agents.sarsa import Sarsa
 from app.agents.sarsa_lambda import SarsaLambda
 from app.agents.tabular import TabularLearner
 from app.domain.errors import InvalidInput, UnknownName
@@ -30,7 +39,17 @@ AgentClass = Callable[..., Agent]
 
 OURS: Mapping[str, AgentClass] = {
     "q-learning": QLearning,
+    "double-q": DoubleQ,
+    "q-lambda": QLambda,
+    "sarsa": Sarsa,
+    "expected-sarsa": ExpectedSarsa,
+    "n-step-sarsa": NStepSarsa,
     "sarsa-lambda": SarsaLambda,
+    "dyna-q": DynaQ,
+    "dyna-q-plus": DynaQPlus,
+    "prioritized-sweeping": PrioritizedSweeping,
+    "r-max": RMax,
+    "posterior-sampling": PosteriorSampling,
     "greedy": Greedy,
     "two-step": TwoStep,
     "look-ahead": LookAhead,

@@ -1,91 +1,19 @@
 """Tabular Sarsa(λ) with replacing traces (Sutton and Barto 1998, §7.5 and §7.8)."""
 
-from typing import Annotated, Any
-
-import numpy as np
-
-from app.agents.protocol import AgentState, Transition
-from app.agents.tabular import Share, TabularLearner
-from app.domain.settings import Setting, declare
-
-TraceDecay = Annotated[
-    Share,
-    Setting(
-        title="Trace decay",
-        symbol="λ",
-        help="How far back a reward counts: 0 is the last step only, 1 all steps before it.",
-        live=True,
-        examples=(0, 0.5, 0.9),
-    ),
-]
-_MIN_TRACE = 1e-3
-"""Cut-off: eligibility traces below it are dropped."""
+from app.agents.protocol import Transition
+from app.agents.traces import TraceLearner
 
 
-class SarsaLambda(TabularLearner):
-    """On-policy learner with eligibility traces, which credit a reward to earlier steps as well.
-
-    Args:
-        trace_decay: λ; the eligibility of a step is (γλ)^k for a reward k steps later.
-        settings: as for `TabularLearner`.
-    """
+class SarsaLambda(TraceLearner):
+    """On-policy learner with eligibility traces, which credit a reward to earlier steps as well."""
 
     title = "Sarsa(λ)"
     description = "Learns by trying; each reward also counts for the steps that led to it."
     color = "#0072B2"
     is_on_policy = True
 
-    def __init__(self, *args: Any, trace_decay: TraceDecay = 0.9, **settings: Any) -> None:
-        super().__init__(*args, **settings)
-        self._trace_decay = trace_decay
-        self._traces: dict[tuple[int, int], float] = {}
-        """Eligibility traces by (row, column) of the table, the newest last."""
-
     def _update(self, transition: Transition, state: int, column: int) -> None:
-        """Q ← Q + α δ e for every trace e, with δ = r + γ Q(s′, a′) − Q(s, a)."""
-        assert transition.next_action is not None  # noqa: S101 - is_on_policy
-        (next_value,) = self.table.values_of(transition.next_observation, [transition.next_action])
+        """Credit δ = r + γ Q(s′, a′) − Q(s, a) to every step with a trace."""
         value = self.table.row(state)[0][column]
-        error = transition.reward_m + self._gamma * next_value - value
-        self._traces.pop((state, column), None)
-        self._traces[state, column] = 1.0
-        decay, kept = self._gamma * self._trace_decay, {}
-        for place, trace in self._traces.items():
-            self.table.row(place[0])[0][place[1]] += self._alpha * error * trace
-            if trace * decay >= _MIN_TRACE:
-                kept[place] = trace * decay
-        self._traces = kept
-
-    def tune(self, *, trace_decay: TraceDecay | None = None, **changes: Any) -> None:
-        """Change rates from the next step on, as in `TabularLearner`."""
-        super().tune(**changes)
-        self._trace_decay = self._trace_decay if trace_decay is None else trace_decay
-
-    def state(self) -> AgentState:
-        """Return the state of `TabularLearner`, λ and the eligibility traces."""
-        places = np.array(list(self._traces), np.int64).reshape(-1, 2)
-        traces = np.array(list(self._traces.values()))
-        own = {"trace_decay": np.array([self._trace_decay]), "places": places, "traces": traces}
-        return super().state() | own
-
-    def load(self, state: AgentState) -> None:
-        """Restore a state that `state` returned; the caller restores the generator."""
-        super().load(state)
-        (self._trace_decay,) = state["trace_decay"].tolist()
-        places = ((row, column) for row, column in state["places"].tolist())
-        self._traces = dict(zip(places, state["traces"].tolist(), strict=True))
-
-    @staticmethod
-    def check_state(state: AgentState) -> None:
-        """Check what `load` relies on beyond the table, as in `TabularLearner`."""
-        TabularLearner.check_state(state)
-        declare("trace_decay", TraceDecay).check(*state["trace_decay"].tolist())
-        (pairs, cells), traces = state["shape"].tolist(), state["traces"]
-        size = [cells**pairs, pairs * cells]
-        if traces.ndim != 1 or traces.dtype.kind != "f":
-            raise ValueError("its traces are no list of numbers")
-        places = state["places"].reshape(len(traces), 2)
-        if places.dtype.kind != "i" or (places < 0).any() or (places >= size).any():
-            raise ValueError("it has traces of states that do not exist")
-        if not ((traces > 0) & (traces <= 1)).all():
-            raise ValueError("its traces are not from 0 to 1")
+        target = transition.reward_m + self._gamma * self._chosen_next(transition)
+        self._credit(state, column, target - value)

@@ -1,4 +1,4 @@
-"""Base class of learners with a Q-table and an ε-greedy policy."""
+"""Base classes: agents that act greedily in a Q-table, and learners with an ε-greedy policy."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -85,8 +85,72 @@ class EpsilonSchedule:
         return self.start + (self.end - self.start) * min(episode, last) / max(1, last)
 
 
-class TabularLearner(ABC):
-    """Model-free learner of action values in a Q-table, with an ε-greedy policy.
+class TabularAgent(ABC):
+    """Learner whose greedy actions follow from a Q-table; ties are broken at random.
+
+    A subclass implements `learn`, `state` and `load`.
+
+    Args:
+        rng: random generator, the only source of chance.
+        problem: determines the size of the table.
+        explore: if False, the policy is greedy in the table.
+    """
+
+    needs_practice = True
+
+    def __init__(self, rng: np.random.Generator, problem: Problem, *, explore: bool = True) -> None:
+        self.table = QTable(len(problem.pairs), len(problem.cells_m))
+        self._rng, self._explore = rng, explore
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        """Return the action with the highest value in the table."""
+        return self._highest(legal, self.table.values_of(observation, legal))
+
+    def _highest(self, legal: Sequence[Action], values: Sequence[float]) -> Action:
+        """Return the action with the highest of some values; ties are broken at random."""
+        highest = max(values)
+        best = [action for action, value in zip(legal, values, strict=True) if value == highest]
+        return best[0] if len(best) == 1 else self._any(best)
+
+    def _any(self, actions: Sequence[Action]) -> Action:
+        """Return one of some actions at random."""
+        return actions[int(self._rng.integers(len(actions)))]
+
+    @abstractmethod
+    def learn(self, transition: Transition) -> None:
+        """Learn from the transition of the last action."""
+
+    def values(self, observation: Cells) -> FloatArray:
+        """Return the action values in this state, (pairs, cells), NaN where illegal."""
+        return self.table.values(observation)
+
+    def visits(self, observation: Cells) -> FloatArray:
+        """Return the visit counts in this state, (pairs, cells), NaN where illegal."""
+        return self.table.visits(observation)
+
+    @abstractmethod
+    def state(self) -> AgentState:
+        """Return the complete state; `where`, `q`, `n` and `shape` are those of the table."""
+
+    @abstractmethod
+    def load(self, state: AgentState) -> None:
+        """Restore a state that `state` returned; the caller restores the generator."""
+
+    def share_table(self, other: "TabularAgent") -> None:
+        """Share the table of another learner, without a copy; for evaluation only."""
+        self.table = other.table
+
+    def continue_from(self, state: AgentState) -> None:
+        """Load what was learned only; rates are those of this run, and the ε schedule restarts."""
+        self._load_learned(state)
+
+    def _load_learned(self, state: AgentState) -> None:
+        """Load values and visits, and in subclasses what else was learned, but no settings."""
+        self.table.load(state)
+
+
+class TabularLearner(TabularAgent):
+    """Learner of action values in a Q-table, with an ε-greedy policy.
 
     A subclass implements the update rule, `_update`, and may add settings.
 
@@ -101,8 +165,6 @@ class TabularLearner(ABC):
         steps_per_episode: number of steps for which ε is constant.
     """
 
-    needs_practice = True
-
     def __init__(
         self,
         rng: np.random.Generator,
@@ -116,8 +178,7 @@ class TabularLearner(ABC):
         steps: int = 500,
         steps_per_episode: int = 50,
     ) -> None:
-        self.table = QTable(len(problem.pairs), len(problem.cells_m))
-        self._rng, self._explore = rng, explore
+        super().__init__(rng, problem, explore=explore)
         self._alpha, self._gamma = alpha, gamma
         self._schedule = EpsilonSchedule(epsilon_start, epsilon_end, -(-steps // steps_per_episode))
         self._steps_per_episode = steps_per_episode
@@ -137,11 +198,8 @@ class TabularLearner(ABC):
         """Return an ε-greedy action; ties are broken at random."""
         epsilon = self.epsilon
         if epsilon > 0 and self._rng.random() < epsilon:
-            return legal[int(self._rng.integers(len(legal)))]
-        values = self.table.values_of(observation, legal)
-        highest = max(values)
-        best = [action for action, value in zip(legal, values, strict=True) if value == highest]
-        return best[0] if len(best) == 1 else best[int(self._rng.integers(len(best)))]
+            return self._any(legal)
+        return super().act(observation, legal)
 
     def learn(self, transition: Transition) -> None:
         """Update the table, and the visit count of the state and action."""
@@ -155,6 +213,20 @@ class TabularLearner(ABC):
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Apply the update rule for a transition from row `state` by the action in `column`."""
 
+    def _move_towards(self, state: int, column: int, target: float) -> None:
+        """Q(s, a) ← (1 − α) Q(s, a) + α target."""
+        values, _ = self.table.row(state)
+        values[column] = (1 - self._alpha) * values[column] + self._alpha * target
+
+    def _best_next(self, transition: Transition) -> float:
+        """Return max Q(s′, ·). No state is terminal."""
+        return max(self.table.values_of(transition.next_observation, transition.next_legal))
+
+    def _chosen_next(self, transition: Transition) -> float:
+        """Return Q(s′, a′) of the next action that an on-policy learner has chosen."""
+        assert transition.next_action is not None  # noqa: S101 - is_on_policy
+        return self.table.values_of(transition.next_observation, [transition.next_action])[0]
+
     def tune(
         self,
         *,
@@ -167,14 +239,6 @@ class TabularLearner(ABC):
         self._gamma = self._gamma if gamma is None else gamma
         self._fixed_epsilon = self._fixed_epsilon if epsilon is None else epsilon
 
-    def values(self, observation: Cells) -> FloatArray:
-        """Return the action values in this state, (pairs, cells), NaN where illegal."""
-        return self.table.values(observation)
-
-    def visits(self, observation: Cells) -> FloatArray:
-        """Return the visit counts in this state, (pairs, cells), NaN where illegal."""
-        return self.table.visits(observation)
-
     def state(self) -> AgentState:
         """Return values, visits, rates and the position in the ε schedule."""
         fixed = np.nan if self._fixed_epsilon is None else self._fixed_epsilon
@@ -184,18 +248,10 @@ class TabularLearner(ABC):
 
     def load(self, state: AgentState) -> None:
         """Restore a state that `state` returned; the caller restores the generator."""
-        self.table.load(state)
+        self._load_learned(state)
         self._learned = int(state["learned"][0])
         self._alpha, self._gamma, fixed = state["rates"].tolist()
         self._fixed_epsilon = None if np.isnan(fixed) else fixed
-
-    def share_table(self, other: "TabularLearner") -> None:
-        """Share the table of another learner, without a copy; for evaluation only."""
-        self.table = other.table
-
-    def continue_from(self, state: AgentState) -> None:
-        """Load values and visits only; rates are those of this run, and the ε schedule restarts."""
-        self.table.load(state)
 
     @staticmethod
     def check_state(state: AgentState) -> None:
@@ -211,5 +267,6 @@ class TabularLearner(ABC):
         # NaN while the schedule is in use.
         if not np.isnan(epsilon):
             declare("epsilon", Epsilon).check(epsilon)
-        if state["learned"].dtype.kind != "i" or state["learned"][0] < 0:
+        (learned,) = state["learned"].tolist()
+        if not isinstance(learned, int) or learned < 0:
             raise ValueError("it has learned for less than no step")

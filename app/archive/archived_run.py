@@ -26,7 +26,7 @@ from app.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownNa
 from app.domain.robot import robot
 from app.domain.text import check_name
 from app.experiments.config import ExperimentConfig
-from app.jobs.submissions import MAX_WORKERS, check_walk, plan_of
+from app.jobs.submissions import MAX_WORKERS, check_training, check_walk, plan_of
 from app.runs.clocks import CLOCKS
 from app.runs.config import MAX_LANES, RaceConfig, TrainingConfig, check_lane
 from app.storage.errors import Conflict
@@ -187,7 +187,8 @@ def _run(fields: _EndedRun, agents: Collection[str]) -> Run:
     _check_agents(config, agents)
     if isinstance(config, TrainingConfig):
         check_settings(config)
-    if isinstance(config, ExperimentConfig):
+        check_training(config)
+    elif isinstance(config, ExperimentConfig):
         if plan_of(config).total != fields.total:
             raise ValueError("its total is not that of its trials")
     else:

@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from app.archive.imported_tables import checked_table
 from app.domain.text import check_name
 from app.jobs.jobs import Jobs
-from app.jobs.submissions import check_walk
+from app.jobs.submissions import check_training
 from app.runs import tables
 from app.storage.run import IdempotencyKey, Run
 
@@ -36,7 +36,7 @@ def import_table(
         StorageFull: if there is too little disk space; nothing is left behind then.
     """
     checkpoint, meta, config = checked_table(data, "the file", agents)
-    check_walk(config)
+    check_training(config)
     digest = None
     if "where" in tables.agent_state(checkpoint):
         digest = tables.table_of(checkpoint).sha256()

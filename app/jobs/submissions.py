@@ -85,8 +85,7 @@ def new_training(start: TrainingStart, store: RunStore, new_id: Callable[[], str
     config = start.config
     if not learns(config.agent):
         raise InvalidInput(f"{config.agent} does not learn, so it cannot be trained")
-    check_walk(config)
-    check_problem(config.agent, problem_of(config), config.settings)
+    check_training(config)
     if start.continue_from is not None:
         table = load_table(store, start.continue_from)
         check_fits(table, config, config.observation)
@@ -131,6 +130,17 @@ def new_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> li
         total=config.steps * len(lanes),
     )
     return [*trainings.values(), race]
+
+
+def check_training(config: TrainingConfig) -> None:
+    """Check that the robot reaches its foot grid, and that what is learned would fit into memory.
+
+    Raises:
+        Unreachable: if a leg cannot reach a cell.
+        InvalidInput: if there are too many states, for a Q-table or for the agent.
+    """
+    check_walk(config)
+    check_problem(config.agent, problem_of(config), config.settings)
 
 
 def check_walk(walk: WalkingProblem) -> None:

@@ -14,7 +14,7 @@ from app.domain.errors import InvalidInput
 from app.domain.settings import SettingValues
 from app.experiments.plan import trial_seed
 from app.experiments.trial import TrialConfig, TrialResult
-from app.jobs.submissions import check_walk
+from app.jobs.submissions import check_training
 from app.runs.config import TrainingConfig, training_config
 from app.storage.errors import Busy
 from app.what_if.trial_pool import TrialPool
@@ -132,7 +132,7 @@ def _check_limits(training: TrainingConfig) -> None:
         raise InvalidInput(
             f"a what-if practises at most {MAX_STEPS:,} steps, not {training.steps:,}"
         )
-    check_walk(training)
+    check_training(training)
     pairs, cells = len(training.resolved_gait.pairs), len(training.grid)
     values = cells**pairs * pairs * cells
     if values > MAX_VALUES:

@@ -3,6 +3,7 @@
 import pytest
 
 from app.agents.protocol import Agent, Transition
+from app.agents.registry import OURS
 from app.assembly import build_learner
 from app.domain.observation import OBSERVATIONS, Observation, observe
 from app.domain.types import Action
@@ -11,9 +12,7 @@ from app.runs.config import training_config
 from app.runs.training import Learner
 
 AGENTS = [
-    "q-learning",
-    "greedy",
-    "two-step",
+    *OURS,
     "tests.own_agents:ThreeStep",
     "tests.own_agents:Restless",
     "tests.own_agents:Plain",
@@ -37,10 +36,15 @@ def learner(agent: str, seed: int = 0, observation: Observation = "measured") ->
 def walk(learner: Learner, steps: int) -> list[tuple[Action, float]]:
     """Take and learn some steps; return the actions and rewards."""
     walker, done = learner.walker, []
+    is_on_policy = getattr(walker.agent, "is_on_policy", False)
+    chosen = None
     for _ in range(steps):
-        observed, action = walker.observed, walker.decide()
+        observed, action = walker.observed, chosen or walker.decide()
         reward = walker.carry_out(action).reward_m
-        walker.agent.learn(Transition(observed, action, reward, walker.observed, walker.legal))
+        chosen = walker.decide() if is_on_policy else None
+        walker.agent.learn(
+            Transition(observed, action, reward, walker.observed, walker.legal, chosen)
+        )
         done.append((action, reward))
     return done
 

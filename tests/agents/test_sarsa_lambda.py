@@ -1,36 +1,22 @@
-"""Sarsa(λ): update by hand, validation of states, and bit-exact resume."""
+"""Sarsa(λ): update by hand, and validation of states."""
 
 from typing import Any
 
 import numpy as np
 import pytest
 
-from app.agents.protocol import Problem, Tabular, Transition, Tunable
+from app.agents.protocol import Tabular, Tunable
 from app.agents.sarsa_lambda import SarsaLambda
-from app.agents.tabular import TabularLearner
 from app.assembly import build_learner
 from app.domain.errors import InvalidInput
-from app.domain.observation import legal_actions
-from app.domain.types import Action, Cells
+from app.domain.types import Action
 from app.runs.config import training_config
-from app.runs.tables import from_bytes, restore, snapshot, to_bytes
 from app.runs.training import train
-
-PROBLEM = Problem(((1, 4), (2, 5), (3, 6)), np.zeros((5, 2)))
-A, B, C = (0, 0, 0), (1, 0, 0), (1, 2, 0)
-FIRST, SECOND, THIRD = Action(0, 1), Action(1, 2), Action(2, 3)
+from tests.agents.by_hand import FIRST, PROBLEM, SECOND, THIRD, A, B, C, step, value
 
 
 def learner(**settings: Any) -> SarsaLambda:
     return SarsaLambda(np.random.default_rng(0), PROBLEM, **settings)
-
-
-def step(before: Cells, action: Action, reward_m: float, after: Cells, then: Action) -> Transition:
-    return Transition(before, action, reward_m, after, legal_actions(after, 5), then)
-
-
-def value(agent: TabularLearner, observation: Cells, action: Action) -> float:
-    return float(agent.values(observation)[action])
 
 
 def test_reward_is_credited_to_earlier_steps_by_gamma_lambda() -> None:
@@ -67,28 +53,6 @@ def test_lambda_can_be_tuned_during_practice() -> None:
 
     assert value(agent, C, THIRD) == pytest.approx(1)
     assert value(agent, B, SECOND) == pytest.approx(1)
-
-
-def test_training_resumes_bit_exactly_from_a_checkpoint() -> None:
-    config = training_config(
-        "sarsa-lambda", gait="left-right-origin", simulator="kinematic", steps=120, seed=4
-    )
-    whole, cut = build_learner(config), build_learner(config)
-    for _ in train(whole, config):
-        pass
-    for _ in train(cut, config):
-        if cut.step == 47:
-            break
-    again = build_learner(config)
-    restore(again, from_bytes(to_bytes(snapshot(cut, config)), "checkpoint"))
-    for _ in train(again, config):
-        pass
-
-    ended, resumed = (snapshot(one, config) for one in (whole, again))
-    assert resumed.meta == ended.meta
-    assert set(resumed.arrays) == set(ended.arrays)
-    for name, array in ended.arrays.items():
-        np.testing.assert_array_equal(resumed.arrays[name], array, name)
 
 
 def test_learned_policy_reaches_the_expected_distance() -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.agents import registry
 from app.runs.recording import race_recording
 from tests.api.calls import WALK, Api, refused
 
@@ -232,9 +233,7 @@ def test_all_options_can_be_started(api: Api) -> None:
             body = {**WALK, "gait": gait["name"], "robot": robot["name"], "steps": 1}
             api.stop(api.start("/trainings", body))
     learns = {agent["name"]: agent["learns"] for agent in options["agents"]}
-    learners = {"q-learning": True, "sarsa-lambda": True}
-    searchers = dict.fromkeys(("greedy", "two-step", "look-ahead"), False)
-    assert learns == learners | searchers
+    assert learns == {name: registry.learns(name) for name in registry.OURS}
     api.stop(api.start("/trainings", options["defaults"]["training"]))
     assert set(options["limits"]) <= set(options["help"])
 

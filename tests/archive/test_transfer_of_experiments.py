@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from app.agents.registry import OURS
 from app.archive import archive
 from app.archive.archived_trials import TRIALS
 from app.archive.transfer import export_run
@@ -69,7 +70,7 @@ def test_unregistered_agents_are_refused_without_importing_their_module(
     monkeypatch.syspath_prepend(tmp_path)
     config = replace(SWEEP, agents=("q-learning", "evil:Agent"))
     store.create(experiment("a", state="failed", config=config))
-    assert "q-learning, sarsa-lambda, greedy, two-step" in refusal(export_run(store, "a"))
+    assert ", ".join(OURS) in refusal(export_run(store, "a"))
     assert not (tmp_path / "ran").exists()
 
 

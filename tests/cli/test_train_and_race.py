@@ -125,7 +125,7 @@ def test_custom_robot_and_gait_are_accepted(tmp_path: Path) -> None:
         ((*GAIT, "--observation", "guessed"), "measured, commanded"),
         (
             (*GAIT, "--agent", "skynet"),
-            "sarsa-lambda, greedy, two-step, look-ahead, ",
+            "posterior-sampling, greedy, two-step, look-ahead, my.module:Agent",
         ),
         ((*GAIT, "--agent", "no_module:Agent"), "cannot import no_module"),
         ((*GAIT, "--from", "missing.npz"), "missing.npz"),

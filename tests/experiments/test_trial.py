@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.agents.registry import OURS
 from app.domain.errors import UnknownName
 from app.experiments.config import experiment_config
 from app.experiments.plan import Plan, Trial
@@ -128,5 +129,5 @@ def test_failing_agent_gives_a_result_with_the_failure() -> None:
 
 
 def test_an_unknown_agent_is_refused() -> None:
-    with pytest.raises(UnknownName, match="q-learning, sarsa-lambda, greedy, two-step"):
+    with pytest.raises(UnknownName, match=", ".join(OURS)):
         run_trial(TrialConfig(training=practice(agent="skynet")))

@@ -1,0 +1,62 @@
+"""Tabular Double Q-learning (van Hasselt 2010; Sutton and Barto, 2nd edition, §6.7)."""
+
+from typing import Any
+
+import numpy as np
+
+from app.agents.protocol import AgentState, Transition
+from app.agents.q_table import QTable
+from app.agents.tabular import TabularLearner
+
+
+class DoubleQ(TabularLearner):
+    """Off-policy learner with two tables: one names the best next action, the other values it.
+
+    A maximum over noisy values is too high on average; with two tables that learned from different
+    steps the noise of the choice is not that of the value. `table` holds the mean of both, in which
+    the policy is ε-greedy.
+    """
+
+    title = "Double Q"
+    description = "Q-learning with two tables that check each other, against wishful thinking."
+    color = "#DDCC77"
+
+    def __init__(self, *args: Any, **settings: Any) -> None:
+        super().__init__(*args, **settings)
+        self._halves = tuple(QTable(self.table.pairs, self.table.cells) for _ in range(2))
+
+    def _update(self, transition: Transition, state: int, column: int) -> None:
+        """Q₁(s, a) ← (1 − α) Q₁(s, a) + α (r + γ Q₂(s′, argmax Q₁(s′, ·))).
+
+        Which of the two tables is Q₁ is drawn by lot; ties of the maximum as well.
+        """
+        chosen = int(self._rng.integers(2))
+        learning, valuing = self._halves[chosen], self._halves[1 - chosen]
+        observation, legal = transition.next_observation, transition.next_legal
+        best = self._highest(legal, learning.values_of(observation, legal))
+        (value,) = valuing.values_of(observation, [best])
+        target = transition.reward_m + self._gamma * value
+        values, _ = learning.row(state)
+        values[column] = (1 - self._alpha) * values[column] + self._alpha * target
+        self.table.row(state)[0][column] = (values[column] + valuing.row(state)[0][column]) / 2
+
+    def state(self) -> AgentState:
+        """Return the state of `TabularLearner`, and the values of both tables at `where`."""
+        state = super().state()
+        halves = [half.values_at(state["where"]) for half in self._halves]
+        return state | {"halves": np.array(halves)}
+
+    def _load_learned(self, state: AgentState) -> None:
+        super()._load_learned(state)
+        for half, values in zip(self._halves, state["halves"], strict=True):
+            half.load({**state, "q": values})
+
+    @staticmethod
+    def check_state(state: AgentState) -> None:
+        """Check what `load` relies on beyond the table, as in `TabularLearner`."""
+        TabularLearner.check_state(state)
+        halves = state["halves"]
+        if halves.shape != (2, len(state["q"])) or halves.dtype.kind != "f":
+            raise ValueError("its two tables do not fit together")
+        if not np.array_equal(halves.sum(axis=0) / 2, state["q"]):
+            raise ValueError("its values are not the mean of its two tables")

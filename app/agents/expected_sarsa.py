@@ -1,0 +1,23 @@
+"""Tabular Expected Sarsa (Sutton and Barto, 2nd edition, §6.6)."""
+
+from app.agents.protocol import Transition
+from app.agents.tabular import TabularLearner
+
+
+class ExpectedSarsa(TabularLearner):
+    """On-policy learner: the update uses the mean value of the next action under its policy.
+
+    The mean over all actions that the ε-greedy policy may take has less variance than the value of
+    the one that it happens to take, as in Sarsa.
+    """
+
+    title = "Expected Sarsa"
+    description = "Sarsa that reckons with the average of its next steps, not with the one it drew."
+    color = "#BF6FC4"
+
+    def _update(self, transition: Transition, state: int, column: int) -> None:
+        """Q(s, a) ← (1 − α) Q(s, a) + α (r + γ Σ π(a′|s′) Q(s′, a′)), π being ε-greedy."""
+        values = self.table.values_of(transition.next_observation, transition.next_legal)
+        epsilon = self.epsilon
+        expected = (1 - epsilon) * max(values) + epsilon * sum(values) / len(values)
+        self._move_towards(state, column, transition.reward_m + self._gamma * expected)

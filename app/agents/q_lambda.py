@@ -1,0 +1,26 @@
+"""Watkins's Q(λ) with replacing traces (Sutton and Barto 1998, §7.6; 2nd edition, §12.10)."""
+
+from app.agents.protocol import Transition
+from app.agents.traces import TraceLearner
+
+
+class QLambda(TraceLearner):
+    """Off-policy learner with eligibility traces, which end where the learner explores.
+
+    A reward is credited to earlier steps as long as greedy actions led to it: beyond an
+    exploratory one it says nothing about the greedy policy.
+    """
+
+    title = "Q(λ)"
+    description = (
+        "Q-learning whose rewards also count for the steps before, back to the last random one."
+    )
+    color = "#B4466F"
+
+    def _update(self, transition: Transition, state: int, column: int) -> None:
+        """Credit δ = r + γ max Q(s′, ·) − Q(s, a); a step that was not greedy ends all traces."""
+        value = self.table.row(state)[0][column]
+        if value < self.table.best(state):
+            self._traces.clear()
+        target = transition.reward_m + self._gamma * self._best_next(transition)
+        self._credit(state, column, target - value)

@@ -1,0 +1,18 @@
+"""Tabular Sarsa (Sutton and Barto, 2nd edition, §6.4)."""
+
+from app.agents.protocol import Transition
+from app.agents.tabular import TabularLearner
+
+
+class Sarsa(TabularLearner):
+    """On-policy learner: the update uses the value of the next action, random or not."""
+
+    title = "Sarsa"
+    description = "Learns by trying what its steps are worth, its own random steps included."
+    color = "#8073C9"
+    is_on_policy = True
+
+    def _update(self, transition: Transition, state: int, column: int) -> None:
+        """Q(s, a) ← (1 − α) Q(s, a) + α (r + γ Q(s′, a′)). No state is terminal."""
+        target = transition.reward_m + self._gamma * self._chosen_next(transition)
+        self._move_towards(state, column, target)

@@ -1,0 +1,269 @@
+"""All learners of the registry: exact values, resume to the last bit, files, evaluation, looks."""
+
+from collections.abc import Mapping
+from functools import cache
+
+import numpy as np
+import pytest
+
+from app.agents.appearance import colors_of, description_of, title_of
+from app.agents.protocol import Problem, Transition, Valuing
+from app.agents.registry import OURS, build, find, learns
+from app.agents.tabular import TabularAgent, TabularLearner
+from app.archive.imported_tables import checked_table
+from app.assembly import build_learner, build_walkers, finish_training
+from app.domain.errors import HexapodError
+from app.domain.feet import Feet
+from app.domain.grid import FootGrid
+from app.domain.observation import legal_actions
+from app.domain.types import Action, Cells
+from app.domain.world import UNDISTURBED
+from app.experiments.trial import TrialConfig, run_trial
+from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
+from app.runs.tables import Checkpoint, from_bytes, restore, snapshot, table_of, to_bytes
+from app.runs.training import Learner, evaluate, train
+
+LEARNERS = [name for name in OURS if learns(name)]
+TABULAR = [name for name in LEARNERS if issubclass(find(name), TabularAgent)]  # type: ignore[arg-type]
+ON_POLICY = ["sarsa", "expected-sarsa", "n-step-sarsa", "sarsa-lambda"]
+
+
+def config_of(agent: str, steps: int = 90) -> TrainingConfig:
+    return training_config(
+        agent, gait="left-right-origin", simulator="kinematic", steps=steps, seed=4
+    )
+
+
+def trained(config: TrainingConfig, steps: int | None = None) -> Learner:
+    learner = build_learner(config)
+    for _ in train(learner, config):
+        if learner.step == steps:
+            break
+    return learner
+
+
+@cache
+def checkpoint_of(agent: str) -> Checkpoint:
+    """Return a checkpoint amid a training, when traces, queues and plans are not empty."""
+    return snapshot(trained(config_of(agent), 47), config_of(agent))
+
+
+@pytest.fixture(params=LEARNERS)
+def agent(request: pytest.FixtureRequest) -> str:
+    name: str = request.param
+    return name
+
+
+# ---- convergence to exact values: the kinematic problem with its feet put back on the grid
+
+GRID = FootGrid()
+PAIRS, CELLS = 2, len(GRID)
+PROBLEM = Problem(((1, 3), (2, 4)), GRID.cells)
+GAMMA = 0.5
+
+
+def moved(state: Cells, action: Action) -> tuple[Cells, float]:
+    """Return the next state and the reward of four legs that stand exactly on `state`.
+
+    The kinematic law; then every foot is put on the cell nearest to it, so that the state is
+    Markov: what the agent observes decides what comes next.
+    """
+    lateral, forward = zip(*(GRID.places_m[cell] for cell in state), strict=True)
+    feet = Feet(state, lateral, forward).landed(*action, GRID.places_m[action.cell])
+    after, advance_m = feet.centred()
+    cells = map(GRID.nearest, after.lateral_m, after.forward_m)
+    return tuple(cells), advance_m
+
+
+@cache
+def outcomes() -> Mapping[tuple[Cells, Action], tuple[Cells, float]]:
+    """Return what follows each state and action, for all states that can be reached from home."""
+    found, open_states = {}, [(0,) * PAIRS]
+    while open_states:
+        state = open_states.pop()
+        for action in legal_actions(state, CELLS):
+            found[state, action] = moved(state, action)
+        seen = {known for known, _ in found} | set(open_states)
+        open_states += {after for after, _ in found.values()} - seen
+    return found
+
+
+@cache
+def exact_values(*, of_random_policy: bool) -> Mapping[tuple[Cells, Action], float]:
+    """Return the values of the best policy by value iteration, or those of the random one."""
+    values = dict.fromkeys(outcomes(), 0.0)
+    for _ in range(40):
+        of_state: dict[Cells, list[float]] = {}
+        for (state, _), value in values.items():
+            of_state.setdefault(state, []).append(value)
+        worth = {
+            state: float(np.mean(of)) if of_random_policy else max(of)
+            for state, of in of_state.items()
+        }
+        values = {
+            pair: reward + GAMMA * worth[after] for pair, (after, reward) in outcomes().items()
+        }
+    return values
+
+
+def practised(name: str, rounds: list[tuple[int, float]], **settings: float) -> TabularAgent:
+    """Return a learner after rounds of random steps, each so many at a learning rate."""
+    rng = np.random.default_rng(0)
+    offered = {"rng": rng, "problem": PROBLEM, "gamma": GAMMA, "epsilon_end": 1.0, **settings}
+    agent = build(find(name), offered)
+    assert isinstance(agent, TabularAgent)
+    state, action = (0,) * PAIRS, Action(0, 1)
+    for steps, alpha in rounds:
+        if isinstance(agent, TabularLearner):
+            agent.tune(alpha=alpha)
+        for _ in range(steps):
+            after, reward = outcomes()[state, action]
+            legal = legal_actions(after, CELLS)
+            chosen = legal[int(rng.integers(len(legal)))]
+            agent.learn(Transition(state, action, reward, after, legal, chosen))
+            state, action = after, chosen
+    return agent
+
+
+def error(agent: TabularAgent, exact: Mapping[tuple[Cells, Action], float]) -> float:
+    """Return the largest error of an action value, as a share of the range of the exact ones."""
+    errors = [
+        abs(agent.table.values(state)[action] - exact[state, action]) for state, action in exact
+    ]
+    return float(max(errors) / (max(exact.values()) - min(exact.values())))
+
+
+@pytest.mark.parametrize("name", [name for name in TABULAR if name not in ON_POLICY])
+def test_values_converge_to_those_of_value_iteration(name: str) -> None:
+    agent = practised(name, [(12_000, 0.5)], planning_steps=5, plan_every=100, bonus_m=0.0)
+
+    assert error(agent, exact_values(of_random_policy=False)) < 0.01
+
+
+@pytest.mark.parametrize("name", ON_POLICY)
+def test_values_converge_to_those_of_the_policy(name: str) -> None:
+    """An on-policy learner learns what its own policy is worth, here a random one."""
+    agent = practised(name, [(5000, 0.5), (5000, 0.2), (20_000, 0.05)])
+
+    assert error(agent, exact_values(of_random_policy=True)) < 0.1
+    assert error(agent, exact_values(of_random_policy=False)) > 0.2
+
+
+# ---- what every part of the product relies on
+
+
+def test_training_resumes_to_the_last_bit(agent: str) -> None:
+    config = config_of(agent)
+    ended = snapshot(trained(config), config)
+    again = build_learner(config)
+    restore(again, from_bytes(to_bytes(checkpoint_of(agent)), "checkpoint"))
+    for _ in train(again, config):
+        pass
+
+    resumed = snapshot(again, config)
+    assert resumed.meta == ended.meta
+    assert set(resumed.arrays) == set(ended.arrays)
+    for name, array in ended.arrays.items():
+        np.testing.assert_array_equal(resumed.arrays[name], array, name)
+
+
+def test_evaluation_and_display_do_not_change_what_is_learned(agent: str) -> None:
+    config = config_of(agent)
+    watched, unwatched = trained(config, 47), trained(config, 47)
+    for _ in range(2):
+        evaluate(watched, config, 0)
+        watched.walker.knowledge()
+        snapshot(watched, config)
+    for one in (watched, unwatched):
+        for _ in train(one, config, record=one is watched):
+            pass
+
+    assert to_bytes(snapshot(watched, config)) == to_bytes(snapshot(unwatched, config))
+
+
+def test_a_loaded_learner_walks_as_far_as_the_one_evaluated(agent: str) -> None:
+    config = config_of(agent)
+    race = RaceConfig(gait=config.gait, simulator="kinematic", lanes=(LaneConfig(agent=agent),))
+    learner = trained(config)
+    (walker,) = build_walkers(race, [snapshot(learner, config)])
+    evaluated = learner.evaluator(UNDISTURBED, np.random.default_rng(1))
+    ties = np.random.default_rng(1).bit_generator
+    walker.agent._rng.bit_generator.state = ties.state  # type: ignore[attr-defined]
+    for _ in range(20):
+        action = evaluated.decide()
+        assert walker.decide() == action
+        walker.carry_out(action)
+        evaluated.carry_out(action)
+
+
+def test_values_and_visits_are_shown(agent: str) -> None:
+    learner = trained(config_of(agent), 47)
+    walker = learner.walker
+    assert isinstance(walker.agent, Valuing)
+    values, visits = (of(walker.observed) for of in (walker.agent.values, walker.agent.visits))
+
+    assert values.shape == visits.shape == (3, 5)
+    at_present_cell = np.zeros((3, 5), bool)
+    at_present_cell[range(3), walker.observed] = True
+    np.testing.assert_array_equal(np.isnan(values), at_present_cell)
+    np.testing.assert_array_equal(np.isnan(visits), at_present_cell)
+
+
+@pytest.mark.parametrize("name", TABULAR)
+def test_table_of_a_file_is_that_of_the_result(name: str) -> None:
+    config = config_of(name)
+    learner = trained(config)
+    result = finish_training(learner, config)
+    table = table_of(from_bytes(to_bytes(snapshot(learner, config)), "q.npz"))
+
+    assert table.sha256() == result["q_table_sha256"]
+    assert sum(np.nansum(visits) for _, _, visits in table.rows()) == config.steps
+
+
+def test_practice_continues_from_what_was_learned(agent: str) -> None:
+    config = config_of(agent, 5)
+    learner = build_learner(config, checkpoint_of(agent))
+    before = learner.walker.agent
+    assert isinstance(before, Valuing)
+    assert np.nansum([before.visits((0, 0, 0))]) > 0
+    for _ in train(learner, config):
+        pass
+    assert learner.step == 5
+
+
+def test_trial_of_an_experiment_runs(agent: str) -> None:
+    result = run_trial(TrialConfig(training=config_of(agent, 30), blocks=2))
+
+    assert result.failure is None
+    assert len(result.distances_m) == 2
+
+
+def test_a_file_of_its_own_is_imported(agent: str) -> None:
+    checkpoint, _, config = checked_table(to_bytes(checkpoint_of(agent)), "q.npz", LEARNERS)
+
+    assert config == config_of(agent)
+    assert checkpoint.meta["step"] == 47
+
+
+def test_a_damaged_array_in_a_file_is_refused(agent: str) -> None:
+    original = checkpoint_of(agent)
+    names = [name for name in original.arrays if name.startswith("agent.")]
+    for name in names:
+        array = original.arrays[name]
+        for damaged in (np.array(["a lot"]), np.append(array.ravel(), array.ravel()[:1])):
+            arrays = {**original.arrays, name: damaged}
+            data = to_bytes(Checkpoint(original.meta, arrays))
+            with pytest.raises(HexapodError):
+                checked_table(data, "q.npz", LEARNERS)
+
+
+def test_every_agent_looks_different() -> None:
+    colors = colors_of(list(OURS))
+    assert len({title_of(agent) for agent in OURS}) == len(set(colors)) == len(OURS)
+    own = {getattr(find(agent), "color", None) for agent in OURS}
+    assert set(colors) == own
+
+
+def test_every_agent_says_what_it_does_in_a_sentence(agent: str) -> None:
+    assert 20 < len(description_of(agent)) < 100
+    assert description_of(agent).endswith(".")
