@@ -225,6 +225,7 @@ def finish_training(
         "distance_m": distance,
         "greedy_distance_m": learner.greedy_distance_m if is_known else None,
         "q_table_sha256": agent.table.sha256() if isinstance(agent, Tabular) else None,
+        "fell_at_step": learner.fell_at_step,
     }
 
 

@@ -43,7 +43,7 @@ class LookAhead:
 
     title = "Look-ahead"
     description = "Simulates every possible sequence of steps, and takes the best one."
-    color = "#0072B2"
+    color = "#117733"
     learns = False
 
     def __init__(self, expand: Expand, depth: Depth = 3, problem: Problem | None = None) -> None:

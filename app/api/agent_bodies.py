@@ -11,7 +11,7 @@ from app.agents.registry import learns
 from app.api.descriptions import VALID
 from app.api.experiment_body import ExperimentBody, one_or_more
 from app.api.fields import Declared, TaggedUnion
-from app.api.schemas import ChangeBody, LaneBody, PracticeBody, RaceBody, TrainingBody
+from app.api.schemas import BranchBody, ChangeBody, LaneBody, PracticeBody, RaceBody, TrainingBody
 from app.domain.settings import REQUIRED, DeclaredSetting
 from app.experiments.config import settings_by_name
 from app.runs.config import MAX_LANES, TrainingConfig, agent_settings, changeable_settings
@@ -36,7 +36,7 @@ class AgentBodies:
         trainings = {agent: _training_body(agent, body) for agent, body in practices.items()}
         lanes = {agent: _lane_body(agent, body) for agent, body in practices.items()}
         self.training = TaggedUnion(trainings, "agent", "agent", TrainingConfig.agent)
-        self.race = ValidatedAs(_race_body(lanes))
+        self.race = RaceOrBranch(_race_body(lanes))
         self.experiment = ValidatedAs(_experiment_body(agents))
         self.change = ValidatedAs(_change_body(agents))
 
@@ -51,6 +51,28 @@ class ValidatedAs:
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
         return handler.generate_schema(self._model)
+
+
+class RaceOrBranch:
+    """Annotation: a race of its own, or, with `branch_from`, one that goes on from another."""
+
+    def __init__(self, race: type[RaceBody]) -> None:
+        self._race = race
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        choices = {name: handler.generate_schema(model) for name, model in self._models().items()}
+        return core_schema.tagged_union_schema(choices, discriminator=self._tag_of)
+
+    def _models(self) -> Mapping[str, type[Any]]:
+        return {"race": self._race, "branch": BranchBody}
+
+    @staticmethod
+    def _tag_of(value: Any) -> str:
+        is_object = isinstance(value, dict)
+        is_branch = "branch_from" in value if is_object else isinstance(value, BranchBody)
+        return "branch" if is_branch else "race"
 
 
 def _practice_body(agent: str) -> type[PracticeBody]:

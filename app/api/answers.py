@@ -111,12 +111,20 @@ class LaneView(Answer):
     training_id: str | None
 
 
+class BranchView(Answer):
+    """The race and the step at which a race branches off."""
+
+    race_id: str
+    step: Annotated[int, Field(ge=0)]
+
+
 class RaceConfigView(WalkView):
     """Config of a race."""
 
     lanes: list[LaneView]
     steps: int
     seed: int
+    branch_from: BranchView | None
 
 
 class ExperimentConfigView(Answer):
@@ -164,11 +172,16 @@ class RunView(Answer):
 
 
 class TrainingResult(Answer):
-    """Final distance [m] of the agent and of the greedy reference, and the Q-table's hash."""
+    """Final distance [m] of the agent and of the greedy reference, and the Q-table's hash.
+
+    Both walked in the world as it was at the end. `fell_at_step` is the first step of practice,
+    counted from 0, in which the robot fell.
+    """
 
     distance_m: float | None
     greedy_distance_m: float | None
     q_table_sha256: str | None
+    fell_at_step: Count | None = None
 
 
 class Change(BaseModel):
@@ -209,7 +222,10 @@ class LaneFigures(Answer):
 
 
 class LaneResult(Answer):
-    """Result of a lane; `trained_robot` is set if its table was learned on another robot."""
+    """Result of a lane; `trained_robot` is set if its table was learned on another robot.
+
+    `fell_at_step` is counted from 0, null if it did not fall; `heading_deg` is 0 along the track.
+    """
 
     agent: str
     training_id: str | None
@@ -220,6 +236,8 @@ class LaneResult(Answer):
     decision_s: float
     simulated_transitions: Count
     clocks: LaneFigures
+    fell_at_step: Count | None = None
+    heading_deg: float | None = None
 
 
 class RaceResult(Answer):

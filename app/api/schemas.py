@@ -9,6 +9,7 @@ from pydantic_core import PydanticCustomError
 from app.api.descriptions import VALID
 from app.api.disturbance_body import Disturbances, Leg, world_of
 from app.api.fields import (
+    INTEGRAL,
     Body,
     Divisions,
     EvaluateEvery,
@@ -30,10 +31,11 @@ from app.domain.gait import NAMED_GAITS, GaitSpec, Symmetry
 from app.domain.observation import Observation
 from app.domain.robot import robot
 from app.domain.world import WORLDS
-from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
+from app.jobs.submissions import BranchStart, LaneStart, RaceStart, TrainingStart
 from app.runs.clocks import Clock
 from app.runs.config import (
     RACE_STEPS,
+    Branch,
     SimulatorName,
     TrainingConfig,
     WalkingProblem,
@@ -200,6 +202,41 @@ class RaceBody(WalkBody):
         practice = replace(walk, world=walk.world.at_start)
         lanes = [lane.start(practice, self.seed) for lane in self.lanes]
         return RaceStart(walk, lanes, self.steps, self.seed, self.name or None)
+
+
+class BranchFrom(Body):
+    """A moment of a race."""
+
+    race_id: RunId
+    # The limits depend on the race, so the domain validates it.
+    step: Annotated[int, Field(strict=True, json_schema_extra={"minimum": 0}), INTEGRAL]
+
+    def branch(self) -> Branch:
+        """Convert to the value of the domain."""
+        return Branch(self.race_id, self.step)
+
+
+class BranchBody(Body):
+    """A race that repeats another up to a step; all else that it does not say is from there."""
+
+    name: Name | None = None
+    branch_from: BranchFrom
+    disturbances: Annotated[Disturbances, Field(default_factory=list)]
+
+    def start(self) -> BranchStart:
+        """Convert to the request of the service: what happens, happens at the branch by default.
+
+        Raises:
+            InvalidInput: if a disturbance is not valid.
+        """
+        branch = self.branch_from.branch()
+        disturbances = [
+            body.disturbance()
+            if "at_step" in body.model_fields_set
+            else body.model_copy(update={"at_step": branch.step}).disturbance()
+            for body in self.disturbances
+        ]
+        return BranchStart(branch, disturbances, self.name or None)
 
 
 class ChangeBody(Body):

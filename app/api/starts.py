@@ -6,14 +6,12 @@ from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.agent_bodies import AgentBodies
-from app.api.answers import DisturbanceView, ExperimentView, RaceView, TrainingView, WhatIfView
+from app.api.answers import ExperimentView, RaceView, TrainingView, WhatIfView
 from app.api.contract import LOCATION, answers
 from app.api.deps import ServicesDep, StartRequestDep
-from app.api.disturbance_body import AnyDisturbance
 from app.api.experiment_body import ExperimentBody
 from app.api.runs import RunPath, accepted, find
-from app.api.schemas import ChangeBody, RaceBody, TrainingBody
-from app.domain.disturbances import as_mapping
+from app.api.schemas import BranchBody, ChangeBody, RaceBody, TrainingBody
 from app.domain.errors import InvalidInput
 
 
@@ -54,26 +52,6 @@ def start_routes(bodies: AgentBodies) -> APIRouter:
         return JSONResponse(services.jobs.view(services.jobs.change(run_id, body.changes())))
 
     @router.post(
-        "/trainings/{run_id}/disturbances",
-        tags=["trainings"],
-        status_code=202,
-        summary="Let something happen while it runs",
-        response_model=DisturbanceView,
-        responses=answers(202),
-    )
-    def disturb_training(services: ServicesDep, run_id: RunPath, body: AnyDisturbance) -> Response:
-        """Let it happen from the next step on, and return it with that step.
-
-        Leave out `at_step`. A later disturbance of the same thing replaces an earlier one, and
-        `repair` ends what happened to legs.
-        """
-        find(services, "training", run_id)
-        if "at_step" in body.model_fields_set:
-            raise InvalidInput("it happens at the next step; leave out at_step")
-        made = services.jobs.disturb(run_id, body.disturbance())
-        return JSONResponse(as_mapping(made), 202)
-
-    @router.post(
         "/races",
         tags=["races"],
         status_code=202,
@@ -85,9 +63,13 @@ def start_routes(bodies: AgentBodies) -> APIRouter:
         services: ServicesDep,
         request: Request,
         start_request: StartRequestDep,
-        body: Annotated[RaceBody, bodies.race],
+        body: Annotated[RaceBody | BranchBody, bodies.race],
     ) -> Response:
-        """Queue the trainings of its lanes, then the race, and return the race's run."""
+        """Queue the trainings of its lanes, then the race, and return the race's run.
+
+        With `branch_from` the race repeats the first steps of another to the last bit, and goes on
+        from there in another world; it takes all else from that race.
+        """
         jobs = services.jobs
         run = start_request.start(services, lambda key: jobs.race(body.start(), key))
         return accepted(request, jobs.view(run))

@@ -6,13 +6,15 @@ from fastapi import Query, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from app.api import curves
-from app.api.answers import CurveView, QTableView, TrainingView
+from app.api.answers import CurveView, DisturbanceView, QTableView, TrainingView
 from app.api.contract import BINARY, LOCATION, TEXT, answers, takes_file
 from app.api.deps import ServicesDep, StartRequestDep
+from app.api.disturbance_body import AnyDisturbance
 from app.api.fields import Name
 from app.api.formats import attachment, negotiated
 from app.api.runs import RunPath, find, run_routes
 from app.archive import table_import
+from app.domain.disturbances import as_mapping
 from app.domain.errors import InvalidInput
 from app.runs import tables
 from app.storage.artifact_file import closing_after
@@ -46,6 +48,26 @@ def import_training(
     )
     location = request.url_for("get_training", run_id=run.id).path
     return JSONResponse(jobs.view(run), 201, {"Location": location})
+
+
+@router.post(
+    "/{run_id}/disturbances",
+    status_code=202,
+    summary="Let something happen while it runs",
+    response_model=DisturbanceView,
+    responses=answers(202),
+)
+def disturb_training(services: ServicesDep, run_id: RunPath, body: AnyDisturbance) -> Response:
+    """Let it happen from the next step on, and return it with that step.
+
+    Leave out `at_step`. A later disturbance of the same thing replaces an earlier one, and
+    `repair` ends what happened to legs.
+    """
+    find(services, "training", run_id)
+    if "at_step" in body.model_fields_set:
+        raise InvalidInput("it happens at the next step; leave out at_step")
+    made = services.jobs.disturb(run_id, body.disturbance())
+    return JSONResponse(as_mapping(made), 202)
 
 
 @router.get(

@@ -54,10 +54,15 @@ class _Evaluation(UntrustedInput, frozen=True):
     epsilon: Share
 
 
+_Change = float | int | str | bool | dict[Name, float | int | str | list[int]]
+"""A new value of a setting, or a disturbance."""
+
+
 class _TrainingResult(UntrustedInput, frozen=True):
     distance_m: _OptionalMetres
     greedy_distance_m: _OptionalMetres
     q_table_sha256: Annotated[str, Meta(pattern="^[0-9a-f]{64}$")] | None
+    fell_at_step: Step | None = None
 
 
 class _Figures(UntrustedInput, frozen=True):
@@ -77,6 +82,8 @@ class _LaneResult(UntrustedInput, frozen=True):
     decision_s: Seconds
     simulated_transitions: Large
     clocks: dict[str, _Figures]
+    fell_at_step: Step | None = None
+    heading_deg: Annotated[float, Meta(ge=-180, le=180)] | None = None
 
 
 class _RaceResult(UntrustedInput, frozen=True):
@@ -96,7 +103,7 @@ class _EndedRun(UntrustedInput, frozen=True):
     continued_from: _Id | None
     done: Count
     total: Count
-    changes: Annotated[list[dict[Name, float | int | str | bool]], Meta(max_length=10_000)]
+    changes: Annotated[list[dict[Name, _Change]], Meta(max_length=10_000)]
     greedy_distance_m: _OptionalMetres
     result: Raw
     error: PortableText | None

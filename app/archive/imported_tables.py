@@ -8,6 +8,7 @@ import numpy as np
 
 from app.agents import registry
 from app.archive.untrusted_input import Metres, Name, Share, Step
+from app.domain.disturbances import disturbance
 from app.domain.errors import DamagedFile, HexapodError, UnknownName
 from app.domain.settings import complete
 from app.runs import seeding, tables
@@ -84,7 +85,7 @@ def check_settings(config: TrainingConfig) -> None:
 
 
 def check_change(change: Mapping[str, Any], agent: str) -> None:
-    """Check that a recorded change of settings or pace during a training is valid.
+    """Check that a recorded change of settings or pace, or a disturbance, is valid.
 
     Args:
         change: new values by name, and the `step` of the change.
@@ -94,10 +95,12 @@ def check_change(change: Mapping[str, Any], agent: str) -> None:
         KeyError, TypeError, ValueError, InvalidInput: if it is not.
     """
     valid = changeable_settings(agent)
-    if unknown := set(change) - {"step", *valid}:
+    if unknown := set(change) - {"step", "disturbance", *valid}:
         raise ValueError(f"{', '.join(unknown)} cannot change while a training runs")
     msgspec.convert(change["step"], Step)
-    for name in set(change) - {"step"}:
+    if "disturbance" in change:
+        disturbance(change["disturbance"])
+    for name in set(change) - {"step", "disturbance"}:
         valid[name].check(change[name])
 
 

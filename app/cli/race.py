@@ -24,7 +24,7 @@ from app.runs.clocks import CLOCKS, check_clock
 from app.runs.config import LaneConfig, RaceConfig, agent_settings, as_json, lane_config
 from app.runs.racing import record_race
 from app.runs.recording import LaneRecording
-from app.runs.results import race_result
+from app.runs.results import postures, race_result
 from app.runs.tables import Checkpoint
 from app.runs.walker import Walker
 
@@ -66,7 +66,10 @@ def run(options: argparse.Namespace) -> int:
         seed=options.seed,
     )
     walkers = build_walkers(config, [table for _, table in lanes])
-    result = race_result(_race(walkers, config), config.steps)
+    lanes_recorded = _race(walkers, config)
+    result = race_result(lanes_recorded, config.steps)
+    for lane, posture in zip(result["lanes"], postures(lanes_recorded, config), strict=True):
+        lane.update(posture)
     if options.json:
         print(json.dumps({"config": as_json(config), "result": result}))
     else:

@@ -8,5 +8,6 @@
   run, and the conditions of each step.
 - `feet`: foot offsets and the kinematic law of a step; `kinematics`: inverse and forward
   kinematics of the legs; `motion`: servo commands of a step.
+- `posture`: whether a robot has fallen, and its heading.
 - `simulator`: the simulator protocol; `kinematic`: the simulator without slip.
 """

@@ -68,9 +68,6 @@ class KinematicSimulator:
         steps = [self.step(s, a) for s, a in zip(states, actions, strict=True)]
         return Expansion([s.state for s in steps], np.array([s.reward_m for s in steps]))
 
-    def has_fallen(self, state: KinematicState) -> bool:  # noqa: ARG002  # it has no weight
-        return False
-
     def pair_offsets(self, state: KinematicState) -> Sequence[tuple[float, float]]:
         return list(zip(state.feet.lateral_m, state.feet.forward_m, strict=True))
 

@@ -102,9 +102,6 @@ class Simulator(Protocol[S]):
             Diverged: if the physics diverges.
         """
 
-    def has_fallen(self, state: S) -> bool:
-        """Whether the torso lies on the ground."""
-
     def pair_offsets(self, state: S) -> Sequence[tuple[float, float]]:
         """Return the feet's actual offsets (x, y) from home in the robot frame [m], per pair.
 

@@ -131,6 +131,10 @@ class World:
         early = (d for d in self.disturbances if d.at_step == 0 and not isinstance(d, Push))
         return World(tuple(replace(one, until_step=None) for one in early))
 
+    def ground_m(self, step: int) -> float:
+        """Return the height of the highest bumps of the ground in a step [m]."""
+        return max((one.amplitude_m for one in self.as_of(step).all_of(Rough)), default=0.0)
+
     def pushes_at(self, step: int) -> tuple[Push, ...]:
         """Return the pushes at the beginning of a step."""
         return tuple(push for push in self.all_of(Push) if push.at_step == step)

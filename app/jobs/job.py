@@ -34,7 +34,7 @@ from app.jobs.worker_process import Exit, WorkerProcess
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.runs.records import Evaluated, Reference
-from app.runs.results import race_result
+from app.runs.results import postures, race_result
 from app.storage.database.engine import retry_during_outage
 from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost, StorageFailed
@@ -360,11 +360,22 @@ class Job:
 
     def _race_result(self, lanes: list[LaneRecording], task: RaceTask) -> dict[str, Any]:
         result = race_result(lanes, task.config.steps)
-        robots = _trained_robots(task)
-        numbered = zip(result["lanes"], self._run.lane_training_ids, robots, strict=True)
+        numbered = zip(
+            result["lanes"],
+            self._run.lane_training_ids,
+            _trained_robots(task),
+            postures(lanes, task.config),
+            strict=True,
+        )
         result["lanes"] = [
-            {"agent": lane["agent"], "training_id": training, "trained_robot": robot, **lane}
-            for lane, training, robot in numbered
+            {
+                "agent": lane["agent"],
+                "training_id": training,
+                "trained_robot": robot,
+                **lane,
+                **posture,
+            }
+            for lane, training, robot, posture in numbered
         ]
         return {**result, "shared_machine": self.shared}
 

@@ -14,9 +14,11 @@ from app.jobs.job import Job
 from app.jobs.messages import Changed
 from app.jobs.queue import RunQueue
 from app.jobs.submissions import (
+    BranchStart,
     ExperimentStart,
     RaceStart,
     TrainingStart,
+    new_branch,
     new_experiment,
     new_race,
     new_training,
@@ -139,17 +141,21 @@ class Jobs:
         """
         return self._enqueue([new_training(start, self._store, self.new_id)], key)
 
-    def race(self, start: RaceStart, key: IdempotencyKey | None = None) -> Run:
+    def race(self, start: RaceStart | BranchStart, key: IdempotencyKey | None = None) -> Run:
         """Queue a race, preceded by the trainings that are part of the request.
+
+        A branch repeats another race up to a step, and goes on from there in another world.
 
         Args:
             start: the race requested.
             key: idempotency key of the request, stored with the race.
 
         Raises:
-            InvalidInput, Conflict: if the request is invalid.
+            NotFound, InvalidInput, Conflict: if the request is invalid.
             Busy: if the queue is full.
         """
+        if isinstance(start, BranchStart):
+            return self._enqueue([new_branch(start, self._store, self.new_id)], key)
         return self._enqueue(new_race(start, self._store, self.new_id), key)
 
     def experiment(self, start: ExperimentStart, key: IdempotencyKey | None = None) -> Run:

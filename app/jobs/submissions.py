@@ -8,12 +8,14 @@ from typing import Any
 
 from app.agents.q_table import MAX_VALUES
 from app.agents.registry import check_problem, learns, needs_practice
+from app.domain.disturbances import Disturbance
 from app.domain.errors import InvalidInput, TableMismatch
 from app.domain.kinematics import check_reach
 from app.domain.text import whole
 from app.experiments.config import GRID, ExperimentConfig
 from app.experiments.plan import Plan
 from app.runs.config import (
+    Branch,
     LaneConfig,
     RaceConfig,
     TrainingConfig,
@@ -130,6 +132,57 @@ def new_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> li
         total=config.steps * len(lanes),
     )
     return [*trainings.values(), race]
+
+
+@dataclass(frozen=True)
+class BranchStart:
+    """Request to race on from a moment of another race, with something else that happens.
+
+    Attributes:
+        branch: the race and its step.
+        disturbances: what happens from that step on or later.
+        name: None for a generated name.
+    """
+
+    branch: Branch
+    disturbances: Sequence[Disturbance]
+    name: str | None = None
+
+
+def new_branch(start: BranchStart, store: RunStore, new_id: Callable[[], str]) -> Run:
+    """Return a race to be queued that repeats another up to a step.
+
+    Raises:
+        InvalidInput, NotFound, Conflict: if it cannot be.
+    """
+    race_id, step = start.branch
+    original = store.get(race_id)
+    config = original.config
+    if not isinstance(config, RaceConfig):
+        raise InvalidInput(f"{race_id} is not a race; branch_from takes the id of a race")
+    taken = config.steps if original.state == "finished" else original.done // len(config.lanes)
+    if not 0 <= step < config.steps or step > taken:
+        last = min(taken, config.steps - 1)
+        raise InvalidInput(f"race {race_id} can branch at step 0 to {last:,}, not {step:,}")
+    for one in start.disturbances:
+        if one.at_step < step:
+            raise InvalidInput(
+                f"{one.kind}: at_step must be at least {step:,}, where the race branches, not "
+                f"{one.at_step:,}"
+            )
+    world = config.world
+    for one in sorted(start.disturbances, key=lambda one: one.at_step):
+        world = world.then(one)
+    for training_id in filter(None, original.lane_training_ids):
+        load_table(store, training_id)
+    return Run(
+        id=new_id(),
+        kind="race",
+        name=start.name or f"{original.name}, from step {whole(step)}",
+        config=replace(config, world=world, branch_from=start.branch),
+        lane_training_ids=original.lane_training_ids,
+        total=original.total,
+    )
 
 
 def check_training(config: TrainingConfig) -> None:

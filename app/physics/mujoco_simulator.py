@@ -56,10 +56,6 @@ class MujocoState:
         return self.feet.commanded
 
 
-_TOUCHING_M = 0.002
-"""Height of the torso over the ground below which it lies there."""
-
-
 class _Batches(NamedTuple):
     """Simulations of one model."""
 
@@ -327,15 +323,6 @@ class MujocoSimulator:
             f"the physics diverged at step {steps[bad]}; try a smaller robot.dt_s, a "
             "lower servo_kp or heavier links"
         )
-
-    def has_fallen(self, state: MujocoState) -> bool:
-        """Whether the lowest point of the torso is as low as ground or bumps reach."""
-        _, _, z, _, x, y, _ = state.row[1:8].tolist()
-        upright = 1 - 2 * (x * x + y * y)  # cosine of the torso's tilt
-        tilt = math.sqrt(max(0.0, 1 - upright * upright))
-        robot, rough = self.robot, self.world.as_of(max(0, state.steps - 1)).one_of(Rough)
-        low = z - abs(upright) * robot.torso_half_height_m - tilt * robot.torso_radius_m
-        return bool(low <= (rough.amplitude_m if rough else 0.0) + _TOUCHING_M)
 
     def pair_offsets(self, state: MujocoState) -> Sequence[tuple[float, float]]:
         feet = self._motion.legs.foot_offsets(state.row[self._joints].tolist())

@@ -6,7 +6,7 @@ Fields that a user may choose are declared as settings (`app.domain.settings`).
 import logging
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal, NamedTuple, get_args
 
 from annotated_types import Ge, Le
 
@@ -215,11 +215,11 @@ _TRAINING_FIELDS = frozenset(one.name for one in fields(TrainingConfig))
 
 _RESERVED = """
 a agents b beats_greedy beats_greedy_total blocks branch_from changes continue_from distances_m
-disturbances elapsed_s experiment failed finished from gaits greedy_m h half_side_m help high high_m
-iqm_m json keep_learning key lanes low low_m mean_m n name observations out plans_with points_m
-practice probability published reaches_greedy relative relative_finished retry robots role run
-scheduler seeds start step table tls_ca tls_cert tls_key total training training_id verdict walk
-walkers workers world
+disturb disturbance disturbances elapsed_s experiment failed finished from gaits greedy_m h
+half_side_m help high high_m iqm_m json keep_learning key lanes low low_m mean_m n name
+observations out plans_with points_m practice probability published reaches_greedy relative
+relative_finished retry robots role run scheduler seeds start step table tls_ca tls_cert tls_key
+total training training_id verdict walk walkers workers
 """
 RESERVED = frozenset(_RESERVED.split())
 """Names that mean something else beside the settings in requests, answers, files or commands."""
@@ -369,9 +369,23 @@ def check_lane(lane: LaneConfig, has_training: bool) -> None:
         complete(agent_settings(lane.agent), lane.settings, lane.agent)
 
 
+class Branch(NamedTuple):
+    """The moment of another race at which a race branches off; until then both are the same."""
+
+    race_id: str
+    step: int
+    """Number of steps that they share."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class RaceConfig(WalkingProblem):
     """Config of a race of one to six lanes, 50 steps each by default.
+
+    Attributes:
+        lanes: in order.
+        steps: of each lane.
+        seed: seed of all random generators of the run.
+        branch_from: the race whose first steps this one repeats, if any.
 
     Raises:
         InvalidInput: if there are no or too many lanes, or too many steps in all.
@@ -380,6 +394,7 @@ class RaceConfig(WalkingProblem):
     lanes: tuple[LaneConfig, ...]
     steps: RaceSteps = RACE_STEPS
     seed: Seed = 0
+    branch_from: Branch | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -405,6 +420,8 @@ def as_json(config: WalkingProblem) -> dict[str, Any]:
         data["gait"] = {k: v for k, v in asdict(config.gait).items() if v is not None}
     if isinstance(config, RaceConfig):
         data["lanes"] = [_lane_as_json(lane) for lane in config.lanes]
+        branch = config.branch_from
+        data["branch_from"] = None if branch is None else branch._asdict()
     return data
 
 
@@ -432,7 +449,9 @@ def config_from_json(data: Mapping[str, Any]) -> TrainingConfig | RaceConfig:
     values["world"] = world(values.pop("disturbances", ()))  # earlier versions had none
     if "lanes" in values:
         lanes = tuple(_lane_from_json(lane) for lane in values.pop("lanes"))
-        return RaceConfig(**values, lanes=lanes)
+        branch = values.pop("branch_from", None)  # earlier versions had none
+        branch_from = None if branch is None else Branch(**branch)
+        return RaceConfig(**values, lanes=lanes, branch_from=branch_from)
     settings = {name: values.pop(name) for name in list(values) if name not in _TRAINING_FIELDS}
     return TrainingConfig(**values, settings=SettingValues(settings))
 

@@ -3,7 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
+from app.domain.posture import has_fallen, heading_deg
 from app.runs.clocks import CLOCKS, Clock, Timetable, crossing_s, distance_at
+from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 
 
@@ -32,6 +34,30 @@ def race_result(lanes: Sequence[LaneRecording], steps: int) -> dict[str, Any]:
             for number, lane in enumerate(lanes)
         ]
     }
+
+
+def postures(lanes: Sequence[LaneRecording], config: RaceConfig) -> list[dict[str, Any]]:
+    """Return for each lane in which step the robot fell, or None, and its heading at the end [°].
+
+    The step is counted from 0. The heading is 0 along the track, and 90 to the left.
+    """
+    return [
+        {
+            "fell_at_step": _fell_at_step(lane, config),
+            "heading_deg": heading_deg(
+                lane.start_qpos(len(lane.steps)).tolist(), lane.rest_qpos.tolist()
+            ),
+        }
+        for lane in lanes
+    ]
+
+
+def _fell_at_step(lane: LaneRecording, config: RaceConfig) -> int | None:
+    for number, step in enumerate(lane.steps):
+        pose = step.motion.qpos[-1].tolist()
+        if has_fallen(config.robot, pose, config.world.ground_m(number)):
+            return number
+    return None
 
 
 def finish_s(lanes: Sequence[LaneRecording], steps: int, clock: Clock) -> float | None:

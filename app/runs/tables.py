@@ -73,6 +73,7 @@ def snapshot(learner: Learner, config: TrainingConfig, **more: Any) -> Checkpoin
         "rng": seeding.dump(learner.rng),
         "config": as_json(config),
         "disturbances": [as_mapping(one) for one in learner.world.disturbances],
+        "fell_at_step": learner.fell_at_step,
         "measured_in": [as_mapping(one) for one in learner.measured_in.disturbances],
         **more,
     }
@@ -95,6 +96,7 @@ def restore(learner: Learner, checkpoint: Checkpoint) -> None:
     # Earlier versions knew no disturbances.
     walker.simulator.world = world(meta.get("disturbances", ()))
     learner.measured_in = world(meta.get("measured_in", ()))
+    learner.fell_at_step = meta.get("fell_at_step")
     walker.agent.load(checkpoint.part(_AGENT))
     walker.place(walker.simulator.load(checkpoint.part(_STATE)))
     seeding.load(learner.rng, meta["rng"])

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from app.domain.disturbances import Disturbance
+from app.domain.posture import has_fallen
 from app.domain.simulator import Motion
 from app.domain.types import Action
 from app.domain.world import UNDISTURBED, World
@@ -33,6 +34,7 @@ class Learner:
         due_epsilon: ε of the newest step while its evaluation is yet to come; None if none is.
         next_action: the action that an on-policy agent has chosen to take next.
         next_epsilon: ε when it was chosen.
+        fell_at_step: the first step in which the robot fell, counted from 0; None if it did not.
     """
 
     walker: Walker
@@ -46,6 +48,7 @@ class Learner:
     due_epsilon: float | None = None
     next_action: Action | None = None
     next_epsilon: float = 0.0
+    fell_at_step: int | None = None
 
     @property
     def epsilon(self) -> float:
@@ -136,6 +139,10 @@ def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> S
     learner.next_action = None
     learner.next_epsilon = learner.epsilon  # before it learns, as an on-policy agent chooses then
     learner.next_action = walker.learn(observation, action, step.reward_m)
+    if learner.fell_at_step is None:
+        pose, ground_m = walker.simulator.pose(walker.state), learner.world.ground_m(learner.step)
+        if has_fallen(walker.simulator.robot, pose.tolist(), ground_m):
+            learner.fell_at_step = learner.step
     learner.step += 1
     learner.episode_reward_m += step.reward_m
     distance = walker.state.distance_m

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from app.agents.protocol import Problem
-from app.agents.registry import OURS, build, check_problem, find
+from app.agents.registry import OURS, build, check_problem, find, learns
 from app.agents.tabular_model import TabularModel
 from app.domain.errors import InvalidInput
 from app.domain.grid import FootGrid
 from tests.agents.by_hand import PROBLEM
 
 SHAPE = {"shape": np.array([3, 5])}
-WITH_A_MODEL = [name for name in OURS if hasattr(find(name), "check_problem")]
+WITH_A_MODEL = [name for name in OURS if learns(name) and hasattr(find(name), "check_problem")]
 
 
 def remembered() -> TabularModel:

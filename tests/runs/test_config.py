@@ -127,6 +127,7 @@ def test_config_in_plain_types_is_valid_json_and_has_the_same_gait(
 
     assert gait_from_json(shown.pop("gait")) == gait
     assert robot(shown.pop("robot")) == made
+    assert shown.pop("disturbances") == []
     assert training_config(gait=gait, robot=made, **shown) == training_config(gait=gait, robot=made)
 
 
@@ -163,7 +164,13 @@ def test_config_round_trips_through_json(config: TrainingConfig | RaceConfig) ->
 def test_lane_in_plain_types_has_its_settings_as_flat_fields() -> None:
     race = RaceConfig(gait=GAIT, lanes=(lane_config("look-ahead", depth=2),))
     assert as_json(race)["lanes"] == [
-        {"agent": "look-ahead", "observation": "measured", "keep_learning": False, "depth": 2}
+        {
+            "agent": "look-ahead",
+            "observation": "measured",
+            "keep_learning": False,
+            "plans_with": None,
+            "depth": 2,
+        }
     ]
 
 

@@ -1,0 +1,184 @@
+"""Disturbances over REST: worlds of trainings and races, changes while they run, and branches."""
+
+from typing import Any
+
+import pytest
+
+from app.assembly import build_walkers
+from app.domain.world import named_world, world
+from app.runs.config import Branch, RaceConfig, lane_config
+from app.runs.racing import record_race
+from tests.api.calls import WALK, Api, refused
+
+MUJOCO = {"gait": WALK["gait"]}
+LIMP = {"kind": "limp", "legs": [1, 4]}
+GREEDY = {"agent": "greedy"}
+
+
+def test_a_training_takes_a_world_and_what_happens_later(api: Api) -> None:
+    body = {**MUJOCO, "world": "slope", "disturbances": [{**LIMP, "at_step": 25}], "steps": 40}
+    run = api.start("/trainings", body)
+    api.stop(run)
+
+    slope = {"kind": "slope", "at_step": 0, "degrees": 8.0, "direction_deg": 0.0}
+    limp = {"kind": "limp", "at_step": 25, "legs": [1, 4]}
+    assert run["config"]["disturbances"] == [slope, limp]
+
+
+def test_practice_for_a_race_is_in_the_world_of_its_start(api: Api) -> None:
+    lanes = [{"agent": "q-learning", "training": {"steps": 20}}]
+    slope = {"kind": "slope", "degrees": 5}
+    body = {**MUJOCO, "lanes": lanes, "disturbances": [slope, {**LIMP, "at_step": 9}], "steps": 10}
+    race = api.start("/races", body)
+    training = api.get(f"/trainings/{race['waiting_for'][0]}")
+    api.stop(training, race)
+
+    assert [one["kind"] for one in race["config"]["disturbances"]] == ["slope", "limp"]
+    assert [one["kind"] for one in training["config"]["disturbances"]] == ["slope"]
+
+
+def disturb(api: Api, run: dict[str, Any], body: Any) -> Any:
+    return api.call("POST", f"/trainings/{run['id']}/disturbances", json=body)
+
+
+def test_something_happens_while_a_training_runs(api: Api) -> None:
+    run = api.slow_training(name="noisy")
+    response = disturb(api, run, {"kind": "sensor-noise", "sd_m": 0.004})
+    assert response.status_code == 202, response.text
+    made = response.json()
+    now = api.look(run)
+    assert made == {"kind": "sensor-noise", "at_step": made["at_step"], "sd_m": 0.004}
+    assert made["at_step"] > 0
+    assert now["changes"] == [{"step": made["at_step"], "disturbance": made}]
+
+    paused = api.tell(run, "pause").json()
+    for sd_m in (0.01, 0.0):  # the second replaces the first, which began in the same step
+        assert disturb(api, run, {"kind": "sensor-noise", "sd_m": sd_m}).status_code == 202
+    steps = [change["step"] for change in api.look(run)["changes"]]
+    assert steps[1] == steps[2] >= steps[0]
+    assert paused["state"] == "paused"
+    api.stop(run)
+    refused(disturb(api, run, {"kind": "sensor-noise", "sd_m": 0.01}), 409, "stopped")
+
+
+def test_what_cannot_happen_to_a_running_training_changes_nothing(api: Api) -> None:
+    noise = {"kind": "sensor-noise", "sd_m": 0.01}
+    run = api.slow_training(name="undisturbed")
+    for body, words in (
+        ({"kind": "slope", "degrees": 8}, "knows no slope, only sensor-noise"),
+        ({**noise, "sd_m": -1}, "from 0 to 0.05 m"),
+        ({**noise, "at_step": 5}, "leave out at_step"),
+        ({**noise, "until_step": 1}, "until_step must be over"),
+        ({"kind": "limp", "legs": [9]}, "there is no leg 9"),
+        ({"kind": "fire"}, "choose one of: limp, stuck"),
+        ({"legs": [1]}, "kind"),
+    ):
+        refused(disturb(api, run, body), 422, words)
+    assert api.look(run)["changes"] == []
+    api.stop(run)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"disturbances": [{**LIMP, "at_step": 50}]}, "at_step must be from 0 to 49"),
+        ({"disturbances": [LIMP, {"kind": "lost", "legs": [4]}]}, "contradict each other"),
+        ({"disturbances": [{"kind": "limp", "legs": [7]}]}, "there is no leg 7"),
+        ({"disturbances": [{"kind": "slope", "degrees": 80}]}, "from 0 to 30"),
+        ({"disturbances": {"kind": "slope"}}, "a list of at most 20"),
+        ({"world": "moon"}, "choose one of: flat, slope"),
+        ({"simulator": "kinematic", "world": "slope"}, "knows no slope"),
+        ({"lanes": [{**GREEDY, "plans_with": "hope"}]}, "world, or nominal"),
+        (
+            {"lanes": [{"agent": "q-learning", "training": {}, "plans_with": "world"}]},
+            "q-learning plans with no simulator",
+        ),
+    ],
+)
+def test_a_race_in_an_impossible_world_is_refused(
+    api: Api, given: dict[str, Any], words: str
+) -> None:
+    refused(api.call("POST", "/races", json={**MUJOCO, **given}), 422, words)
+
+
+@pytest.fixture(scope="module")
+def original(api: Api) -> dict[str, Any]:
+    lanes = [GREEDY, {**GREEDY, "plans_with": "world"}]
+    return api.finished(api.start("/races", {**MUJOCO, "lanes": lanes, "steps": 16}))
+
+
+def distances(api: Api, race: dict[str, Any]) -> list[list[float]]:
+    recording = api.get(f"/races/{race['id']}/recording")
+    return [[step["distance_m"] for step in lane["steps"]] for lane in recording["lanes"]]
+
+
+def test_a_branch_is_the_same_race_to_the_last_bit_until_its_step(
+    api: Api, original: dict[str, Any]
+) -> None:
+    branch = {"race_id": original["id"], "step": 8}
+    race = api.finished(api.start("/races", {"branch_from": branch, "disturbances": [LIMP]}))
+
+    assert race["config"]["branch_from"] == branch
+    assert race["config"]["disturbances"] == [{"kind": "limp", "at_step": 8, "legs": [1, 4]}]
+    before, after = distances(api, original), distances(api, race)
+    for lane in (0, 1):
+        assert after[lane][:8] == before[lane][:8]
+        assert after[lane][8] != before[lane][8]
+    unaware, aware = (lane[-1] for lane in after)
+    assert aware > unaware + 0.02  # nobody told the first
+
+
+@pytest.mark.parametrize(
+    ("branch", "happens", "refusal"),
+    [
+        ({"step": 16}, [LIMP], (422, "can branch at step 0 to 15, not 16")),
+        ({"step": -1}, [LIMP], (422, "step")),
+        ({"step": 8}, [{**LIMP, "at_step": 7}], (422, "at_step must be at least 8")),
+        ({"step": 8}, [{**LIMP, "at_step": 16}], (422, "at_step must be from 0 to 15")),
+        ({"step": 8, "race_id": "nope"}, [LIMP], (404, "nope")),
+        ({}, [LIMP], (422, "step")),
+    ],
+)
+def test_a_branch_where_there_is_none_is_refused(
+    api: Api, original: dict[str, Any], branch: Any, happens: Any, refusal: tuple[int, str]
+) -> None:
+    body = {"branch_from": {"race_id": original["id"], **branch}, "disturbances": happens}
+    refused(api.call("POST", "/races", json=body), *refusal)
+
+
+def test_only_races_branch(api: Api, trained: dict[str, Any]) -> None:
+    body = {"branch_from": {"race_id": trained["id"], "step": 1}, "disturbances": [LIMP]}
+    refused(api.call("POST", "/races", json=body), 422, "is not a race")
+    other = {**body, "gait": WALK["gait"]}
+    refused(api.call("POST", "/races", json=other), 422, "unknown field 'gait'")
+
+
+def test_a_race_that_has_not_come_so_far_cannot_branch_there(api: Api) -> None:
+    race = api.race(lanes=[GREEDY], steps=300_000)
+    now = api.until(race, lambda now: now["progress"]["done"] > 3)
+    api.tell(race, "stop")
+    body = {"branch_from": {"race_id": race["id"], "step": 299_999}}
+    refused(api.call("POST", "/races", json=body), 422, "can branch at step 0 to")
+    assert now["progress"]["done"] < 299_999
+
+
+def test_results_tell_where_robots_fell_and_face(api: Api) -> None:
+    lost = {"kind": "lost", "legs": [1, 2, 3], "at_step": 2}
+    body = {**MUJOCO, "lanes": [GREEDY], "disturbances": [lost], "steps": 6}
+    (lane,) = api.finished(api.start("/races", body))["result"]["lanes"]
+
+    assert 2 <= lane["fell_at_step"] < 6
+    assert -180 <= lane["heading_deg"] <= 180
+
+
+def test_a_searcher_knows_the_start_unless_its_lane_says_otherwise() -> None:
+    """Legs 1 and 4 are limp: a plan for the whole robot treads on the spot."""
+    lanes = tuple(lane_config("greedy", plans_with=how) for how in (None, "world", "nominal"))
+    config = RaceConfig(
+        gait=WALK["gait"], lanes=lanes, steps=12, world=world([LIMP]), branch_from=Branch("x", 3)
+    )
+    *_, recorded = record_race(build_walkers(config, [None] * 3), config, lambda: 0.0)
+    known, told, unaware = (lane.distance_m for lane in recorded)
+
+    assert config.world == named_world("limp-pair")
+    assert known == told > unaware + 0.03
