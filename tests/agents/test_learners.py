@@ -230,6 +230,19 @@ def test_practice_continues_from_what_was_learned(agent: str) -> None:
     assert learner.step == 5
 
 
+def test_practice_continues_from_a_training_that_was_stopped_before_its_first_step(
+    agent: str,
+) -> None:
+    config = config_of(agent, 3)
+    nothing = snapshot(build_learner(config), config)
+    checked_table(to_bytes(nothing), "q.npz", LEARNERS)
+    learner = build_learner(config, nothing)
+    evaluate(learner, config, 0)
+    for _ in train(learner, config):
+        pass
+    assert learner.step == 3
+
+
 def test_trial_of_an_experiment_runs(agent: str) -> None:
     result = run_trial(TrialConfig(training=config_of(agent, 30), blocks=2))
 
