@@ -19,6 +19,7 @@ from app.domain.observation import legal_actions
 from app.domain.types import Action, Cells
 from app.experiments.trial import TrialConfig, run_trial
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
+from app.runs.seeding import RACING, generator
 from app.runs.tables import Checkpoint, from_bytes, restore, snapshot, table_of, to_bytes
 from app.runs.training import Learner, evaluate, train
 
@@ -142,9 +143,9 @@ def test_values_converge_to_those_of_value_iteration(name: str) -> None:
 @pytest.mark.parametrize("name", ON_POLICY)
 def test_values_converge_to_those_of_the_policy(name: str) -> None:
     """An on-policy learner learns what its own policy is worth, here a random one."""
-    agent = practised(name, [(5000, 0.5), (5000, 0.2), (20_000, 0.05)])
+    agent = practised(name, [(5000, 0.5), (5000, 0.2), (8000, 0.05), (20_000, 0.02)])
 
-    assert error(agent, exact_values(of_random_policy=True)) < 0.1
+    assert error(agent, exact_values(of_random_policy=True)) < 0.08
     assert error(agent, exact_values(of_random_policy=False)) > 0.2
 
 
@@ -185,9 +186,7 @@ def test_a_loaded_learner_walks_as_far_as_the_one_evaluated(agent: str) -> None:
     race = RaceConfig(gait=config.gait, simulator="kinematic", lanes=(LaneConfig(agent=agent),))
     learner = trained(config)
     (walker,) = build_walkers(race, [snapshot(learner, config)])
-    evaluated = learner.evaluator(np.random.default_rng(1))
-    ties = np.random.default_rng(1).bit_generator
-    walker.agent._rng.bit_generator.state = ties.state  # type: ignore[attr-defined]
+    evaluated = learner.evaluator(generator(race.seed, RACING, 0))
     for _ in range(20):
         action = evaluated.decide()
         assert walker.decide() == action
