@@ -8,7 +8,8 @@ derive from it: `q_learning` (paper, Algorithm 1), `double_q`, `sarsa`, `expecte
 `n_step_sarsa`; by `traces` (eligibility traces) also `sarsa_lambda` and `q_lambda`.
 `tabular_model` remembers what followed each step. `planning` is the base class of learners that
 update their Q-table from it as well: `dyna_q`, `dyna_q_plus` and `prioritized_sweeping`;
-`model_planning` that of learners that explore by value iteration in it: `r_max` and `posterior_sampling`.
+`model_planning` that of learners that explore by value iteration in it: `r_max` and
+`posterior_sampling`.
 `q_table` is the table; `table_rows` iterates over the rows of its sparse stored form.
 `lookahead` is exhaustive search over the next steps (paper, Algorithms 3 and 4).
 """
