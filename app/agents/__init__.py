@@ -3,12 +3,13 @@
 `protocol` defines the interface of agents, built-in and user-supplied.
 `registry` finds agent classes by name, lists their settings, and creates agents.
 `appearance` has their titles, descriptions and colours.
-`tabular` has the base classes of learners with a Q-table. Of those that learn from each step once,
-`q_learning` (paper, Algorithm 1), `double_q`, `sarsa`, `expected_sarsa` and `n_step_sarsa` derive
-from it directly, `sarsa_lambda` and `q_lambda` by `traces` (eligibility traces).
+`tabular` has the base classes of learners with a Q-table. Those that learn from each step once
+derive from it: `q_learning` (paper, Algorithm 1), `double_q`, `sarsa`, `expected_sarsa` and
+`n_step_sarsa`; by `traces` (eligibility traces) also `sarsa_lambda` and `q_lambda`.
 `tabular_model` remembers what followed each step. `planning` is the base class of learners that
-also update their Q-table from it: `dyna_q` and `prioritized_sweeping`; `model_planning` that of
-learners that explore by value iteration in it: `r_max` and `posterior_sampling`.
+update their Q-table from it as well: `dyna_q`, `dyna_q_plus` and `prioritized_sweeping`;
+`model_planning` that of learners that explore by value iteration in it: `r_max` and
+`posterior_sampling`.
 `q_table` is the table; `table_rows` iterates over the rows of its sparse stored form.
 `lookahead` is exhaustive search over the next steps (paper, Algorithms 3 and 4).
 """

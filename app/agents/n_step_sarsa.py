@@ -19,7 +19,7 @@ ReturnSteps = Annotated[
         title="Steps of the return",
         symbol="n",
         help="How many rewards are added up before a step is judged; 1 is plain Sarsa.",
-        examples=(1, 4, 8),
+        examples=(1, 2, 4),
     ),
 ]
 
@@ -39,7 +39,7 @@ class NStepSarsa(TabularLearner):
     color = "#44AA99"
     is_on_policy = True
 
-    def __init__(self, *args: Any, return_steps: ReturnSteps = 4, **settings: Any) -> None:
+    def __init__(self, *args: Any, return_steps: ReturnSteps = 2, **settings: Any) -> None:
         super().__init__(*args, **settings)
         self._return_steps = return_steps
         self._waiting: list[tuple[int, int, float]] = []

@@ -11,7 +11,8 @@ from importlib.metadata import entry_points
 from typing import Any
 
 from app.agents.double_q import DoubleQ
-from app.agents.dyna_q import DynaQ, DynaQPlus
+from app.agents.dyna_q import DynaQ
+from app.agents.dyna_q_plus import DynaQPlus
 from app.agents.expected_sarsa import ExpectedSarsa
 from app.agents.lookahead import Greedy, LookAhead, TwoStep
 from app.agents.n_step_sarsa import NStepSarsa

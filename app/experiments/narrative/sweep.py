@@ -38,11 +38,20 @@ def combination_name(
 ) -> str:
     """Name a combination by the parameters that vary among the pools, or else by its agent.
 
-    The pools are those of the case, or those of several that are given.
+    The pools are those of the case, or those of several that are given. What differs only between
+    agents, such as their defaults, is told by the agent's name.
     """
     among = case.pooled if among is None else among
     walked = [other for other in among if other["walkers"]]
-    varied = [name for name in case.parameters if len({other[name] for other in walked}) > 1]
+    of_agents = [
+        [other for other in walked if other["agent"] == agent]
+        for agent in dict.fromkeys(other["agent"] for other in walked)
+    ]
+    varied = [
+        name
+        for name in case.parameters
+        if any(len({other[name] for other in others}) > 1 for others in of_agents)
+    ]
     parts = [
         parameter_text(name, one[name], one["agent"]) for name in varied if one[name] is not None
     ]

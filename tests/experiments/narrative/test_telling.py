@@ -1,5 +1,6 @@
 """The narrative: its numbers come from the results, and it states nothing they do not support."""
 
+import re
 from collections.abc import Callable, Sequence
 
 import pytest
@@ -108,6 +109,20 @@ def test_a_sweep_names_its_best_and_worst() -> None:
     text = text_under(summary, "Best and worst")
     assert "The best is α 0.6 with feet measured: 80 % (80 to 80)" in text
     assert "The worst is α 0.1" in text
+
+
+def test_a_sweep_of_learners_names_what_varies_for_each_and_not_what_only_some_have() -> None:
+    far = {"q-learning": 0.1, "sarsa-lambda": 0.2, "r-max": 0.4}
+    summary = summary_of(
+        "sweep",
+        lambda one: around(far[one.training.agent], 0.001),
+        seeds=5,
+        agents=tuple(far),
+        steps=(250, 500),
+    )
+    text = text_under(summary, "Best and worst")
+    assert re.search("The best is R-max, (250|500) steps with feet measured", text)
+    assert re.search("The worst is Q-learning, (250|500) steps with", text)
 
 
 @pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep"])
