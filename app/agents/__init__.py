@@ -6,5 +6,7 @@
 `tabular` is the base class of learners with a Q-table and an ε-greedy policy; `q_learning`
 (paper, Algorithm 1) and `sarsa_lambda` (on-policy, eligibility traces) derive from it.
 `q_table` is the table; `table_rows` iterates over the rows of its sparse stored form.
-`lookahead` is exhaustive search over the next steps (paper, Algorithms 3 and 4).
+`search` is the base of agents that plan by simulation: `lookahead` is exhaustive (paper, Algorithms
+3 and 4), `beam` follows the best few sequences, `informed` simulates what the kinematic law ranks
+best, and `mcts` samples sequences at random.
 """

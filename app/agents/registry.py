@@ -10,7 +10,10 @@ from functools import cache
 from importlib.metadata import entry_points
 from typing import Any
 
+from app.agents.beam import Beam
+from app.agents.informed import Informed
 from app.agents.lookahead import Greedy, LookAhead, TwoStep
+from app.agents.mcts import Mcts
 from app.agents.protocol import Agent, Problem
 from app.agents.q_learning import QLearning
 from app.agents.sarsa_lambda import SarsaLambda
@@ -34,6 +37,9 @@ OURS: Mapping[str, AgentClass] = {
     "greedy": Greedy,
     "two-step": TwoStep,
     "look-ahead": LookAhead,
+    "beam": Beam,
+    "informed": Informed,
+    "mcts": Mcts,
 }
 _CLASS_PATH = re.compile(r"[\w.]+:\w+")
 

@@ -18,7 +18,7 @@ _MAX_BATCH = 2048
 
 
 class FutureNode:
-    """Node of a search tree: a simulated future state, with lazily computed legal actions."""
+    """Node of a search tree: a simulated future state, with lazily computed properties."""
 
     def __init__(self, expand: "SimulatorExpand", state: WalkState) -> None:
         self.state, self._expand = state, expand
@@ -27,6 +27,11 @@ class FutureNode:
     def legal(self) -> Sequence[Action]:
         """The legal actions in this state, by the walker's observation mode."""
         return self._expand.legal(self.state)
+
+    @cached_property
+    def offsets_m(self) -> Sequence[tuple[float, float]]:
+        """Measured offset (x, y) of each pair's leader from home [m]."""
+        return self._expand.offsets_m(self.state)
 
 
 class SimulatorExpand:
@@ -68,6 +73,10 @@ class SimulatorExpand:
     def at(self, state: WalkState) -> None:
         """Set the current state of the robot, the root of the search."""
         self.here = FutureNode(self, state)
+
+    def offsets_m(self, state: WalkState) -> Sequence[tuple[float, float]]:
+        """Return where the feet are measured in a state, per pair [m]."""
+        return self._simulator.pair_offsets(state)
 
     def legal(self, state: WalkState) -> Sequence[Action]:
         """Return the legal actions in a state."""

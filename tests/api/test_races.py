@@ -104,8 +104,8 @@ def test_lane_may_learn_in_the_race_without_practice(api: Api) -> None:
 @pytest.mark.parametrize(
     ("lane", "names"),
     [
-        ({"agent": "look-ahead", "depth": 0}, "lanes.0.depth must be a whole number from 1 to 10"),
-        ({"agent": "look-ahead", "depth": 5}, "Lane 1: depth 5 would simulate 271,452"),
+        ({"agent": "look-ahead", "depth": 0}, "lanes.0.depth must be a whole number from 1 to 50"),
+        ({"agent": "look-ahead", "depth": 5}, "Lane 1: depth 5 would simulate more than 40,000"),
         ({"agent": "look-ahead", "width": 5}, "unknown field 'width'"),
         ({"agent": "greedy", "keep_learning": True}, "Lane 1: greedy does not learn, so it cannot"),
         ({"agent": "greedy", "keep_learning": 1}, "keep_learning must be true or false"),
@@ -233,7 +233,9 @@ def test_all_options_can_be_started(api: Api) -> None:
             api.stop(api.start("/trainings", body))
     learns = {agent["name"]: agent["learns"] for agent in options["agents"]}
     learners = {"q-learning": True, "sarsa-lambda": True}
-    searchers = dict.fromkeys(("greedy", "two-step", "look-ahead"), False)
+    searchers = dict.fromkeys(
+        ("greedy", "two-step", "look-ahead", "beam", "informed", "mcts"), False
+    )
     assert learns == learners | searchers
     api.stop(api.start("/trainings", options["defaults"]["training"]))
     assert set(options["limits"]) <= set(options["help"])
