@@ -8,7 +8,7 @@ import {
   isActive, isOperator, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, myWork, shownRun, work,
 } from "./selectors.js";
 import { formRobot } from "./robots.js";
-import { agentOf, learns, limitsOf, settingsOf } from "./settings.js";
+import { agentOf, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
 import { markDeleted, options, rates, requestRun, requestStage, runs, scene, setEntry, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -237,7 +237,9 @@ export function copySettings(run) {
   const { robot, agent, ...config } = run.kind === "race" ? configOfRace(run) : configAtEnd(run);
   if (agent && learns(agent)) chooseLearner(agent);
   const racing = run.kind === "race" ? run.config.lanes.map((lane) => lane.agent) : [];
-  const known = Object.keys({ ...form.value, ...settingsOf([form.value.agent, ...racing]) });
+  const known = Object.keys({
+    ...form.value, ...settingsOf([form.value.agent, ...racing]), ...laneSettings(racing),
+  });
   const taken = Object.entries(config).filter(([field]) => known.includes(field) && field !== "name");
   setFields({ ...Object.fromEntries(taken), robot: robot ? formRobot(robot) : form.value.robot });
 }
@@ -247,7 +249,9 @@ function configOfRace({ config: { lanes, steps, ...walk } }) {
   const trainings = lanes.map((lane) => runs.value.get(lane.training_id ?? "")).map((run) => run && configAtEnd(run));
   // Of a setting that several learners have, the value of the first.
   const practice = Object.assign({}, ...trainings.reverse());
-  return { ...practice, ...walk, race_steps: steps, lanes: lanes.map(({ agent }) => agent) };
+  const own = lanes.flatMap((lane) => Object.entries(lane).map(([name, value]) => [`${lane.agent}.${name}`, value]));
+  const agents = lanes.map(({ agent }) => agent);
+  return { ...practice, ...walk, ...Object.fromEntries(own), race_steps: steps, lanes: agents };
 }
 
 /** @param {Run} run */
