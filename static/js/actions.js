@@ -13,7 +13,7 @@ import { markDeleted, options, rates, requestRun, requestStage, runs, scene, set
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { DamagedRun, Rates, Run, RunConfig, Stage, Verb } from "./types.js" */
+/** @import { DamagedRun, LaneConfig, Rates, Run, RunConfig, Stage, Verb } from "./types.js" */
 
 /** A button of the page. @typedef {{ label: string, run: () => unknown }} Action */
 
@@ -92,6 +92,9 @@ export const secondaryActions = computed(() => {
   else actions.push({ label: "Train, don’t race", run: () => startTraining() });
   const tables = laneTables.value;
   if (tables) actions.push({ label: "Race only", run: () => startRace({ tables }) });
+  if (racingLearners.value.every((agent) => form.value[`${agent}.keep_learning`])) {
+    actions.push({ label: "Race without practice", run: () => startRace({ isUnpractised: true }) });
+  }
   return actions;
 });
 
@@ -244,9 +247,16 @@ export function copySettings(run) {
   setFields({ ...Object.fromEntries(taken), robot: robot ? formRobot(robot) : form.value.robot });
 }
 
+/** The agent of a lane without training, and its settings. @param {LaneConfig} lane */
+const settingsOfLane = ({ agent, ...lane }) =>
+  ({ agent, ...Object.fromEntries(Object.entries(lane).filter(([name]) => name in agentOf(agent).settings)) });
+
 /** @type {(race: Run) => Omit<Partial<RunConfig>, "lanes"> & { lanes: string[] }} */
 function configOfRace({ config: { lanes, steps, ...walk } }) {
-  const trainings = lanes.map((lane) => runs.value.get(lane.training_id ?? "")).map((run) => run && configAtEnd(run));
+  const trainings = lanes.map((lane) => {
+    const run = runs.value.get(lane.training_id ?? "");
+    return run ? configAtEnd(run) : learns(lane.agent) && settingsOfLane(lane);
+  });
   // Of a setting that several learners have, the value of the first.
   const practice = Object.assign({}, ...trainings.reverse());
   const own = lanes.flatMap((lane) => Object.entries(lane).map(([name, value]) => [`${lane.agent}.${name}`, value]));

@@ -263,14 +263,17 @@ const nameField = () => {
   return name ? { name } : {};
 };
 
+/** The settings of an agent that have a value. @param {string} agent */
+const ownFields = (agent) =>
+  Object.fromEntries(Object.entries(settingValues(agent, overrides.value)).filter(([, value]) => value !== null));
+
 /** The practice of an agent: the fields that are common to all, and the agent's own. @param {string} agent */
 function practiceFields(agent) {
   const elsewhere = [
     "agent", "name", "seed", ...WALK_FIELDS, ...RACE_FIELDS, ...Object.keys(laneSettings(form.value.lanes)),
   ];
   const common = select(commonFields(), (field) => !elsewhere.includes(field));
-  const own = Object.entries(settingValues(agent, overrides.value)).filter(([, value]) => value !== null);
-  return { ...common, ...Object.fromEntries(own) };
+  return { ...common, ...ownFields(agent) };
 }
 
 /**
@@ -309,10 +312,11 @@ function laneFields(agent) {
 /** Agent → id of a training. @typedef {Record<string, string | undefined>} TrainingIds */
 
 /**
- * Request body of a race. Its learners practise first, continue from a table, or use it as it is.
- * @param {{ continued?: TrainingIds, tables?: TrainingIds }} how
+ * Request body of a race. Its learners practise first, continue from a table, use it as it is, or, if they keep
+ * learning in the race, begin there.
+ * @param {{ continued?: TrainingIds, tables?: TrainingIds, isUnpractised?: boolean }} how
  */
-export const raceBody = ({ continued = {}, tables = {} } = {}) => ({
+export const raceBody = ({ continued = {}, tables = {}, isUnpractised = false } = {}) => ({
   ...walkFields(),
   ...nameField(),
   steps: form.value.race_steps,
@@ -320,6 +324,7 @@ export const raceBody = ({ continued = {}, tables = {} } = {}) => ({
   lanes: form.value.lanes.map((agent) => {
     const own = laneFields(agent);
     if (!learns(agent)) return { agent, ...own };
+    if (isUnpractised) return { agent, ...own, ...ownFields(agent) };
     if (tables[agent]) return { agent, ...own, training_id: tables[agent] };
     return { agent, ...own, training: { ...practiceFields(agent), ...beginning(continued[agent]) } };
   }),

@@ -124,6 +124,19 @@ def test_two_step_maximises_the_sum_and_ties_go_to_the_first() -> None:
     assert world.calls == [4, 1 + 2 + 3 + 3]  # a layer a call, and a family may have any size
 
 
+def test_layers_in_several_batches_give_the_same_decisions(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole, _ = walker(2)
+    in_parts, expand = walker(2)
+    for _ in range(4):
+        whole.carry_out(whole.decide())
+        with monkeypatch.context() as context:
+            context.setattr("app.runs.walker._MAX_BATCH", 5)
+            in_parts.carry_out(in_parts.decide())
+
+    assert in_parts.state == whole.state
+    assert expand.transitions == 4 * 156
+
+
 def test_every_pair_moves_at_each_gait_and_depth() -> None:
     for gait, depth in product(NAMED_GAITS, (1, 2)):
         robot, _ = walker(depth, gait)

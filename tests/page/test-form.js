@@ -239,3 +239,9 @@ test("a lane's setting that is not valid is kept as it is, and holds the start",
   setFields({ lanes: ["greedy"] });
   assert.deepEqual(mistakes.value, {});
 });
+
+test("a learner that keeps learning may begin in the race, with its settings in the lane", () => {
+  setFields({ lanes: ["learner"], "learner.keep_learning": true, gamma: 0.5 });
+  const settings = { alpha: 0.3, gamma: 0.5, epsilon_start: 1, epsilon_end: 0 };
+  assert.deepEqual(raceBody({ isUnpractised: true }).lanes, [{ agent: "learner", keep_learning: true, ...settings }]);
+});
