@@ -103,10 +103,9 @@ class Walker:
         agent: Agent,
         observation: Observation,
         expand: SimulatorExpand | None = None,
-        keeps_learning: bool = False,
     ) -> None:
         self.simulator, self.agent, self.observation = simulator, agent, observation
-        self.keeps_learning = keeps_learning
+        self.keeps_learning = False
         self._expand = expand
         self.place(simulator.rest())
 
