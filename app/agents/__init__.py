@@ -11,5 +11,7 @@ update their Q-table from it as well: `dyna_q`, `dyna_q_plus` and `prioritized_s
 `model_planning` that of learners that explore by value iteration in it: `r_max` and
 `posterior_sampling`.
 `q_table` is the table; `table_rows` iterates over the rows of its sparse stored form.
-`lookahead` is exhaustive search over the next steps (paper, Algorithms 3 and 4).
+`search` is the base of agents that plan by simulation: `lookahead` is exhaustive (paper, Algorithms
+3 and 4), `beam` follows the best few sequences, `informed` simulates what the kinematic law ranks
+best, and `mcts` samples sequences at random.
 """

@@ -5,27 +5,15 @@ of one decision is not reused for the next.
 """
 
 from collections.abc import Sequence
-from typing import Annotated
 
 import numpy as np
-from annotated_types import Ge, Le
 
-from app.agents.protocol import AgentState, Expand, Node, Problem, Transition
-from app.domain.errors import InvalidInput
-from app.domain.settings import Setting
+from app.agents.protocol import Expand, Node, Problem
+from app.agents.search import Depth, Search, action_count, check_depth
 from app.domain.types import Action, Cells, FloatArray
 
-MAX_TREE = 40_000
-"""Maximum of transitions that a search simulates for one decision."""
-Depth = Annotated[
-    int,
-    Ge(1),
-    Le(10),
-    Setting(title="Depth", help="How many steps it looks ahead.", examples=(2, 3)),
-]
 
-
-class LookAhead:
+class LookAhead(Search):
     """Agent that simulates all sequences of `depth` actions, and takes the best one's first action.
 
     Breadth-first: each level of the tree is simulated by one call of `expand`. Ties go to the
@@ -38,18 +26,18 @@ class LookAhead:
         problem: limits the depth; None for no limit.
 
     Raises:
-        InvalidInput: if the tree would have more than `MAX_TREE` transitions.
+        InvalidInput: if a decision would simulate more than `MAX_TRANSITIONS`.
     """
 
     title = "Look-ahead"
     description = "Simulates every possible sequence of steps, and takes the best one."
     color = "#117733"
-    learns = False
 
     def __init__(self, expand: Expand, depth: Depth = 3, problem: Problem | None = None) -> None:
+        super().__init__(expand)
         if problem is not None:
             self.check_problem(problem, depth)
-        self._expand, self._depth = expand, depth
+        self._depth = depth
 
     @staticmethod
     def check_problem(problem: Problem, depth: int = 1) -> None:
@@ -58,29 +46,17 @@ class LookAhead:
         Raises:
             InvalidInput: if it is.
         """
-        actions = len(problem.pairs) * (len(problem.cells_m) - 1)
-        sizes = [sum(actions**d for d in range(1, levels + 1)) for levels in range(1, depth + 1)]
-        if sizes[-1] > MAX_TREE:
-            most = sum(size <= MAX_TREE for size in sizes)
-            raise InvalidInput(
-                f"depth {depth} would simulate {sizes[-1]:,} transitions a decision with "
-                f"{actions} actions in each state, the most is {MAX_TREE:,}: choose depth "
-                f"{most}{' or less' if most > 1 else ''}, or fewer divisions"
-            )
+        actions = action_count(problem)
+        sizes, size = [], 0
+        for level in range(1, depth + 1):
+            size += actions**level
+            sizes.append(size)
+        check_depth(depth, sizes, actions)
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         """Return the first action of the sequence with the highest sum of rewards."""
         best = self._best_sums([self._expand.here], self._depth)
         return self._expand.here.legal[best.first[0]]
-
-    def learn(self, transition: Transition) -> None:
-        """Do nothing: the agent plans by simulation and does not learn."""
-
-    def state(self) -> AgentState:
-        return {}
-
-    def load(self, state: AgentState) -> None:
-        pass
 
     def _best_sums(self, nodes: Sequence[Node], depth: int) -> "_Best":
         """Return each node's highest sum of `depth` rewards, and the index of its first action."""

@@ -125,11 +125,15 @@ class Tabular(Protocol):
 
 
 class Node(Protocol):
-    """Node of a search tree: an opaque simulated state with its legal actions."""
+    """Node of a search tree: a simulated state, with its legal actions and where its feet are."""
 
     @property
     def legal(self) -> Sequence[Action]:
         """The legal actions in this state."""
+
+    @property
+    def offsets_m(self) -> Sequence[tuple[float, float]]:
+        """Measured offset (x, y) of each pair's leader from home, in the robot frame [m]."""
 
 
 class Expand(Protocol):

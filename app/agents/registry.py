@@ -10,11 +10,14 @@ from functools import cache
 from importlib.metadata import entry_points
 from typing import Any
 
+from app.agents.beam import Beam
 from app.agents.double_q import DoubleQ
 from app.agents.dyna_q import DynaQ
 from app.agents.dyna_q_plus import DynaQPlus
 from app.agents.expected_sarsa import ExpectedSarsa
+from app.agents.informed import Informed
 from app.agents.lookahead import Greedy, LookAhead, TwoStep
+from app.agents.mcts import Mcts
 from app.agents.n_step_sarsa import NStepSarsa
 from app.agents.posterior_sampling import PosteriorSampling
 from app.agents.prioritized_sweeping import PrioritizedSweeping
@@ -54,6 +57,9 @@ OURS: Mapping[str, AgentClass] = {
     "greedy": Greedy,
     "two-step": TwoStep,
     "look-ahead": LookAhead,
+    "beam": Beam,
+    "informed": Informed,
+    "mcts": Mcts,
 }
 _CLASS_PATH = re.compile(r"[\w.]+:\w+")
 

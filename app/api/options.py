@@ -31,6 +31,7 @@ from app.runs.config import (
     MAX_LANES,
     MAX_RACE_STEPS,
     RACE_STEPS,
+    LaneConfig,
     RaceConfig,
     TrainingConfig,
     agent_settings,
@@ -128,6 +129,7 @@ _LANE_STEPS = Annotated[
 _SETTINGS = {
     **declared_fields(TrainingConfig),
     "race_steps": declare("race_steps", _LANE_STEPS, RACE_STEPS),
+    "keep_learning": declared_fields(LaneConfig)["keep_learning"],
 }
 """Declared settings that belong to no agent, by form field."""
 

@@ -5,6 +5,7 @@ its commanded cell. The paper does not say which of the two its state holds. Dea
 between: it follows the drift, but from the commands alone.
 """
 
+from collections.abc import Sequence
 from functools import lru_cache
 from itertools import chain
 from typing import Literal, get_args
@@ -51,10 +52,23 @@ def observe(
     if how == "planned":
         feet = state.feet
         return tuple(map(nearest, feet.lateral_m, feet.forward_m))
+    return tuple(nearest(x, y) for x, y in measured_offsets(simulator, state, error_m))
+
+
+def measured_offsets(
+    simulator: Simulator[S], state: S, error_m: FloatArray | None = None
+) -> Sequence[tuple[float, float]]:
+    """Return the measured offset (x, y) of each pair's leader from home [m].
+
+    Args:
+        simulator: simulates the robot.
+        state: of the robot.
+        error_m: errors of measurement, (pairs, 2) [m]; None for none.
+    """
     offsets = simulator.pair_offsets(state)
-    if error_m is not None:
-        offsets = [(x + dx, y + dy) for (x, y), (dx, dy) in zip(offsets, error_m, strict=True)]
-    return tuple(nearest(x, y) for x, y in offsets)
+    if error_m is None:
+        return offsets
+    return [(x + dx, y + dy) for (x, y), (dx, dy) in zip(offsets, error_m.tolist(), strict=True)]
 
 
 @lru_cache(maxsize=1 << 10)

@@ -9,7 +9,7 @@ import numpy as np
 from app.agents.protocol import Agent, Node, Transition, Valuing
 from app.domain.disturbances import SensorNoise
 from app.domain.errors import IllegalAction
-from app.domain.observation import Observation, legal_actions, observe
+from app.domain.observation import Observation, legal_actions, measured_offsets, observe
 from app.domain.simulator import Simulator, Step, WalkState
 from app.domain.types import Action, Cells, FloatArray
 from app.runs.records import ActionValues
@@ -19,22 +19,36 @@ _MAX_BATCH = 2048
 
 
 class FutureNode:
-    """Node of a search tree: a simulated future state, with lazily computed legal actions."""
+    """Node of a search tree: a simulated future state, with lazily computed properties."""
 
     def __init__(
         self,
         expand: "SimulatorExpand",
         state: WalkState,
-        legal: Sequence[Action] | None = None,
+        observed: "Readings | None" = None,
+        legal: Sequence[Action] = (),
     ) -> None:
+        """Create a node.
+
+        Args:
+            expand: simulates from it.
+            state: its state.
+            observed: of the root, what the robot's sensors say.
+            legal: of the root, its legal actions.
+        """
         self.state, self._expand = state, expand
-        if legal is not None:
-            self.legal = legal
+        if observed is not None:
+            self.legal, self.offsets_m = legal, observed.offsets_m
 
     @cached_property
     def legal(self) -> Sequence[Action]:
         """The legal actions in this state, by the walker's observation mode."""
         return self._expand.legal(self.state)
+
+    @cached_property
+    def offsets_m(self) -> Sequence[tuple[float, float]]:
+        """Measured offset (x, y) of each pair's leader from home [m]."""
+        return self._expand.offsets_m(self.state)
 
 
 class Readings:
@@ -67,6 +81,11 @@ class Readings:
         if noise is None or self._sensors is None:
             return None
         return self._sensors(steps).normal(0, noise.sd_m, (len(self._simulator.gait.pairs), 2))
+
+    @property
+    def offsets_m(self) -> Sequence[tuple[float, float]]:
+        """Measured offset (x, y) of each pair's leader from home, with errors [m]."""
+        return measured_offsets(self._simulator, self._state, self._error_m)
 
     def __call__(self, how: Observation) -> Cells:
         """Return the cells that an agent observes in the current state, one per pair."""
@@ -116,9 +135,19 @@ class SimulatorExpand:
         self.transitions += len(actions)
         return ends, np.concatenate(rewards) if rewards else np.empty(0)
 
-    def at(self, state: WalkState, legal: Sequence[Action]) -> None:
-        """Set the current state of the robot, the root of the search, and its legal actions."""
-        self.here = FutureNode(self, state, legal)
+    def at(self, state: WalkState, observed: Readings, legal: Sequence[Action]) -> None:
+        """Set the current state of the robot, the root of the search.
+
+        Args:
+            state: the state.
+            observed: what the robot's sensors say.
+            legal: the legal actions.
+        """
+        self.here = FutureNode(self, state, observed, legal)
+
+    def offsets_m(self, state: WalkState) -> Sequence[tuple[float, float]]:
+        """Return where the feet are measured in a state, per pair [m]."""
+        return self._simulator.pair_offsets(state)
 
     def legal(self, state: WalkState) -> Sequence[Action]:
         """Return the legal actions in a state."""
@@ -146,11 +175,9 @@ class Walker:
         observation: Observation,
         expand: SimulatorExpand | None = None,
         readings: Readings | None = None,
-        *,
-        keeps_learning: bool = False,
     ) -> None:
         self.simulator, self.agent, self.observation = simulator, agent, observation
-        self.keeps_learning = keeps_learning
+        self.keeps_learning = False
         self._expand, self._readings = expand, readings or Readings(simulator)
         self.place(simulator.rest())
 
@@ -161,7 +188,7 @@ class Walker:
         self.observed: Cells = self._readings(self.observation)
         self.legal = legal_actions(self.observed, len(self.simulator.grid))
         if self._expand:
-            self._expand.at(state, self.legal)
+            self._expand.at(state, self._readings, self.legal)
 
     @property
     def transitions(self) -> int:

@@ -10,12 +10,12 @@ import {
   isActive, isOperator, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, myWork, shownRun, work,
 } from "./selectors.js";
 import { formRobot } from "./robots.js";
-import { agentOf, learns, limitsOf, settingsOf } from "./settings.js";
+import { agentOf, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
 import { markDeleted, options, rates, requestRun, requestStage, runs, scene, setEntry, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { DamagedRun, Rates, Run, RunConfig, Stage, Verb } from "./types.js" */
+/** @import { DamagedRun, LaneConfig, Rates, Run, RunConfig, Stage, Verb } from "./types.js" */
 
 /** A button of the page. @typedef {{ label: string, run: () => unknown }} Action */
 
@@ -100,6 +100,9 @@ export const secondaryActions = computed(() => {
   else actions.push({ label: "Train, don’t race", run: () => startTraining() });
   const tables = laneTables.value;
   if (tables) actions.push({ label: "Race only", run: () => startRace({ tables }) });
+  if (racingLearners.value.every((agent) => form.value[`${agent}.keep_learning`])) {
+    actions.push({ label: "Race without practice", run: () => startRace({ isUnpractised: true }) });
+  }
   return actions;
 });
 
@@ -245,17 +248,28 @@ export function copySettings(run) {
   const { robot, agent, ...config } = run.kind === "race" ? configOfRace(run) : configAtEnd(run);
   if (agent && learns(agent)) chooseLearner(agent);
   const racing = run.kind === "race" ? run.config.lanes.map((lane) => lane.agent) : [];
-  const known = Object.keys({ ...form.value, ...settingsOf([form.value.agent, ...racing]) });
+  const known = Object.keys({
+    ...form.value, ...settingsOf([form.value.agent, ...racing]), ...laneSettings(racing),
+  });
   const taken = Object.entries(config).filter(([field]) => known.includes(field) && field !== "name");
   setFields({ ...Object.fromEntries(taken), robot: robot ? formRobot(robot) : form.value.robot });
 }
 
+/** The agent of a lane without training, and its settings. @param {LaneConfig} lane */
+const settingsOfLane = ({ agent, ...lane }) =>
+  ({ agent, ...Object.fromEntries(Object.entries(lane).filter(([name]) => name in agentOf(agent).settings)) });
+
 /** @type {(race: Run) => Omit<Partial<RunConfig>, "lanes"> & { lanes: string[] }} */
 function configOfRace({ config: { lanes, steps, ...walk } }) {
-  const trainings = lanes.map((lane) => runs.value.get(lane.training_id ?? "")).map((run) => run && configAtEnd(run));
+  const trainings = lanes.map((lane) => {
+    const run = runs.value.get(lane.training_id ?? "");
+    return run ? configAtEnd(run) : learns(lane.agent) && settingsOfLane(lane);
+  });
   // Of a setting that several learners have, the value of the first.
   const practice = Object.assign({}, ...trainings.reverse());
-  return { ...practice, ...walk, race_steps: steps, lanes: lanes.map(({ agent }) => agent) };
+  const own = lanes.flatMap((lane) => Object.entries(lane).map(([name, value]) => [`${lane.agent}.${name}`, value]));
+  const agents = lanes.map(({ agent }) => agent);
+  return { ...practice, ...walk, ...Object.fromEntries(own), race_steps: steps, lanes: agents };
 }
 
 /** @param {Run} run */

@@ -1,7 +1,7 @@
 // The form's values, what was typed that is none, their query string, and the request bodies that they make.
 import { computed, signal } from "@preact/signals";
 import { parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
-import { learners, learns, limitsOf, settingsOf } from "./settings.js";
+import { agentOf, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
 import { options, served } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -46,11 +46,11 @@ const READERS = {
  * A text as the value of a field, or why it is none.
  * @param {string} field
  * @param {string} text
- * @param {string[]} agents whose settings the field may be
+ * @param {string[]} agents whose settings, or whose lanes' settings, the field may be
  * @returns {Parsed<any>}
  */
 function read(field, text, agents) {
-  const declared = settingsOf(agents)[field] ?? served().settings[field];
+  const declared = settingsOf(agents)[field] ?? laneSettings(agents)[field] ?? served().settings[field];
   return (READERS[field] ?? ((/** @type {string} */ one) => parseSetting(one, declared)))(text);
 }
 
@@ -92,7 +92,9 @@ const settingValues = (agent, given) =>
 /** @param {Record<string, FormValue>} given */
 function complete(given) {
   const agent = String(given.agent ?? served().defaults.training.agent);
-  const defaults = { ...commonDefaults(), agent, lanes: defaultLanes(agent) };
+  const lanes = /** @type {string[]} */ (given.lanes ?? defaultLanes(agent));
+  const ofLanes = Object.entries(laneSettings(lanes)).map(([field, setting]) => [field, setting.default]);
+  const defaults = { ...commonDefaults(), agent, lanes, ...Object.fromEntries(ofLanes) };
   const common = Object.entries(given).filter(([field]) => field in defaults);
   return /** @type {FormValues} */ ({ ...defaults, ...Object.fromEntries(common), ...settingValues(agent, given) });
 }
@@ -129,6 +131,9 @@ export const wrong = computed(() => {
   }
   const common = Object.keys({ ...commonDefaults(), agent: "", lanes: "" });
   for (const field of common.filter((one) => one in typed.value)) check(field, typed.value[field], []);
+  const { lanes } = form.value;
+  const ofLanes = Object.keys(laneSettings(lanes)).filter((field) => field in typed.value);
+  for (const field of ofLanes) check(field, typed.value[field], lanes);
   return found;
 });
 
@@ -169,7 +174,7 @@ export function chooseLearner(agent) {
  * @param {string} text
  */
 export function enter(field, text) {
-  const { value, mistake } = read(field, text, [form.value.agent]);
+  const { value, mistake } = read(field, text, [form.value.agent, ...form.value.lanes]);
   if (mistake === undefined) {
     setField(field, value);
     return;
@@ -218,7 +223,7 @@ export function readQuery(query) {
   for (const field of ["agent", "lanes"]) if (query.has(field)) take(field, query.get(field) ?? "", []);
   const defaults = complete(found);
   const agents = [defaults.agent, ...defaults.lanes];
-  const known = { ...defaults, ...served().settings, ...settingsOf(agents) };
+  const known = { ...defaults, ...served().settings, ...settingsOf(agents), ...laneSettings(agents) };
   for (const [field, text] of query) {
     if (field in known && !(field in found) && !(field in texts)) take(field, text, agents);
   }
@@ -261,12 +266,17 @@ const nameField = () => {
   return name ? { name } : {};
 };
 
+/** The settings of an agent that have a value. @param {string} agent */
+const ownFields = (agent) =>
+  Object.fromEntries(Object.entries(settingValues(agent, overrides.value)).filter(([, value]) => value !== null));
+
 /** The practice of an agent: the fields that are common to all, and the agent's own. @param {string} agent */
 function practiceFields(agent) {
-  const elsewhere = ["agent", "name", "seed", ...WALK_FIELDS, ...RACE_FIELDS];
+  const elsewhere = [
+    "agent", "name", "seed", ...WALK_FIELDS, ...RACE_FIELDS, ...Object.keys(laneSettings(form.value.lanes)),
+  ];
   const common = select(commonFields(), (field) => !elsewhere.includes(field));
-  const own = Object.entries(settingValues(agent, overrides.value)).filter(([, value]) => value !== null);
-  return { ...common, ...Object.fromEntries(own) };
+  return { ...common, ...ownFields(agent) };
 }
 
 /**
@@ -292,20 +302,33 @@ export function whatIfBody() {
   return select(body, (field) => field !== "simulator" && !SHOW_FIELDS.includes(field));
 }
 
+/**
+ * The settings of an agent's lane: all of a searcher's, and `keep_learning` if that is not the learner's default.
+ * @param {string} agent
+ */
+function laneFields(agent) {
+  const values = Object.keys(laneSettings([agent])).map((field) => [field.slice(agent.length + 1), form.value[field]]);
+  const { keeps_learning } = agentOf(agent);
+  return Object.fromEntries(values.filter(([name, value]) => name !== "keep_learning" || value !== keeps_learning));
+}
+
 /** Agent → id of a training. @typedef {Record<string, string | undefined>} TrainingIds */
 
 /**
- * Request body of a race. Its learners practise first, continue from a table, or use it as it is.
- * @param {{ continued?: TrainingIds, tables?: TrainingIds }} how
+ * Request body of a race. Its learners practise first, continue from a table, use it as it is, or, if they keep
+ * learning in the race, begin there.
+ * @param {{ continued?: TrainingIds, tables?: TrainingIds, isUnpractised?: boolean }} how
  */
-export const raceBody = ({ continued = {}, tables = {} } = {}) => ({
+export const raceBody = ({ continued = {}, tables = {}, isUnpractised = false } = {}) => ({
   ...walkFields(),
   ...nameField(),
   steps: form.value.race_steps,
   seed: form.value.seed,
   lanes: form.value.lanes.map((agent) => {
-    if (!learns(agent)) return { agent };
-    if (tables[agent]) return { agent, training_id: tables[agent] };
-    return { agent, training: { ...practiceFields(agent), ...beginning(continued[agent]) } };
+    const own = laneFields(agent);
+    if (!learns(agent)) return { agent, ...own };
+    if (isUnpractised) return { agent, ...own, ...ownFields(agent) };
+    if (tables[agent]) return { agent, ...own, training_id: tables[agent] };
+    return { agent, ...own, training: { ...practiceFields(agent), ...beginning(continued[agent]) } };
   }),
 });

@@ -119,7 +119,8 @@ export function mistakeIn(value, limits, isInteger) {
 
 /** For an agent that a run names and the server no longer has. */
 const REMOVED_AGENT = {
-  description: "", color: "#888888", learns: false, needs_practice: false, settings: {}, live_settings: {},
+  description: "", color: "#888888", learns: false, needs_practice: false, keeps_learning: false, settings: {},
+  live_settings: {},
 };
 
 /** @type {(name: string) => Agent} */
@@ -141,6 +142,38 @@ export function settingsOf(names) {
   const each = names.map((name) => agentOf(name).settings);
   // The first pass gives the order, the second lets the first agent's declarations win.
   return Object.assign({}, ...each, ...each.reverse());
+}
+
+/**
+ * The settings of lanes, by form field such as `beam.width`: the own ones of a searcher, and whether a learner
+ * keeps learning; a learner's other settings are those of its practice.
+ * @param {string[]} names of the lanes' agents
+ * @returns {Record<string, SettingOption>}
+ */
+export function laneSettings(names) {
+  const ofLane = (/** @type {string} */ name) => {
+    const { settings, keeps_learning } = agentOf(name);
+    const keepLearning = { ...settingOf("keep_learning"), default: keeps_learning };
+    return Object.entries(learns(name) ? { keep_learning: keepLearning } : settings);
+  };
+  return Object.fromEntries(names.flatMap((name) => ofLane(name).map(([own, setting]) => [`${name}.${own}`, setting])));
+}
+
+/**
+ * A lane's agent with the lane's settings in short: "Beam, width 8, depth 3". Of a learner, those that are not the
+ * defaults.
+ * @param {import("./types.js").LaneConfig} lane
+ */
+export function laneTitle(lane) {
+  const { title, settings, learns: isLearner, keeps_learning } = agentOf(lane.agent);
+  const told = Object.entries(settings).filter(
+    ([name, setting]) => name in lane && (!isLearner || lane[name] !== setting.default),
+  );
+  const words = told.map(([name, setting]) => `${setting.symbol ?? setting.title.toLowerCase()}\u00a0${lane[name]}`);
+  if ((lane.keep_learning ?? keeps_learning) !== keeps_learning) {
+    words.push(lane.keep_learning ? "keeps learning" : "frozen");
+  }
+  return [title, ...words].join(", ");
 }
 
 /**

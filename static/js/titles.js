@@ -56,8 +56,11 @@ const LABELS = {
 /**
  * A field's name as the form shows it: "Learning rate α".
  * @param {string} field
+ * @returns {string}
  */
 export function labelOf(field) {
+  const [agent, own] = field.split(".");
+  if (own) return `${agentOf(agent).title}: ${labelOf(own).toLowerCase()}`;
   const setting = options.value?.settings[field];
   return setting ? titleOf(setting) : LABELS[field] ?? field;
 }

@@ -56,6 +56,7 @@ export interface Agent extends Described {
   color: string;
   learns: boolean;
   needs_practice: boolean;
+  keeps_learning: boolean;
   /** By name, in the order of their declaration. */
   settings: Record<string, SettingOption>;
   /** Those that may change while it learns. */
@@ -148,6 +149,9 @@ export type GaitConfig = string | { [part: string]: unknown };
 export interface LaneConfig {
   agent: string;
   training_id?: string | null;
+  keep_learning?: boolean;
+  /** A setting of the agent, if the lane has no training. */
+  [setting: string]: any;
 }
 
 /** Trainings, races and experiments have different fields; those of all three stand here. */

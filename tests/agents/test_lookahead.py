@@ -1,20 +1,18 @@
 """Look-ahead agents: chosen actions, and number of simulated transitions."""
 
-from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
 import pytest
 
 from app.agents.lookahead import Greedy, LookAhead, TwoStep
-from app.agents.protocol import Node, Problem
+from app.agents.protocol import Problem
 from app.domain.errors import InvalidInput
-from app.domain.gait import NAMED_GAITS, resolve
+from app.domain.gait import NAMED_GAITS
 from app.domain.grid import FootGrid
-from app.domain.kinematic import KinematicSimulator
-from app.domain.robot import Robot
-from app.domain.types import Action, FloatArray
 from app.runs.walker import SimulatorExpand, Walker
+from tests.agents.trees import Graph, World
+from tests.agents.walkers import kinematic_walker
 
 HOME, FRONT_LEFT, FRONT_RIGHT, BACK_LEFT, BACK_RIGHT = range(5)
 
@@ -22,11 +20,7 @@ HOME, FRONT_LEFT, FRONT_RIGHT, BACK_LEFT, BACK_RIGHT = range(5)
 def walker(
     depth: int, gait: str = "left-right-origin", divisions: int = 2
 ) -> tuple[Walker, SimulatorExpand]:
-    simulator = KinematicSimulator(
-        Robot(), resolve(gait, Robot().azimuths_deg), FootGrid(divisions=divisions)
-    )
-    expand = SimulatorExpand(simulator, "measured")
-    return Walker(simulator, LookAhead(expand, depth), "measured", expand), expand
+    return kinematic_walker(lambda expand: LookAhead(expand, depth), gait, divisions)
 
 
 @pytest.mark.parametrize(("depth", "transitions"), [(1, 12), (2, 156), (3, 1884)])
@@ -48,7 +42,7 @@ def test_at_three_divisions_there_are_24_actions() -> None:
 @pytest.mark.parametrize(
     ("divisions", "depth", "message"),
     [
-        (2, 5, "depth 5 would simulate 271,452 transitions.*40,000: choose depth 4 or less"),
+        (2, 5, "depth 5 would simulate more than 40,000 transitions.*choose depth 4 or less"),
         (3, 4, "with 24 actions in each state.*choose depth 3 or less, or fewer divisions"),
         (8, 3, "choose depth 2 or less"),
     ],
@@ -57,7 +51,7 @@ def test_tree_that_is_too_large_is_refused(divisions: int, depth: int, message: 
     problem = Problem(((1, 4), (2, 5), (3, 6)), FootGrid(divisions=divisions).cells)
 
     with pytest.raises(InvalidInput, match=message):
-        LookAhead(TrapDoor(), depth, problem)
+        LookAhead(Graph({}), depth, problem)
 
 
 @pytest.mark.parametrize(("depth", "transitions"), [(1, 600), (2, 7_800)])
@@ -110,33 +104,8 @@ def test_first_action_of_the_best_sequence_is_chosen(depth: int) -> None:
         robot.carry_out(robot.legal[int(rng.integers(len(robot.legal)))])
 
 
-class TrapDoor:
-    """`Expand` on a small graph: the best step from A leads to a node with low rewards only."""
-
-    class Place:
-        def __init__(self, name: str) -> None:
-            self.name = name
-
-        @property
-        def legal(self) -> Sequence[Action]:
-            return tuple(Action(0, cell) for cell in range(len(WORLD[self.name])))
-
-    def __init__(self) -> None:
-        self.here: Node = self.Place("A")
-        self.calls: list[int] = []
-
-    def __call__(
-        self, nodes: Sequence[Node], actions: Sequence[Action]
-    ) -> tuple[Sequence[Node], FloatArray]:
-        self.calls.append(len(actions))
-        found = [
-            WORLD[node.name][action.cell]  # type: ignore[attr-defined]
-            for node, action in zip(nodes, actions, strict=True)
-        ]
-        return [self.Place(name) for name, _ in found], np.array([r for _, r in found])
-
-
-WORLD: dict[str, list[tuple[str, float]]] = {
+# The best step from A leads to a place with low rewards only.
+TRAP_DOOR: World = {
     "A": [("B", 1.0), ("C", 0.5), ("D", 0.4), ("D", 0.4)],
     "B": [("A", -5.0)],
     "C": [("A", 0.1), ("A", 0.2)],
@@ -145,14 +114,27 @@ WORLD: dict[str, list[tuple[str, float]]] = {
 
 
 def test_greedy_takes_the_best_first_step_even_if_it_is_worse_later() -> None:
-    assert Greedy(TrapDoor()).act((0,), ()) == (0, 0)
+    assert Greedy(Graph(TRAP_DOOR)).act((0,), ()) == (0, 0)
 
 
 def test_two_step_maximises_the_sum_and_ties_go_to_the_first() -> None:
-    world = TrapDoor()
+    world = Graph(TRAP_DOOR)
 
     assert TwoStep(world).act((0,), ()) == (0, 2)
     assert world.calls == [4, 1 + 2 + 3 + 3]  # a layer a call, and a family may have any size
+
+
+def test_layers_in_several_batches_give_the_same_decisions(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole, _ = walker(2)
+    in_parts, expand = walker(2)
+    for _ in range(4):
+        whole.carry_out(whole.decide())
+        with monkeypatch.context() as context:
+            context.setattr("app.runs.walker._MAX_BATCH", 5)
+            in_parts.carry_out(in_parts.decide())
+
+    assert in_parts.state == whole.state
+    assert expand.transitions == 4 * 156
 
 
 def test_every_pair_moves_at_each_gait_and_depth() -> None:

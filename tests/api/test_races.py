@@ -105,8 +105,8 @@ def test_lane_may_learn_in_the_race_without_practice(api: Api) -> None:
 @pytest.mark.parametrize(
     ("lane", "names"),
     [
-        ({"agent": "look-ahead", "depth": 0}, "lanes.0.depth must be a whole number from 1 to 10"),
-        ({"agent": "look-ahead", "depth": 5}, "Lane 1: depth 5 would simulate 271,452"),
+        ({"agent": "look-ahead", "depth": 0}, "lanes.0.depth must be a whole number from 1 to 50"),
+        ({"agent": "look-ahead", "depth": 5}, "Lane 1: depth 5 would simulate more than 40,000"),
         ({"agent": "look-ahead", "width": 5}, "unknown field 'width'"),
         ({"agent": "greedy", "keep_learning": True}, "Lane 1: greedy does not learn, so it cannot"),
         ({"agent": "greedy", "keep_learning": 1}, "keep_learning must be true or false"),

@@ -16,6 +16,7 @@ from app.archive import archive
 from app.archive.transfer import RUN, export_run, import_run
 from app.domain.errors import InvalidInput
 from app.domain.settings import SettingValues
+from app.runs.config import RaceConfig, lane_config
 from app.runs.recording import race_arrays
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
@@ -143,6 +144,27 @@ def test_unusual_configs_are_imported_but_unregistered_agents_refused(store: Run
     store.create(training(OTHER, state="finished", config=ODD))
     assert imported(export_run(store, ONE)) == store.get(ONE)
     assert ", ".join(OURS) in refusal(export_run(store, OTHER))
+
+
+def test_lanes_with_settings_are_imported(store: RunStore) -> None:
+    lanes = (lane_config("beam", width=2), lane_config("q-learning", keep_learning=True, alpha=0.5))
+    config = RaceConfig(gait="left-right-origin", steps=8, lanes=lanes)
+    race = Run(
+        id=ONE,
+        kind="race",
+        name="It was stopped",
+        state="stopped",
+        config=config,
+        lane_training_ids=(None, None),
+        total=16,
+    )
+    store.create(race)
+    assert imported(export_run(store, ONE)).config == config
+    too_deep = replace(
+        config, lanes=(replace(lanes[0], settings=SettingValues({"depth": 99})),) * 2
+    )
+    store.create(replace(race, id=OTHER, config=too_deep))
+    assert "depth must be a whole number from 1 to 50" in refusal(export_run(store, OTHER))
 
 
 def _set(name: str, value: Any, *path: str | int) -> Change:

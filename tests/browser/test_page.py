@@ -98,7 +98,7 @@ def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> N
     page.get_by_role("slider", name="Discount γ").fill("0.5")
     page.get_by_text("More settings").click()
     page.get_by_label("Robot").select_option("slippery")
-    page.get_by_role("checkbox", name="Two-step").uncheck()
+    page.get_by_role("checkbox", name="Two-step", exact=True).uncheck()
     link = page.url
     page.goto("about:blank")
 
@@ -108,7 +108,7 @@ def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> N
     expect(page.get_by_role("slider", name="Discount γ")).to_have_value("0.5")
     page.get_by_text("More settings").click()
     expect(page.get_by_label("Robot")).to_have_value("slippery")
-    expect(page.get_by_role("checkbox", name="Two-step")).not_to_be_checked()
+    expect(page.get_by_role("checkbox", name="Two-step", exact=True)).not_to_be_checked()
     page.get_by_role("button", name="Share").click()
     expect(page.locator(".toast")).to_contain_text(re.compile("link", re.IGNORECASE))
 

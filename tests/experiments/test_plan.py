@@ -87,6 +87,18 @@ def test_references_come_first_and_timed_trials_last() -> None:
         assert trial.config.must_be_alone == (trial.setting.role == "timed")
 
 
+def test_sweep_varies_the_settings_of_searches() -> None:
+    gaits = ("front-back-origin",)
+    settings = plan("sweep", gaits=gaits, agents=("beam",), width=(1, 4), depth=(2,)).settings
+    assert [(one.training.agent, dict(one.training.settings)) for one in settings] == [
+        ("greedy", {}),
+        ("beam", {"width": 1, "depth": 2}),
+        ("beam", {"width": 4, "depth": 2}),
+    ]
+    with pytest.raises(HexapodError, match="choose depth 4 or less"):
+        plan("sweep", gaits=gaits, agents=("look-ahead",), depth=(5,))
+
+
 def test_greedy_is_always_a_reference() -> None:
     agents = ("tests.own_agents:Restless", "tests.own_agents:ThreeStep")
     gaits = ("front-back-origin",)

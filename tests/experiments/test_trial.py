@@ -82,6 +82,13 @@ def test_look_ahead_agents_reach_the_greatest_possible_distance(
     assert result.transitions == transitions
 
 
+def test_search_without_practice_has_its_settings() -> None:
+    search = practice(agent="beam", width=2, depth=2)
+    result = run_trial(TrialConfig(training=search, blocks=0))
+
+    assert result.transitions == 50 * (12 + 2 * 12)
+
+
 def test_the_paper_clock_charges_for_simulated_transitions() -> None:
     learner = run_trial(TrialConfig(training=practice(steps=30)))
     greedy = run_trial(TrialConfig(training=practice(agent="greedy"), blocks=0))

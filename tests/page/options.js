@@ -44,7 +44,7 @@ const EXPERIMENT = {
 };
 const COMMON = ["seeds", "seed", "gaits", "observations", "robots", "simulator"];
 
-const SEARCH = { learns: false, needs_practice: false, settings: {}, live_settings: {} };
+const SEARCH = { learns: false, needs_practice: false, keeps_learning: false, settings: {}, live_settings: {} };
 
 /** @type {Options} */
 export const OPTIONS = {
@@ -56,15 +56,20 @@ export const OPTIONS = {
   robots: [{ ...described("stiff", "Stiff"), robot: { preset: "stiff" } }],
   agents: [
     {
-      ...described("learner", "Learner"), color: "#111111", learns: true, needs_practice: true, settings: LEARNER,
+      ...described("learner", "Learner"), color: "#111111", learns: true, needs_practice: true,
+      keeps_learning: false, settings: LEARNER,
       live_settings: { alpha: LEARNER.alpha, gamma: LEARNER.gamma, epsilon: EPSILON },
     },
     {
-      ...described("tracer", "Tracer"), color: "#444444", learns: true, needs_practice: true, settings: TRACER,
+      ...described("tracer", "Tracer"), color: "#444444", learns: true, needs_practice: true,
+      keeps_learning: true, settings: TRACER,
       live_settings: { alpha: TRACER.alpha, trace: TRACER.trace },
     },
     { ...described("greedy", "Greedy"), color: "#222222", ...SEARCH },
-    { ...described("planner", "Planner"), color: "#333333", ...SEARCH },
+    {
+      ...described("planner", "Planner"), color: "#333333", ...SEARCH,
+      settings: { depth: setting("Depth", { minimum: 1, maximum: 5, is_whole: true, default: 3 }) },
+    },
   ],
   simulators: [{ name: "mujoco", description: "" }, { name: "kinematic", description: "" }],
   observations: [{ name: "measured", description: "" }, { name: "commanded", description: "" }],
@@ -84,6 +89,7 @@ export const OPTIONS = {
     grid_side_m: setting("Grid side", { minimum: 0.01, maximum: 0.1, unit: "m", default: 0.04 }),
     ...Object.fromEntries(["steps_per_episode", "evaluate_every", "divisions", "race_steps"]
       .map((name) => [name, setting(name, { minimum: 0, is_whole: true, default: 50 })])),
+    keep_learning: setting("Keeps learning", { is_number: false, is_boolean: true, default: false }),
     pace: setting("Pace", { choices: ["max"], minimum: 0.01, maximum: 1000, default: "max" }),
     ...TRACER, ...LEARNER,
   },

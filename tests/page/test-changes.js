@@ -1,9 +1,9 @@
 // Changes of live settings while a training runs: which values hold, and what is said of them.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { copySettings } from "../../static/js/actions.js";
+import { copySettings, secondaryActions } from "../../static/js/actions.js";
 import { changesInWords, configAtEnd, presentRates, rateChanges } from "../../static/js/changes.js";
-import { form, overrides } from "../../static/js/form.js";
+import { form, overrides, setFields } from "../../static/js/form.js";
 import { applyEvent, options, rates, runs } from "../../static/js/store.js";
 import { curve } from "../../static/js/training.js";
 import { makeRun, OPTIONS } from "./options.js";
@@ -68,4 +68,23 @@ test("the settings of a run are copied as they hold at its end", () => {
   applyEvent("run", run);
   copySettings(makeRun({ kind: "race", config: { steps: 50, lanes: [{ agent: "learner", training_id: run.id }] } }));
   assert.equal(form.value.alpha, 0.5);
+});
+
+test("the settings of lanes are copied", () => {
+  const lanes = [
+    { agent: "planner", depth: 2 },
+    { agent: "learner", training_id: null, keep_learning: true, gamma: 0.5 },
+  ];
+  copySettings(makeRun({ kind: "race", config: { steps: 50, lanes } }));
+  assert.deepEqual(form.value.lanes, ["planner", "learner"]);
+  const { gamma, "planner.depth": depth, "learner.keep_learning": keepLearning } = form.value;
+  assert.deepEqual([depth, keepLearning, gamma], [2, true, 0.5]);
+});
+
+test("a race without practice is offered if all of its learners keep learning", () => {
+  const labels = () => secondaryActions.value.map(({ label }) => label);
+  setFields({ lanes: ["tracer", "learner"] });
+  assert.ok(!labels().includes("Race without practice"));
+  setFields({ "learner.keep_learning": true });
+  assert.ok(labels().includes("Race without practice"));
 });

@@ -25,7 +25,8 @@ beforeEach(() => {
 
 test("the form begins with the server's defaults and nothing else", () => {
   const { training } = OPTIONS.defaults;
-  assert.deepEqual(form.value, { ...training, race_steps: 50, lanes: ["learner", "greedy"], name: "" });
+  const lanes = { lanes: ["learner", "greedy"], "learner.keep_learning": false };
+  assert.deepEqual(form.value, { ...training, race_steps: 50, ...lanes, name: "" });
 });
 
 test("the address follows the form, and is clean again when the form is", () => {
@@ -204,4 +205,43 @@ test("what a link says that is no field is told, until another link is read", ()
   assert.equal(form.value.alpha, 0.4);
   readQuery(new URLSearchParams("alpha=0.4"));
   assert.deepEqual(unknownParts.value, []);
+});
+
+test("a lane has its agent's settings, in the form, in the address and in the request", () => {
+  setFields({ lanes: ["tracer", "planner", "greedy"] });
+  assert.equal(form.value["planner.depth"], 3);
+  assert.deepEqual(raceBody().lanes.slice(1), [{ agent: "planner", depth: 3 }, { agent: "greedy" }]);
+  enter("planner.depth", "2");
+  enter("tracer.keep_learning", "false");
+  const query = new URLSearchParams(location.search);
+  assert.equal(query.get("planner.depth"), "2");
+  overrides.value = {};
+  readAddress();
+  const [tracer, planner] = /** @type {any[]} */ (raceBody().lanes);
+  assert.deepEqual(planner, { agent: "planner", depth: 2 });
+  assert.equal(tracer.keep_learning, false);
+  assert.ok(!Object.keys({ ...tracer.training, ...trainingBody() }).some((name) => name.includes(".")));
+  assert.deepEqual(unknownParts.value, []);
+});
+
+test("a lane that keeps learning as its agent does by default does not say so", () => {
+  setFields({ lanes: ["tracer", "learner"] });
+  assert.deepEqual(raceBody().lanes.map((lane) => "keep_learning" in lane), [false, false]);
+  setField("learner.keep_learning", true);
+  assert.deepEqual(raceBody().lanes.map((lane) => /** @type {any} */ (lane).keep_learning), [undefined, true]);
+});
+
+test("a lane's setting that is not valid is kept as it is, and holds the start", () => {
+  setFields({ lanes: ["planner"] });
+  enter("planner.depth", "9");
+  assert.deepEqual(mistakes.value, { "planner.depth": "Must be from 1 to 5" });
+  assert.equal(form.value["planner.depth"], 3);
+  setFields({ lanes: ["greedy"] });
+  assert.deepEqual(mistakes.value, {});
+});
+
+test("a learner that keeps learning may begin in the race, with its settings in the lane", () => {
+  setFields({ lanes: ["learner"], "learner.keep_learning": true, gamma: 0.5 });
+  const settings = { alpha: 0.3, gamma: 0.5, epsilon_start: 1, epsilon_end: 0 };
+  assert.deepEqual(raceBody({ isUnpractised: true }).lanes, [{ agent: "learner", keep_learning: true, ...settings }]);
 });

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  agentOf, beginningOf, fullTitle, furtherSettings, kindOf, limitsOf, mainSettings, mistakeIn, quantityOf,
+  agentOf, beginningOf, fullTitle, furtherSettings, kindOf, laneTitle, limitsOf, mainSettings, mistakeIn, quantityOf,
   rangeOf, ratesInWords, settingOf, settingsOf, shortTitle, sliderOf,
 } from "../../static/js/settings.js";
 import { options } from "../../static/js/store.js";
@@ -115,4 +115,13 @@ test("a limit that is not valid itself is refused", () => {
   assert.equal(mistakeIn(0, alpha, false), "Must be over 0 and at most 1");
   assert.equal(mistakeIn(1, alpha, false), null);
   assert.equal(mistakeIn(1, limits(0, 1, false, true), false), "Must be from 0 to under 1");
+});
+
+test("a lane is named by its agent and its settings", () => {
+  options.value = OPTIONS;
+  assert.equal(laneTitle({ agent: "greedy" }), "Greedy");
+  assert.equal(laneTitle({ agent: "planner", depth: 2, keep_learning: false }), "Planner, depth\u00a02");
+  assert.equal(laneTitle({ agent: "learner", alpha: 0.3, gamma: 0.5 }), "Learner, γ\u00a00.5");
+  assert.equal(laneTitle({ agent: "learner", keep_learning: true }), "Learner, keeps learning");
+  assert.equal(laneTitle({ agent: "tracer", keep_learning: false }), "Tracer, frozen");
 });

@@ -199,7 +199,7 @@ class Eager(Restless):
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        ({"agent": "look-ahead", "depth": 0}, "depth must be a whole number from 1 to 10, not 0"),
+        ({"agent": "look-ahead", "depth": 0}, "depth must be a whole number from 1 to 50, not 0"),
         ({"agent": "look-ahead", "width": 2}, "unknown setting of look-ahead 'width'.*: depth"),
         ({"agent": "greedy", "depth": 2}, "greedy has no settings, so none named 'depth'"),
         (

@@ -8,7 +8,7 @@ import { chooseLearner, form, mistakes, unknownParts } from "../form.js";
 import { count, listed, sentence, whole } from "../format.js";
 import { isNarrow } from "../page.js";
 import { interruptedRun, isOperator, myWork, offStage, progress, shownRun, work } from "../selectors.js";
-import { agentOf, learners, ratesInWords } from "../settings.js";
+import { agentOf, laneTitle, learners, ratesInWords } from "../settings.js";
 import { scene } from "../store.js";
 import { gaitTitle, inFormWords, labelOf } from "../titles.js";
 import { goToField, Held, html, Icon, Problem, ProgressBar, UnknownParts } from "./elements.js";
@@ -181,7 +181,7 @@ function Interrupted() {
 
 /** Shown to spectators in place of the controls. */
 function Spectator() {
-  const names = (shownRun.value?.config?.lanes ?? []).map(({ agent }) => agentOf(agent).title);
+  const names = (shownRun.value?.config?.lanes ?? []).map(laneTitle);
   return html`
     <section class="panel" aria-label="What is shown">
       <h2>You are watching</h2>

@@ -1,13 +1,13 @@
 // The race: its scoreboard, and its chart of distance against time.
 import { useMemo } from "preact/hooks";
 import uPlot from "uplot";
-import { form } from "../form.js";
+import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, whole } from "../format.js";
 import {
   clipped, distanceAt, flatParts, headline, isTimedOut, raceScene, ruleOf, shownTime, standings, timeline,
 } from "../race.js";
 import { clock, isActive, raceInView, simulatedPerDecision } from "../selectors.js";
-import { agentOf, learns } from "../settings.js";
+import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs } from "../store.js";
 import { clockTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
@@ -120,7 +120,7 @@ function agentSummary(agent, trainingId) {
     const training = runs.value.get(trainingId);
     return training
       ? `${count(practisedSteps(training), "step")} of practice, then looks up its table`
-      : "Practises, then looks up its table";
+      : raceInView.value ? "Learns while it races" : "Practises, then looks up its table";
   }
   const depth = DEPTHS[agent];
   if (!depth) return agentOf(agent).description;
@@ -138,14 +138,14 @@ function startSentence(race) {
 /** The lanes before the race. */
 function StartList() {
   const race = raceInView.value;
-  const lanes = race?.config?.lanes ?? form.value.lanes.map((agent) => ({ agent, training_id: null }));
+  const lanes = race?.config?.lanes ?? raceBody().lanes;
   return html`
     <p class="dim">${startSentence(race)}</p>
     <ul class="start-list">
-      ${lanes.map(({ agent, training_id }) => html`
-        <li style=${{ "--agent": agentOf(agent).color }}>
-          <span class="swatch"></span><b>${agentOf(agent).title}</b>
-          <span class="dim">${agentSummary(agent, training_id)}</span>
+      ${lanes.map((lane) => html`
+        <li style=${{ "--agent": agentOf(lane.agent).color }}>
+          <span class="swatch"></span><b>${laneTitle(lane)}</b>
+          <span class="dim">${agentSummary(lane.agent, lane.training_id)}</span>
         </li>
       `)}
     </ul>
@@ -182,9 +182,10 @@ const invitation = () =>
 function Lines({ known, time }) {
   const longest = Math.max(...known.lanes.map(({ total_s }) => total_s));
   const until = Math.min(time, longest);
-  const lanes = known.lanes.map((lane) => {
+  const configs = raceInView.value?.config?.lanes ?? [];
+  const lanes = known.lanes.map((lane, number) => {
     const shown = clipped(lane.points, until);
-    return { ...lane, ...agentOf(lane.agent), shown, end: shown.at(-1) };
+    return { ...lane, ...agentOf(lane.agent), title: laneTitle(configs[number] ?? lane), shown, end: shown.at(-1) };
   });
   const data = useMemo(
     () => uPlot.join(lanes.map(({ shown }) => [shown.map(([t]) => t), shown.map(([, d]) => d)])),

@@ -7,7 +7,7 @@ import { paceOf } from "../experiments/runs.js";
 import { ago, count, listed, metres, sentence, whole } from "../format.js";
 import { formRobot, isSame } from "../robots.js";
 import { hasTable, isActive, isOperator } from "../selectors.js";
-import { agentOf, ratesInWords } from "../settings.js";
+import { agentOf, laneTitle, ratesInWords } from "../settings.js";
 import { clearFilters, filters, isFiltered, runList, shownRuns } from "../runs.js";
 import { served } from "../store.js";
 import { describeRun, gaitTitle, observationTitle, robotTitle, runTitle, simulatorTitle } from "../titles.js";
@@ -128,7 +128,7 @@ function summaryOf(run) {
   return [learner, ...own, ...place].filter(Boolean).join(" · ");
 }
 
-const ofRace = ({ lanes, steps }) => [listed(lanes.map(({ agent }) => agentOf(agent).title)), count(steps, "step")];
+const ofRace = ({ lanes, steps }) => [listed(lanes.map(laneTitle)), count(steps, "step")];
 
 function ofTraining(run) {
   const { config, progress, state } = run;

@@ -4,7 +4,8 @@ import { presentRates, rateInWords } from "../changes.js";
 import { chooseLearner, enter, form, setField, wrong } from "../form.js";
 import { liveTraining } from "../selectors.js";
 import {
-  agentOf, beginningOf, fullTitle, furtherSettings, kindOf, learners, mainSettings, quantityOf, settingOf, sliderOf,
+  agentOf, beginningOf, fullTitle, furtherSettings, kindOf, laneSettings, learners, mainSettings, quantityOf, settingOf,
+  sliderOf,
 } from "../settings.js";
 import { evaluations, options, served } from "../store.js";
 import { choicesOf, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
@@ -232,8 +233,16 @@ function Lanes() {
       <${MistakeOf} field="lanes" />
       <${Description} field="lanes" />
     </fieldset>
+    ${form.value.lanes.map((agent) => html`<${LaneFields} key=${agent} agent=${agent} />`)}
   `;
 }
+
+/** The settings of a lane's agent: "Beam: width". */
+const LaneFields = ({ agent }) =>
+  Object.entries(laneSettings([agent])).map(([field, setting]) => {
+    const title = `${agentOf(agent).title}: ${setting.title.toLowerCase()}`;
+    return html`<${SettingField} key=${field} name=${field} setting=${{ ...setting, title }} />`;
+  });
 
 const Name = () => html`
   <div class="field wide">

@@ -1,0 +1,115 @@
+"""Monte Carlo tree search: UCT (Kocsis and Szepesvári 2006), within a budget of transitions."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.agents.protocol import Expand, Node
+from app.agents.search import Budget, Search
+from app.domain.types import Action, Cells
+
+HORIZON = 3
+"""Length of a simulated sequence of steps."""
+EXPLORATION = 1 / math.sqrt(2)
+"""Constant of the upper confidence bound, for returns from 0 to 1 (Kocsis and Szepesvári, §2.3)."""
+
+
+@dataclass
+class _Place:
+    """Node of the tree: its simulated actions, and the returns of the sequences through it."""
+
+    node: Node
+    reward_m: float = 0.0
+    """Of the step that leads here."""
+    visits: int = 0
+    total_m: float = 0.0
+    """Sum of the returns of the sequences that came through."""
+    children: dict[Action, "_Place"] = field(default_factory=dict)
+
+
+class Mcts(Search):
+    """Agent that simulates random sequences of steps, more of those that begin well.
+
+    Each sequence has `HORIZON` steps: through the tree by the upper confidence bound of their
+    returns, which are normalised to the range seen so far in the decision, then at random. Steps
+    are deterministic, so each is simulated once and kept: a sequence costs only what is new in it.
+    The action that most sequences began with is taken; ties go to the higher mean return. The tree
+    is not kept for the next decision.
+
+    Args:
+        expand: simulates the transitions.
+        rng: random generator of the sequences.
+        budget: maximum of transitions simulated for a decision.
+    """
+
+    title = "Tree search"
+    description = "Simulates random sequences of steps, more of those that begin well."
+    color = "#D55E00"
+
+    def __init__(self, expand: Expand, rng: np.random.Generator, *, budget: Budget = 156) -> None:
+        super().__init__(expand)
+        self._rng, self._budget = rng, budget
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        """Return the action that most of the simulated sequences began with."""
+        root = _Place(self._expand.here)
+        self._left = self._budget
+        self._lowest, self._highest = math.inf, -math.inf
+        # Once all sequences are known, further ones cost nothing: their number is limited too.
+        for _ in range(self._budget):
+            if self._left <= 0:
+                break
+            self._simulate(root)
+        return max(root.children, key=lambda one: _rank(root.children[one]))
+
+    def _simulate(self, root: _Place) -> None:
+        """Simulate one sequence of steps, and add its return to all nodes on its way."""
+        path, place, is_known = [root], root, True
+        while len(path) <= HORIZON:
+            untried = [one for one in place.node.legal if one not in place.children]
+            if untried and is_known:
+                is_known = False
+                action = self._random(untried)
+            elif is_known:
+                action = self._most_promising(place)
+            else:
+                action = self._random(place.node.legal)
+            if action not in place.children:
+                if self._left == 0:
+                    return
+                place.children[action] = self._step(place, action)
+            place = place.children[action]
+            path.append(place)
+        total_m = sum(one.reward_m for one in path)
+        self._lowest, self._highest = min(self._lowest, total_m), max(self._highest, total_m)
+        for one in path:
+            one.visits += 1
+            one.total_m += total_m
+
+    def _step(self, place: _Place, action: Action) -> _Place:
+        (node,), (reward_m,) = self._expand([place.node], [action])
+        self._left -= 1
+        return _Place(node, float(reward_m))
+
+    def _random(self, actions: Sequence[Action]) -> Action:
+        return actions[int(self._rng.integers(len(actions)))]
+
+    def _most_promising(self, place: _Place) -> Action:
+        """Return the action with the highest upper confidence bound (UCB1)."""
+        span = max(self._highest - self._lowest, 1e-12)
+        logarithm = math.log(max(1, place.visits))
+
+        def bound(action: Action) -> float:
+            child = place.children[action]
+            if child.visits == 0:
+                return math.inf
+            mean = (child.total_m / child.visits - self._lowest) / span
+            return mean + 2 * EXPLORATION * math.sqrt(logarithm / child.visits)
+
+        return max(place.children, key=bound)
+
+
+def _rank(place: _Place) -> tuple[int, float]:
+    return place.visits, place.total_m / max(1, place.visits)

@@ -1,0 +1,84 @@
+"""Base class of agents that search: they plan by simulated transitions, and do not learn."""
+
+from collections.abc import Sequence
+from typing import Annotated
+
+from annotated_types import Ge, Le
+
+from app.agents.protocol import AgentState, Expand, Problem, Transition
+from app.domain.errors import InvalidInput
+from app.domain.settings import Setting
+
+MAX_TRANSITIONS = 40_000
+"""Maximum of transitions that a search may simulate for one decision."""
+Depth = Annotated[
+    int,
+    Ge(1),
+    Le(50),
+    Setting(title="Depth", help="How many steps it looks ahead.", examples=(2, 3)),
+]
+Width = Annotated[
+    int,
+    Ge(1),
+    Le(1000),
+    Setting(title="Width", help="How many sequences of steps it keeps.", examples=(2, 8)),
+]
+Budget = Annotated[
+    int,
+    Ge(1),
+    Le(MAX_TRANSITIONS),
+    Setting(
+        title="Budget",
+        unit="transitions",
+        help="How many steps it may simulate for one decision.",
+        examples=(3, 40),
+    ),
+]
+
+
+class Search:
+    """Agent without anything to learn or to store; a subclass implements `act`.
+
+    Args:
+        expand: simulates transitions from the present state.
+    """
+
+    learns = False
+
+    def __init__(self, expand: Expand) -> None:
+        self._expand = expand
+
+    def learn(self, transition: Transition) -> None:
+        """Do nothing: the agent plans by simulation and does not learn."""
+
+    def state(self) -> AgentState:
+        """Return nothing: there is nothing to keep."""
+        return {}
+
+    def load(self, state: AgentState) -> None:
+        """Do nothing."""
+
+
+def action_count(problem: Problem) -> int:
+    """Return the number of legal actions in each state."""
+    return len(problem.pairs) * (len(problem.cells_m) - 1)
+
+
+def check_depth(depth: int, sizes: Sequence[int], actions: int) -> None:
+    """Check that a search is not too large.
+
+    Args:
+        depth: its depth.
+        sizes: transitions that it simulates for one decision, for the depths from 1 to `depth`.
+        actions: number of actions in each state, for the message.
+
+    Raises:
+        InvalidInput: if it is larger than `MAX_TRANSITIONS`; the message names the highest depth.
+    """
+    if sizes[-1] > MAX_TRANSITIONS:
+        most = max(1, sum(size <= MAX_TRANSITIONS for size in sizes))
+        raise InvalidInput(
+            f"depth {depth} would simulate more than {MAX_TRANSITIONS:,} transitions a decision, "
+            f"with {actions} actions in each state; choose depth {most}"
+            f"{' or less' if most > 1 else ''}, or fewer divisions"
+        )
