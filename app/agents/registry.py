@@ -10,6 +10,7 @@ from functools import cache
 from importlib.metadata import entry_points
 from typing import Any
 
+from app.agents.linear_model import LinearModel
 from app.agents.lookahead import Greedy, TwoStep
 from app.agents.protocol import Agent
 from app.agents.q_learning import QLearning
@@ -31,6 +32,7 @@ AgentClass = Callable[..., Agent]
 OURS: Mapping[str, AgentClass] = {
     "q-learning": QLearning,
     "sarsa-lambda": SarsaLambda,
+    "linear-model": LinearModel,
     "greedy": Greedy,
     "two-step": TwoStep,
 }

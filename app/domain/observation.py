@@ -10,7 +10,7 @@ from itertools import chain
 from typing import Literal, get_args
 
 from app.domain.errors import UnknownName
-from app.domain.simulator import S, Simulator
+from app.domain.simulator import S, Simulator, WalkState
 from app.domain.types import Action, Cells
 
 Observation = Literal["measured", "commanded", "planned"]
@@ -40,9 +40,13 @@ def observe(simulator: Simulator[S], state: S, how: Observation) -> Cells:
         return state.commanded
     nearest = simulator.grid.nearest
     if how == "planned":
-        feet = state.feet
-        return tuple(map(nearest, feet.lateral_m, feet.forward_m))
+        return tuple(nearest(x, y) for x, y in planned_offsets(state))
     return tuple(nearest(x, y) for x, y in simulator.pair_offsets(state))
+
+
+def planned_offsets(state: WalkState) -> tuple[tuple[float, float], ...]:
+    """Return where each pair's feet would be without slip, (x, y) from home [m]."""
+    return tuple(zip(state.feet.lateral_m, state.feet.forward_m, strict=True))
 
 
 @lru_cache(maxsize=1 << 10)

@@ -12,6 +12,7 @@ from app.runs.training import Learner
 
 AGENTS = [
     "q-learning",
+    "linear-model",
     "greedy",
     "two-step",
     "tests.own_agents:ThreeStep",

@@ -60,7 +60,7 @@ def test_package_cannot_replace_a_built_in_agent() -> None:
     [
         (
             "dijkstra",
-            "unknown agent 'dijkstra'; .*sarsa-lambda, greedy, two-step.*my.module:Agent",
+            "unknown agent 'dijkstra'; .*sarsa-lambda, .*greedy, two-step.*my.module:Agent",
         ),
         ("", "unknown agent ''"),
         ("tests.own_agents:", "unknown agent"),

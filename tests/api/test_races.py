@@ -194,7 +194,7 @@ def test_all_options_can_be_started(api: Api) -> None:
             body = {**WALK, "gait": gait["name"], "robot": robot["name"], "steps": 1}
             api.stop(api.start("/trainings", body))
     learns = {agent["name"]: agent["learns"] for agent in options["agents"]}
-    learners = {"q-learning": True, "sarsa-lambda": True}
+    learners = {"q-learning": True, "sarsa-lambda": True, "linear-model": True}
     assert learns == {**learners, "greedy": False, "two-step": False}
     api.stop(api.start("/trainings", options["defaults"]["training"]))
     assert set(options["limits"]) <= set(options["help"])

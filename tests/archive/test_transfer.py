@@ -142,7 +142,9 @@ def test_unusual_configs_are_imported_but_unregistered_agents_refused(store: Run
     store.create(training(ONE, state="finished", config=odd))
     store.create(training(OTHER, state="finished", config=ODD))
     assert imported(export_run(store, ONE)) == store.get(ONE)
-    assert "q-learning, sarsa-lambda, greedy, two-step" in refusal(export_run(store, OTHER))
+    assert "q-learning, sarsa-lambda, linear-model, greedy, two-step" in refusal(
+        export_run(store, OTHER)
+    )
 
 
 def _set(name: str, value: Any, *path: str | int) -> Change:

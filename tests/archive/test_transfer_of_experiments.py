@@ -69,7 +69,9 @@ def test_unregistered_agents_are_refused_without_importing_their_module(
     monkeypatch.syspath_prepend(tmp_path)
     config = replace(SWEEP, agents=("q-learning", "evil:Agent"))
     store.create(experiment("a", state="failed", config=config))
-    assert "q-learning, sarsa-lambda, greedy, two-step" in refusal(export_run(store, "a"))
+    assert "q-learning, sarsa-lambda, linear-model, greedy, two-step" in refusal(
+        export_run(store, "a")
+    )
     assert not (tmp_path / "ran").exists()
 
 
