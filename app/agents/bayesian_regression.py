@@ -8,12 +8,15 @@ from app.domain.types import FloatArray
 class BayesianRegression:
     """Linear regression with a Gaussian prior of the weights and known noise.
 
-    Posterior precision Λ = Λ₀ + XᵀX / σ², covariance Λ⁻¹, mean Λ⁻¹ (Λ₀ m₀ + Xᵀr / σ²).
+    Posterior precision Λ = Λ₀ + XᵀX / σ², covariance Λ⁻¹, mean Λ⁻¹ (Λ₀ m₀ + Xᵀr / σ²). With a
+    forgetting factor below 1 the evidence XᵀX, Xᵀr decays geometrically, and what is not observed
+    any more becomes as uncertain again as it was a priori.
 
     Args:
         mean: prior mean m₀ of the weights, (d,).
         deviation: prior standard deviation of each weight, independent, (d,).
         noise: standard deviation σ of an outcome.
+        forgetting: share of the evidence that remains at each further outcome.
 
     Attributes:
         mean: posterior mean of the weights, (d,).
@@ -22,9 +25,11 @@ class BayesianRegression:
         products: Xᵀr of the evidence, (d,).
     """
 
-    def __init__(self, mean: FloatArray, deviation: FloatArray, noise: float) -> None:
+    def __init__(
+        self, mean: FloatArray, deviation: FloatArray, noise: float, forgetting: float = 1.0
+    ) -> None:
         self._prior_mean, self._prior_precision = mean, deviation**-2.0
-        self._variance = noise * noise
+        self._variance, self._forgetting = noise * noise, forgetting
         self.moments, self.products = np.zeros((len(mean), len(mean))), np.zeros(len(mean))
         self.set_evidence(self.moments, self.products)
 
@@ -40,8 +45,10 @@ class BayesianRegression:
 
     def update(self, features: FloatArray, outcome: float) -> None:
         """Learn one outcome for features (d,)."""
+        kept = self._forgetting
         self.set_evidence(
-            self.moments + features[:, None] * features, self.products + features * outcome
+            kept * self.moments + features[:, None] * features,
+            kept * self.products + features * outcome,
         )
 
     def discount(self, kept: float) -> None:

@@ -46,8 +46,8 @@ _NOISE = 0.15
 _DEVIATION, _LATERAL_DEVIATION = 1.0, 0.1
 _BLOCK = 6
 """Steps for which a policy decides: each of three pairs moves twice."""
-_DISCOUNT = 0.98
-"""Of the rewards that policies earned, per step."""
+_FORGETTING = 0.98
+"""Share of the evidence, and of what policies earned, that remains at each further step."""
 _UNTRIED, _UNTRIED_MEASURED = 0.5, 0.25
 """Reward per step that a policy is expected to earn before it was tried, counted as one step; 0.5
 is the best possible without slip, so that orders are tried early: they cost little where they are
@@ -65,7 +65,7 @@ class Readings(NamedTuple):
     """The state before a step, as the experts read it."""
 
     cells: Cells
-    """The run's observation."""
+    """The measured cells, whatever the run's observation is."""
     planned_m: FloatArray
     """Offset (x, y) of each pair from home by dead reckoning, (pairs, 2)."""
 
@@ -81,7 +81,9 @@ class Expert(ABC):
         weights, deviations = self._prior(len(problem.pairs))
         weights = weights if prior == "kinematic" else np.zeros_like(weights)
         half = self._half_side_m
-        self.model = BayesianRegression(weights * half, deviations * half, _NOISE * half)
+        self.model = BayesianRegression(
+            weights * half, deviations * half, _NOISE * half, _FORGETTING
+        )
 
     @abstractmethod
     def _prior(self, pairs: int) -> tuple[FloatArray, FloatArray]:
@@ -209,11 +211,11 @@ class LinearModel:
         self._errors[:, 1] = (_NOISE * self._half_side_m) ** 2
         self._predicted: FloatArray = np.zeros(count)
         """Rewards [m] that each expert predicted since a frozen copy last chose a policy."""
-        self._before = self._read((0,) * len(problem.pairs))
+        self._before = self._read()
 
-    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:  # noqa: ARG002
         """Return the action with the highest upper confidence bound, by the policy that decides."""
-        self._before = self._read(observation)
+        self._before = self._read()
         if self._decided % _BLOCK == 0:
             self._choose_policy()
         self._decided += 1
@@ -234,15 +236,15 @@ class LinearModel:
             (features,) = expert.features(self._before, [action])
             expert.model.update(features, reward)
         self._visits[action] += 1
-        self._earned *= _DISCOUNT
+        self._earned *= _FORGETTING
         self._earned[self._deciding] += 1, reward
         self._errors[:, 0] += _FAST * (errors - self._errors[:, 0])
         self._errors[:, 1] += _SLOW * (errors - self._errors[:, 1])
         if self._has_changed():
             self._forget()
 
-    def _read(self, observation: Cells) -> Readings:
-        return Readings(observation, np.array(self._observe.planned_offsets_m, float))
+    def _read(self) -> Readings:
+        return Readings(self._observe("measured"), np.array(self._observe.planned_offsets_m, float))
 
     def _predictions(self, action: Action) -> FloatArray:
         """Return the reward that each expert expects [m], (experts,)."""
@@ -294,7 +296,7 @@ class LinearModel:
         pairs, cells = self._visits.shape
         actions = [Action(pair, cell) for pair in range(pairs) for cell in range(cells)]
         mean, _ = self._experts[self._policies[self._deciding].expert].predict(
-            self._read(observation), actions
+            self._read(), actions
         )
         return _without_illegal(mean.reshape(pairs, cells), observation)
 

@@ -38,3 +38,12 @@ def test_forgotten_evidence_brings_back_the_prior() -> None:
     assert regression.mean[0] == pytest.approx((1 / 4 + 5) / 1.25)
     regression.discount(0.0)
     assert (regression.mean[0], regression.covariance[0, 0]) == pytest.approx((1.0, 4.0))
+
+
+def test_evidence_decays_by_the_forgetting_factor() -> None:
+    """Outcomes 2 and 5 at x = 1, the first kept by half: Λ = 1 + 0.5 + 1, mean (1 + 5) / 2.5."""
+    regression = BayesianRegression(np.zeros(1), np.ones(1), noise=1.0, forgetting=0.5)
+    regression.update(np.ones(1), 2.0)
+    regression.update(np.ones(1), 5.0)
+    assert regression.covariance[0, 0] == pytest.approx(1 / 2.5)
+    assert regression.mean[0] == pytest.approx(6 / 2.5)

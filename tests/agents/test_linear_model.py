@@ -176,12 +176,6 @@ def test_it_walks_like_the_best_on_the_kinematic_problem(gait: str, prior: str) 
     assert evaluate(learner, config, 0.0).distance_m / 0.02 > 0.99 * 24.833
 
 
-def test_one_life_without_practice_earns_what_greedy_earns_in_physics() -> None:
-    """Steps 1 to 50 of its life, nothing known before; greedy makes 0.49 m in this gait."""
-    learner = practised(practice("mujoco", steps=50))
-    assert learner.walker.state.distance_m > 0.46
-
-
 def test_a_saved_learner_continues_identically() -> None:
     config = practice(
         "mujoco", gait="left-right-vertical", robot=PRESETS["compliant"], steps=40, optimism=1.0
