@@ -64,7 +64,8 @@ test-page: $(PAGE_STAMP) ## Check the page's JavaScript: linter, types, unit tes
 .PHONY: soak
 soak: $(DEV_STAMP) ## Show what is promised at its full length; it takes hours
 	HEXAPODS_SOAK=1 $(BIN)/python -m pytest tests/promises tests/runs/test_figures.py \
-		tests/physics/test_figures.py tests/browser/test_typed.py $(ARGS)
+		tests/physics/test_figures.py tests/browser/test_typed.py \
+		tests/agents/test_linear_model_figures.py tests/agents/test_informed.py $(ARGS)
 
 .PHONY: format
 format: $(DEV_STAMP) ## Format the code and apply the linter's safe fixes

@@ -41,7 +41,7 @@ def interquartile_mean(values: FloatArray) -> float:
     return float(ordered[quarter : len(values) - quarter].mean())
 
 
-def look_ahead(run: tuple[str, str, str, dict[str, float]]) -> float:
+def look_ahead(run: tuple[str, str, str, dict[str, Any]]) -> float:
     """How far an agent comes in 50 steps [m]: agent, gait, simulator, what its robot has."""
     agent, gait, simulator, has = run
     config = RaceConfig(

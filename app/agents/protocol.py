@@ -41,9 +41,15 @@ AgentState = dict[str, NDArray[Any]]
 """Complete state of an agent as named arrays, for checkpoint files."""
 
 
-Observe = Callable[[Observation], Cells]
-"""Returns the cells of the robot's current state by any observation: in `act` those before the
-action, in `learn` those after it."""
+class Observe(Protocol):
+    """Readings of the robot's current state: in `act` before the action, in `learn` after it."""
+
+    def __call__(self, how: Observation) -> Cells:
+        """Return the observed cells, one per pair."""
+
+    @property
+    def planned_offsets_m(self) -> Sequence[tuple[float, float]]:
+        """Each pair's offset (x, y) from home by dead reckoning: `planned` before rounding."""
 
 
 class Problem(NamedTuple):

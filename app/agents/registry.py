@@ -16,6 +16,7 @@ from app.agents.dyna_q import DynaQ
 from app.agents.dyna_q_plus import DynaQPlus
 from app.agents.expected_sarsa import ExpectedSarsa
 from app.agents.informed import Informed
+from app.agents.linear_model import LinearModel
 from app.agents.lookahead import Greedy, LookAhead, TwoStep
 from app.agents.mcts import Mcts
 from app.agents.n_step_sarsa import NStepSarsa
@@ -54,6 +55,7 @@ OURS: Mapping[str, AgentClass] = {
     "prioritized-sweeping": PrioritizedSweeping,
     "r-max": RMax,
     "posterior-sampling": PosteriorSampling,
+    "linear-model": LinearModel,
     "greedy": Greedy,
     "two-step": TwoStep,
     "look-ahead": LookAhead,

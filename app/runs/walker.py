@@ -9,7 +9,13 @@ import numpy as np
 from app.agents.protocol import Agent, Node, Transition, Valuing
 from app.domain.disturbances import SensorNoise
 from app.domain.errors import IllegalAction
-from app.domain.observation import Observation, legal_actions, measured_offsets, observe
+from app.domain.observation import (
+    Observation,
+    legal_actions,
+    measured_offsets,
+    observe,
+    planned_offsets,
+)
 from app.domain.simulator import Simulator, Step, WalkState
 from app.domain.types import Action, Cells, FloatArray
 from app.runs.records import ActionValues
@@ -92,6 +98,11 @@ class Readings:
         if how not in self._read:
             self._read[how] = observe(self._simulator, self._state, how, self._error_m)
         return self._read[how]
+
+    @property
+    def planned_offsets_m(self) -> Sequence[tuple[float, float]]:
+        """Each pair's offset (x, y) from home by dead reckoning."""
+        return planned_offsets(self._state)
 
 
 class SimulatorExpand:

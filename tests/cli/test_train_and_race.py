@@ -125,7 +125,7 @@ def test_custom_robot_and_gait_are_accepted(tmp_path: Path) -> None:
         ((*GAIT, "--observation", "guessed"), "measured, commanded"),
         (
             (*GAIT, "--agent", "skynet"),
-            "posterior-sampling, greedy, two-step, look-ahead, my.module:Agent",
+            "linear-model, greedy, two-step, look-ahead, ",
         ),
         ((*GAIT, "--agent", "no_module:Agent"), "cannot import no_module"),
         ((*GAIT, "--from", "missing.npz"), "missing.npz"),

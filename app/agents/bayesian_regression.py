@@ -1,0 +1,64 @@
+"""Bayesian linear regression with a Gaussian prior (Bishop 2006, §3.3.1)."""
+
+import numpy as np
+
+from app.domain.types import FloatArray
+
+
+class BayesianRegression:
+    """Linear regression with a Gaussian prior of the weights and known noise.
+
+    Posterior precision Λ = Λ₀ + XᵀX / σ², covariance Λ⁻¹, mean Λ⁻¹ (Λ₀ m₀ + Xᵀr / σ²). With a
+    forgetting factor below 1 the evidence XᵀX, Xᵀr decays geometrically, and what is not observed
+    any more becomes as uncertain again as it was a priori.
+
+    Args:
+        mean: prior mean m₀ of the weights, (d,).
+        deviation: prior standard deviation of each weight, independent, (d,).
+        noise: standard deviation σ of an outcome.
+        forgetting: share of the evidence that remains at each further outcome.
+
+    Attributes:
+        mean: posterior mean of the weights, (d,).
+        covariance: posterior covariance of the weights, (d, d).
+        moments: XᵀX of the evidence, (d, d).
+        products: Xᵀr of the evidence, (d,).
+    """
+
+    def __init__(
+        self, mean: FloatArray, deviation: FloatArray, noise: float, forgetting: float = 1.0
+    ) -> None:
+        self._prior_mean, self._prior_precision = mean, deviation**-2.0
+        self._variance, self._forgetting = noise * noise, forgetting
+        self.moments, self.products = np.zeros((len(mean), len(mean))), np.zeros(len(mean))
+        self.set_evidence(self.moments, self.products)
+
+    def predict(self, features: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return expected outcomes and their posterior standard deviations without noise, (n,).
+
+        Args:
+            features: (n, d).
+        """
+        # Elementwise, because the last bits of BLAS results depend on the shape.
+        spread = (features[:, :, None] * features[:, None, :] * self.covariance).sum((1, 2))
+        return (features * self.mean).sum(1), np.sqrt(np.maximum(spread, 0.0))
+
+    def update(self, features: FloatArray, outcome: float) -> None:
+        """Learn one outcome for features (d,)."""
+        kept = self._forgetting
+        self.set_evidence(
+            kept * self.moments + features[:, None] * features,
+            kept * self.products + features * outcome,
+        )
+
+    def discount(self, kept: float) -> None:
+        """Forget all but a share of the evidence, so that the prior's uncertainty returns."""
+        self.set_evidence(kept * self.moments, kept * self.products)
+
+    def set_evidence(self, moments: FloatArray, products: FloatArray) -> None:
+        """Replace the evidence, and compute the posterior from it."""
+        self.moments, self.products = moments, products
+        precision = np.diag(self._prior_precision) + moments / self._variance
+        self.covariance = np.linalg.inv(precision)
+        weighted = self._prior_precision * self._prior_mean + products / self._variance
+        self.mean = (self.covariance * weighted).sum(1)
