@@ -46,7 +46,7 @@ class Mcts(Search):
 
     title = "Tree search"
     description = "Simulates random sequences of steps, more of those that begin well."
-    color = "#D55E00"
+    color = "#D14A00"
 
     def __init__(self, expand: Expand, rng: np.random.Generator, *, budget: Budget = 156) -> None:
         super().__init__(expand)
