@@ -12,7 +12,7 @@ from typing import Any
 from app.agents.registry import OURS, registered, settings_of
 
 _COLOR = re.compile("#[0-9A-Fa-f]{6}")
-_FURTHER_COLORS = ("#CC79A7", "#D55E00", "#F0E442", "#0072B2")
+_FURTHER_COLORS = ("#CC79A7", "#D55E00", "#F0E442", "#0072B2", "#882255", "#88CCEE", "#6B4E16")
 
 
 def title_of(agent: str) -> str:

@@ -365,11 +365,14 @@ class LinearModel:
         for name in ("planned_products", "measured_products", "earned", "errors"):
             if state[name].dtype.kind != "f" or not np.isfinite(state[name]).all():
                 raise ValueError(f"its {name} are no numbers")
+        if state["earned"].shape != (3, 2) or state["errors"].shape != (2, 2):
+            raise ValueError("it has no records of three policies and two experts")
         if (state["earned"][:, 0] < 0).any() or (state["errors"] < 0).any():
             raise ValueError("it has records below zero")
         deciding, decided, last_pair = state["deciding"].tolist()
         visits = state["visits"]
-        counts = state["deciding"].dtype.kind == visits.dtype.kind == "i" and (visits >= 0).all()
+        kinds = state["deciding"].dtype.kind + visits.dtype.kind
+        counts = kinds == "ii" and visits.ndim == 2 and (visits >= 0).all()
         if (
             not counts
             or decided < 0

@@ -310,6 +310,7 @@ def test_result_has_distance_greedy_distance_and_hash() -> None:
         "distance_m": last.distance_m,
         "greedy_distance_m": learner.greedy_distance_m,
         "q_table_sha256": table_hash(learner),
+        "fell_at_step": None,
     }
 
 
