@@ -1,4 +1,4 @@
-"""The linear model's figures in physics (docs/linear-model.md), of which the gate tests one gait (three core-seconds).
+"""The linear model's figures in physics (docs/linear-model.md); the gate tests one gait in 3 s.
 
 It makes no random choices, so that one run is all runs of a robot.
 """
