@@ -33,15 +33,17 @@ class BayesianRegression:
         self.moments, self.products = np.zeros((len(mean), len(mean))), np.zeros(len(mean))
         self.set_evidence(self.moments, self.products)
 
-    def predict(self, features: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return expected outcomes and their posterior standard deviations without noise, (n,).
-
-        Args:
-            features: (n, d).
-        """
+    def expected(self, features: FloatArray) -> FloatArray:
+        """Return the expected outcomes, (n,), for features (n, d)."""
         # Elementwise, because the last bits of BLAS results depend on the shape.
-        spread = (features[:, :, None] * features[:, None, :] * self.covariance).sum((1, 2))
-        return (features * self.mean).sum(1), np.sqrt(np.maximum(spread, 0.0))
+        outcomes: FloatArray = (features * self.mean).sum(1)
+        return outcomes
+
+    def deviation(self, features: FloatArray) -> FloatArray:
+        """Return the posterior standard deviations of the expected outcomes, (n,)."""
+        variance = np.einsum("nd,de,ne->n", features, self.covariance, features)
+        deviations: FloatArray = np.sqrt(np.maximum(variance, 0.0))
+        return deviations
 
     def update(self, features: FloatArray, outcome: float) -> None:
         """Learn one outcome for features (d,)."""

@@ -44,8 +44,8 @@ Optimism = Annotated[
 # those of the prototypes, 0.02 m a priori and 0.003 m of noise.
 _NOISE = 0.15
 _DEVIATION, _LATERAL_DEVIATION = 1.0, 0.1
-_BLOCK = 6
-"""Steps for which a policy decides: each of three pairs moves twice."""
+_TURNS = 2
+"""Turns of every pair for which a policy decides: six steps of a robot with three pairs."""
 _FORGETTING = 0.98
 """Share of the evidence, and of what policies earned, that remains at each further step."""
 _UNTRIED, _UNTRIED_MEASURED = 0.5, 0.25
@@ -93,9 +93,16 @@ class Expert(ABC):
     def features(self, before: Readings, actions: Sequence[Action]) -> FloatArray:
         """Return the features of each of n actions, (n, d)."""
 
-    def predict(self, before: Readings, actions: Sequence[Action]) -> tuple[FloatArray, FloatArray]:
-        """Return expected rewards of n actions [m] and their standard deviations, (n,)."""
-        return self.model.predict(self.features(before, actions))
+    def expected_m(self, before: Readings, actions: Sequence[Action]) -> FloatArray:
+        """Return the expected rewards of n actions [m], (n,)."""
+        return self.model.expected(self.features(before, actions))
+
+    def upper_bound_m(
+        self, before: Readings, actions: Sequence[Action], optimism: float
+    ) -> FloatArray:
+        """Return the upper confidence bounds of the rewards of n actions [m], (n,)."""
+        features = self.features(before, actions)
+        return self.model.expected(features) + optimism * self.model.deviation(features)
 
 
 class MeasuredExpert(Expert):
@@ -141,7 +148,7 @@ class PlannedExpert(Expert):
 class Policy(NamedTuple):
     """One way of choosing: by an expert, and in which order the pairs take turns."""
 
-    expert: int
+    expert: Expert
     successor: tuple[int, ...] | None
     """The pair that moves after each pair; None if any may."""
     untried: float
@@ -190,43 +197,44 @@ class LinearModel:
         optimism: Optimism = 0.5,
     ) -> None:
         self._observe, self._explore, self._optimism = observe, explore, optimism
+        self._tuned_optimism = np.nan
         self._cells = len(problem.cells_m)
         self._half_side_m = float(np.abs(problem.cells_m).max()) or 1.0
         self._experts = (PlannedExpert(problem, prior), MeasuredExpert(problem, prior))
         self._visits: IntArray = np.zeros((len(problem.pairs), self._cells), np.int64)
-        count = len(self._experts)
+        planned, measured = self._experts
         pairs = len(problem.pairs)
+        self._block_steps = _TURNS * pairs
         forth = tuple((pair + 1) % pairs for pair in range(pairs))
         back = tuple((pair - 1) % pairs for pair in range(pairs))
         self._policies = (
-            Policy(0, forth, _UNTRIED),
-            Policy(0, back, _UNTRIED),
-            Policy(1, None, _UNTRIED_MEASURED),
+            Policy(planned, forth, _UNTRIED),
+            Policy(planned, back, _UNTRIED),
+            Policy(measured, None, _UNTRIED_MEASURED),
         )
         self._deciding, self._decided, self._last_pair = 0, 0, pairs - 1
         self._earned: FloatArray = np.zeros((len(self._policies), 2))
         """Discounted steps that each policy decided, and the rewards [m] in them."""
-        self._errors: FloatArray = np.zeros((count, 2))
+        self._noise_variance = (_NOISE * self._half_side_m) ** 2
+        self._errors: FloatArray = np.array([[0.0, self._noise_variance]] * len(self._experts))
         """Short and long moving average of each expert's squared errors [m²]."""
-        self._errors[:, 1] = (_NOISE * self._half_side_m) ** 2
-        self._predicted: FloatArray = np.zeros(count)
+        self._predicted: FloatArray = np.zeros(len(self._experts))
         """Rewards [m] that each expert predicted since a frozen copy last chose a policy."""
         self._before = self._read()
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:  # noqa: ARG002
         """Return the action with the highest upper confidence bound, by the policy that decides."""
         self._before = self._read()
-        if self._decided % _BLOCK == 0:
+        if self._decided % self._block_steps == 0:
             self._choose_policy()
         self._decided += 1
         policy = self._policies[self._deciding]
         legal = policy.allowed(legal, self._last_pair)
-        mean, deviation = self._experts[policy.expert].predict(self._before, legal)
-        best = int((mean + self._optimism * deviation if self._explore else mean).argmax())
-        if not self._explore:
-            self._predicted += self._predictions(legal[best])
-        self._last_pair = legal[best].pair
-        return legal[best]
+        optimism = self._optimism if self._explore else 0.0
+        best = legal[int(policy.expert.upper_bound_m(self._before, legal, optimism).argmax())]
+        self._predicted += self._predictions(best)
+        self._last_pair = best.pair
+        return best
 
     def learn(self, transition: Transition) -> None:
         """Update both experts' posteriors, and the record of the policy that decided."""
@@ -248,7 +256,7 @@ class LinearModel:
 
     def _predictions(self, action: Action) -> FloatArray:
         """Return the reward that each expert expects [m], (experts,)."""
-        return np.array([expert.predict(self._before, [action])[0][0] for expert in self._experts])
+        return np.array([expert.expected_m(self._before, [action])[0] for expert in self._experts])
 
     def _choose_policy(self) -> None:
         """Let the policy decide that earned most lately; untried ones are estimated optimistically.
@@ -257,29 +265,28 @@ class LinearModel:
         cycle of cells that it values, where the plan predicts hardly any advance.
         """
         if self._explore:
-            steps, rewards = self._earned[:, 0], self._earned[:, 1]
-            untried = np.array([policy.untried for policy in self._policies])
-            self._deciding = int(((rewards + untried * self._half_side_m) / (steps + 1)).argmax())
-            return
-        by_plan, by_cells = self._predicted
-        if self._policies[self._deciding].expert == 1 and by_plan < by_cells / 4:
-            self._deciding = self._best_policy(self._policies[:-1])
+            self._deciding = self._best_policy(self._policies, optimistic=True)
+        else:
+            by_plan, by_cells = self._predicted
+            is_planned = self._policies[self._deciding].expert is self._experts[0]
+            if not is_planned and by_plan < by_cells / 4:
+                self._deciding = self._best_policy(self._policies[:-1], optimistic=False)
         self._predicted = np.zeros_like(self._predicted)
 
-    def _best_policy(self, policies: Sequence[Policy]) -> int:
-        """Return the index of the first policies that earned most per step; untried ones last."""
-        earned = self._earned[: len(policies)]
-        steps, rewards = earned[:, 0], earned[:, 1]
-        tried = steps > 0
-        return int(np.where(tried, rewards / np.where(tried, steps, 1), -np.inf).argmax())
+    def _best_policy(self, policies: Sequence[Policy], optimistic: bool) -> int:
+        """Return the index of the first policies that earned most per step.
+
+        Each record is completed by one step with the reward expected before any, or with none.
+        """
+        steps, rewards = self._earned[: len(policies)].T
+        untried = np.array([policy.untried * self._half_side_m for policy in policies])
+        return int(((rewards + optimistic * untried) / (steps + 1)).argmax())
 
     def _has_changed(self) -> bool:
         """Whether the errors of all experts have risen above what they were for long."""
         short, long = self._errors.T
-        least = _CHANGE_LEAST * (_NOISE * self._half_side_m) ** 2
-        return self._decided > 2 * _BLOCK and bool(
-            ((short > _CHANGE_RATIO * long) & (short > least)).all()
-        )
+        risen = (short > _CHANGE_RATIO * long) & (short > _CHANGE_LEAST * self._noise_variance)
+        return self._decided > 2 * self._block_steps and bool(risen.all())
 
     def _forget(self) -> None:
         for expert in self._experts:
@@ -289,16 +296,15 @@ class LinearModel:
 
     def tune(self, *, optimism: Optimism | None = None) -> None:
         """Change the optimism from the next step on."""
-        self._optimism = self._optimism if optimism is None else optimism
+        if optimism is not None:
+            self._optimism = self._tuned_optimism = optimism
 
     def values(self, observation: Cells) -> FloatArray:
         """Return the expected reward of the next step [m], (pairs, cells), NaN where illegal."""
         pairs, cells = self._visits.shape
         actions = [Action(pair, cell) for pair in range(pairs) for cell in range(cells)]
-        mean, _ = self._experts[self._policies[self._deciding].expert].predict(
-            self._read(), actions
-        )
-        return _without_illegal(mean.reshape(pairs, cells), observation)
+        expected_m = self._policies[self._deciding].expert.expected_m(self._read(), actions)
+        return _without_illegal(expected_m.reshape(pairs, cells), observation)
 
     def visits(self, observation: Cells) -> FloatArray:
         """Return how often each action was taken in any state, (pairs, cells), NaN where illegal.
@@ -319,7 +325,7 @@ class LinearModel:
             "errors": self._errors.copy(),
             "visits": self._visits.copy(),
             "deciding": np.array([self._deciding, self._decided, self._last_pair], np.int64),
-            "optimism": np.array([self._optimism]),
+            "tuned_optimism": np.array([self._tuned_optimism]),
         }
 
     def load(self, state: AgentState) -> None:
@@ -339,9 +345,11 @@ class LinearModel:
         self._earned, self._errors = state["earned"].copy(), state["errors"].copy()
         self._visits = state["visits"].copy()
         self._deciding, self._decided, self._last_pair = state["deciding"].tolist()
-        (self._optimism,) = state["optimism"].tolist()
+        (self._tuned_optimism,) = state["tuned_optimism"].tolist()
+        if not np.isnan(self._tuned_optimism):
+            self._optimism = self._tuned_optimism
         if not self._explore:  # a walk of its own, from rest
-            self._deciding, self._decided = self._best_policy(self._policies), 0
+            self._deciding, self._decided = self._best_policy(self._policies, optimistic=False), 0
             self._last_pair = len(self._visits) - 1
 
     @staticmethod
@@ -352,15 +360,14 @@ class LinearModel:
             InvalidInput: for an optimism out of its limits.
             KeyError, ValueError: if `state` is not a state of this agent.
         """
-        declare("optimism", Optimism).check(*state["optimism"].tolist())
+        (optimism,) = state["tuned_optimism"].tolist()
+        if not np.isnan(optimism):
+            declare("optimism", Optimism).check(optimism)
         for name in ("planned", "measured"):
             moments, products = state[f"{name}_moments"], state[f"{name}_products"]
             if moments.shape != (len(products), len(products)) or products.ndim != 1:
                 raise ValueError(f"its {name} evidence has no shape of a regression")
-            if (
-                not np.array_equal(moments, moments.T)
-                or (np.linalg.eigvalsh(moments) < -1e-6).any()
-            ):
+            if not np.array_equal(moments, moments.T) or (moments.diagonal() < 0).any():
                 raise ValueError(f"its {name} evidence is no sum of squares")
         for name in ("planned_products", "measured_products", "earned", "errors"):
             if state[name].dtype.kind != "f" or not np.isfinite(state[name]).all():

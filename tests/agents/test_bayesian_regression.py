@@ -13,9 +13,8 @@ def test_posterior_of_one_weight_by_hand() -> None:
 
     assert regression.covariance[0, 0] == pytest.approx(1 / 4.25)
     assert regression.mean[0] == pytest.approx(6.25 / 4.25)
-    mean, deviation = regression.predict(np.array([[3.0]]))
-    assert mean[0] == pytest.approx(3 * 6.25 / 4.25)
-    assert deviation[0] == pytest.approx(3 / np.sqrt(4.25))
+    assert regression.expected(np.array([[3.0]]))[0] == pytest.approx(3 * 6.25 / 4.25)
+    assert regression.deviation(np.array([[3.0]]))[0] == pytest.approx(3 / np.sqrt(4.25))
 
 
 def test_posterior_of_two_weights_by_hand() -> None:
@@ -25,7 +24,7 @@ def test_posterior_of_two_weights_by_hand() -> None:
 
     assert regression.mean == pytest.approx([2 / 3, 2 / 3])
     assert regression.covariance == pytest.approx(np.array([[2, -1], [-1, 2]]) / 3)
-    _, (together, apart) = regression.predict(np.array([[1.0, 1.0], [1.0, -1.0]]))
+    together, apart = regression.deviation(np.array([[1.0, 1.0], [1.0, -1.0]]))
     assert together == pytest.approx(np.sqrt(2 / 3))
     assert apart == pytest.approx(np.sqrt(2))
 

@@ -99,13 +99,15 @@ def test_optimism_prefers_what_is_uncertain(optimism: float, expected: int) -> N
 
 
 def test_optimism_changes_live_and_is_saved() -> None:
-    agent, copy = model(), model()
+    agent, copy = model(), model(optimism=1.0)
+    copy.load(agent.state())
+    assert np.isnan(copy.state()["tuned_optimism"])  # its own setting stays
     assert isinstance(agent, Tunable)
     assert isinstance(agent, Valuing)
     agent.tune(optimism=3.0)
     agent.tune()
     copy.load(agent.state())
-    assert copy.state()["optimism"].tolist() == [3.0]
+    assert copy.state()["tuned_optimism"].tolist() == [3.0]
 
 
 def decided_by(agent: LinearModel, reward_m: float) -> list[int]:
@@ -211,7 +213,7 @@ def test_a_state_of_another_grid_is_refused() -> None:
 
 def _broken() -> list[tuple[str, Any, str]]:
     return [
-        ("optimism", np.array([-1.0]), "optimism must be a number from 0 to 10"),
+        ("tuned_optimism", np.array([-1.0]), "optimism must be a number from 0 to 10"),
         ("measured_moments", np.zeros((3, 3)), "measured evidence has no shape"),
         ("planned_moments", -np.eye(4), "no sum of squares"),
         ("planned_products", np.full(4, np.nan), "planned_products are no numbers"),
