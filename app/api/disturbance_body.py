@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, create_model
 
 from app.api.fields import INTEGRAL, Body, Declared, TaggedUnion
-from app.domain.disturbances import KINDS, Disturbance, disturbance
+from app.domain.disturbances import KINDS, LEGS, Disturbance, disturbance
 from app.domain.robot import MAX_LEGS
 from app.domain.settings import declared_fields
 from app.domain.world import MAX_DISTURBANCES, World, named_world
@@ -19,8 +19,8 @@ Leg = Annotated[
 Legs = Annotated[
     list[Leg],
     Field(
-        title="Legs",
-        description="A list of numbers of legs, from 1.",
+        title=LEGS.title,
+        description=LEGS.help,
         min_length=1,
         max_length=MAX_LEGS,
     ),

@@ -4,7 +4,7 @@ from typing import Any
 
 from pydantic import Field
 
-from app.api.answers import Answer, RobotView
+from app.api.answers import Answer, DisturbanceView, RobotView
 from app.domain.settings import Value
 
 
@@ -68,11 +68,34 @@ class SettingOption(Answer):
     is_live: bool = Field(description="whether it may change while a training runs")
 
 
+class WorldOption(Described):
+    """A named world, with what happens in it."""
+
+    title: str
+    disturbances: list[DisturbanceView]
+
+
+class FieldOption(SettingOption):
+    """Declaration of a field of a disturbance; of a list, that of each of its values."""
+
+    is_list: bool
+    is_required: bool
+
+
+class DisturbanceOption(Described):
+    """A kind of disturbance, with its fields and the simulators that know it."""
+
+    title: str
+    fields: dict[str, FieldOption]
+    simulators: list[str]
+
+
 class AgentOption(Described):
     """An agent, with its constructor's settings and those that can change during a training."""
 
     title: str
     learns: bool
+    searches: bool = Field(description="whether it plans with a simulator: takes `plans_with`")
     needs_practice: bool
     keeps_learning: bool
     color: str
@@ -87,6 +110,8 @@ class OptionsView(Answer):
     gaits: list[GaitOption]
     robots: list[RobotOption]
     agents: list[AgentOption]
+    worlds: list[WorldOption]
+    disturbances: list[DisturbanceOption]
     simulators: list[Described]
     observations: list[Described]
     clocks: list[Described]

@@ -1,6 +1,7 @@
 """Route of the options: names, defaults, limits and help texts of all forms."""
 
 from collections.abc import Collection, Mapping
+from dataclasses import MISSING, fields
 from typing import Annotated, Any
 
 from annotated_types import Ge, Le
@@ -9,13 +10,15 @@ from starlette.responses import JSONResponse, Response
 
 from app import __version__
 from app.agents.appearance import colors_of, description_of, title_of
-from app.agents.registry import OURS, keeps_learning, learns, needs_practice
+from app.agents.registry import OURS, keeps_learning, learns, needs_practice, searches
 from app.api.deps import ServicesDep
 from app.api.option_answers import OptionsView
+from app.domain import disturbances
 from app.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
-from app.domain.robot import PRESETS, Robot, as_mapping
+from app.domain.robot import MAX_LEGS, PRESETS, Robot, as_mapping
 from app.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
 from app.domain.text import MAX_NAME
+from app.domain.world import MAX_DISTURBANCES, WORLDS, is_simulated
 from app.experiments.config import (
     EXPERIMENTS,
     GRID,
@@ -110,6 +113,7 @@ _HELP = {
     "robot": "Which robot walks; it differs in servos and friction.",
     "simulator": "What computes the walking.",
     "lanes": "Which agents race.",
+    "disturbances": "What happens to the robot or to the ground, and from which step on.",
     "clock": "What thinking costs in the race; it can change who wins.",
     "name": "What the run is called in the list.",
     "agent": "Which agent learns.",
@@ -130,8 +134,11 @@ _SETTINGS = {
     **declared_fields(TrainingConfig),
     "race_steps": declare("race_steps", _LANE_STEPS, RACE_STEPS),
     "keep_learning": declared_fields(LaneConfig)["keep_learning"],
+    "plans_with": declared_fields(LaneConfig)["plans_with"],
 }
 """Declared settings that belong to no agent, by form field."""
+_LEGS = declare("legs", Annotated[int, Ge(1), Le(MAX_LEGS), disturbances.LEGS], REQUIRED)
+"""A leg in the list of those to which something happens."""
 
 
 def catalogue(agents: Collection[str]) -> dict[str, Any]:
@@ -149,6 +156,8 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
             for name, robot in PRESETS.items()
         ],
         "agents": _agents(agents),
+        "worlds": _worlds(),
+        "disturbances": _disturbances(),
         "simulators": _described(_SIMULATORS),
         "observations": _described(_OBSERVATIONS),
         "clocks": _described(_CLOCKS),
@@ -194,6 +203,7 @@ def _agents(names: Collection[str]) -> list[dict[str, Any]]:
             "title": title_of(name),
             "description": description_of(name),
             "learns": learns(name),
+            "searches": searches(name),
             "needs_practice": needs_practice(name),
             "keeps_learning": keeps_learning(name),
             "color": color,
@@ -206,6 +216,42 @@ def _agents(names: Collection[str]) -> list[dict[str, Any]]:
         }
         for name, color in zip(ordered, colors_of(ordered), strict=True)
     ]
+
+
+def _worlds() -> list[dict[str, Any]]:
+    return [
+        {
+            "name": name,
+            "title": one.title,
+            "description": one.help,
+            "disturbances": [disturbances.as_mapping(each) for each in one.world.disturbances],
+        }
+        for name, one in WORLDS.items()
+    ]
+
+
+def _disturbances() -> list[dict[str, Any]]:
+    return [
+        {
+            "name": name,
+            "title": kind.title,
+            "description": kind.help,
+            "fields": _fields_of(kind),
+            "simulators": [one for one in _SIMULATORS if is_simulated(name, one)],
+        }
+        for name, kind in disturbances.KINDS.items()
+    ]
+
+
+def _fields_of(kind: type[disturbances.Disturbance]) -> dict[str, dict[str, Any]]:
+    """Return the fields of a kind of disturbance, its own before the steps."""
+    declared = declared_fields(kind)  # type: ignore[arg-type]  # of a class, not of an instance
+    options = {}
+    for one in sorted(fields(kind), key=lambda field: field.name in ("at_step", "until_step")):
+        setting = declared.get(one.name, _LEGS)
+        is_list, is_required = setting is _LEGS, one.default is MISSING
+        options[one.name] = {**_setting(setting), "is_list": is_list, "is_required": is_required}
+    return options
 
 
 def _experiments(agents: Collection[str]) -> list[dict[str, Any]]:
@@ -248,6 +294,7 @@ def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | N
         **{name: [one.low, one.high] for name, one in settings.items() if one.is_number},
         "what_if_steps": [1, MAX_WHAT_IF_STEPS],
         "lanes": [1, MAX_LANES],
+        "disturbances": [0, MAX_DISTURBANCES],
         "name": [0, MAX_NAME],
         "seeds": [1, MAX_SEEDS],
         "trials": [1, MAX_TRIALS],

@@ -32,6 +32,8 @@ _Friction = Annotated[
     Le(RANGES["friction"][1]),
     Setting(title="Friction", symbol="μ", help="Sliding friction of all that touches the ground."),
 ]
+LEGS = Setting(title="Legs", help="The numbers of the legs, from 1.")
+"""Description of the field `legs`."""
 Key = tuple[Any, ...]
 """What a disturbance changes; that of a leg is the beginning of those of its joints."""
 

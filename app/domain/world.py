@@ -36,6 +36,11 @@ KINEMATIC_KINDS = (SensorNoise.kind,)
 D = TypeVar("D", bound=Disturbance)
 
 
+def is_simulated(kind: str, simulator: str) -> bool:
+    """Whether a simulator knows a kind of disturbance."""
+    return simulator != "kinematic" or kind in KINEMATIC_KINDS
+
+
 @dataclass(frozen=True)
 class World:
     """Disturbances of a walk. The default is flat ground and a robot as it was built.
@@ -71,7 +76,7 @@ class World:
             )
         for one in self.disturbances:
             one.check(robot)
-            if simulator == "kinematic" and one.kind not in KINEMATIC_KINDS:
+            if not is_simulated(one.kind, simulator):
                 raise InvalidInput(
                     f"the kinematic simulator knows no {one.kind}, only "
                     f"{', '.join(KINEMATIC_KINDS)}; choose the simulator mujoco"

@@ -205,6 +205,29 @@ function refuseTuning(run, sent, error) {
   if (isActive(runs.value.get(run.id))) setEntry(problems, "tune", error);
 }
 
+// ---- what happens to robots
+
+/**
+ * Let something happen to a training from its next step on.
+ * @param {Run} run
+ * @param {object} disturbance without its step
+ */
+export const disturb = (run, disturbance) =>
+  attempt("disturb", () => api.disturbTraining(run.id, disturbance));
+
+/**
+ * Race on from a step of a race, in which something happens.
+ * @param {Run} race
+ * @param {number} step how many steps both have in common
+ * @param {object[]} disturbances without their step
+ */
+export const branchRace = (race, step, disturbances) =>
+  attempt("branch", async () => {
+    const body = { branch_from: { race_id: race.id, step }, disturbances };
+    const run = await adopt(() => api.startRace(body));
+    if (run) await requestStage(() => api.putStage({ run_id: run.id, playing: true }));
+  });
+
 // ---- the stage, which all pages share
 
 /** @param {Partial<Stage> & { time_s?: number }} changes */

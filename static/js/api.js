@@ -1,6 +1,6 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
 
-/** @import { Curve, Kind, Options, Page, Rates, Run, Stage, Summary, Timeline, Verb } from "./types.js" */
+/** @import { Curve, Disturbance, Kind, Options, Page, Rates, Run, Stage, Summary, Timeline, Verb } from "./types.js" */
 /** @import { WhatIfAnswer } from "./types.js" */
 
 const base = () => new URL("api/v1/", document.baseURI);
@@ -147,6 +147,10 @@ export const startExperiment = (body) => start("experiments", body);
 
 /** @type {(id: string, changes: Rates) => Promise<Run>} */
 export const tuneTraining = (id, changes) => call("PATCH", pathOf({ kind: "training", id }), changes);
+
+/** @type {(id: string, disturbance: object) => Promise<Disturbance>} */
+export const disturbTraining = (id, disturbance) =>
+  call("POST", `${pathOf({ kind: "training", id })}/disturbances`, disturbance);
 
 /** @type {(body: Record<string, unknown>) => Promise<WhatIfAnswer>} */
 export const whatIf = (body) => call("POST", "what-if", body);

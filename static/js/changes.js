@@ -3,7 +3,7 @@ import { count, whole } from "./format.js";
 import { agentOf } from "./settings.js";
 import { rates } from "./store.js";
 
-/** @import { Rates, Run, RunConfig, SettingValue } from "./types.js" */
+/** @import { Change, Rates, Run, RunConfig, SettingValue } from "./types.js" */
 
 /** A setting's new value from a step on. @typedef {{ name: string, value: SettingValue, step: number }} RateChange */
 
@@ -12,13 +12,16 @@ const UNLEARNED = "pace";
 /** A slider that is dragged sends values in a row; those within this share of the training are one change. */
 const BURST_SHARE = 0.02;
 
+/** What happens is no setting: see `disturbances.js`. @type {(change: Change) => [string, SettingValue][]} */
+const ratesOf = ({ step: _step, disturbance: _disturbance, ...values }) => Object.entries(values);
+
 /**
  * Values that were changed while a run ran, as they hold at its end.
  * @param {Run} run
  * @returns {Rates}
  */
 const changedValues = ({ changes = [] }) =>
-  Object.fromEntries(changes.flatMap(({ step: _, ...values }) => Object.entries(values)).filter(([, v]) => v !== null));
+  Object.fromEntries(changes.flatMap(ratesOf).filter(([, value]) => value !== null));
 
 /**
  * Pace and live settings of a run that were changed, with what this page has sent and not yet seen confirmed.
@@ -52,8 +55,9 @@ export function configAtEnd(run) {
 export function rateChanges({ changes = [], config }, offset = 0) {
   /** @type {RateChange[]} */
   const found = [];
-  for (const { step, ...values } of changes) {
-    for (const [name, value] of Object.entries(values)) {
+  for (const change of changes) {
+    const { step } = change;
+    for (const [name, value] of ratesOf(change)) {
       if (name === UNLEARNED || value === null) continue;
       const before = found.findLast((one) => one.name === name);
       const isBurst = before && offset + step - before.step <= BURST_SHARE * config.steps;

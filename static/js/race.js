@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getTimeline } from "./api.js";
 import { count, listed, metres } from "./format.js";
-import { clock, isActive, isToCome, raceInView, shownRun } from "./selectors.js";
+import { clock, isActive, isToCome, raceInView, raceScene, shownRun } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { connection, scene, stage } from "./store.js";
 
@@ -107,13 +107,6 @@ export function followTimeline() {
 
 /** A decision that simulates fewer is over before it can be shown as thinking. */
 const FEWEST_SHOWN_FUTURES = 100;
-
-/** The scene, if it shows the race in view. */
-export const raceScene = computed(() =>
-  scene.value && scene.value.kind === "race" && scene.value.run_id === raceInView.value?.id
-    ? scene.value
-    : null,
-);
 
 const SAME_S = 1e-6;
 

@@ -1,6 +1,6 @@
 // Robots as forms and runs have them: the name of a preset, or an object with a preset and what differs from it.
 
-/** @import { RobotConfig } from "./types.js" */
+/** @import { Gait, GaitConfig, RobotConfig } from "./types.js" */
 
 /**
  * The preset of a robot, or the one that it is made from.
@@ -61,4 +61,43 @@ export function customRobotInWords(robot) {
   if (!differs.length) return null;
   const parts = differs.map(([field, value]) => differenceInWords(field, value));
   return `custom: ${[presetOf(robot), ...parts].filter(Boolean).join(", ")}`;
+}
+
+// ---- where its legs are
+
+const PRESET_LEGS = 6;
+
+/**
+ * The legs' directions in the robot's own frame [°], anticlockwise.
+ * @param {RobotConfig | undefined} robot
+ * @returns {number[]}
+ */
+function bodyAzimuths(robot) {
+  const { legs, n_legs = PRESET_LEGS } = /** @type {any} */ (typeof robot === "object" ? robot : {});
+  if (Array.isArray(legs)) return legs.map(({ azimuth_deg }) => azimuth_deg);
+  return Array.from({ length: n_legs }, (_, leg) => (360 * leg) / n_legs);
+}
+
+/**
+ * The legs' directions from forward [°], anticlockwise, in the order of their numbers.
+ * @param {RobotConfig | undefined} robot
+ * @param {GaitConfig} gait a name, or a gait with the legs on the right and on the left of forward
+ * @param {Gait[]} gaits those of the server, for the robot with six legs
+ */
+export function azimuthsOf(robot, gait, gaits) {
+  const azimuths = bodyAzimuths(robot);
+  const named = gaits.find(({ name }) => name === gait);
+  const { right_leg = 1, left_leg = 2 } = /** @type {any} */ (named ? legsBeside(named) : gait);
+  const [right, left] = [azimuths[right_leg - 1] ?? 0, azimuths[left_leg - 1] ?? 0];
+  const forward = right + ((((left - right) % 360) + 360) % 360) / 2;
+  return azimuths.map((azimuth) => azimuth - forward);
+}
+
+/** The legs of a named gait between which forward is. @param {Gait} gait */
+function legsBeside({ azimuths_deg }) {
+  const nearest = (/** @type {number} */ sign) => {
+    const onSide = azimuths_deg.map((azimuth, leg) => ({ azimuth: sign * azimuth, leg: leg + 1 }));
+    return onSide.filter(({ azimuth }) => azimuth > 0).sort((a, b) => a.azimuth - b.azimuth)[0].leg;
+  };
+  return { right_leg: nearest(-1), left_leg: nearest(1) };
 }

@@ -1,5 +1,6 @@
 // Values derived from the store: rights, the runs that the panels are about, and their progress.
 import { computed, signal } from "@preact/signals";
+import { conditionsAt, conditionsInWords, happeningsOf } from "./disturbances.js";
 import { form } from "./form.js";
 import { count, duration, whole } from "./format.js";
 import { formRobot, isSame } from "./robots.js";
@@ -207,6 +208,34 @@ export function simulatedPerDecision(depth, { gait, divisions }) {
   for (let level = 1; level <= depth; level += 1) total += moves ** level;
   return total;
 }
+
+// ---- the moment that is shown
+
+/** The scene, if it shows the race in view. */
+export const raceScene = computed(() =>
+  scene.value && scene.value.kind === "race" && scene.value.run_id === raceInView.value?.id
+    ? scene.value
+    : null,
+);
+
+/** The present step of the lane that has made the most, counted from 1; null without a race on stage. */
+export const stepShown = computed(() =>
+  raceScene.value ? Math.max(1, ...raceScene.value.lanes.map(({ step }) => step)) : null);
+
+/** What holds in the step that is shown, of the run on stage, in words. */
+export const conditionsShown = computed(() => {
+  const run = shownRun.value;
+  if (!run || run.kind === "experiment" || scene.value?.run_id !== run.id) return [];
+  const step = Math.max(1, ...scene.value.lanes.map((lane) => lane.step));
+  return conditionsInWords(conditionsAt(happeningsOf(run), step - 1));
+});
+
+/** The race whose replay is held: paused, or at its end. */
+export const heldRace = computed(() => {
+  const race = raceInView.value;
+  const isHeld = stage.value !== null && (!stage.value.playing || stage.value.ended);
+  return race?.state === "finished" && raceScene.value && isHeld && !work.value ? race : null;
+});
 
 // ---- the progress of the running work, or of what plays
 

@@ -119,8 +119,8 @@ export function mistakeIn(value, limits, isInteger) {
 
 /** For an agent that a run names and the server no longer has. */
 const REMOVED_AGENT = {
-  description: "", color: "#888888", learns: false, needs_practice: false, keeps_learning: false, settings: {},
-  live_settings: {},
+  description: "", color: "#888888", learns: false, searches: false, needs_practice: false, keeps_learning: false,
+  settings: {}, live_settings: {},
 };
 
 /** @type {(name: string) => Agent} */

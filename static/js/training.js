@@ -2,12 +2,13 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getCurve, getRun } from "./api.js";
 import { rateChanges } from "./changes.js";
+import { happeningsOf } from "./disturbances.js";
 import { trainingInView } from "./selectors.js";
 import { connection, evaluations, references, requestRun, runs, scene, setEntry } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RateChange } from "./changes.js" */
-/** @import { Evaluation, Knowledge, Run } from "./types.js" */
+/** @import { Disturbance, Evaluation, Knowledge, Run } from "./types.js" */
 
 /** A point of the curve; steps count all practice. @typedef {{ step: number, distance_m: number }} CurvePoint */
 
@@ -47,7 +48,7 @@ const evaluationsOf = (id) => {
 
 /**
  * The curve of the training in view, null without one. `blocks` are the steps at which one training
- * ended and the next continued it, `changes` those at which live settings changed.
+ * ended and the next continued it, `changes` those at which live settings changed; `happenings` are disturbances.
  */
 export const curve = computed(() => {
   const trainings = chain.value;
@@ -59,16 +60,25 @@ export const curve = computed(() => {
   const blocks = [];
   /** @type {RateChange[]} */
   const changes = [];
+  /** @type {Disturbance[]} */
+  const happenings = [];
   let from = 0;
   for (const part of trainings) {
     if (part !== trainings[0]) blocks.push(from);
     const shown = evaluationsOf(part.id).filter(({ step }) => step <= shownUpTo(part));
     points.push(...shown.map((one) => ({ ...one, step: from + one.step })));
     changes.push(...rateChanges(part, from).filter(({ step }) => step <= from + shownUpTo(part)));
+    const happened = happeningsOf(part).filter(({ at_step }) => at_step <= shownUpTo(part));
+    happenings.push(...happened.map((one) => movedBy(one, from)));
     if (part !== run) from += part.progress?.done ?? 0;
   }
   const greedy_m = [run, ...trainings].map(greedyOf).find(Number.isFinite) ?? null;
-  return { run, points, from, to: from + run.config.steps, greedy_m, blocks, changes };
+  return { run, points, from, to: from + run.config.steps, greedy_m, blocks, changes, happenings };
+});
+
+/** A disturbance in the steps of all practice. @type {(one: Disturbance, from: number) => Disturbance} */
+const movedBy = (one, from) => ({
+  ...one, at_step: from + one.at_step, ...(one.until_step ? { until_step: from + one.until_step } : {}),
 });
 
 /**

@@ -55,12 +55,42 @@ export interface Agent extends Described {
   title: string;
   color: string;
   learns: boolean;
+  /** Whether it plans with a simulator. */
+  searches: boolean;
   needs_practice: boolean;
   keeps_learning: boolean;
   /** By name, in the order of their declaration. */
   settings: Record<string, SettingOption>;
   /** Those that may change while it learns. */
   live_settings: Record<string, SettingOption>;
+}
+
+/** A field of a kind of disturbance; of a list, the declaration of each of its values. */
+export interface FieldOption extends SettingOption {
+  is_list: boolean;
+  is_required: boolean;
+}
+
+export interface DisturbanceKind extends Described {
+  title: string;
+  fields: Record<string, FieldOption>;
+  /** The simulators that know it. */
+  simulators: string[];
+}
+
+/** Something that happens; its steps are counted from 0. */
+export interface Disturbance {
+  kind: string;
+  at_step: number;
+  until_step?: number | null;
+  /** Numbers from 1. */
+  legs?: number[];
+  [field: string]: any;
+}
+
+export interface World extends Described {
+  title: string;
+  disturbances: Disturbance[];
 }
 
 export interface Robot extends Described {
@@ -81,6 +111,8 @@ export interface Options {
   gaits: Gait[];
   robots: Robot[];
   agents: Agent[];
+  worlds: World[];
+  disturbances: DisturbanceKind[];
   simulators: Described[];
   observations: Described[];
   clocks: Described[];
@@ -150,6 +182,7 @@ export interface LaneConfig {
   agent: string;
   training_id?: string | null;
   keep_learning?: boolean;
+  plans_with?: string | null;
   /** A setting of the agent, if the lane has no training. */
   [setting: string]: any;
 }
@@ -169,6 +202,10 @@ export interface RunConfig {
   evaluate_every: number;
   pace: number | "max";
   continue_from?: string | null;
+  /** Runs of earlier versions have none. */
+  disturbances?: Disturbance[];
+  /** Of a race that repeats another up to a step. */
+  branch_from?: { race_id: string; step: number } | null;
   lanes: LaneConfig[];
   experiment: string;
   seeds: number;
@@ -194,6 +231,10 @@ export interface LaneResult {
   decision_s: number;
   simulated_transitions: number;
   failure?: string | null;
+  /** Counted from 0. */
+  fell_at_step?: number | null;
+  /** At its end, 90 to the left. */
+  heading_deg?: number | null;
   clocks: Record<Clock, ClockResult>;
 }
 
@@ -221,8 +262,15 @@ export interface Run {
   /** The trainings that a race waits for. */
   waiting_for?: string[];
   greedy_distance_m?: number | null;
-  /** Of a training: new values of live settings and the pace, with the number of steps done before. */
-  changes?: ({ step: number } & Rates)[];
+  /** Of a training: what was changed while it ran. */
+  changes?: Change[];
+}
+
+/** New values of live settings and the pace, or what happened, with the number of steps done before. */
+export interface Change {
+  step: number;
+  disturbance?: Disturbance | null;
+  [setting: string]: any;
 }
 
 /** A run that the server cannot read. It can be deleted. */

@@ -182,3 +182,29 @@ def test_a_searcher_knows_the_start_unless_its_lane_says_otherwise() -> None:
 
     assert config.world == named_world("limp-pair")
     assert known == told > unaware + 0.03
+
+
+def test_options_tell_what_can_happen(api: Api) -> None:
+    options = api.get("/options")
+    worlds = {one["name"]: one for one in options["worlds"]}
+    assert worlds["flat"]["disturbances"] == []
+    assert worlds["limp-pair"]["disturbances"] == [{**LIMP, "at_step": 0}]
+    assert worlds["slope"]["description"] == "The track rises by 8°."
+
+    kinds = {one["name"]: one for one in options["disturbances"]}
+    assert kinds["limp"]["simulators"] == ["mujoco"]
+    assert kinds["sensor-noise"]["simulators"] == ["mujoco", "kinematic"]
+    legs = kinds["limp"]["fields"]["legs"]
+    assert (legs["is_list"], legs["is_whole"], legs["minimum"], legs["maximum"]) == (
+        True, True, 1, 12
+    )  # fmt: skip
+    slope = kinds["slope"]["fields"]
+    assert list(slope) == ["degrees", "direction_deg", "at_step", "until_step"]
+    assert [one["is_required"] for one in slope.values()] == [True, False, False, False]
+    assert (slope["degrees"]["maximum"], slope["degrees"]["unit"]) == (30, "°")
+    assert kinds["stuck"]["fields"]["joint"]["choices"] == ["coxa", "femur", "tibia"]
+
+    searching = {one["name"] for one in options["agents"] if one["searches"]}
+    assert {"greedy", "beam", "mcts"} <= searching
+    assert not searching & {"q-learning", "linear-model"}
+    assert options["settings"]["plans_with"]["choices"] == ["world", "nominal"]

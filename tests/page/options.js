@@ -30,6 +30,44 @@ const TRACER = {
   kind: setting("Kind of trace", { default: "replacing", choices: ["replacing", "adding"], is_number: false }),
 };
 
+/** @type {(title: string, changes: object) => import("../../static/js/types.js").FieldOption} */
+const field = (title, changes) => ({ ...setting(title, changes), is_list: false, is_required: false, ...changes });
+const STEP_FIELDS = {
+  at_step: field("Begins at step", { minimum: 0, is_whole: true, default: 0 }),
+  until_step: field("Ends at step", { minimum: 1, is_whole: true }),
+};
+const LEGS = field("Legs", { minimum: 1, maximum: 12, is_whole: true, is_list: true, is_required: true });
+const DIRECTION = field("Direction", { minimum: -180, maximum: 180, unit: "°", default: 0 });
+const NUMBER = { minimum: 0, is_required: true };
+/** @type {(name: string, title: string, fields: object, simulators?: string[]) => any} */
+const kind = (name, title, fields, simulators = ["mujoco"]) =>
+  ({ ...described(name, title), fields: { ...fields, ...STEP_FIELDS }, simulators });
+const KINDS = [
+  kind("limp", "Limp legs", { legs: LEGS }),
+  kind("stuck", "Stuck joint", {
+    leg: field("Leg", { minimum: 1, maximum: 12, is_whole: true, is_required: true }),
+    joint: field("Joint", { is_number: false, choices: ["coxa", "femur"], is_required: true }),
+    angle_rad: field("Angle", { minimum: -1.5, maximum: 1.5, unit: "rad", is_required: true }),
+  }),
+  kind("weak", "Weak servos", {
+    legs: LEGS, torque_share: field("Share of torque", { ...NUMBER, maximum: 1 }),
+  }),
+  kind("repair", "Repaired legs", { legs: LEGS }),
+  kind("slope", "Slope", {
+    degrees: field("Slope", { ...NUMBER, maximum: 30, unit: "°" }), direction_deg: DIRECTION,
+  }),
+  kind("push", "Push", {
+    impulse_ns: field("Impulse", { ...NUMBER, maximum: 20, unit: "N·s" }), direction_deg: DIRECTION,
+  }),
+  kind("sensor-noise", "Sensor noise", {
+    sd_m: field("Standard deviation", { ...NUMBER, maximum: 0.05, unit: "m" }),
+  }, ["mujoco", "kinematic"]),
+];
+const WORLDS = [
+  { ...described("flat", "Flat ground"), disturbances: [] },
+  { ...described("limp-pair", "Two limp legs"), disturbances: [{ kind: "limp", at_step: 0, legs: [1, 4] }] },
+];
+
 const TRAINING = {
   agent: "learner", gait: "tripod", steps: 500, seed: 0, observation: "measured", alpha: 0.3, gamma: 0.9,
   epsilon_start: 1, epsilon_end: 0, steps_per_episode: 50, evaluate_every: 50, robot: "stiff", simulator: "mujoco",
@@ -44,7 +82,9 @@ const EXPERIMENT = {
 };
 const COMMON = ["seeds", "seed", "gaits", "observations", "robots", "simulator"];
 
-const SEARCH = { learns: false, needs_practice: false, keeps_learning: false, settings: {}, live_settings: {} };
+const SEARCH = {
+  learns: false, searches: true, needs_practice: false, keeps_learning: false, settings: {}, live_settings: {},
+};
 
 /** @type {Options} */
 export const OPTIONS = {
@@ -56,12 +96,12 @@ export const OPTIONS = {
   robots: [{ ...described("stiff", "Stiff"), robot: { preset: "stiff" } }],
   agents: [
     {
-      ...described("learner", "Learner"), color: "#111111", learns: true, needs_practice: true,
+      ...described("learner", "Learner"), color: "#111111", learns: true, searches: false, needs_practice: true,
       keeps_learning: false, settings: LEARNER,
       live_settings: { alpha: LEARNER.alpha, gamma: LEARNER.gamma, epsilon: EPSILON },
     },
     {
-      ...described("tracer", "Tracer"), color: "#444444", learns: true, needs_practice: true,
+      ...described("tracer", "Tracer"), color: "#444444", learns: true, searches: false, needs_practice: true,
       keeps_learning: true, settings: TRACER,
       live_settings: { alpha: TRACER.alpha, trace: TRACER.trace },
     },
@@ -71,6 +111,8 @@ export const OPTIONS = {
       settings: { depth: setting("Depth", { minimum: 1, maximum: 5, is_whole: true, default: 3 }) },
     },
   ],
+  worlds: WORLDS,
+  disturbances: KINDS,
   simulators: [{ name: "mujoco", description: "" }, { name: "kinematic", description: "" }],
   observations: [{ name: "measured", description: "" }, { name: "commanded", description: "" }],
   clocks: [{ name: "paper", description: "" }, { name: "wall", description: "" }, { name: "free", description: "" }],

@@ -13,6 +13,7 @@ import { scene } from "../store.js";
 import { gaitTitle, inFormWords, labelOf } from "../titles.js";
 import { goToField, Held, html, Icon, Problem, ProgressBar, UnknownParts } from "./elements.js";
 import { Settings } from "./settings.js";
+import { Branch, LiveWorld } from "./world.js";
 
 export function Controls() {
   if (!isOperator.value) return html`<${Spectator} />`;
@@ -64,6 +65,8 @@ function Actions() {
       ${!myWork.value && html`<${SecondaryActions} />`}
       <${Progress} />
       ${work.value && html`<${WorkActions} />`}
+      <${LiveWorld} />
+      <${Branch} />
       <${Problem} at="work" />
       <${Problem} at="tune" />
       <${OffStage} />

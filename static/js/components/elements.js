@@ -41,7 +41,7 @@ const HIP = 7.5;
 const FOOT = 24;
 
 /** The point at a distance from the centre in the direction of a leg; azimuths turn anticlockwise. */
-function pointAt(azimuth_deg, radius) {
+export function pointAt(azimuth_deg, radius) {
   const angle = (azimuth_deg * Math.PI) / 180;
   return [-radius * Math.sin(angle), -radius * Math.cos(angle)].map((c) => c.toFixed(1));
 }

@@ -1,6 +1,7 @@
 // What the learner in view has learned: its learning curve, and its action values in its present state.
 import { useMemo } from "preact/hooks";
 import { changesInWords, rateInWords } from "../changes.js";
+import { inTime, inWords } from "../disturbances.js";
 import { count, metres, millimetres, whole } from "../format.js";
 import { valueColours } from "../scale.js";
 import { shownRun } from "../selectors.js";
@@ -31,13 +32,18 @@ export function LearningChart() {
   `;
 }
 
-/** Thin lines: greedy's distance, where one training continued another, and where live settings changed. */
-const marksOf = ({ greedy_m, blocks, changes, run }) => [
+/** Lines: greedy's distance, where one training continued another, where live settings changed, what happened. */
+const marksOf = ({ greedy_m, blocks, changes, happenings, run }) => [
   ...(greedy_m ? [greedyMark(greedy_m)] : []),
   ...blocks.map((x) => ({ x, color: "--line" })),
   ...changes.map((change) => ({
     x: change.step, color: "--dim", dash: [2, 3], text: rateInWords(run.config.agent, change),
   })),
+  ...happenings.flatMap((one) => {
+    const mark = { color: "--warn", dash: [4, 3] };
+    const begins = one.at_step > 0 ? [{ ...mark, x: one.at_step, text: inWords(one) }] : [];
+    return one.until_step ? [...begins, { ...mark, x: one.until_step, text: `no ${inWords(one)}` }] : begins;
+  }),
 ];
 
 const greedyMark = (y) => ({
@@ -74,6 +80,9 @@ function Curve({ known }) {
       series=${[{ color, points: points.length < MOST_MARKED_POINTS }]}
       x=${{ min: 0, max: to, unit: "steps of practice" }}
       y=${{ min: Math.min(0, ...distances), max: HEADROOM * Math.max(LEAST_TOP_M, greedy_m ?? 0, ...distances) }} />
+    ${known.happenings.length > 0 && html`
+      <p class="changes happened">Happened: ${known.happenings.map(inTime).join("; ")}</p>
+    `}
     ${changed.length > 0 && html`<p class="changes dim">Changed: ${changed.join(", ")}</p>`}
     <${AsTable} caption=${caption} columns=${["Steps of practice", "Distance in 50 steps"]}
       rows=${points.map((p) => [whole(p.step), metres(p.distance_m)])} />

@@ -4,9 +4,9 @@ import uPlot from "uplot";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, whole } from "../format.js";
 import {
-  clipped, distanceAt, flatParts, headline, isTimedOut, raceScene, ruleOf, shownTime, standings, timeline,
+  clipped, distanceAt, flatParts, headline, isTimedOut, ruleOf, shownTime, standings, timeline,
 } from "../race.js";
-import { clock, isActive, raceInView, simulatedPerDecision } from "../selectors.js";
+import { clock, isActive, raceInView, raceScene, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs } from "../store.js";
 import { clockTitle } from "../titles.js";

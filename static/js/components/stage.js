@@ -5,8 +5,10 @@ import { setStage, skipToEnd, togglePlaying } from "../actions.js";
 import { form } from "../form.js";
 import { clockTime, sentence, times, whole } from "../format.js";
 import { isNarrow, shownTheme, view } from "../page.js";
-import { raceScene, standings } from "../race.js";
-import { clock, isActive, isOperator, isPlaying, playbackName, shownRun } from "../selectors.js";
+import { standings } from "../race.js";
+import {
+  clock, conditionsShown, isActive, isOperator, isPlaying, playbackName, raceScene, shownRun,
+} from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { connection, options, scene, stage } from "../store.js";
 import { choicesOf, clockTitle } from "../titles.js";
@@ -160,10 +162,17 @@ function SceneChips() {
       <p class="chip strong">${now?.label || "On the start line"}</p>
       ${now?.phase === "photo-finish" && html`<p class="chip accent">Time-out: photo finish</p>`}
       ${now?.phase === "waiting" && html`<p class="chip">Waiting for a robot that still thinks</p>`}
+      <${WorldChip} />
       ${now?.replay && html`<p class="chip">Replay</p>`}
       <${SpeedChip} now=${now} />
     </div>
   `;
+}
+
+/** What holds in the step that is shown, as on every page that watches. */
+function WorldChip() {
+  const words = conditionsShown.value;
+  return words.length > 0 && html`<p class="chip happening">${sentence(words.join(", "))}</p>`;
 }
 
 function SpeedChip({ now }) {

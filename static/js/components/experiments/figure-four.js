@@ -5,8 +5,7 @@ import { count, percentage, sentence, whole } from "../../format.js";
 import { largest, thinned, ticks } from "../../scale.js";
 import { agentOf } from "../../settings.js";
 import { gaitTitle } from "../../titles.js";
-import { AsTable } from "../charts.js";
-import { Crosshair } from "../crosshair.js";
+import { AsTable, Crosshair } from "../charts.js";
 import { html } from "../elements.js";
 import { PlaceSwitch, PlaceWords, UnitSwitch } from "./report-tools.js";
 

@@ -1,0 +1,277 @@
+// What happens to robots and to the ground: what holds in a step, its words, and its text in links and commands.
+import { listed, whole } from "./format.js";
+import { parseSetting, quoted } from "./parse.js";
+import { options } from "./store.js";
+
+/** @import { Parsed } from "./parse.js" */
+/** @import { Disturbance, DisturbanceKind, FieldOption, Run } from "./types.js" */
+
+/** It lasts no longer than the beginning of its step. */
+export const PUSH = "push";
+const REPAIR = "repair";
+const STEPS = ["at_step", "until_step"];
+/** Of the fields in a text. @type {Record<string, string>} */
+const SHORT = { at_step: "at", until_step: "until" };
+
+/** @param {string} name */
+export const kindNamed = (name) => (options.value?.disturbances ?? []).find((kind) => kind.name === name);
+
+/**
+ * Whether a simulator knows a kind.
+ * @param {string} kind
+ * @param {string} simulator
+ */
+export const isSimulated = (kind, simulator) => kindNamed(kind)?.simulators.includes(simulator) ?? false;
+
+/** All that happens in a run, by its config and while it ran. @param {Pick<Run, "config" | "changes">} run */
+export const happeningsOf = ({ config, changes = [] }) => [
+  ...(config.disturbances ?? []),
+  ...changes.flatMap(({ disturbance }) => (disturbance ? [disturbance] : [])),
+];
+
+// ---- what holds in a step
+
+/** @type {(one: Disturbance, step: number) => boolean} */
+const holdsAt = ({ at_step, until_step }, step) =>
+  at_step <= step && (until_step === undefined || until_step === null || step < until_step);
+
+/**
+ * A disturbance by what it changes, leg by leg.
+ * @param {Disturbance} one
+ * @returns {[string, Disturbance][]}
+ */
+function partsOf(one) {
+  if (one.legs) return one.legs.map((leg) => [`leg ${leg}`, { ...one, legs: [leg] }]);
+  if (one.leg) return [[`leg ${one.leg} ${one.joint}`, one]];
+  return [[one.from_m === undefined ? one.kind : `${one.kind} ${one.from_m} ${one.to_m}`, one]];
+}
+
+/**
+ * The disturbances that hold in a step, leg by leg: a later one of the same thing replaces an earlier one.
+ * @param {Disturbance[]} happenings
+ * @param {number} step counted from 0
+ */
+export function conditionsAt(happenings, step) {
+  /** @type {Map<string, Disturbance>} */
+  const newest = new Map();
+  const lasting = happenings.filter((one) => one.kind !== PUSH && holdsAt(one, step));
+  for (const one of lasting.sort((a, b) => a.at_step - b.at_step)) {
+    for (const [key, part] of partsOf(one)) {
+      const replaced = [...newest.keys()].filter((old) => old === key || old.startsWith(`${key} `));
+      replaced.forEach((old) => newest.delete(old));
+      newest.set(key, part);
+    }
+  }
+  return [...newest.values()].filter((one) => one.kind !== REPAIR && !isNone(one));
+}
+
+/** Whether it ends an earlier one of its kind: a slope of 0°. @param {Disturbance} one */
+const isNone = (one) => {
+  const own = mainField(one.kind);
+  return own !== null && own[1].minimum === 0 && one[own[0]] === 0;
+};
+
+/**
+ * What holds in a training that runs, with what has just been sent to it.
+ * @param {Run} run
+ */
+export function conditionsNow(run) {
+  const happenings = happeningsOf(run);
+  const changed = (run.changes ?? []).map(({ step }) => step);
+  return conditionsAt(happenings, Math.max(run.progress.done, ...changed));
+}
+
+/**
+ * The number of a kind that has only one that must be given: the degrees of a slope; null for others.
+ * @param {string} kind
+ * @returns {[string, FieldOption] | null}
+ */
+export function mainField(kind) {
+  const needed = Object.entries(kindNamed(kind)?.fields ?? {}).filter(([, field]) => field.is_required);
+  return needed.length === 1 && needed[0][1].is_number && !needed[0][1].is_list ? needed[0] : null;
+}
+
+// ---- words
+
+const LEAST_METRES = 0.1;
+const JOIN = "\u00a0";
+
+/** @type {(value: any, unit: string | null) => string} */
+export function withUnit(value, unit) {
+  const text = String(value).replace("-", "\u2212");
+  if (unit === "m" && value !== 0 && Math.abs(value) < LEAST_METRES) {
+    return `${Number((1000 * value).toPrecision(4))}${JOIN}mm`;
+  }
+  return unit === "°" ? `${text}°` : `${text}${unit ? JOIN + unit : ""}`;
+}
+
+/** The fields of a disturbance that are not its kind's defaults, in words. @type {(one: Disturbance) => string[]} */
+const fieldsInWords = (one) =>
+  Object.entries(kindNamed(one.kind)?.fields ?? {})
+    .filter(([name, field]) => !STEPS.includes(name) && !field.is_list && name in one && one[name] !== field.default)
+    .map(([name, field]) => {
+      const title = mainField(one.kind)?.[0] === name ? "" : `${field.title.toLowerCase()} `;
+      return `${title}${withUnit(one[name], field.unit)}`;
+    });
+
+/** What a kind makes of legs. @type {Record<string, string>} */
+const LEG_WORDS = { limp: "limp", lost: "lost", weak: "weak", repair: "repaired" };
+
+/** @param {number[]} legs */
+const legsInWords = (legs) => `leg${legs.length > 1 ? "s" : ""}${JOIN}${legs.join(", ")}`;
+
+/**
+ * A disturbance in a few words: "legs 1, 4 limp", "slope 8°".
+ * @param {Disturbance} one
+ */
+export function inWords(one) {
+  const values = fieldsInWords(one);
+  if (one.legs) return [`${legsInWords(one.legs)} ${LEG_WORDS[one.kind] ?? one.kind}`, ...values].join(", ");
+  if (one.leg) return `leg${JOIN}${one.leg}: ${one.joint} ${one.kind} at ${withUnit(one.angle_rad, "rad")}`;
+  const title = (kindNamed(one.kind)?.title ?? one.kind).toLowerCase();
+  return [title, values.join(", ")].filter(Boolean).join(" ");
+}
+
+/** What happens to legs alike as one. @param {Disturbance[]} parts */
+function joined(parts) {
+  /** @type {Map<string, Disturbance>} */
+  const found = new Map();
+  for (const one of parts) {
+    const { legs, ...rest } = one;
+    const key = JSON.stringify({ ...rest, at_step: 0, until_step: 0, legs: Boolean(legs) });
+    const before = found.get(key);
+    found.set(key, legs && before?.legs ? { ...one, legs: [...before.legs, ...legs].sort((a, b) => a - b) } : one);
+  }
+  return [...found.values()];
+}
+
+/**
+ * Conditions in words: ["legs 1, 4 limp", "slope 8°"].
+ * @param {Disturbance[]} conditions
+ */
+export const conditionsInWords = (conditions) => joined(conditions).map(inWords);
+
+/**
+ * What happens, and when: "legs 1, 4 limp from step 26 to step 30". What holds from the start says no step.
+ * @param {Disturbance} one
+ */
+export function inTime(one) {
+  const from = `${one.kind === PUSH ? "in" : "from"} step ${whole(one.at_step + 1)}`;
+  const words = [inWords(one)];
+  if (one.at_step > 0 || one.kind === PUSH) words.push(from);
+  if (one.until_step) words.push(`to step ${whole(one.until_step)}`);
+  return words.join(" ");
+}
+
+/** What happened to each leg: "limp", "femur stuck". @param {Disturbance[]} conditions */
+export function legStates(conditions) {
+  /** @type {Map<number, string>} */
+  const states = new Map();
+  for (const one of conditions) {
+    if (one.legs) for (const leg of one.legs) states.set(leg, LEG_WORDS[one.kind] ?? one.kind);
+    else if (one.leg) states.set(one.leg, `${one.joint} ${one.kind}`);
+  }
+  return states;
+}
+
+/**
+ * Legs that change from working to limp, or back: what a click on a leg means.
+ * @param {Disturbance[]} conditions
+ * @param {number} leg
+ */
+export const toggled = (conditions, leg) =>
+  ({ kind: legStates(conditions).has(leg) ? REPAIR : "limp", legs: [leg] });
+
+// ---- the text of a disturbance, as the command line has it: limp:legs=1,4:at=25
+
+/**
+ * The kind and the fields of a text, by the fields' short names; nothing is checked.
+ * @param {string} text
+ */
+export function splitText(text) {
+  const [kind, ...parts] = text.split(":");
+  /** @type {[string, string][]} */
+  const fields = parts.map((part) => {
+    const at = part.indexOf("=");
+    return at < 0 ? [part, ""] : [part.slice(0, at), part.slice(at + 1)];
+  });
+  return { kind, fields };
+}
+
+/** @type {(kind: string, fields: [string, string][]) => string} */
+const joinText = (kind, fields) => [kind, ...fields.map(([name, value]) => `${name}=${value}`)].join(":");
+
+/** @param {string} field */
+export const shortName = (field) => SHORT[field] ?? field;
+
+/**
+ * A text with another value of a field; without the field if the value is empty.
+ * @param {string} text
+ * @param {string} field
+ * @param {string} value
+ */
+export function withField(text, field, value) {
+  const name = shortName(field);
+  const { kind, fields } = splitText(text);
+  const isSame = (/** @type {[string, string]} */ [one]) => one === name || one === field;
+  if (value === "") return joinText(kind, fields.filter((one) => !isSame(one)));
+  const changed = fields.map((one) => (isSame(one) ? /** @type {[string, string]} */ ([name, value]) : one));
+  return joinText(kind, fields.some(isSame) ? changed : [...fields, [name, value]]);
+}
+
+/**
+ * The text of a disturbance.
+ * @param {Partial<Disturbance> & { kind: string }} one
+ */
+export const textOf = ({ kind, ...fields }) => {
+  const order = Object.keys(kindNamed(kind)?.fields ?? {});
+  const given = Object.entries(fields).filter(([name, value]) =>
+    value !== null && value !== undefined && value !== kindNamed(kind)?.fields[name]?.default);
+  given.sort(([a], [b]) => order.indexOf(a) - order.indexOf(b));
+  return joinText(kind, given.map(([name, value]) => [shortName(name), String(value)]));
+};
+
+/** @type {(text: string, field: FieldOption) => Parsed<any>} */
+function parseField(text, field) {
+  // What must be given cannot be left empty.
+  const setting = field.is_required ? { ...field, default: 0 } : field;
+  if (!field.is_list) return parseSetting(text, setting);
+  const values = text.split(",").map((one) => parseSetting(one, setting));
+  const wrong = values.find(({ mistake }) => mistake !== undefined);
+  if (wrong || new Set(values.map(({ value }) => value)).size < values.length) {
+    return { mistake: wrong?.mistake ?? "Enter each once" };
+  }
+  return { value: values.map(({ value }) => value) };
+}
+
+/**
+ * A text as a disturbance, or why it is none.
+ * @param {string} text
+ * @returns {Parsed<Disturbance>}
+ */
+export function parseText(text) {
+  const { kind: name, fields } = splitText(text);
+  const kind = kindNamed(name);
+  if (!kind) return { mistake: `${quoted(name)} is nothing that can happen: choose one of these` };
+  /** @type {Disturbance} */
+  const found = { kind: name, at_step: 0 };
+  const seen = new Set();
+  for (const [short, value] of fields) {
+    const field = Object.keys(kind.fields).find((one) => one === short || SHORT[one] === short);
+    if (!field) return { mistake: `${kind.title}: ${quoted(short)} is none of ${namesOf(kind)}` };
+    if (seen.has(field)) return { mistake: `${kind.title}: give ${quoted(short)} once` };
+    seen.add(field);
+    const { value: read, mistake } = parseField(value, kind.fields[field]);
+    const title = kind.fields[field].title.toLowerCase();
+    if (mistake !== undefined) return { mistake: `${kind.title}, ${title}: ${mistake}` };
+    found[field] = read;
+  }
+  const missing = Object.entries(kind.fields).filter(([field, { is_required }]) => is_required && !seen.has(field));
+  if (missing.length) {
+    return { mistake: `${kind.title}: give ${listed(missing.map(([, { title }]) => title.toLowerCase()))}` };
+  }
+  return { value: found };
+}
+
+/** @param {DisturbanceKind} kind */
+const namesOf = ({ fields }) => listed(Object.keys(fields).map(shortName));

@@ -1,0 +1,111 @@
+// What happens to robots: what holds in a step, its words, and its text.
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+import {
+  conditionsAt, conditionsInWords, conditionsNow, happeningsOf, inTime, inWords, isSimulated, legStates, mainField,
+  parseText, textOf, toggled, withField,
+} from "../../static/js/disturbances.js";
+import { azimuthsOf } from "../../static/js/robots.js";
+import { options } from "../../static/js/store.js";
+import { makeRun, OPTIONS } from "./options.js";
+
+beforeEach(() => (options.value = OPTIONS));
+
+const LIMP = { kind: "limp", at_step: 25, legs: [1, 4] };
+const SLOPE = { kind: "slope", at_step: 0, degrees: 8, direction_deg: 0 };
+
+/** @type {(happenings: any[], step: number) => string[]} */
+const wordsAt = (happenings, step) =>
+  conditionsInWords(conditionsAt(happenings, step)).map((words) => words.replaceAll("\u00a0", " "));
+
+test("what happens holds from its step on, leg by leg, until it ends or is repaired", () => {
+  const happenings = [SLOPE, LIMP, { kind: "repair", at_step: 30, legs: [4] }, { ...SLOPE, at_step: 40, degrees: 0 }];
+  assert.deepEqual(wordsAt(happenings, 24), ["slope 8°"]);
+  assert.deepEqual(wordsAt(happenings, 25), ["slope 8°", "legs 1, 4 limp"]);
+  assert.deepEqual(wordsAt(happenings, 30), ["slope 8°", "leg 1 limp"]);
+  assert.deepEqual(wordsAt(happenings, 40), ["leg 1 limp"]);
+  assert.deepEqual(wordsAt([{ ...LIMP, until_step: 27 }], 27), []);
+});
+
+test("what happens to a leg replaces what happened to its joints", () => {
+  const stuck = { kind: "stuck", at_step: 1, leg: 2, joint: "femur", angle_rad: -0.9 };
+  assert.deepEqual(wordsAt([stuck], 1), ["leg 2: femur stuck at −0.9 rad"]);
+  assert.deepEqual([...legStates(conditionsAt([stuck], 1))], [[2, "femur stuck"]]);
+  assert.deepEqual(wordsAt([stuck, { kind: "repair", at_step: 2, legs: [2] }], 2), []);
+});
+
+test("a push holds in no step", () => {
+  const push = { kind: "push", at_step: 4, impulse_ns: 2, direction_deg: 90 };
+  assert.deepEqual(wordsAt([push], 4), []);
+  assert.equal(inTime(push).replaceAll("\u00a0", " "), "push 2 N·s, direction 90° in step 5");
+});
+
+test("words are short, with units, and count steps from 1", () => {
+  const noise = { kind: "sensor-noise", at_step: 0, sd_m: 0.004 };
+  assert.equal(inWords(noise), "sensor noise 4\u00a0mm");
+  assert.equal(inTime(noise), "sensor noise 4\u00a0mm");
+  assert.equal(inTime({ ...LIMP, until_step: 30 }), "legs\u00a01, 4 limp from step 26 to step 30");
+  assert.equal(inWords({ kind: "weak", at_step: 0, legs: [2], torque_share: 0.3 }),
+    "leg\u00a02 weak, share of torque 0.3");
+  assert.equal(inWords({ kind: "fire", at_step: 0 }), "fire");
+});
+
+test("a training that runs has what its config says, and what was done to it", () => {
+  const { config } = makeRun({});
+  const changes = [{ step: 7, disturbance: { ...LIMP, at_step: 7 } }, { step: 8, alpha: 0.5 }];
+  const run = makeRun({ config: { ...config, disturbances: [SLOPE] }, changes, progress: { done: 3, total: 500 } });
+  assert.deepEqual(happeningsOf(run).map(({ kind }) => kind), ["slope", "limp"]);
+  assert.deepEqual(conditionsInWords(conditionsNow(run)), ["slope 8°", "legs\u00a01, 4 limp"]);
+  assert.deepEqual(happeningsOf(makeRun({})), []);
+});
+
+test("a click breaks a leg that works and repairs one that does not", () => {
+  const conditions = conditionsAt([LIMP], 25);
+  assert.deepEqual(toggled(conditions, 2), { kind: "limp", legs: [2] });
+  assert.deepEqual(toggled(conditions, 4), { kind: "repair", legs: [4] });
+});
+
+test("declarations tell which simulator knows a kind, and which kinds have one number", () => {
+  const isKnown = (/** @type {string} */ kind) => isSimulated(kind, "kinematic");
+  assert.deepEqual(["limp", "sensor-noise", "fire"].map(isKnown), [false, true, false]);
+  assert.deepEqual(["slope", "limp", "stuck", "weak"].map((kind) => mainField(kind)?.[0]),
+    ["degrees", undefined, undefined, undefined]);
+});
+
+test("a text is read as on the command line, and written so", () => {
+  assert.deepEqual(parseText("limp:legs=1,4:at=25").value, LIMP);
+  assert.deepEqual(parseText("slope:degrees=8:at_step=3:until=9").value,
+    { kind: "slope", degrees: 8, at_step: 3, until_step: 9 });
+  assert.equal(textOf(LIMP), "limp:legs=1,4:at=25");
+  assert.equal(textOf(SLOPE), "slope:degrees=8");
+  assert.equal(textOf({ kind: "stuck", leg: 2, joint: "femur", angle_rad: -0.9, at_step: 0 }),
+    "stuck:leg=2:joint=femur:angle_rad=-0.9");
+});
+
+test("a text that is not valid is explained", () => {
+  const mistakeOf = (/** @type {string} */ text) => parseText(text).mistake ?? "";
+  assert.match(mistakeOf("fire"), /“fire” is nothing that can happen/);
+  assert.match(mistakeOf("limp:arms=1"), /“arms” is none of legs, at and until/);
+  assert.match(mistakeOf("limp"), /give legs/);
+  assert.match(mistakeOf("limp:legs=1,1"), /legs: Enter each once/);
+  assert.match(mistakeOf("limp:legs=13"), /from 1 to 12/);
+  assert.match(mistakeOf("limp:legs="), /Enter a whole number/);
+  assert.match(mistakeOf("slope:degrees=80"), /Slope, slope: Must be from 0 to 30/);
+  assert.match(mistakeOf("slope:degrees=8:degrees=9"), /once/);
+});
+
+test("a field of a text is changed in its place", () => {
+  assert.equal(withField("limp:legs=1:at=25", "legs", "1,4"), "limp:legs=1,4:at=25");
+  assert.equal(withField("limp:legs=1:at_step=25", "at_step", "9"), "limp:legs=1:at=9");
+  assert.equal(withField("limp:legs=1:at=25", "at_step", ""), "limp:legs=1");
+  assert.equal(withField("limp", "legs", "2"), "limp:legs=2");
+});
+
+test("legs are drawn from forward, of any robot", () => {
+  const { gaits } = OPTIONS;
+  const named = { ...gaits[0], azimuths_deg: [-30, 30, 90, 150, -150, -90] };
+  assert.deepEqual(azimuthsOf("stiff", "tripod", [named]), [-30, 30, 90, 150, 210, 270]);
+  assert.deepEqual(azimuthsOf({ n_legs: 4 }, { right_leg: 1, left_leg: 2 }, gaits), [-45, 45, 135, 225]);
+  const legs = [{ azimuth_deg: 0, radius_m: 0.1 }, { azimuth_deg: 180, radius_m: 0.1 }];
+  assert.deepEqual(azimuthsOf({ legs }, { right_leg: 1, left_leg: 2 }, gaits), [-90, 90]);
+});
