@@ -61,7 +61,8 @@ function read(field, text, agents) {
 function commonDefaults() {
   const { training, race } = served().defaults;
   const own = settingsOf([training.agent]);
-  const common = Object.entries(training).filter(([field]) => field !== "agent" && !(field in own));
+  const others = ["agent", "disturbances", ...Object.keys(own)];
+  const common = Object.entries(training).filter(([field]) => !others.includes(field));
   return { ...Object.fromEntries(common), race_steps: race.steps, name: "" };
 }
 
