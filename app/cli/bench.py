@@ -10,6 +10,7 @@ from app.cli.terminal import progress, show_table
 
 LIMITS = {
     "training_over_physics": "at most 1.10",
+    "physics_over_all_that_is_drawn": "at most 1.0",
     "lookahead_speedup": "at least 1.7 on two idle cores",
     "two_step_decision_over_motion": "at most 1.0 on two idle cores",
     "planning_overhead": "at most 0.10",

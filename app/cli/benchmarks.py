@@ -8,6 +8,7 @@ import os
 import time
 from collections.abc import Callable, Sequence
 
+import mujoco
 import numpy as np
 from mujoco.batch import Batch
 
@@ -15,6 +16,7 @@ from app.agents.lookahead import TwoStep
 from app.assembly import build_learner, build_walkers
 from app.domain.observation import legal_actions, observe
 from app.domain.types import Action, FloatArray
+from app.physics.mjcf import compile_visual_model
 from app.physics.mujoco_simulator import MujocoSimulator, MujocoState
 from app.runs.clocks import motion_s
 from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, WalkingProblem
@@ -28,15 +30,20 @@ ROUNDS = 5
 
 
 def training() -> dict[str, float]:
-    """Measure the time of a training without evaluations, relative to its physics alone."""
+    """Measure the time of a training without evaluations, relative to its physics alone.
+
+    Also how long physics takes relative to a model with the geoms that are only drawn.
+    """
     config = TrainingConfig(gait=WALK.gait, steps=200, evaluate_every=0)
     replay = _Replay(threads=1)
+    drawn = _Replay(threads=1, model=compile_visual_model(WALK.robot))
     state = replay.simulator.rest()
     for record in train(build_learner(config), config):
         if isinstance(record, StepTaken):
             replay.add([state], [record.action])
+            drawn.add([state], [record.action])
             state = replay.simulator.step(state, record.action).state
-    training_s, physics_s = [], []
+    training_s, physics_s, drawn_s = [], [], []
     for _ in range(ROUNDS):
         learner = build_learner(config)
         began = time.perf_counter()
@@ -44,8 +51,13 @@ def training() -> dict[str, float]:
             pass
         training_s.append(time.perf_counter() - began)
         physics_s.append(_seconds(replay.run))
+        drawn_s.append(_seconds(drawn.run))
+    robot = WALK.robot
+    substeps = config.steps * (robot.swing_substeps + robot.shift_substeps)
     return {
         "training_over_physics": min(training_s) / min(physics_s),
+        "physics_substeps_per_second": substeps / min(physics_s),
+        "physics_over_all_that_is_drawn": min(physics_s) / min(drawn_s),
         "training_steps_per_second": config.steps / min(training_s),
     }
 
@@ -81,8 +93,9 @@ def racing() -> dict[str, float]:
 class _Replay:
     """Simulates recorded states and commands again, as a baseline of physics alone."""
 
-    def __init__(self, threads: int) -> None:
+    def __init__(self, threads: int, model: mujoco.MjModel | None = None) -> None:
         self.simulator = MujocoSimulator(WALK.robot, WALK.resolved_gait, WALK.grid, threads)
+        self._model = model or self.simulator.model
         self._threads = threads
         self._layers: list[tuple[FloatArray, FloatArray]] = []
         self._batches: dict[int, Batch] = {}
@@ -92,7 +105,7 @@ class _Replay:
         rows = np.array([state.row for state in states])
         self._layers.append((rows, self.simulator.commands(states, actions)))
         if len(rows) not in self._batches:
-            self._batches[len(rows)] = Batch(self.simulator.model, len(rows), self._threads)
+            self._batches[len(rows)] = Batch(self._model, len(rows), self._threads)
 
     def run(self) -> None:
         """Simulate every layer."""

@@ -12,6 +12,8 @@ def test_bench_prints_every_figure(tmp_path: Path) -> None:
     figures = output("bench", folder=tmp_path)
     assert set(figures) >= {
         "training_over_physics",
+        "physics_substeps_per_second",
+        "physics_over_all_that_is_drawn",
         "lookahead_speedup",
         "two_step_decision_over_motion",
         "planning_overhead",

@@ -174,3 +174,29 @@ def test_file_that_is_no_table_is_refused_by_name(folder: Path) -> None:
     (folder / "shopping.npz").write_text("milk")
     sentence = refusal("race", *QUICK, "--lane", "q-learning=shopping.npz", folder=folder)
     assert "shopping.npz is not a Q-table" in sentence
+
+
+def test_worlds_and_disturbances_are_options(tmp_path: Path) -> None:
+    options = ("--world", "slope", "--disturb", "limp:legs=1,4:at=2", "--steps", "4")
+    printed = output("race", *GAIT, *options, "--lane", "greedy", folder=tmp_path)
+
+    assert [one["kind"] for one in printed["config"]["disturbances"]] == ["slope", "limp"]
+    assert printed["result"]["lanes"][0]["fell_at_step"] is None
+    assert abs(printed["result"]["lanes"][0]["heading_deg"]) < 45
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--world", "moon"), "choose one of: flat, slope"),
+        (("--disturb", "limp:legs=7"), "there is no leg 7"),
+        (("--disturb", "limp:legs=1:at=500"), "at_step must be from 0 to 499"),
+        (("--disturb", "limp"), "limp needs legs"),
+        (("--world", "slope", "--disturb", "slope:degrees=3"), "contradict each other"),
+        (("--world", "slope", "--simulator", "kinematic"), "knows no slope"),
+    ],
+)
+def test_impossible_worlds_are_refused(
+    tmp_path: Path, options: tuple[str, ...], words: str
+) -> None:
+    assert words in refusal("train", *GAIT, *options, folder=tmp_path, run=in_process)

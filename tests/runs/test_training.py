@@ -9,7 +9,8 @@ import pytest
 
 from app.agents.q_learning import QLearning
 from app.assembly import build_learner, finish_training
-from app.domain.errors import IllegalAction
+from app.domain.disturbances import Limp, SensorNoise, Slope
+from app.domain.errors import IllegalAction, InvalidInput
 from app.domain.world import World
 from app.runs import seeding
 from app.runs.config import SIMULATORS, SimulatorName, TrainingConfig, training_config
@@ -334,3 +335,65 @@ def test_user_supplied_agent_trains_and_resumes() -> None:
 def test_illegal_action_raises_an_error_that_names_agent_and_action() -> None:
     with pytest.raises(IllegalAction, match=r"Cheat chose Action\(pair=0, cell=0\).*in legal"):
         run(replace(CONFIG, agent="tests.own_agents:Cheat"))
+
+
+EVENTFUL = training_config(
+    gait="left-right-origin",
+    steps=30,
+    evaluate_every=20,
+    seed=3,
+    world=World(
+        (Limp(legs=(1, 4), at_step=10), SensorNoise(sd_m=0.004), Slope(degrees=5, at_step=20))
+    ),
+)
+
+
+def test_the_robot_is_evaluated_where_the_world_changes_and_greedy_in_each_world() -> None:
+    learner, records = run(EVENTFUL)
+    evaluated = [record.step for record in records if isinstance(record, Evaluated)]
+    references = [r.greedy_distance_m for r in records if isinstance(r, Reference)]
+
+    assert evaluated == [10, 20, 30]
+    assert len(references) == len(set(references)) == 2
+    assert finish_training(learner, EVENTFUL)["greedy_distance_m"] == references[-1]
+
+
+def test_a_disturbed_training_resumes_to_the_last_bit() -> None:
+    unbroken, records = run(EVENTFUL)
+    for step in (9, 10, 21):
+        first = build_learner(EVENTFUL)
+        for record in train(first, EVENTFUL):
+            if isinstance(record, StepTaken) and record.step == step:
+                break
+        second = build_learner(EVENTFUL)
+        restore(second, from_bytes(to_bytes(snapshot(first, EVENTFUL)), "it.npz"))
+        after = list(train(second, EVENTFUL))
+
+        assert everything(second) == everything(unbroken)
+        distances = [r.distance_m for r in records if isinstance(r, StepTaken)]
+        assert [r.distance_m for r in after if isinstance(r, StepTaken)] == distances[step:]
+
+
+def test_what_happens_while_it_runs_equals_what_was_planned() -> None:
+    """But for an evaluation in the new world, which changes nothing."""
+    planned = replace(EVENTFUL, world=World((Limp(legs=(1, 4), at_step=7),)))
+    calm = replace(planned, world=World())
+    live = build_learner(calm)
+    told = []
+    for record in train(live, calm):
+        told.append(record)
+        if isinstance(record, StepTaken) and record.step == 7:
+            live.disturb(Limp(legs=(1, 4)), calm)
+    expected, records = run(planned)
+
+    assert live.world == planned.world
+    assert everything(live) == everything(expected)
+    for kind in (StepTaken, Evaluated):
+        of_both = [[r for r in some if isinstance(r, kind)] for some in (told, records)]
+        assert [r.distance_m for r in of_both[0]] == [r.distance_m for r in of_both[1]]
+
+
+def test_a_disturbance_needs_a_step_to_happen_in() -> None:
+    learner, _ = run(replace(CONFIG, steps=3))
+    with pytest.raises(InvalidInput, match="at_step must be from 0 to 2"):
+        learner.disturb(SensorNoise(sd_m=0.001), replace(CONFIG, steps=3))
