@@ -138,6 +138,8 @@ class World:
 
     def ground_m(self, step: int) -> float:
         """Return the height of the highest bumps of the ground in a step [m]."""
+        if not self.disturbances:
+            return 0.0
         return max((one.amplitude_m for one in self.as_of(step).all_of(Rough)), default=0.0)
 
     def pushes_at(self, step: int) -> tuple[Push, ...]:

@@ -262,6 +262,8 @@ class MujocoSimulator:
         """
         targets = self._motion.joint_targets(plans)
         delayed: list[FloatArray | None] = [None] * len(plans)
+        if not conditions:
+            return targets, delayed
         delay, dead_band = conditions.one_of(Delay), conditions.one_of(DeadBand)
         late_count = round(delay.seconds / self.robot.dt_s) if delay else 0
         if late_count == 0 and not dead_band and not conditions.all_of(Stuck):
@@ -286,7 +288,7 @@ class MujocoSimulator:
 
     def _onto_period(self, state: MujocoState, conditions: World) -> MujocoState:
         """Move a state by whole periods of rough ground to the one around the origin."""
-        if conditions.one_of(Rough) is None:
+        if not conditions or conditions.one_of(Rough) is None:
             return state
         shift = ROUGH_PERIOD_M * np.round(state.row[1:3] / ROUGH_PERIOD_M)
         if not shift.any():
