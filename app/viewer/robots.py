@@ -126,7 +126,7 @@ def label_text(lane_spec: LaneSpec, lane: LaneView) -> str:
     if lane.thinking:
         futures = f" {lane.futures}/{lane.futures_total}" if lane.futures else "…"
         lines.append(f"thinking{futures}")
-    elif lane.marching:
+    elif lane.marching and lane.fell_at_step is None:
         lines.append("on the spot")
     return "\n".join(lines)
 

@@ -126,9 +126,10 @@ def test_ghost_of_an_evaluation_has_the_legs_of_its_time(server: InProcessViser)
 
 def test_label_names_the_step_of_a_fall_counted_from_one() -> None:
     spec = race_of(1)
-    lane = replace(lane_in(spec), step=14, distance_m=0.1, fell_at_step=11, done=True)
+    lane = replace(lane_in(spec), step=14, distance_m=0.1, fell_at_step=11, marching=True)
 
-    assert label_text(spec.lane_specs[0], lane).split("\n")[1] == "0.10\u00a0m, fell at step 12"
+    lines = label_text(spec.lane_specs[0], lane).split("\n")
+    assert lines == [spec.lane_specs[0].name, "0.10\u00a0m, fell at step 12"]
 
 
 def test_label_of_a_fork_has_the_distance_of_the_original() -> None:
