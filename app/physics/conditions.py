@@ -139,16 +139,12 @@ def _rough(rough: Rough, target: _Target) -> None:
 def _payload(payload: Payload, target: _Target) -> None:
     if payload.kg == 0:
         return
-    forward = np.deg2rad(target.forward_deg)
-    ahead = np.array([np.cos(forward), np.sin(forward)])
-    right = np.array([ahead[1], -ahead[0]])
-    x, y = payload.x_m * right + payload.y_m * ahead
     half = payload_half_side_m(payload.kg)
     target.spec.body("torso").add_geom(
         name="payload",
         type=mujoco.mjtGeom.mjGEOM_BOX,
         size=[half] * 3,
-        pos=[x, y, target.robot.torso_half_height_m + half],
+        pos=payload_center_m(payload, target.robot, target.forward_deg),
         mass=payload.kg,
         priority=1,
         contype=1,
@@ -204,6 +200,21 @@ def _cut_power(spec: mujoco.MjSpec, leg: int) -> None:
 def payload_half_side_m(kg: float) -> float:
     """Return half the side of a cube of this mass with the density of steel [m]."""
     return float((kg / 7800) ** (1 / 3) / 2)
+
+
+def payload_center_m(payload: Payload, robot: Robot, forward_deg: float) -> FloatArray:
+    """Return the centre of a payload's cube, which lies on the torso, in its frame, (3,) [m].
+
+    Args:
+        payload: the payload.
+        robot: its robot.
+        forward_deg: azimuth of the gait's forward direction in the body frame.
+    """
+    forward = np.deg2rad(forward_deg)
+    ahead = np.array([np.cos(forward), np.sin(forward)])
+    right = np.array([ahead[1], -ahead[0]])
+    x, y = payload.x_m * right + payload.y_m * ahead
+    return np.array([x, y, robot.torso_half_height_m + payload_half_side_m(payload.kg)])
 
 
 def rough_heights(rough: Rough) -> FloatArray:

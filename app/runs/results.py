@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from app.domain.posture import has_fallen, heading_deg
+from app.domain.robot import Robot
+from app.domain.world import World
 from app.runs.clocks import CLOCKS, Clock, Timetable, crossing_s, distance_at
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
@@ -43,7 +45,7 @@ def postures(lanes: Sequence[LaneRecording], config: RaceConfig) -> list[dict[st
     """
     return [
         {
-            "fell_at_step": _fell_at_step(lane, config),
+            "fell_at_step": fell_at_step(lane, config.robot, config.world),
             "heading_deg": heading_deg(
                 lane.start_qpos(len(lane.steps)).tolist(), lane.rest_qpos.tolist()
             ),
@@ -52,10 +54,14 @@ def postures(lanes: Sequence[LaneRecording], config: RaceConfig) -> list[dict[st
     ]
 
 
-def _fell_at_step(lane: LaneRecording, config: RaceConfig) -> int | None:
-    for number, step in enumerate(lane.steps):
-        pose = step.motion.qpos[-1].tolist()
-        if has_fallen(config.robot, pose, config.world.ground_m(number)):
+def fell_at_step(lane: LaneRecording, robot: Robot, world: World, first: int = 0) -> int | None:
+    """Return the first step, from `first` on, in which the robot fell; None if in none.
+
+    Steps are counted from 0.
+    """
+    for number in range(first, len(lane.steps)):
+        pose = lane.steps[number].motion.qpos[-1].tolist()
+        if has_fallen(robot, pose, world.ground_m(number)):
             return number
     return None
 

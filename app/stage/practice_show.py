@@ -3,7 +3,8 @@
 During practice the robot is never reset, and walks metres and in curves. So each episode is drawn
 from the start line, straight ahead, by a rigid transformation of its poses in the plane. That
 makes it comparable with the ghosts of evaluations, which start there too. Only the position and
-heading on the track are changed; motion, steps and action values are as recorded.
+heading on the track are changed; motion, steps and action values are as recorded. Where that
+puts the ground under it is the frame's `origin`.
 """
 
 import math
@@ -14,8 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from app.domain.posture import has_fallen
 from app.domain.simulator import Motion
 from app.domain.types import FloatArray
+from app.domain.world import UNDISTURBED, World
 from app.runs.clocks import Clock
 from app.runs.recording import PracticeRecording, pose_at
 from app.runs.records import StepTaken
@@ -23,9 +26,11 @@ from app.stage.race_lane import MARCHING_M, MARCHING_STEPS, ValueRange
 from app.stage.scene_spec import rest_pose
 from app.stage.show import RunLabel
 from app.stage.stage_frame import (
+    AT_ORIGIN,
     ActionValuesView,
     Ghost,
     LaneView,
+    Origin,
     Phase,
     SceneSpec,
     StageFrame,
@@ -52,6 +57,9 @@ class PracticeShow:
         step_s: duration of one step's motion [s].
         pace: returns the training's present pace: `max`, or times real time.
         recording: returns the recording so far, None before there is any.
+        world: returns all that happens in the training, as far as it is known.
+        fell_at_step: first step in which the robot fell, if that is known from the result; else it
+            is found in the recording.
     """
 
     def __init__(
@@ -61,9 +69,15 @@ class PracticeShow:
         step_s: float,
         pace: Callable[[], float | str],
         recording: Callable[[], PracticeRecording | None],
+        *,
+        world: Callable[[], World] = lambda: UNDISTURBED,
+        fell_at_step: int | None = None,
     ) -> None:
         self.spec, self.steps, self._step_s = spec, steps, step_s
-        self._pace, self._recording = pace, recording
+        self._pace, self._recording, self._world = pace, recording, world
+        self._fell_at_step = fell_at_step
+        self._searched = 0
+        """Number of the last step in which a fall was looked for."""
         self._recorded: list[_RecordedStep] = []
         self._step_numbers: list[int] = []
         self._rest_qpos = rest_pose(spec).astype(np.float32)
@@ -76,7 +90,8 @@ class PracticeShow:
         self._rate = 1.0
         self._since_evaluation_s = math.inf
         self._range = ValueRange()
-        self._origin = _Origin.none()
+        self._episode, self._origin = -1, AT_ORIGIN
+        """The shown episode, and the position and heading in which it began."""
 
     @property
     def time_s(self) -> float:
@@ -156,7 +171,25 @@ class PracticeShow:
             _RecordedStep(step, step.motion) for step in steps if step.motion is not None
         ]
         self._step_numbers = [recorded.step.step for recorded in self._recorded]
-        self._evaluations = [Ghost(e.step, e.distance_m) for e in recording.evaluations]
+        world, last = self._world(), self.steps - 1
+        self._evaluations = [
+            Ghost(e.step, e.distance_m, world.as_of(min(e.step, last)))
+            for e in recording.evaluations
+        ]
+        self._look_for_fall(world)
+
+    def _look_for_fall(self, world: World) -> None:
+        if self._fell_at_step is None:
+            for step, motion in self._recorded[bisect_right(self._step_numbers, self._searched) :]:
+                pose, ground_m = motion.qpos[-1].tolist(), world.ground_m(step.step - 1)
+                if has_fallen(self.spec.robot, pose, ground_m):
+                    self._fell_at_step = step.step - 1
+                    break
+        self._searched = self._step_numbers[-1] if self._step_numbers else 0
+
+    def _fall_so_far(self) -> int | None:
+        fell = self._fell_at_step
+        return fell if fell is not None and fell + 1 <= (self._done or 0.0) else None
 
     def _playback_rate(self, speed: float | None) -> float:
         if speed is not None:
@@ -188,8 +221,10 @@ class PracticeShow:
         return 0 if self._done is None else min(math.floor(self._done) + 1, self._step_numbers[-1])
 
     def _lane(self) -> LaneView:
+        world = self._world()
         if self._done is None:
-            return LaneView(rest_pose(self.spec), 0, self.steps, 0.0)
+            at_start = world.as_of(0)
+            return LaneView(rest_pose(self.spec), 0, self.steps, 0.0, conditions=at_start)
         index = min(bisect_left(self._step_numbers, self._current_step()), len(self._recorded) - 1)
         step, motion = self._recorded[index]
         elapsed_s = (self._done - (step.step - 1)) * float(motion.time_s[-1])
@@ -202,7 +237,11 @@ class PracticeShow:
             float(qpos[1]),
             done=self.ended,
             marching=self._marching(index),
+            fell_at_step=self._fall_so_far(),
             knowledge=self._action_values(step),
+            conditions=world.as_of(step.step - 1),
+            pushes=() if self.ended else world.pushes_at(step.step - 1),
+            origin=self._origin,
         )
 
     def _start(self, index: int) -> NDArray[np.float32]:
@@ -219,12 +258,16 @@ class PracticeShow:
     def _relative_to_start_line(self, index: int, pose: FloatArray) -> FloatArray:
         """Return the pose as if its episode had begun on the start line, straight ahead."""
         episode = self._recorded[index].step.episode
-        if self._origin.episode != episode:
+        if self._episode != episode:
             first = index
             while first and self._recorded[first - 1].step.episode == episode:
                 first -= 1
-            self._origin = _Origin.of(episode, self._start(first), rest_pose(self.spec))
-        return self._origin.transformed(pose)
+            start, rest = self._start(first), rest_pose(self.spec)
+            x_m, y_m = start[:2].tolist()
+            turn_rad = yaw_rad(start[3:7]) - yaw_rad(rest[3:7])
+            self._episode, self._origin = episode, Origin(x_m, y_m, turn_rad)
+        x_m, y_m, turn_rad = self._origin
+        return rotated(pose, np.array([x_m, y_m]), -turn_rad)
 
     def _marching(self, index: int) -> bool:
         before = index - MARCHING_STEPS
@@ -248,25 +291,3 @@ class _RecordedStep(NamedTuple):
 
     step: StepTaken
     motion: Motion
-
-
-class _Origin(NamedTuple):
-    """Position and heading in which an episode began."""
-
-    episode: int
-    place: FloatArray
-    """(2,) [m]"""
-    turn_rad: float
-    """Heading relative to straight ahead, anticlockwise [rad]."""
-
-    @classmethod
-    def none(cls) -> "_Origin":
-        return cls(-1, np.zeros(2), 0.0)
-
-    @classmethod
-    def of(cls, episode: int, start: NDArray[np.float32], rest: FloatArray) -> "_Origin":
-        return cls(episode, start[:2].astype(float), yaw_rad(start[3:7]) - yaw_rad(rest[3:7]))
-
-    def transformed(self, pose: FloatArray) -> FloatArray:
-        """Return the pose with this origin moved to the start line, straight ahead."""
-        return rotated(pose, self.place, -self.turn_rad)

@@ -2,9 +2,12 @@
 
 import numpy as np
 
+from app.domain.robot import Robot
 from app.domain.types import FloatArray
+from app.domain.world import World
 from app.runs.clocks import Clock, Moment, Timetable, crossing_s, distance_at
 from app.runs.recording import LaneRecording, pose_at
+from app.runs.results import fell_at_step
 from app.stage.stage_frame import ActionValuesView, LaneView
 
 MARCHING_STEPS, MARCHING_M = 10, 0.01
@@ -17,11 +20,18 @@ class RaceLane:
         recording: the recording, which may grow.
         steps: number of steps of the race.
         clock: clock that times the steps.
+        robot: the robot that walks.
+        world: the world in which it walks.
     """
 
-    def __init__(self, recording: LaneRecording, steps: int, clock: Clock) -> None:
+    def __init__(
+        self, recording: LaneRecording, steps: int, clock: Clock, robot: Robot, world: World
+    ) -> None:
         self.recording, self.steps = recording, steps
-        self._clock = clock
+        self._clock, self._robot, self._world = clock, robot, world
+        self._fell_at_step: int | None = None
+        self._searched = 0
+        """Number of steps in which a fall was looked for."""
         self._timetable = Timetable((), ())
         self._crossing_s: float | None = None
         self._range = ValueRange()
@@ -57,6 +67,15 @@ class RaceLane:
             done = len(self._timetable.ends)
             timed = LaneRecording("", self.recording.rest_qpos, self.recording.steps[:done])
             self._crossing_s = crossing_s(timed, self._timetable)
+        self._look_for_fall()
+
+    def _look_for_fall(self) -> None:
+        recorded = len(self.recording.steps)
+        if self._fell_at_step is None:
+            self._fell_at_step = fell_at_step(
+                self.recording, self._robot, self._world, self._searched
+            )
+        self._searched = recorded
 
     def moment_at(self, time_s: float) -> Moment:
         """Return the step, and the part of it, that the lane is in at a race time [s]."""
@@ -101,7 +120,10 @@ class RaceLane:
             futures_total=step.transitions,
             crossed=self._crossed(time_s),
             marching=self._marching(moment.step),
+            fell_at_step=self._fall_before(moment.step),
             knowledge=self._action_values(moment.step),
+            conditions=self._world.as_of(moment.step),
+            pushes=self._world.pushes_at(moment.step),
         )
 
     def _standing_view(self, time_s: float, complete: bool, computing: bool) -> LaneView:
@@ -119,8 +141,14 @@ class RaceLane:
             crossed=self._crossed(time_s),
             marching=self._marching(steps_taken),
             failure=lane.failure,
+            fell_at_step=self._fall_before(steps_taken),
             knowledge=self._action_values(steps_taken - 1),
+            conditions=self._world.as_of(max(0, steps_taken - complete)),
         )
+
+    def _fall_before(self, steps_taken: int) -> int | None:
+        fell = self._fell_at_step
+        return fell if fell is not None and fell < steps_taken else None
 
     def _crossed(self, time_s: float) -> bool:
         return self._crossing_s is not None and time_s >= self._crossing_s

@@ -2,7 +2,9 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
+from app.domain.world import UNDISTURBED, World
 from app.runs.clocks import Clock
 from app.runs.recording import LaneRecording
 from app.stage.race_lane import RaceLane
@@ -17,6 +19,20 @@ BUFFER_S = 0.5
 _SNAP_S = 0.002
 
 
+class Original(NamedTuple):
+    """The race from which the shown one branched off.
+
+    Attributes:
+        step: number of steps that they share.
+        world: its world.
+        lanes: its recording, which may grow.
+    """
+
+    step: int
+    world: World
+    lanes: Sequence[LaneRecording]
+
+
 class RaceShow:
     """Plays a race's recording while it grows, never beyond what every lane has computed.
 
@@ -25,6 +41,8 @@ class RaceShow:
         steps: number of steps of each lane.
         clock: see `app.runs.clocks`.
         recording: returns the lanes' recordings so far, None before there are any.
+        world: the world in which the robots walk.
+        original: the race from which this one branched off, if it is known.
     """
 
     def __init__(
@@ -33,10 +51,18 @@ class RaceShow:
         steps: int,
         clock: Clock,
         recording: Callable[[], Sequence[LaneRecording] | None],
+        *,
+        world: World = UNDISTURBED,
+        original: Original | None = None,
     ) -> None:
         self.spec, self.steps, self.clock = spec, steps, clock
-        self._recording = recording
+        self._recording, self._world = recording, world
         self._lanes: list[RaceLane] = []
+        self._branch_step = 0
+        self._original_lanes: list[RaceLane] = []
+        if original is not None and len(original.lanes) == len(spec.lane_specs):
+            self._branch_step = original.step
+            self._original_lanes = self._playing(original.lanes, original.world)
         self._time_s = 0.0
         self._freeze_left_s = 0.0
         self._run_ended = self._waiting = False
@@ -107,7 +133,7 @@ class RaceShow:
         leader = max(self._lanes, key=lambda lane: lane.moment_at(self._time_s), default=None)
         moment = leader.moment_at(self._time_s) if leader else None
         self.clock = clock
-        for lane in self._lanes:
+        for lane in (*self._lanes, *self._original_lanes):
             lane.retime(self.clock)
         first = self.first_finish_s
         if ended:
@@ -119,8 +145,12 @@ class RaceShow:
 
     def frame(self, run_label: RunLabel) -> StageFrame:
         """Return the frame at the playback position."""
-        lanes = tuple(lane.view(self._time_s, self._complete(lane)) for lane in self._lanes)
-        at_rest = LaneView(rest_pose(self.spec), 0, self.steps, 0.0)
+        lanes = tuple(
+            replace(lane.view(self._time_s, self._complete(lane)), original=self._original(number))
+            for number, lane in enumerate(self._lanes)
+        )
+        at_start = self._world.as_of(0)
+        at_rest = LaneView(rest_pose(self.spec), 0, self.steps, 0.0, conditions=at_start)
         lanes = lanes or (at_rest,) * len(self.spec.lane_specs)
         return StageFrame(
             spec=self.spec,
@@ -194,9 +224,22 @@ class RaceShow:
             recorded = self._recording()
             if not recorded or len(recorded) != len(self.spec.lane_specs):
                 return
-            self._lanes = [RaceLane(lane, self.steps, self.clock) for lane in recorded]
+            self._lanes = self._playing(recorded, self._world)
         for lane in self._lanes:
             lane.update(self._run_ended)
+        for lane in self._original_lanes:
+            lane.update(run_ended=True)
+
+    def _playing(self, lanes: Sequence[LaneRecording], world: World) -> list[RaceLane]:
+        robot = self.spec.robot
+        return [RaceLane(lane, self.steps, self.clock, robot, world) for lane in lanes]
+
+    def _original(self, number: int) -> LaneView | None:
+        """Return a lane in the original race; None before the races part, or without one."""
+        has_parted = self._lanes[number].moment_at(self._time_s).step >= self._branch_step
+        if not self._original_lanes or not has_parted:
+            return None
+        return self._original_lanes[number].view(self._time_s, complete=True)
 
     def _with_ranks(self, lanes: tuple[LaneView, ...]) -> tuple[LaneView, ...]:
         """Rank the lanes by distance now; after time-out by distance at that time."""

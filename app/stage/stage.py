@@ -8,17 +8,18 @@ from dataclasses import replace
 from typing import Any, Literal
 
 from app.domain.errors import HexapodError, InvalidInput
+from app.domain.world import UNDISTURBED, World
 from app.events.bus import Event, EventBus
 from app.runs.clocks import Clock
-from app.runs.config import RaceConfig, TrainingConfig
+from app.runs.config import Branch, RaceConfig, TrainingConfig
 from app.stage.practice_show import PracticeShow
-from app.stage.race_show import RaceShow
+from app.stage.race_show import Original, RaceShow
 from app.stage.scene_spec import race_scene, training_scene
 from app.stage.show import TIME_LAPSE, IdleShow, RunLabel, Show
 from app.stage.stage_frame import StageFrame
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
-from app.storage.run import NOT_ENDED, Run
+from app.storage.run import NOT_ENDED, Run, world_of
 
 REPLAY_AFTER_S = 20.0
 _MAX_FRAME_S = 0.25
@@ -51,6 +52,8 @@ class Stage:
         self._lock = threading.RLock()
         self._clock: Clock = "paper"
         self._show: Show
+        self._world: World
+        """All that happens in the run on stage, as far as it is known."""
         self._playlist: list[Run] = []
         """The run on stage, followed by those to be shown after it."""
         self._changes = bus.subscribe(run_ids=())
@@ -173,10 +176,13 @@ class Stage:
     def _update_playlist(self) -> None:
         """Apply what the bus told of the playlist's runs since the last call."""
         on_stage = self._run_id
-        for event in self._changes.drain():
+        changes = self._changes.drain()
+        for event in changes:
             changed = [_changed(run, event) for run in self._playlist]
             self._playlist = [run for run in changed if run is not None]
         if self._run_id == on_stage:
+            if changes and self._playlist:
+                self._world = world_of(self._playlist[0])
             return
         if self._playlist:
             self._play(self._playlist)
@@ -222,7 +228,7 @@ class Stage:
         self._changes = changes
 
     def _play(self, playlist: list[Run], replay: bool = False) -> None:
-        self._show = self._make_show(playlist[0])
+        self._show, self._world = self._make_show(playlist[0]), world_of(playlist[0])
         self._playlist, self._replay = playlist, replay
         self._playing, self._speed, self._idle_since_s = True, None, None
         self._publish()
@@ -231,7 +237,15 @@ class Stage:
         config, recordings = run.config, self._recordings
         if isinstance(config, RaceConfig):
             spec = race_scene(config)
-            return RaceShow(spec, config.steps, self._clock, lambda: recordings.race(run.id))
+            original = self._original(config.branch_from) if config.branch_from else None
+            return RaceShow(
+                spec,
+                config.steps,
+                self._clock,
+                lambda: recordings.race(run.id),
+                world=config.world,
+                original=original,
+            )
         if not isinstance(config, TrainingConfig):
             raise InvalidInput(f"{run.id!r} is an {run.kind}; on stage are trainings and races")
         return PracticeShow(
@@ -240,7 +254,18 @@ class Stage:
             config.robot.step_s,
             lambda: self._pace(run.id),
             lambda: recordings.training(run.id),
+            world=lambda: self._world,
+            fell_at_step=(run.result or {}).get("fell_at_step"),
         )
+
+    def _original(self, branch: Branch) -> Original | None:
+        """Return the race from which another branched off; None if it was deleted meanwhile."""
+        try:
+            world = world_of(self._store.get(branch.race_id))
+            lanes = self._recordings.race(branch.race_id)
+        except HexapodError:
+            return None
+        return Original(branch.step, world, lanes) if lanes else None
 
     def _pace(self, run_id: str) -> float | str:
         """Return the present pace of a training: its last change, or the configured one."""
@@ -251,7 +276,7 @@ class Stage:
         return pace
 
     def _show_idle_scene(self) -> None:
-        self._show, self._playlist = IdleShow(), []
+        self._show, self._world, self._playlist = IdleShow(), UNDISTURBED, []
         self._replay, self._playing = False, True
         self._speed, self._idle_since_s = None, None
 

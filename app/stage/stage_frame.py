@@ -2,15 +2,17 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from app.domain.disturbances import Push
 from app.domain.gait import Gait
 from app.domain.grid import FootGrid
 from app.domain.robot import Robot
 from app.domain.types import Action, Cells, FloatArray
+from app.domain.world import UNDISTURBED, World
 
 Kind = Literal["idle", "training", "race"]
 Phase = Literal[
@@ -58,6 +60,18 @@ class ActionValuesView:
     high_m: float
 
 
+class Origin(NamedTuple):
+    """Position and rotation of one frame on the ground in another."""
+
+    x_m: float
+    y_m: float
+    turn_rad: float
+    """Anticlockwise from above."""
+
+
+AT_ORIGIN = Origin(0.0, 0.0, 0.0)
+
+
 @dataclass(frozen=True, eq=False)
 class LaneView:
     """One robot at one moment."""
@@ -82,7 +96,17 @@ class LaneView:
     marching: bool = False
     """Whether it steps on the spot: under 1 cm gained in ten steps."""
     failure: str | None = None
+    fell_at_step: int | None = None
+    """First step in which it fell, counted from 0; None if it has not fallen so far."""
     knowledge: ActionValuesView | None = None
+    conditions: World = UNDISTURBED
+    """What holds in the step that is shown, a result of `World.as_of`."""
+    pushes: tuple[Push, ...] = ()
+    """Pushes in the step that is shown."""
+    origin: Origin = AT_ORIGIN
+    """Where the lane's frame lies on the ground; in a race at the ground's own origin."""
+    original: "LaneView | None" = None
+    """Of a race that branched off another: the same lane there, from the branch on."""
 
 
 @dataclass(frozen=True)
@@ -91,6 +115,8 @@ class Ghost:
 
     step: int
     distance_m: float
+    conditions: World = UNDISTURBED
+    """What held in the evaluation, a result of `World.as_of`."""
 
 
 @dataclass(frozen=True, eq=False)

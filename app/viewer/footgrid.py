@@ -61,15 +61,16 @@ class FootGridDrawing:
             ),
         ]
         self._drawn: ActionValuesView | None = None
-        self._pose: tuple[float, float, float] | None = None
+        self._pose: tuple[float, float, float, float] | None = None
 
     def draw(self, lane: LaneView) -> None:
         """Move the grid with the body, and colour its cells if the action values changed."""
         x, y = float(lane.qpos[0]) + self._x_m, float(lane.qpos[1])
-        pose = (x, y, yaw_rad(lane.qpos[3:7]) - self._forward_rad)
+        turn, z = yaw_rad(lane.qpos[3:7]) - self._forward_rad, lane.conditions.ground_m(0)
+        pose = (x, y, z + _ABOVE_GROUND_M, turn)
         if pose != self._pose:
-            self._frame.position = (x, y, _ABOVE_GROUND_M)
-            self._frame.wxyz = (math.cos(pose[2] / 2), 0.0, 0.0, math.sin(pose[2] / 2))
+            self._frame.position = pose[:3]
+            self._frame.wxyz = (math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2))
             self._pose = pose
         action_values = lane.knowledge
         if action_values is None or _is_unchanged(action_values, self._drawn):

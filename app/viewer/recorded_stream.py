@@ -31,7 +31,8 @@ def recorded_stream(
     Returns:
         the file in the format of the installed viser, whose version is part of the file.
     """
-    show = RaceShow(race_scene(config), config.steps, clock, lambda: lanes)
+    spec = race_scene(config)
+    show = RaceShow(spec, config.steps, clock, lambda: lanes, world=config.world)
     show.advance(0.0, None, run_ended=True)
     duration_s = show.duration_s or 0.0
     speed = duration_s / MAX_LENGTH_S if duration_s > 2 * MAX_LENGTH_S else None

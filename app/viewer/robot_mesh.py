@@ -10,7 +10,10 @@ from numpy.typing import NDArray
 
 from app.domain.robot import Robot
 from app.domain.types import FloatArray, IntArray
-from app.physics.mjcf import VISIBLE_GROUP, compile_visual_model
+from app.domain.world import World
+from app.physics.mjcf import LINKS, VISIBLE_GROUP, compile_visual_model
+from app.viewer.colormap import Rgb
+from app.viewer.condition_colors import link_color
 from app.viewer.shapes import Shape, antenna, geom_shape, joined
 
 _UNPAINTED = ("servo", "hip", "knee", "belly", "deck", "foot", "bracket")
@@ -40,9 +43,9 @@ class BodyPoses(NamedTuple):
     rotations: FloatArray
     """Unit quaternions wxyz, (bodies, 4)."""
 
-    def moved(self, x_m: float, y_m: float = 0.0) -> "BodyPoses":
-        """Return the poses translated on the track [m]."""
-        return BodyPoses(self.positions + np.array([x_m, y_m, 0.0]), self.rotations)
+    def moved(self, x_m: float, y_m: float = 0.0, z_m: float = 0.0) -> "BodyPoses":
+        """Return the poses translated [m]."""
+        return BodyPoses(self.positions + np.array([x_m, y_m, z_m]), self.rotations)
 
 
 class RobotMesh:
@@ -55,6 +58,13 @@ class RobotMesh:
         self._model = compile_visual_model(robot)
         self._data = mujoco.MjData(self._model)
         self.parts = _parts(robot)
+        bodies = [
+            (self._model.body(f"leg{leg}_{joint}").id, (leg, joint))
+            for leg in range(1, len(robot.legs) + 1)
+            for joint in LINKS
+        ]
+        self._joint_of_link = dict(bodies)
+        """Leg, from 1, and joint by the body id of the link that the joint moves."""
 
     @property
     def default_qpos(self) -> FloatArray:
@@ -68,6 +78,17 @@ class RobotMesh:
         data.qpos[:] = qpos
         mujoco.mj_kinematics(self._model, data)
         return BodyPoses(data.xpos.copy(), data.xquat.copy())
+
+    def link_colors(self, part: Part, color: Rgb, conditions: World) -> list[Rgb | None]:
+        """Return the colour of each link of a part, None for those of lost legs.
+
+        Args:
+            part: one of `parts`.
+            color: the part's colour while nothing has happened to the robot.
+            conditions: what holds, a result of `World.as_of`.
+        """
+        joints = [self._joint_of_link.get(link) for link in part.links.tolist()]
+        return [link_color(color, conditions, *joint) if joint else color for joint in joints]
 
 
 @lru_cache(maxsize=8)

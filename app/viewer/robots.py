@@ -7,16 +7,18 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.domain.text import metres
+from app.domain.text import metres, whole
+from app.domain.world import UNDISTURBED, World
 from app.runs.clocks import FINISH_LINE_M
-from app.stage.stage_frame import LaneSpec, LaneView, SceneSpec, StageFrame
+from app.stage.stage_frame import LaneSpec, LaneView, SceneSpec
 from app.viewer.colormap import Rgb, mix, rgb
-from app.viewer.robot_mesh import ANTENNA_M, RobotMesh
+from app.viewer.robot_mesh import ANTENNA_M, Part, RobotMesh
 from app.viewer.shapes import flag
 from app.viewer.viser_internals.client import batch_colors
 
 _DARK: Rgb = (88, 96, 110)
 _SHADE = 0.25
+GHOST_OPACITY = 0.4
 _FLAG_M = 0.22
 _TEXT_SCALE = 1.35
 """Font size relative to 12 px, in screen space."""
@@ -31,6 +33,7 @@ class Robots:
         spec: the scene.
         mesh: the robot.
         xs: centres of the lanes [m].
+        is_ghost: whether they are translucent, each all in its agent's colour.
     """
 
     def __init__(
@@ -40,13 +43,19 @@ class Robots:
         spec: SceneSpec,
         mesh: RobotMesh,
         xs: Sequence[float],
+        *,
+        is_ghost: bool = False,
     ) -> None:
         self._mesh, self._xs = mesh, xs
+        self._lane_colors = [lane_spec.color for lane_spec in spec.lane_specs]
+        self._is_ghost = is_ghost
+        self._conditions: list[World | None] = [UNDISTURBED for _ in xs]
+        """Of each lane as drawn; None where no robot is drawn."""
         self._poses: list[NDArray[np.floating[Any]]] = [mesh.default_qpos for _ in xs]
         self._body_poses = [mesh.body_poses(mesh.default_qpos).moved(x) for x in xs]
         self._batches: list[viser.BatchedMeshHandle] = []
         for number, part in enumerate(mesh.parts):
-            colors = [_color(lane_spec.color, part.painted) for lane_spec in spec.lane_specs]
+            colors, _ = self._looks(part)
             positions, wxyzs = self._instances(number)
             handle = server.scene.add_batched_meshes_simple(
                 f"{root}/{number}",
@@ -54,23 +63,48 @@ class Robots:
                 part.shape.faces,
                 batched_positions=positions,
                 batched_wxyzs=wxyzs,
-                batched_colors=batch_colors(np.repeat(np.array(colors), len(part.links), axis=0)),
+                batched_colors=batch_colors(colors),
+                opacity=GHOST_OPACITY if is_ghost else None,
                 lod="off",
+                cast_shadow=not is_ghost,
                 receive_shadow=False,
             )
             self._batches.append(handle)
 
-    def draw(self, frame: StageFrame) -> bool:
-        """Update the poses from a frame; True if any changed."""
+    def draw(self, views: Sequence[LaneView | None]) -> bool:
+        """Update poses and legs from the views of the lanes; True if any pose changed.
+
+        Where a view is None, no robot is drawn.
+        """
         moved = False
-        for lane, (view, x) in enumerate(zip(frame.lanes, self._xs, strict=True)):
-            if not np.array_equal(view.qpos, self._poses[lane]):
+        for lane, (view, x) in enumerate(zip(views, self._xs, strict=True)):
+            if view is not None and not np.array_equal(view.qpos, self._poses[lane]):
                 self._poses[lane], moved = view.qpos, True
                 self._body_poses[lane] = self._mesh.body_poses(view.qpos).moved(x)
         if moved:
             for number, batch in enumerate(self._batches):
                 batch.batched_positions, batch.batched_wxyzs = self._instances(number)
+        conditions = [None if view is None else view.conditions for view in views]
+        if conditions != self._conditions:
+            self._conditions = conditions
+            for part, batch in zip(self._mesh.parts, self._batches, strict=True):
+                colors, scales = self._looks(part)
+                batch.batched_colors = batch_colors(colors)
+                if batch.batched_scales is not None or not scales.all():
+                    batch.batched_scales = scales
         return moved
+
+    def _looks(self, part: Part) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+        """Return colours (lanes · links, 3), 0–255, and scales (lanes · links,), 0 if hidden."""
+        colors: list[Rgb | None] = []
+        for color, conditions in zip(self._lane_colors, self._conditions, strict=True):
+            own = rgb(color) if part.painted or self._is_ghost else mix(_DARK, rgb(color), _SHADE)
+            if conditions is None:
+                colors += [None] * len(part.links)
+            else:
+                colors += self._mesh.link_colors(part, own, conditions)
+        scales = np.array([color is not None for color in colors], np.float32)
+        return np.array([color or (0, 0, 0) for color in colors], np.uint8), scales
 
     def _instances(self, part: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Return positions (lanes · links, 3) [m] and quaternions wxyz (lanes · links, 4)."""
@@ -86,14 +120,21 @@ def label_text(lane_spec: LaneSpec, lane: LaneView) -> str:
         return f"{lane_spec.name}\ncannot go on"
     if lane.step == 0:
         return lane_spec.name
-    distance = metres(lane.distance_m)
-    lines = [lane_spec.name, f"{distance}, {'done' if lane.done else f'step {lane.step}'}"]
+    lines = [lane_spec.name, f"{metres(lane.distance_m)}, {_progress(lane)}"]
+    if lane.original is not None:
+        lines.append(f"original {metres(lane.original.distance_m)}")
     if lane.thinking:
         futures = f" {lane.futures}/{lane.futures_total}" if lane.futures else "…"
         lines.append(f"thinking{futures}")
-    elif lane.marching:
+    elif lane.marching and lane.fell_at_step is None:
         lines.append("on the spot")
     return "\n".join(lines)
+
+
+def _progress(lane: LaneView) -> str:
+    if lane.fell_at_step is not None:
+        return f"fell at step {whole(lane.fell_at_step + 1)}"
+    return "done" if lane.done else f"step {lane.step}"
 
 
 class NameLabel:
@@ -138,7 +179,3 @@ class NameLabel:
             self._label.text = text
         if lane.crossed != self._flag.visible:
             self._flag.visible = lane.crossed
-
-
-def _color(color: str, painted: bool) -> Rgb:
-    return rgb(color) if painted else mix(_DARK, rgb(color), _SHADE)

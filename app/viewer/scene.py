@@ -4,9 +4,11 @@ import math
 
 import viser
 
-from app.stage.stage_frame import SceneSpec, StageFrame
+from app.stage.stage_frame import AT_ORIGIN, LaneView, SceneSpec, StageFrame
 from app.viewer.footgrid import FootGridDrawing
 from app.viewer.ghosts import Ghosts, PhotoFinish
+from app.viewer.lane_ground import LaneGround
+from app.viewer.payload_and_push import PayloadCube, PushArrows
 from app.viewer.robot_mesh import RobotMesh
 from app.viewer.robots import NameLabel, Robots
 from app.viewer.track import LAMP, SQUARE_M, WORLD, Position, draw_ground, draw_lanes
@@ -114,14 +116,33 @@ class _RunScene:
         # A training has a second lane for the ghosts of its evaluations.
         lanes = len(spec.lane_specs) + (spec.kind == "training")
         xs = [width * (lane - (lanes - 1) / 2) for lane in range(lanes)]
-        draw_lanes(server, f"{SCENE_ROOT}/track", xs, width)
+        self._lines = draw_lanes(server, f"{SCENE_ROOT}/track", xs, width)
+        self._grounds = [
+            LaneGround(
+                server,
+                f"{SCENE_ROOT}/lane{n}/ground",
+                x,
+                width,
+                friction=spec.robot.friction,
+                is_labelled=n == 0,
+            )
+            for n, x in enumerate(xs)
+        ]
         self.xs = xs[: len(spec.lane_specs)]
-        mesh = RobotMesh(spec.robot)
+        self._mesh = mesh = RobotMesh(spec.robot)
         self._robots = Robots(server, f"{SCENE_ROOT}/robots", spec, mesh, self.xs)
+        self._originals: Robots | None = None
         pairs = list(zip(spec.lane_specs, self.xs, strict=True))
         self._labels = [
             NameLabel(server, f"{SCENE_ROOT}/lane{n}", lane_spec, x)
             for n, (lane_spec, x) in enumerate(pairs)
+        ]
+        self._payloads = [
+            PayloadCube(server, f"{SCENE_ROOT}/lane{n}/payload", spec, x)
+            for n, x in enumerate(self.xs)
+        ]
+        self._pushes = [
+            PushArrows(server, f"{SCENE_ROOT}/lane{n}/push", spec, x) for n, x in enumerate(self.xs)
         ]
         self._grids: dict[int, FootGridDrawing] = {}
         self._photo = PhotoFinish(server, f"{SCENE_ROOT}/photo", spec, self.xs)
@@ -133,9 +154,14 @@ class _RunScene:
 
     def draw(self, frame: StageFrame) -> bool:
         """Draw a frame; True if a robot moved."""
-        moved = self._robots.draw(frame)
+        self._draw_grounds(frame)
+        moved = self._robots.draw(frame.lanes)
+        moved |= self._draw_originals([lane.original for lane in frame.lanes])
         for label, lane in zip(self._labels, frame.lanes, strict=True):
             label.draw(lane)
+        for number, lane in enumerate(frame.lanes):
+            self._payloads[number].draw(lane)
+            self._pushes[number].draw(lane)
         for number, lane in enumerate(frame.lanes):
             if lane.knowledge is not None and number not in self._grids:
                 root = f"{SCENE_ROOT}/lane{number}/grid"
@@ -147,6 +173,27 @@ class _RunScene:
         if self._ghosts is not None:
             self._ghosts.draw(frame.ghosts)
         return moved
+
+    def _draw_grounds(self, frame: StageFrame) -> None:
+        """Draw each lane's ground, and that of the ghosts as it was in the newest evaluation."""
+        grounds = [(lane.conditions, lane.origin) for lane in frame.lanes]
+        if self._ghosts is not None:
+            newest = frame.ghosts[-1].conditions if frame.ghosts else frame.lanes[0].conditions
+            grounds.append((newest, AT_ORIGIN))
+        for ground, (conditions, origin) in zip(self._grounds, grounds, strict=True):
+            ground.draw(conditions, origin)
+        self._lines.raise_over(max(conditions.ground_m(0) for conditions, _ in grounds))
+
+    def _draw_originals(self, originals: list[LaneView | None]) -> bool:
+        """Draw the robots of the race from which this one branched off as ghosts."""
+        if self._originals is None:
+            if not any(originals):
+                return False
+            root = f"{SCENE_ROOT}/originals"
+            self._originals = Robots(
+                self._server, root, self.spec, self._mesh, self.xs, is_ghost=True
+            )
+        return self._originals.draw(originals)
 
     def remove(self) -> None:
         """Remove it from viser's scene."""

@@ -103,6 +103,38 @@ def strip(width: float, depth: float) -> Shape:
     return _smooth(corners, np.array([[0, 1, 2], [0, 2, 3]]))
 
 
+def outlined(corners: FloatArray) -> Shape:
+    """Return a convex polygon in the plane z = 0, facing up, from its corners, (k, 2) [m].
+
+    The corners are anticlockwise.
+    """
+    after = np.arange(1, len(corners) - 1)
+    faces = np.stack([0 * after, after, after + 1], axis=1)
+    return _smooth(np.column_stack([corners, np.zeros(len(corners))]), faces)
+
+
+def surface(points: FloatArray) -> Shape:
+    """Return a surface through points on a grid, (rows, columns, 3) [m].
+
+    It faces up where x grows with the column and y with the row.
+    """
+    rows, columns, _ = points.shape
+    index = np.arange(rows * columns).reshape(rows, columns)
+    here, right, up = index[:-1, :-1], index[:-1, 1:], index[1:, :-1]
+    corners = [part.ravel() for part in (here, right, index[1:, 1:], up)]
+    faces = _triangles((corners[0], corners[1], corners[2]), (corners[0], corners[2], corners[3]))
+    return _smooth(points.reshape(-1, 3), faces)
+
+
+def arrow(length: float) -> Shape:
+    """Return a flat arrow in the plane z = 0 towards +y, facing up, centred on the origin [m]."""
+    half = length / 2
+    stem = strip(0.3 * length, 0.55 * length)
+    stem = stem.moved(np.eye(3), np.array([0.0, 0.275 * length - half, 0.0]))
+    point = np.array([[-0.35 * length, 0.05 * length], [0.35 * length, 0.05 * length], [0.0, half]])
+    return joined([stem, outlined(point)])
+
+
 def antenna(height: float) -> Shape:
     """Return a thin mast from z = 0 to a height [m], with a ball on its top."""
     mast = cylinder(0.003, height / 2).moved(np.eye(3), np.array([0, 0, height / 2]))

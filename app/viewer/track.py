@@ -18,7 +18,12 @@ Position = tuple[float, float, float]
 SQUARE_M, TICK_M = 0.5, 0.05
 LAMP = (-0.7, -0.5, 3.2)
 """Position of the lamp for robots on the start line [m]."""
-_BEFORE_M, _BEYOND_M = -0.5, 2.0
+BEFORE_M, BEYOND_M = -0.5, 2.0
+"""Where the lanes begin and end along the track."""
+TICKS_M = 0.03
+"""Width of the ticks at the borders of a lane."""
+_LINES_M = 0.002
+"""Height of start and finish line over the ground."""
 _GROUND: Rgb = (112, 128, 150)
 _LINE: Rgb = (120, 138, 164)
 _TICK: Rgb = (150, 165, 188)
@@ -88,7 +93,22 @@ def _light(scene: viser.SceneApi) -> viser.SpotLightHandle:
     return lamp
 
 
-def draw_lanes(server: viser.ViserServer, root: str, xs: list[float], width: float) -> None:
+class Lines:
+    """Start and finish line, which are above the highest bumps of the ground."""
+
+    def __init__(self, lines: list[viser.MeshHandle]) -> None:
+        self._lines, self._ground_m = lines, 0.0
+
+    def raise_over(self, ground_m: float) -> None:
+        """Move the lines over bumps of a height [m]."""
+        if ground_m != self._ground_m:
+            self._ground_m = ground_m
+            for line in self._lines:
+                x, y, _ = line.position
+                line.position = (x, y, ground_m + _LINES_M)
+
+
+def draw_lanes(server: viser.ViserServer, root: str, xs: list[float], width: float) -> Lines:
     """Draw lanes of equal width with ticks, start and finish line.
 
     Args:
@@ -101,27 +121,29 @@ def draw_lanes(server: viser.ViserServer, root: str, xs: list[float], width: flo
     borders = [x - width / 2 for x in xs] + [right]
     scene.add_line_segments(
         f"{root}/borders",
-        np.array([[(x, _BEFORE_M, 0.001), (x, _BEYOND_M, 0.001)] for x in borders]),
+        np.array([[(x, BEFORE_M, 0.001), (x, BEYOND_M, 0.001)] for x in borders]),
         _TICK,
         thickness=0.006,
     )
-    marks = np.arange(_BEFORE_M, _BEYOND_M + TICK_M / 2, TICK_M)
-    ticks = [[(x, y, 0.001), (x + 0.03, y, 0.001)] for x in borders[:-1] for y in marks]
-    ticks += [[(right - 0.03, y, 0.001), (right, y, 0.001)] for y in marks]
+    marks = np.arange(BEFORE_M, BEYOND_M + TICK_M / 2, TICK_M)
+    ticks = [[(x, y, 0.001), (x + TICKS_M, y, 0.001)] for x in borders[:-1] for y in marks]
+    ticks += [[(right - TICKS_M, y, 0.001), (right, y, 0.001)] for y in marks]
     scene.add_line_segments(f"{root}/ticks", np.array(ticks), _TICK, thickness=0.003)
     middle, across = (left + right) / 2, right - left
     lines = (("start", "Start", 0.0, _GREEN), ("finish", "Finish", FINISH_LINE_M, _RED))
+    handles = []
     for name, word, y, color in lines:
         line = strip(across, 0.022)
-        scene.add_mesh_simple(
+        handle = scene.add_mesh_simple(
             f"{root}/{name}",
             line.vertices,
             line.faces,
             color=color,
             cast_shadow=False,
             receive_shadow=False,
-            position=(middle, y, 0.002),
+            position=(middle, y, _LINES_M),
         )
+        handles.append(handle)
         scene.add_label(
             f"{root}/{name}/word",
             word,
@@ -129,3 +151,4 @@ def draw_lanes(server: viser.ViserServer, root: str, xs: list[float], width: flo
             anchor="center-center",
             font_screen_scale=1.15,
         )
+    return Lines(handles)

@@ -86,18 +86,25 @@ class StageParts:
         self.bus.publish("run-deleted", {"id": run.id}, run.id)
 
     def finished_race(
-        self, agents: tuple[str, ...] = ("greedy", "two-step"), steps: int = 12
+        self, agents: tuple[str, ...] = ("greedy", "two-step"), steps: int = 12, **fields: Any
     ) -> Run:
         """Compute a whole race."""
-        run, advance = self.running_race(agents, steps)
+        run, advance = self.running_race(agents, steps, **fields)
         return self._finish(run, advance)
 
     def running_race(
-        self, agents: tuple[str, ...] = ("greedy", "two-step"), steps: int = 12
+        self, agents: tuple[str, ...] = ("greedy", "two-step"), steps: int = 12, **fields: Any
     ) -> tuple[Run, AdvanceRun]:
-        """Return a running race, and a function that computes the next step of one lane."""
+        """Return a running race, and a function that computes the next step of one lane.
+
+        Args:
+            agents: of the lanes.
+            steps: of each lane.
+            fields: of the config; its simulator is the kinematic one by default.
+        """
         lanes = tuple(LaneConfig(agent=agent) for agent in agents)
-        config = RaceConfig(gait=GAIT, simulator="kinematic", lanes=lanes, steps=steps)
+        fields = {"simulator": "kinematic", **fields}
+        config = RaceConfig(gait=GAIT, lanes=lanes, steps=steps, **fields)
         run = self.create(config, state="running")
         walkers = build_walkers(config, [None] * len(lanes))
         poses = [w.simulator.pose(w.state).astype(np.float32) for w in walkers]
@@ -127,7 +134,9 @@ class StageParts:
 
     def running_training(self, steps: int = 100, **fields: Any) -> tuple[Run, AdvanceRun]:
         """Return a running training, and a function that computes its next step."""
-        config = training_config(gait=GAIT, simulator="kinematic", steps=steps, **fields)
+        config = training_config(
+            **{"gait": GAIT, "simulator": "kinematic", "steps": steps, **fields}
+        )
         run = self.create(config, state="running")
         learner = build_learner(config)
         pose = learner.walker.simulator.pose(learner.walker.state)

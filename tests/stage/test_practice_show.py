@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
+from app.domain.disturbances import Limp, Lost, SensorNoise
+from app.domain.world import World
 from app.stage.practice_show import SHOWN_GHOSTS
+from app.stage.stage_frame import rotated
 from tests.stage.stage_parts import FRAME_S, StageParts
 
 
@@ -144,3 +147,71 @@ def test_colour_scale_only_grows(parts: StageParts) -> None:
 
     assert highs == sorted(highs)
     assert all(view is None or view.low_m <= 0 <= view.high_m for view in views)
+
+
+def test_step_and_evaluations_are_shown_in_the_world_as_it_was_then(parts: StageParts) -> None:
+    world = World((SensorNoise(sd_m=0.002, at_step=30, until_step=70),))
+    parts.stage.set(run_id=parts.finished_training(100, world=world).id)
+    frames = parts.watch_to_end()
+
+    for lane in (frame.lanes[0] for frame in frames):
+        assert bool(lane.conditions) == (30 < lane.step <= 70)
+    shown = [(ghost.step, bool(ghost.conditions)) for ghost in frames[-1].ghosts]
+    assert shown == [(30, True), (50, True), (70, False), (100, False)]
+
+
+def test_what_happens_while_it_runs_is_shown(parts: StageParts) -> None:
+    run, advance = parts.running_training(60)
+    parts.stage.set(run_id=run.id)
+    for _ in range(20):
+        advance()
+    assert not parts.watch(0.5)[-1].lanes[0].conditions
+    limp = {"kind": "limp", "legs": [2], "at_step": 10}
+    parts.publish(parts.store.update(run.id, changes=({"step": 10, "disturbance": limp},)))
+
+    frame = parts.watch(10.0)[-1]
+
+    assert frame.lanes[0].step == 20
+    assert frame.lanes[0].conditions == World((Limp(legs=(2,)),))
+
+
+def test_origin_tells_where_the_robot_is_on_the_ground(parts: StageParts) -> None:
+    run = parts.finished_training(100, steps_per_episode=20)
+    recording = parts.recordings.training(run.id)
+    assert recording is not None
+    parts.stage.set(run_id=run.id)
+    parts.stage.set(playing=False)
+
+    for step in (15, 35, 95):
+        parts.stage.set(time_s=(step - 1e-6) * 0.32)
+        lane = parts.next_frame().lanes[0]
+        motion = recording.steps[step - 1].motion
+        assert motion is not None
+        x_m, y_m, turn_rad = lane.origin
+        on_ground = rotated(lane.qpos.astype(float), np.zeros(2), turn_rad)
+        on_ground[:2] += x_m, y_m
+        assert on_ground == pytest.approx(motion.qpos[-1], abs=1e-4)
+
+
+def test_fall_in_practice_is_shown_from_its_step_on(parts: StageParts) -> None:
+    world = World((Lost(legs=(1, 2, 3), at_step=12),))
+    run = parts.finished_training(20, simulator="mujoco", evaluate_every=0, world=world)
+    parts.stage.set(run_id=run.id)
+
+    lanes = [frame.lanes[0] for frame in parts.watch_to_end()]
+
+    fell = lanes[-1].fell_at_step
+    assert fell in (12, 13)
+    assert {lane.fell_at_step for lane in lanes if lane.step <= fell + 1} == {None}
+
+
+def test_fall_that_is_no_longer_recorded_is_known_from_the_result(parts: StageParts) -> None:
+    result = {"distance_m": 0.1, "fell_at_step": 100}
+    run = parts.finished_training(1000, evaluate_every=0)
+    parts.store.update(run.id, result=result)
+    parts.stage.set(run_id=run.id)
+
+    lanes = [frame.lanes[0] for frame in parts.watch_to_end()]
+
+    assert {lane.fell_at_step for lane in lanes if lane.step <= 20} == {None}
+    assert {lane.fell_at_step for lane in lanes if lane.step > 500} == {100}

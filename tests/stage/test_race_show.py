@@ -5,9 +5,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from app.domain.disturbances import Limp, Lost, Push
 from app.domain.robot import Robot
-from app.runs.config import LaneConfig, RaceConfig
-from app.runs.results import finish_s, race_result
+from app.domain.world import World
+from app.runs.config import Branch, LaneConfig, RaceConfig
+from app.runs.results import finish_s, postures, race_result
 from app.stage.race_show import LAST_LANE_SPEED, PHOTO_FINISH_S, SPEED
 from app.stage.stage_frame import StageFrame
 from tests.stage.stage_parts import FRAME_S, StageParts
@@ -213,3 +215,58 @@ def test_race_with_an_unreachable_stance_is_shown(parts: StageParts) -> None:
 
     assert parts.next_frame().lanes[0].qpos.shape == (25,)
     assert parts.stage.state()["ended"]
+
+
+def test_each_lane_is_shown_in_the_conditions_of_its_own_step(parts: StageParts) -> None:
+    world = World((Limp(legs=(1, 4), at_step=2, until_step=4), Push(impulse_ns=1.0, at_step=3)))
+    run = parts.finished_race(("q-learning", "greedy"), 6, simulator="mujoco", world=world)
+    parts.stage.set(run_id=run.id)
+    frames = parts.watch_to_end()
+    walking = [lane for frame in frames for lane in frame.lanes if not lane.done]
+
+    assert {lane.step for lane in walking} == {1, 2, 3, 4, 5, 6}
+    for lane in walking:
+        assert lane.conditions == world.as_of(lane.step - 1)
+        assert bool(lane.pushes) == (lane.step == 4)
+    assert any(len({lane.conditions for lane in frame.lanes}) == 2 for frame in frames)
+
+
+def test_fall_is_shown_from_its_step_on(parts: StageParts) -> None:
+    world = World((Lost(legs=(1, 2, 3), at_step=1),))
+    run = parts.finished_race(("q-learning",), 5, simulator="mujoco", world=world)
+    assert isinstance(run.config, RaceConfig)
+    fell = postures(parts.recordings.race(run.id) or [], run.config)[0]["fell_at_step"]
+    parts.stage.set(run_id=run.id)
+
+    lanes = [frame.lanes[0] for frame in parts.watch_to_end()]
+
+    assert fell in (1, 2)
+    assert {lane.fell_at_step for lane in lanes if lane.step <= fell + 1} == {None}
+    assert {lane.fell_at_step for lane in lanes if lane.step > fell + 1} == {fell}
+
+
+def test_original_lanes_run_along_from_the_branch_on(parts: StageParts) -> None:
+    original = parts.finished_race(("greedy",), 8)
+    fork = parts.finished_race(("q-learning",), 8, branch_from=Branch(original.id, 3))
+    recording = (parts.recordings.race(original.id) or [])[0]
+    parts.stage.set(run_id=fork.id)
+    parts.stage.set(clock="free")
+
+    lanes = [frame.lanes[0] for frame in parts.watch_to_end()]
+
+    assert {lane.original is None for lane in lanes if lane.step <= 3} == {True}
+    beside = [lane for lane in lanes if lane.step > 3]
+    assert {lane.original.step == lane.step for lane in beside if lane.original} == {True}
+    last = beside[-1].original
+    assert last is not None
+    assert last.qpos == pytest.approx(recording.steps[-1].motion.qpos[-1])
+    assert last.distance_m == recording.distance_m
+
+
+def test_fork_is_shown_without_its_original_if_that_is_deleted(parts: StageParts) -> None:
+    original = parts.finished_race(("greedy",), 4)
+    fork = parts.finished_race(("greedy",), 4, branch_from=Branch(original.id, 1))
+    parts.delete(original)
+    parts.stage.set(run_id=fork.id)
+
+    assert {frame.lanes[0].original for frame in parts.watch_to_end()} == {None}

@@ -29,6 +29,15 @@ def viser_server() -> Iterator[InProcessViser]:
 
 
 @pytest.fixture
+def server() -> Iterator[InProcessViser]:
+    """A viser without a scene."""
+    from app.viewer.viser_internals.server import in_process_viser
+
+    with in_process_viser() as started:
+        yield started
+
+
+@pytest.fixture
 def robots(viser_server: InProcessViser) -> Robots:
     from tests.viewer.serving import Robots
 

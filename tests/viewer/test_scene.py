@@ -1,8 +1,6 @@
 """The stage drawn in a real viser, checked by the scene graph that a client receives."""
 
-from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -10,60 +8,14 @@ import pytest
 from app.domain.grid import FootGrid
 from app.domain.robot import Robot, ring
 from app.runs.clocks import FINISH_LINE_M
-from app.runs.config import LaneConfig, RaceConfig, training_config
-from app.stage.scene_spec import idle_scene, race_scene, rest_pose, training_scene
-from app.stage.stage_frame import ActionValuesView, Ghost, LaneView, SceneSpec, StageFrame
+from app.runs.config import training_config
+from app.stage.scene_spec import idle_scene, rest_pose, training_scene
+from app.stage.stage_frame import ActionValuesView, Ghost, LaneView, SceneSpec
 from app.viewer.robot_mesh import RobotMesh
 from app.viewer.scene import StageScene
-from app.viewer.snapshot import Snapshot
 from app.viewer.update_cost import measure_stage_update
-from app.viewer.viser_internals import stream
-from app.viewer.viser_internals.server import InProcessViser, in_process_viser
-from tests.viewer.serving import Reader
-
-GAIT = "left-right-vertical"
-
-
-@pytest.fixture
-def server() -> Iterator[InProcessViser]:
-    with in_process_viser() as started:
-        yield started
-
-
-def scene_nodes(server: InProcessViser) -> dict[str, dict[str, Any]]:
-    """Return all nodes of the scene with their properties, as a new client receives them."""
-    snapshot = Snapshot()
-    with Reader(server) as reader:
-        while not snapshot.complete:
-            snapshot.apply(reader.frame())
-    frame, nodes = snapshot.pack(), dict[str, dict[str, Any]]()
-    for message in frame.messages:
-        if not message.get("name", "").startswith("/world"):
-            continue
-        node = nodes.setdefault(message["name"], {})
-        properties = message.get("props") or message.get("updates") or message
-        node.update({name: resolved(value, frame) for name, value in properties.items()})
-    return nodes
-
-
-def resolved(value: Any, frame: stream.Frame) -> Any:
-    """Return a property with an array reference resolved."""
-    if isinstance(value, dict) and "__binary_index" in value:
-        return np.frombuffer(frame.buffers[value["__binary_index"]], value["dtype"])
-    return value
-
-
-def race_of(lanes: int, robot: Robot | None = None) -> SceneSpec:
-    agents = ("q-learning", "greedy", "two-step", "greedy", "greedy", "greedy")[:lanes]
-    config = RaceConfig(
-        gait=GAIT, robot=robot or Robot(), lanes=tuple(LaneConfig(agent=a) for a in agents)
-    )
-    return race_scene(config)
-
-
-def frame_at_rest(spec: SceneSpec) -> StageFrame:
-    lane = LaneView(rest_pose(spec), 3, 50, 0.0)
-    return StageFrame(spec, "run", "race", "Race", (lane,) * len(spec.lane_specs))
+from app.viewer.viser_internals.server import InProcessViser
+from tests.viewer.drawing import GAIT, frame_at_rest, race_of, scene_nodes
 
 
 def action_values(spec: SceneSpec, current: tuple[int, ...] = (0, 1, 2)) -> ActionValuesView:
