@@ -30,7 +30,7 @@ from app.runs.tables import Checkpoint, check_fits, continue_from, load_agent
 from app.runs.training import Learner, evaluate, measure_baseline
 from app.runs.walker import Readings, SimulatorExpand, Walker
 
-_NOT_OFFERED = ("settings", "world")
+_NOT_OFFERED = ("settings", "world", "tolerance")
 """Fields of a training that its agent's constructor does not get: no agent is told of the world."""
 
 
@@ -47,7 +47,7 @@ def build_simulator(walk: WalkingProblem, threads: int = 1) -> Simulator[Any]:
     gait, grid = walk.resolved_gait, walk.grid
     if walk.simulator == "kinematic":
         return KinematicSimulator(walk.robot, gait, grid, walk.world)
-    return MujocoSimulator(walk.robot, gait, grid, threads, walk.world)
+    return MujocoSimulator(walk.robot, gait, grid, threads, walk.world, walk.built_robot)
 
 
 def build_learner(
@@ -165,10 +165,11 @@ def _planner(
     """Return the simulator that a lane's search plans with; see `LaneConfig.plans_with`."""
     if lane.plans_with == "world":
         return simulator
-    known = config.world.at_start if lane.plans_with is None else UNDISTURBED
-    if known == config.world:
-        return simulator
-    return build_simulator(replace(config, world=known), threads)
+    if lane.plans_with is None:
+        known = replace(config, world=config.world.at_start)
+    else:
+        known = replace(config, world=UNDISTURBED, tolerance=0.0)
+    return simulator if known == config else build_simulator(known, threads)
 
 
 def _sensors(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
@@ -196,7 +197,7 @@ def _offered_in(config: RaceConfig, lane: LaneConfig) -> Mapping[str, Any]:
     if not lane.keep_learning:
         return complete(agent_settings(lane.agent), lane.settings, lane.agent)
     walk = {one.name: getattr(config, one.name) for one in fields(WalkingProblem)}
-    walk["world"] = UNDISTURBED  # no agent is told of it
+    walk |= {"world": UNDISTURBED, "tolerance": 0.0}  # no agent is told of it
     training = TrainingConfig(
         **walk,
         steps=config.steps,

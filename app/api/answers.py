@@ -76,6 +76,7 @@ class WalkView(Answer):
     simulator: SimulatorName
     divisions: int
     grid_side_m: float
+    tolerance: float
     disturbances: list[DisturbanceView]
 
 
