@@ -17,6 +17,7 @@ from app.domain.settings import complete
 from app.domain.simulator import Simulator
 from app.domain.world import UNDISTURBED, World
 from app.physics.mujoco_simulator import MujocoSimulator
+from app.runs.best_known import best_known_m
 from app.runs.config import (
     LaneConfig,
     RaceConfig,
@@ -47,7 +48,8 @@ def build_simulator(walk: WalkingProblem, threads: int = 1) -> Simulator[Any]:
     gait, grid = walk.resolved_gait, walk.grid
     if walk.simulator == "kinematic":
         return KinematicSimulator(walk.robot, gait, grid, walk.world)
-    return MujocoSimulator(walk.robot, gait, grid, threads, walk.world, walk.built_robot)
+    built = walk.built_robot
+    return MujocoSimulator(walk.robot, gait, grid, threads, walk.world, built=built)
 
 
 def build_learner(
@@ -212,7 +214,7 @@ def _offered_in(config: RaceConfig, lane: LaneConfig) -> Mapping[str, Any]:
 def finish_training(
     learner: Learner, config: TrainingConfig, measure_reference: bool = True
 ) -> dict[str, Any]:
-    """Return the result of a training: an evaluation, the baseline, and the hash of the Q-table.
+    """Return the result of a training: an evaluation, its references, the hash of the Q-table.
 
     Without `measure_reference`, `greedy_distance_m` is None unless it was measured before.
     """
@@ -225,6 +227,7 @@ def finish_training(
     return {
         "distance_m": distance,
         "greedy_distance_m": learner.greedy_distance_m if is_known else None,
+        "best_known_m": best_known_m(config, conditions),
         "q_table_sha256": agent.table.sha256() if isinstance(agent, Tabular) else None,
         "fell_at_step": learner.fell_at_step,
     }

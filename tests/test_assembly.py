@@ -18,6 +18,7 @@ from app.physics.mujoco_simulator import MujocoSimulator
 from app.runs.config import LaneConfig, RaceConfig, WalkingProblem, training_config
 from app.runs.tables import Checkpoint, snapshot
 from app.runs.training import train
+from app.runs.walker import FutureNode
 from tests import own_agents
 
 CONFIG = training_config(
@@ -203,6 +204,7 @@ def test_a_seed_draws_the_robot_that_all_lanes_walk_with() -> None:
     for walker in walkers:
         assert walker._expand is not None
         (node,), _ = walker._expand([walker._expand.here], [action])
+        assert isinstance(node, FutureNode)
         foreseen.append(node.state.distance_m)
     ends = [walker.carry_out(action).state for walker in walkers]
 

@@ -1,6 +1,7 @@
 """Build tolerance: a robot as it was built, which differs a little from the robot as designed."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -46,7 +47,7 @@ def build_tolerance(robot: Robot, share: float, rng: np.random.Generator) -> Rob
     drawn = rng.uniform(-1, 1, len(VARIED) + len(robot.legs)).tolist()
     if share == 0:
         return robot
-    own = {
+    own: dict[str, Any] = {
         name: _within(getattr(robot, name) * (1 + share * deviation), RANGES[name])
         for name, deviation in zip(VARIED, drawn, strict=False)
     }

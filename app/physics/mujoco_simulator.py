@@ -88,6 +88,7 @@ class MujocoSimulator:
         grid: FootGrid,
         threads: int = 1,
         world: World = UNDISTURBED,
+        *,
         built: Robot | None = None,
     ) -> None:
         check_reach(robot, gait, grid)
