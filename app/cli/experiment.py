@@ -13,7 +13,7 @@ from app.cli.trials import run_experiment
 from app.domain.errors import InvalidInput
 from app.domain.settings import declared_fields
 from app.domain.world import WORLDS
-from app.experiments.config import DISTURBED, experiment_config
+from app.experiments.config import DISTURBED, ExperimentConfig, experiment_config
 from app.experiments.formatting import listed
 from app.runs.config import TrainingConfig
 
@@ -48,8 +48,9 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     )
     parser.add_argument(
         "--steps",
-        type=parser_of(settings["steps"]),
-        help="of practice; in a recovery until something happens (default 250, and 100)",
+        type=lambda text: tuple(parser_of(settings["steps"])(part) for part in split(text)),
+        metavar="LIST",
+        help="of practice in a league (default 250); in a recovery until something happens (100)",
     )
     add_machine_options(parser)
     parser.set_defaults(run=run)
@@ -61,6 +62,15 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HexapodError: if the options are not valid.
     """
+    return run_experiment(config_from(options), cluster_from(options), options)
+
+
+def config_from(options: argparse.Namespace) -> ExperimentConfig:
+    """Return the experiment that the options ask for.
+
+    Raises:
+        HexapodError: if the options are not valid.
+    """
     agents = agents_from(options.agent)
     if agents is not None and options.experiment == "table1":
         raise InvalidInput("table1 has the paper's agents; --agent is for the other experiments")
@@ -68,14 +78,13 @@ def run(options: argparse.Namespace) -> int:
         "agents": agents,
         "worlds": _worlds_from(options.world),
         "tolerance": options.tolerance,
-        "steps": None if options.steps is None else (options.steps,),
+        "steps": options.steps,
     }
     if options.experiment not in DISTURBED:
         for name in ("world", "tolerance", "steps"):
             if getattr(options, name) is not None:
                 raise InvalidInput(f"--{name} is for {listed(DISTURBED)}, not {options.experiment}")
-    config = experiment_config(options.experiment, {**trial_grid_from(options), **given})
-    return run_experiment(config, cluster_from(options), options)
+    return experiment_config(options.experiment, {**trial_grid_from(options), **given})
 
 
 def _worlds_from(texts: list[str] | None) -> tuple[str, ...] | None:

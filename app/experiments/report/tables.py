@@ -15,6 +15,7 @@ from app.experiments.formatting import (
     world_name,
 )
 from app.experiments.narrative.sweep import combination_name
+from app.experiments.plan import EARNING_STEPS
 from app.experiments.published import COLUMNS, DISTANCES, published
 from app.experiments.statistics import CONFIDENCE
 from app.experiments.worlds import LEAGUE_SHARE, RECOVERY_SHARE
@@ -205,6 +206,8 @@ def _world_table(
     at: list[int] = learner["curve"]["steps"] if learner and is_recovery else []
     share = percent(RECOVERY_SHARE if is_recovery else LEAGUE_SHARE)
     columns = [f"After {step:,}" for step in at] or ["Distance", "Mean over practice"]
+    earning = [step for step in at if step % EARNING_STEPS == 0]
+    columns += [f"Earned in {step + 1:,}–{step + EARNING_STEPS:,}" for step in earning]
     columns += [
         "Of greedy",
         "Of best known",
@@ -220,6 +223,10 @@ def _world_table(
                 "name": agent_name(one),
                 "cells": [
                     *_distance_cells(one, at),
+                    *(
+                        _curve_cell(one["earned"], at.index(step)) if one["earned"] else (_NONE, "")
+                        for step in earning
+                    ),
                     _share(one["of_greedy"], "iqm"),
                     _share(one["of_best_known"], "iqm"),
                     _until_cell(one["until_greedy"]),
