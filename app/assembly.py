@@ -17,6 +17,7 @@ from app.domain.settings import complete
 from app.domain.simulator import Simulator
 from app.domain.world import UNDISTURBED, World
 from app.physics.mujoco_simulator import MujocoSimulator
+from app.runs.best_known import best_known_m
 from app.runs.config import (
     LaneConfig,
     RaceConfig,
@@ -30,7 +31,7 @@ from app.runs.tables import Checkpoint, check_fits, continue_from, load_agent
 from app.runs.training import Learner, evaluate, measure_baseline
 from app.runs.walker import Readings, SimulatorExpand, Walker
 
-_NOT_OFFERED = ("settings", "world")
+_NOT_OFFERED = ("settings", "world", "tolerance")
 """Fields of a training that its agent's constructor does not get: no agent is told of the world."""
 
 
@@ -47,7 +48,8 @@ def build_simulator(walk: WalkingProblem, threads: int = 1) -> Simulator[Any]:
     gait, grid = walk.resolved_gait, walk.grid
     if walk.simulator == "kinematic":
         return KinematicSimulator(walk.robot, gait, grid, walk.world)
-    return MujocoSimulator(walk.robot, gait, grid, threads, walk.world)
+    built = walk.built_robot
+    return MujocoSimulator(walk.robot, gait, grid, threads, walk.world, built=built)
 
 
 def build_learner(
@@ -165,10 +167,11 @@ def _planner(
     """Return the simulator that a lane's search plans with; see `LaneConfig.plans_with`."""
     if lane.plans_with == "world":
         return simulator
-    known = config.world.at_start if lane.plans_with is None else UNDISTURBED
-    if known == config.world:
-        return simulator
-    return build_simulator(replace(config, world=known), threads)
+    if lane.plans_with is None:
+        known = replace(config, world=config.world.at_start)
+    else:
+        known = replace(config, world=UNDISTURBED, tolerance=0.0)
+    return simulator if known == config else build_simulator(known, threads)
 
 
 def _sensors(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
@@ -196,7 +199,7 @@ def _offered_in(config: RaceConfig, lane: LaneConfig) -> Mapping[str, Any]:
     if not lane.keep_learning:
         return complete(agent_settings(lane.agent), lane.settings, lane.agent)
     walk = {one.name: getattr(config, one.name) for one in fields(WalkingProblem)}
-    walk["world"] = UNDISTURBED  # no agent is told of it
+    walk |= {"world": UNDISTURBED, "tolerance": 0.0}  # no agent is told of it
     training = TrainingConfig(
         **walk,
         steps=config.steps,
@@ -211,7 +214,7 @@ def _offered_in(config: RaceConfig, lane: LaneConfig) -> Mapping[str, Any]:
 def finish_training(
     learner: Learner, config: TrainingConfig, measure_reference: bool = True
 ) -> dict[str, Any]:
-    """Return the result of a training: an evaluation, the baseline, and the hash of the Q-table.
+    """Return the result of a training: an evaluation, its references, the hash of the Q-table.
 
     Without `measure_reference`, `greedy_distance_m` is None unless it was measured before.
     """
@@ -224,6 +227,7 @@ def finish_training(
     return {
         "distance_m": distance,
         "greedy_distance_m": learner.greedy_distance_m if is_known else None,
+        "best_known_m": best_known_m(config, conditions),
         "q_table_sha256": agent.table.sha256() if isinstance(agent, Tabular) else None,
         "fell_at_step": learner.fell_at_step,
     }

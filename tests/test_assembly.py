@@ -13,11 +13,12 @@ from app.domain.errors import InvalidInput, TableMismatch, UnknownName, Unreacha
 from app.domain.gait import GaitSpec
 from app.domain.kinematic import KinematicSimulator
 from app.domain.observation import OBSERVATIONS, Observation, observe
-from app.domain.robot import robot
+from app.domain.robot import Robot, robot
 from app.physics.mujoco_simulator import MujocoSimulator
 from app.runs.config import LaneConfig, RaceConfig, WalkingProblem, training_config
 from app.runs.tables import Checkpoint, snapshot
 from app.runs.training import train
+from app.runs.walker import FutureNode
 from tests import own_agents
 
 CONFIG = training_config(
@@ -188,3 +189,41 @@ def test_agent_may_read_the_current_state_in_every_way(observation: Observation)
 
     assert walker.agent.read == expected
     assert any(len(set(read.values())) > 1 for read in walker.agent.read)
+
+
+def test_a_seed_draws_the_robot_that_all_lanes_walk_with() -> None:
+    lanes = (
+        LaneConfig(agent="greedy"),
+        LaneConfig(agent="informed"),
+        LaneConfig(agent="greedy", plans_with="nominal"),
+    )
+    config = RaceConfig(gait="left-right-origin", lanes=lanes, tolerance=0.1, seed=4)
+    walkers = build_walkers(config, [None, None, None], threads=1)
+    action = walkers[0].legal[0]
+    foreseen = []
+    for walker in walkers:
+        assert walker._expand is not None
+        (node,), _ = walker._expand([walker._expand.here], [action])
+        assert isinstance(node, FutureNode)
+        foreseen.append(node.state.distance_m)
+    ends = [walker.carry_out(action).state for walker in walkers]
+
+    assert len({end.row.tobytes() for end in ends}) == 1
+    assert foreseen[0] == foreseen[1] == ends[0].distance_m
+    assert foreseen[2] != ends[2].distance_m  # it plans with the robot as designed
+    assert replace(config, seed=5).built_robot != config.built_robot != Robot()
+
+
+def test_training_and_race_of_a_seed_walk_with_the_same_robot() -> None:
+    training = training_config(gait="left-right-origin", tolerance=0.05, seed=3)
+    race = RaceConfig(
+        gait="left-right-origin", lanes=(LaneConfig(agent="greedy"),), tolerance=0.05, seed=3
+    )
+
+    assert training.built_robot == race.built_robot != Robot()
+    assert replace(training, tolerance=0.0).built_robot == Robot()
+
+
+def test_kinematic_simulator_knows_no_tolerance() -> None:
+    with pytest.raises(InvalidInput, match="knows no build tolerance"):
+        WalkingProblem(gait="left-right-origin", simulator="kinematic", tolerance=0.03)

@@ -76,6 +76,7 @@ class WalkView(Answer):
     simulator: SimulatorName
     divisions: int
     grid_side_m: float
+    tolerance: float
     disturbances: list[DisturbanceView]
 
 
@@ -146,6 +147,8 @@ class ExperimentConfigView(Answer):
     divisions: list[int]
     grid_side_m: list[float]
     blocks: int
+    worlds: list[str] = Field(default_factory=lambda: ["flat"])
+    tolerance: float = 0.0
 
 
 class ProgressView(Answer):
@@ -180,6 +183,7 @@ class TrainingResult(Answer):
 
     distance_m: float | None
     greedy_distance_m: float | None
+    best_known_m: float | None = None
     q_table_sha256: str | None
     fell_at_step: Count | None = None
 

@@ -32,6 +32,7 @@ class TrialFigures(Answer):
     transitions: Count
     wall: list[WallLane] | None
     failure: str | None
+    earned_m: list[float] = Field(default_factory=list)
 
 
 class TrialRow(Answer):
@@ -139,6 +140,7 @@ class Named(Parameters):
 
     observation: Observation
     robot: str
+    world: str = "flat"
     agent: str
     steps: int
     blocks: int
@@ -200,6 +202,7 @@ class VersusView(Parameters):
     gait: str
     observation: Observation
     robot: str
+    world: str = "flat"
     steps: int
     blocks: int
     divisions: int
@@ -211,6 +214,47 @@ class VersusView(Parameters):
     low: float | None
     high: float | None
     verdict: Decided
+
+
+class Curve(Answer):
+    """Interquartile means over the seeds at some steps, with 95 % intervals [m]."""
+
+    steps: list[int]
+    iqm_m: list[float]
+    low_m: list[float | None]
+    high_m: list[float | None]
+    mean_m: list[float]
+
+
+class Until(Answer):
+    """Steps until a share (`of`) of a reference's distance; null if most seeds never get there."""
+
+    of: Share
+    median_steps: float | None
+    reached: Share
+    low: float | None
+    high: float | None
+
+
+class WorldView(Named):
+    """An agent in a world of a league or recovery, and the walks of its references [m]."""
+
+    key: str
+    role: Literal["learner", "reference"]
+    gait: str
+    plans_with: Literal["world", "nominal"] | None
+    n: Count
+    greedy_m: float | None
+    greedy_nominal_m: float | None
+    best_known_m: float | None
+    distance: Interval95
+    of_greedy: Interval95 | None
+    of_best_known: Interval95 | None
+    curve: Curve | None
+    mean_m: Interval95 | None
+    until_greedy: Until | None
+    until_best_known: Until | None
+    earned: Curve | None
 
 
 class TimedView(Answer):
@@ -266,5 +310,6 @@ class SummaryView(Answer):
     curves: list[CurveOfSetting]
     versus: list[VersusView]
     timed: list[TimedView]
+    worlds: list[WorldView] = Field(default_factory=list)
     claims: list[ClaimView]
     story: list[Told]

@@ -18,6 +18,7 @@ from app.api.fields import (
     Seed,
     Steps,
     StepsPerEpisode,
+    Tolerance,
 )
 from app.api.schemas import Gait, GaitBody
 from app.domain.errors import UnknownName
@@ -89,6 +90,8 @@ class ExperimentBody(Body):
     steps_per_episode: OneOrMore[StepsPerEpisode] = None
     divisions: OneOrMore[Divisions] = None
     grid_side_m: OneOrMore[GridSide] = None
+    worlds: OneOrMore[str] = None
+    tolerance: Tolerance | None = None
     workers: Annotated[
         int | None,
         Field(strict=True, ge=1, le=MAX_WORKERS, description=VALID["workers"]),

@@ -107,7 +107,17 @@ def _config(run: Run) -> ExperimentConfig:
 
 def _empty_summary(run: Run) -> dict[str, Any]:
     """Return the summary of zero trials, for an experiment that has none yet."""
-    lists = ("parameters", "settings", "pooled", "curves", "versus", "timed", "claims", "story")
+    lists = (
+        "parameters",
+        "settings",
+        "pooled",
+        "curves",
+        "versus",
+        "timed",
+        "worlds",
+        "claims",
+        "story",
+    )
     config = _config(run)
     return {
         "format": 1,

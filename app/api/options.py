@@ -72,6 +72,14 @@ _EXPERIMENTS = {
         "A grid of any values: every combination is tried over all seeds. The paper names tuning "
         "as future work."
     ),
+    "league": (
+        "Learners and searchers in several worlds, with robots that differ a little by seed: "
+        "distance against practice, beside greedy and the best known walk."
+    ),
+    "recovery": (
+        "Learners practise, then something happens to them, and they learn on: how far they walk "
+        "at once, and how soon they walk well again."
+    ),
 }
 _GAITS = {
     "left-right-origin": (

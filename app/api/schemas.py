@@ -24,6 +24,7 @@ from app.api.fields import (
     Seed,
     Steps,
     StepsPerEpisode,
+    Tolerance,
     number,
 )
 from app.domain.errors import InvalidInput
@@ -92,6 +93,7 @@ class WalkBody(Body):
     simulator: SimulatorName = WalkingProblem.simulator
     divisions: Divisions = WalkingProblem.divisions
     grid_side_m: GridSide = WalkingProblem.grid_side_m
+    tolerance: Tolerance = WalkingProblem.tolerance
     world: WorldName | None = None
     disturbances: Annotated[Disturbances, Field(default_factory=list)]
 
@@ -107,6 +109,7 @@ class WalkBody(Body):
             simulator=self.simulator,
             divisions=self.divisions,
             grid_side_m=self.grid_side_m,
+            tolerance=self.tolerance,
             world=world_of(self.world, self.disturbances),
         )
 

@@ -1,8 +1,9 @@
 """The `hexapods` command line: each command parses its options and makes one call.
 
-Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `runs` (list, show, delete), `export`,
-`imports`, `doctor` (with checks in `data_diagnostics` and `physics_diagnostics`), `bench` (with the
-measurements in `benchmarks`). Their module docstrings are the descriptions in `--help`.
+Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `best-known`, `runs` (list, show,
+delete), `export`, `imports`, `doctor` (with checks in `data_diagnostics` and
+`physics_diagnostics`), `bench` (with the measurements in `benchmarks`). Their module docstrings are
+the descriptions in `--help`.
 Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments
 and sweeps), `files` (files that users name), `server_client` (requests to a running server),
 `terminal` (progress bars and tables), `startup` (a faster start).
@@ -25,6 +26,7 @@ COMMANDS = {
     "race": "race",
     "experiment": "experiment",
     "sweep": "sweep",
+    "best-known": "best_known",
     "runs": "runs",
     "export": "export",
     "import": "imports",

@@ -1,8 +1,8 @@
-"""`hexapods experiment`: the paper's Table 1 or Figure 4 over many seeds, with a report."""
+"""`hexapods experiment`: the paper's experiments, a league or a recovery, over many seeds."""
 
 import argparse
 
-from app.cli.options import CommandParser, split
+from app.cli.options import CommandParser, parser_of, split
 from app.cli.trial_options import (
     add_machine_options,
     add_trial_options,
@@ -11,22 +11,46 @@ from app.cli.trial_options import (
 )
 from app.cli.trials import run_experiment
 from app.domain.errors import InvalidInput
-from app.experiments.config import experiment_config
+from app.domain.settings import declared_fields
+from app.domain.world import WORLDS
+from app.experiments.config import DISTURBED, ExperimentConfig, experiment_config
+from app.experiments.formatting import listed
+from app.runs.config import TrainingConfig
 
-_NAMES = ("table1", "figure4")
+_NAMES = ("table1", "figure4", *DISTURBED)
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
     parser = commands.add_parser(
-        "experiment", help="repeat the paper's experiments", description=__doc__
+        "experiment", help="repeat experiments over many seeds", description=__doc__
     )
-    parser.add_argument("experiment", choices=_NAMES, help="table1 or figure4")
+    parser.add_argument("experiment", choices=_NAMES, help=listed(_NAMES, "or"))
     add_trial_options(
         parser, observations="both", robots="stiff,compliant for table1, stiff for figure4"
     )
     parser.add_argument(
-        "--agent", action="append", help="who learns in figure4; once for each, or with commas"
+        "--agent",
+        action="append",
+        help="who learns, in a league also who searches; once for each, or with commas",
+    )
+    parser.add_argument(
+        "--world",
+        action="append",
+        metavar="WORLD",
+        help=f"of {', '.join(WORLDS)}; or what happens, such as limp:legs=1,4",
+    )
+    settings = declared_fields(TrainingConfig)
+    parser.add_argument(
+        "--tolerance",
+        type=parser_of(settings["tolerance"]),
+        help="of the robots of a league or recovery, a share (default 0.03)",
+    )
+    parser.add_argument(
+        "--steps",
+        type=lambda text: tuple(parser_of(settings["steps"])(part) for part in split(text)),
+        metavar="LIST",
+        help="of practice in a league (default 250); in a recovery until something happens (100)",
     )
     add_machine_options(parser)
     parser.set_defaults(run=run)
@@ -38,11 +62,42 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HexapodError: if the options are not valid.
     """
+    return run_experiment(config_from(options), cluster_from(options), options)
+
+
+def config_from(options: argparse.Namespace) -> ExperimentConfig:
+    """Return the experiment that the options ask for.
+
+    Raises:
+        HexapodError: if the options are not valid.
+    """
     agents = agents_from(options.agent)
     if agents is not None and options.experiment == "table1":
-        raise InvalidInput("table1 has the paper's agents; --agent is for figure4 and sweep")
-    config = experiment_config(options.experiment, {**trial_grid_from(options), "agents": agents})
-    return run_experiment(config, cluster_from(options), options)
+        raise InvalidInput("table1 has the paper's agents; --agent is for the other experiments")
+    given = {
+        "agents": agents,
+        "worlds": _worlds_from(options.world),
+        "tolerance": options.tolerance,
+        "steps": options.steps,
+    }
+    if options.experiment not in DISTURBED:
+        for name in ("world", "tolerance", "steps"):
+            if getattr(options, name) is not None:
+                raise InvalidInput(f"--{name} is for {listed(DISTURBED)}, not {options.experiment}")
+    return experiment_config(options.experiment, {**trial_grid_from(options), **given})
+
+
+def _worlds_from(texts: list[str] | None) -> tuple[str, ...] | None:
+    """Return the worlds of `--world`, separated by commas; what happens may have commas too."""
+    if texts is None:
+        return None
+    worlds: list[str] = []
+    for part in (part for text in texts for part in split(text)):
+        if worlds and ":" in worlds[-1] and ":" not in part and part not in WORLDS:
+            worlds[-1] += f",{part}"  # of a list of legs
+        else:
+            worlds.append(part)
+    return tuple(worlds)
 
 
 def agents_from(texts: list[str] | None) -> tuple[str, ...] | None:

@@ -179,6 +179,7 @@ def walk_from(options: argparse.Namespace) -> dict[str, Any]:
         "simulator": options.simulator,
         "divisions": options.divisions,
         "grid_side_m": options.grid_side_m,
+        "tolerance": options.tolerance,
         "world": _read_world(options.world, options.disturb),
     }
 

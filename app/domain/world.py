@@ -26,6 +26,7 @@ from app.domain.disturbances import (
     Stuck,
     Weak,
     disturbance,
+    parse_disturbance,
 )
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.robot import Robot
@@ -135,6 +136,19 @@ class World:
         """What holds from the start, for good and as it was given; without pushes."""
         early = (d for d in self.disturbances if d.at_step == 0 and not isinstance(d, Push))
         return World(tuple(replace(one, until_step=None) for one in early))
+
+    def later(self, steps: int) -> "World":
+        """Return the world in which all of this happens so many steps later."""
+        return World(
+            tuple(
+                replace(
+                    one,
+                    at_step=one.at_step + steps,
+                    until_step=None if one.until_step is None else one.until_step + steps,
+                )
+                for one in self.disturbances
+            )
+        )
 
     def ground_m(self, step: int) -> float:
         """Return the height of the highest bumps of the ground in a step [m]."""
@@ -262,3 +276,14 @@ def named_world(name: str) -> World:
     if name not in WORLDS:
         raise UnknownName("world", name, WORLDS)
     return WORLDS[name].world
+
+
+def parse_world(text: str) -> World:
+    """Parse a world: a name, or disturbances joined by +, such as `limp:legs=1,4+slope:degrees=4`.
+
+    Raises:
+        UnknownName, InvalidInput: if it is neither.
+    """
+    if text in WORLDS or ":" not in text:
+        return named_world(text)
+    return World(tuple(parse_disturbance(part) for part in text.split("+")))

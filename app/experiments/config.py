@@ -9,7 +9,14 @@ from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import PAPER_OBSERVATIONS, Observation
 from app.domain.robot import Robot, as_mapping, robot
-from app.domain.settings import REQUIRED, DeclaredSetting, SettingValues, Value
+from app.domain.settings import (
+    REQUIRED,
+    DeclaredSetting,
+    SettingValues,
+    Value,
+    declared_fields,
+)
+from app.domain.world import parse_world
 from app.runs.config import (
     SimulatorName,
     TrainingConfig,
@@ -18,7 +25,7 @@ from app.runs.config import (
     gait_from_json,
 )
 
-ExperimentName = Literal["table1", "figure4", "sweep"]
+ExperimentName = Literal["table1", "figure4", "sweep", "league", "recovery"]
 EXPERIMENTS: tuple[ExperimentName, ...] = get_args(ExperimentName)
 MAX_SEEDS = 10_000
 MAX_TRIALS = 200_000
@@ -27,6 +34,8 @@ FIGURE4_BLOCKS = 8
 GRID = ("steps", "steps_per_episode", "divisions", "grid_side_m")
 """Fields that a sweep varies beside agent, gait, observation, robot and the agents' settings;
 table1 and figure4 keep them at the paper's values."""
+DISTURBED: tuple[ExperimentName, ...] = ("league", "recovery")
+"""Experiments in several worlds, with robots that differ by seed and references that search."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +43,9 @@ class ExperimentConfig:
     """Config of an experiment. `experiment_config` adds the defaults of the experiment.
 
     Attributes:
-        experiment: `table1`: the paper's Table 1; `figure4`: its Figure 4; `sweep`: any grid.
+        experiment: `table1`: the paper's Table 1; `figure4`: its Figure 4; `sweep`: any grid;
+            `league`: learners and searchers in several worlds; `recovery`: learners to which
+            something happens in the middle of their practice.
         seeds: number of seeds for each setting of an agent that learns.
         seed: root seed, from which the seeds of all trials are spawned.
         agents: the learners; in a sweep also look-ahead agents. Table 1 has a fixed list.
@@ -46,6 +57,8 @@ class ExperimentConfig:
             agents that have them; the agent's default applies to others.
         blocks: number of blocks of `steps` of practice; between blocks the table is saved and
             loaded.
+        worlds: names of worlds, or disturbances as on the command line; every one is a setting.
+        tolerance: build tolerance of the robots, of which each seed draws one.
 
     Raises:
         UnknownName, InvalidInput: if a value is invalid, empty or repeated.
@@ -65,10 +78,19 @@ class ExperimentConfig:
     divisions: tuple[int, ...] = (TrainingConfig.divisions,)
     grid_side_m: tuple[float, ...] = (TrainingConfig.grid_side_m,)
     blocks: int = 1
+    worlds: tuple[str, ...] = ("flat",)
+    tolerance: float = 0.0
 
     def __post_init__(self) -> None:
         if self.experiment not in EXPERIMENTS:
             raise UnknownName("experiment", self.experiment, EXPERIMENTS)
+        declared_fields(TrainingConfig)["tolerance"].check(self.tolerance)
+        for world in self.worlds:
+            if parse_world(world).change_steps:
+                raise InvalidInput(
+                    f"{world}: the worlds of an experiment hold from the start to the end; leave "
+                    "out at and until"
+                )
         check_whole("seeds", self.seeds, 1, MAX_SEEDS)
         check_whole("seed", self.seed, 0, None)
         lists = {name: getattr(self, name) for name in (*_LIST_FIELDS, *GRID)} | dict(self.settings)
@@ -79,23 +101,60 @@ class ExperimentConfig:
                 raise InvalidInput(f"{name} names something twice")
 
 
-_LIST_FIELDS = ("agents", "gaits", "observations", "robots")
+_LIST_FIELDS = ("agents", "gaits", "observations", "robots", "worlds")
+_LEARNERS = (
+    "q-learning",
+    "sarsa-lambda",
+    "dyna-q",
+    "r-max",
+    "posterior-sampling",
+    "linear-model",
+)
+_DISTURBED_DEFAULTS: Mapping[str, Any] = {
+    "gaits": ("left-right-origin", "left-right-vertical"),
+    "observations": ("measured",),
+    "tolerance": 0.03,
+}
 _DEFAULTS: Mapping[str, Mapping[str, Any]] = {
     "table1": {"steps": (500, 1000), "robots": (robot("stiff"), robot("compliant"))},
     "figure4": {"steps": (250,), "blocks": FIGURE4_BLOCKS},
     "sweep": {"observations": ("measured",)},
+    "league": {
+        **_DISTURBED_DEFAULTS,
+        "agents": (*_LEARNERS, "two-step", "informed"),
+        "steps": (250,),
+        "worlds": ("flat", "limp-pair", "slope", "ice"),
+    },
+    "recovery": {
+        **_DISTURBED_DEFAULTS,
+        "agents": ("q-learning", "dyna-q", "linear-model"),
+        "steps": (100,),
+        "worlds": ("limp-pair", "stuck-leg"),
+    },
 }
+_IDEAL_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
+    "league": {"tolerance": 0.0, "worlds": ("flat",)},
+    "recovery": {"tolerance": 0.0, "worlds": ("noise",)},
+}
+"""Defaults that differ in the kinematic simulator, which knows no tolerance and few worlds."""
 _COMMON_FIELDS = ("seeds", "seed", "gaits", "observations", "robots", "simulator")
 _ACCEPTED_FIELDS: Mapping[str, tuple[str, ...]] = {
     "table1": _COMMON_FIELDS,
     "figure4": (*_COMMON_FIELDS, "agents"),
     "sweep": (*_COMMON_FIELDS, "agents", *GRID),
+    "league": (*_COMMON_FIELDS, "agents", "worlds", "tolerance", "steps"),
+    "recovery": (*_COMMON_FIELDS, "agents", "worlds", "tolerance", "steps"),
 }
 
 
 def fields_of(experiment: ExperimentName) -> tuple[str, ...]:
     """Return the fields that an experiment accepts; a sweep also takes its agents' settings."""
     return _ACCEPTED_FIELDS[experiment]
+
+
+def default_agents(experiment: ExperimentName) -> list[str]:
+    """Return the agents of an experiment if none are given."""
+    return list(_DEFAULTS[experiment].get("agents", ExperimentConfig.agents))
 
 
 def settings_by_name(agents: Iterable[str]) -> Mapping[str, Sequence[DeclaredSetting]]:
@@ -126,7 +185,11 @@ def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentCo
     if experiment not in EXPERIMENTS:
         raise UnknownName("experiment", experiment, EXPERIMENTS)
     specified = {name: value for name, value in given.items() if value is not None}
-    declared = settings_by_name(specified.get("agents", ExperimentConfig.agents))
+    defaults: Mapping[str, Any] = _DEFAULTS[experiment]
+    if specified.get("simulator") == "kinematic":
+        defaults = {**defaults, **_IDEAL_DEFAULTS.get(experiment, {})}
+    usual_agents = defaults.get("agents", ExperimentConfig.agents)
+    declared = settings_by_name(specified.get("agents", usual_agents))
     valid = [*_ACCEPTED_FIELDS[experiment], *(declared if experiment == "sweep" else ())]
     for name in specified:
         if name not in valid:
@@ -143,7 +206,7 @@ def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentCo
     own_fields = {name: value for name, value in specified.items() if name not in declared}
     return ExperimentConfig(
         experiment=experiment,
-        **{**_DEFAULTS[experiment], **own_fields},
+        **{**defaults, **own_fields},
         settings=SettingValues(settings),
     )
 

@@ -6,6 +6,7 @@ from typing import Any
 from app.domain.gait import GAIT_TITLES
 from app.domain.settings import declared_fields
 from app.domain.text import metres
+from app.domain.world import WORLDS
 from app.experiments.published import GAITS
 from app.experiments.statistics import Interval
 from app.runs.config import TrainingConfig, agent_settings
@@ -33,6 +34,11 @@ def gait_name(gait: str) -> str:
 def gait_name_with_papers(gait: str) -> str:
     """Return a gait's display name, and the paper's name for it in brackets."""
     return f"{gait_name(gait)} ({GAITS[gait]})" if gait in GAITS else gait_name(gait)
+
+
+def world_name(world: str) -> str:
+    """Return a world's display name; one without a name is shown as it was given."""
+    return WORLDS[world].title if world in WORLDS else world
 
 
 def percent(value: float) -> str:

@@ -9,12 +9,14 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from app.agents.registry import check_problem, learns
+from app.domain.disturbances import SensorNoise
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.kinematics import check_reach
 from app.domain.observation import Observation
 from app.domain.robot import Robot
 from app.domain.settings import SettingValues, Value
-from app.experiments.config import GRID, MAX_TRIALS, ExperimentConfig
+from app.domain.world import parse_world
+from app.experiments.config import DISTURBED, GRID, MAX_TRIALS, ExperimentConfig
 from app.experiments.trial import TrialConfig
 from app.runs.config import (
     TrainingConfig,
@@ -25,11 +27,18 @@ from app.runs.config import (
 )
 
 Role = Literal["learner", "reference", "timed"]
-"""`learner`: one trial per seed; `reference`: a deterministic look-ahead agent, one trial; `timed`:
-one trial that runs alone, for wall-clock times."""
+"""`learner`: one trial per seed; `reference`: a deterministic look-ahead agent, one trial, or one
+per seed where robots or sensors differ by seed; `timed`: one trial that runs alone, for wall-clock
+times."""
 
 RIVALS = ("greedy", "two-step")
 _GRID_FIELDS = ("divisions", "grid_side_m")
+LEAGUE_STEPS = (25, 50, 100, 150, 250, 500, 1000, 1500, 2000, 3000, 5000, 10_000)
+"""Steps of practice after which the learners of a league are evaluated; and at its end."""
+RECOVERY_STEPS = (0, 1, 25, 50, 100, 150)
+"""Steps after something happened at which the learners of a recovery are evaluated."""
+EARNING_STEPS = 50
+"""Number of steps after each of these whose rewards are added up."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,6 +49,7 @@ class Setting:
         key: unique name in files, tables and on the page.
         role: purpose in the plan.
         robot: label of the robot in this experiment.
+        world: the world as the experiment names it; in a recovery it begins after the practice.
         trial: config of its trials, with seed 0.
         parameters: values by name of everything that the plan varies except scenario and agent;
             None for a setting that the agent does not have.
@@ -49,12 +59,20 @@ class Setting:
     role: Role
     robot: str
     trial: TrialConfig
+    world: str = "flat"
     parameters: SettingValues[Value] = field(default_factory=SettingValues)
 
     @property
     def training(self) -> TrainingConfig:
         """Training config of the trials."""
         return self.trial.training
+
+    @property
+    def practised_steps(self) -> int:
+        """Steps of practice in a block; in a recovery until something happens; 0 without any."""
+        if self.role == "reference":
+            return 0
+        return self.trial.evaluations[0] if self.trial.earning_steps else self.training.steps
 
     @property
     def gait(self) -> str:
@@ -93,7 +111,9 @@ class Plan:
 
     def count(self, setting: Setting) -> int:
         """Return the number of trials of a setting."""
-        return self.config.seeds if setting.role == "learner" else 1
+        training = setting.training
+        varies = training.tolerance > 0 or training.world.one_of(SensorNoise) is not None
+        return self.config.seeds if setting.role == "learner" or varies else 1
 
     def trials(self) -> Iterator[Trial]:
         """Iterate over all trials: references, then learners by seed, then timed trials."""
@@ -104,7 +124,9 @@ class Plan:
                     yield self._trial(index, setting, seed_number)
 
     def _trial(self, index: int, setting: Setting, seed_number: int) -> Trial:
-        seed = trial_seed(self.config.seed, index, seed_number)
+        # Where the seed draws the robot, all agents walk with the same ones.
+        spawned = 0 if self.config.experiment in DISTURBED else index
+        seed = trial_seed(self.config.seed, spawned, seed_number)
         config = replace(setting.trial, training=replace(setting.training, seed=seed))
         return Trial(f"{setting.key}#{seed_number}", setting, seed_number, config)
 
@@ -141,7 +163,9 @@ def _settings(config: ExperimentConfig) -> list[Setting]:
             for agent in config.agents
             if learns(agent)
         )
-        in_scenario = [_setting(place, agent, config.blocks, values) for agent, values in practices]
+        in_scenario = [_learner(place, agent, config, values) for agent, values in practices]
+        if config.experiment in DISTURBED and (place.walk.world or place.walk.tolerance):
+            references.append(_nominal(_setting(place, "greedy", 0, SettingValues())))
         learners += in_scenario
         if config.experiment == "table1":
             timed.append(_timed(in_scenario[0]))
@@ -159,13 +183,16 @@ class _Scenario(NamedTuple):
     observation: Observation
     robot: str
     """Label of the robot."""
+    world: str
+    """Name of the world."""
 
 
 def _scenarios(config: ExperimentConfig) -> Iterator[_Scenario]:
-    for gait, observation, (label, robot), divisions, side_m in product(
+    for gait, observation, (label, robot), world, divisions, side_m in product(
         config.gaits,
         config.observations,
         _labelled_robots(config),
+        config.worlds,
         config.divisions,
         config.grid_side_m,
     ):
@@ -175,9 +202,11 @@ def _scenarios(config: ExperimentConfig) -> Iterator[_Scenario]:
             simulator=config.simulator,
             divisions=divisions,
             grid_side_m=side_m,
+            world=parse_world(world),
+            tolerance=config.tolerance,
         )
         check_reach(robot, walk.resolved_gait, walk.grid)
-        yield _Scenario(walk, observation, label)
+        yield _Scenario(walk, observation, label, world)
 
 
 def _labelled_robots(config: ExperimentConfig) -> list[tuple[str, Robot]]:
@@ -215,6 +244,8 @@ def _setting(place: _Scenario, agent: str, blocks: int, values: Mapping[str, Val
     own = {name: one.default for name, one in agent_settings(agent).items()}
     defaults = {name: getattr(TrainingConfig, name) for name in GRID} | own
     parts = [training.resolved_gait.name, place.observation, place.robot]
+    if place.world != "flat":
+        parts.append(place.world)
     parts += _non_default({name: getattr(training, name) for name in _GRID_FIELDS}, defaults)
     parts.append(agent)
     if blocks:
@@ -222,7 +253,38 @@ def _setting(place: _Scenario, agent: str, blocks: int, values: Mapping[str, Val
     parts += _non_default({k: v for k, v in values.items() if k != "steps"}, defaults)
     role: Role = "learner" if blocks else "reference"
     trial = TrialConfig(training=training, blocks=blocks)
-    return Setting(key="/".join(parts), role=role, robot=place.robot, trial=trial)
+    key = "/".join(parts)
+    return Setting(key=key, role=role, robot=place.robot, trial=trial, world=place.world)
+
+
+def _learner(
+    place: _Scenario, agent: str, config: ExperimentConfig, values: Mapping[str, Value]
+) -> Setting:
+    """Return a setting of an agent that practises, as the experiment evaluates it."""
+    setting = _setting(place, agent, config.blocks, values)
+    training = setting.training
+    if config.experiment == "league":
+        points = (*(step for step in LEAGUE_STEPS if step < training.steps), training.steps)
+        return replace(setting, trial=replace(setting.trial, evaluations=points))
+    if config.experiment == "recovery":
+        happens = training.steps
+        trial = TrialConfig(
+            training=replace(
+                training,
+                steps=happens + RECOVERY_STEPS[-1] + EARNING_STEPS,
+                world=training.world.later(happens),
+            ),
+            evaluations=tuple(happens + step for step in RECOVERY_STEPS),
+            earning_steps=EARNING_STEPS,
+        )
+        return replace(setting, trial=trial)
+    return setting
+
+
+def _nominal(greedy: Setting) -> Setting:
+    """Return greedy's setting with the robot as designed, on flat ground, as its model."""
+    trial = replace(greedy.trial, plans_with="nominal")
+    return replace(greedy, key=f"{greedy.key}/nominal", trial=trial)
 
 
 def _with_parameters(settings: Sequence[Setting]) -> list[Setting]:
@@ -232,7 +294,7 @@ def _with_parameters(settings: Sequence[Setting]) -> list[Setting]:
     for one in settings:
         training, practises = one.training, one.role != "reference"
         parameters: dict[str, Value] = {
-            "steps": training.steps if practises else 0,
+            "steps": one.practised_steps,
             **{name: training.settings.get(name) for name in names},
             "steps_per_episode": training.steps_per_episode if practises else None,
             **{name: getattr(training, name) for name in _GRID_FIELDS},

@@ -3,9 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from app.experiments.measures import Reference, Stratum
 from app.experiments.plan import Plan, Setting
-from app.experiments.statistics import Points
+from app.experiments.statistics import Points, iqm
 from app.experiments.trial import TrialResult
 
 _MIN_WALK = 0.5
@@ -27,7 +29,7 @@ class SettingResults(NamedTuple):
     def conditions(self) -> tuple[Any, ...]:
         """The conditions under which agents are compared.
 
-        (gait, observation, robot, divisions, grid side)
+        (gait, observation, robot, divisions, grid side, world)
         """
         at = self.setting.training
         return (
@@ -36,12 +38,14 @@ class SettingResults(NamedTuple):
             self.setting.robot,
             at.divisions,
             at.grid_side_m,
+            self.setting.world,
         )
 
     @property
     def parameters(self) -> tuple[Any, ...]:
         """The training parameters other than agent and conditions."""
-        return (self.setting.trial.blocks, self.setting.parameters)
+        trial = self.setting.trial
+        return (trial.blocks, trial.plans_with, self.setting.parameters)
 
     @property
     def total_m(self) -> Points:
@@ -73,11 +77,13 @@ def group_by_setting(plan: Plan, results: Mapping[str, TrialResult]) -> list[Set
 
 
 def references_by_conditions(settings: Sequence[SettingResults]) -> dict[Any, Reference]:
-    """Return greedy's distances by `SettingResults.conditions`."""
+    """Return greedy's distances, over all its robots, by `SettingResults.conditions`."""
     return {
         one.conditions: _reference(one)
         for one in settings
-        if one.setting.role == "reference" and one.setting.training.agent == "greedy"
+        if one.setting.role == "reference"
+        and one.setting.training.agent == "greedy"
+        and one.setting.trial.plans_with is None
     }
 
 
@@ -88,9 +94,13 @@ def stratum(one: SettingResults, references: Mapping[Any, Reference]) -> Stratum
 
 def _reference(greedy: SettingResults) -> Reference:
     min_walk_m = _MIN_WALK * greedy.setting.training.grid_side_m / 2
-    total = next((metres for metres in greedy.total_m if metres > min_walk_m), None)
-    finished = next((metres for metres in greedy.finished_m if metres > min_walk_m), None)
-    return Reference(total, finished)
+    total, finished = (
+        float(iqm(np.array(points))) if points else 0.0
+        for points in (greedy.total_m, greedy.finished_m)
+    )
+    return Reference(
+        total if total > min_walk_m else None, finished if finished > min_walk_m else None
+    )
 
 
 def setting_fields(one: SettingResults) -> dict[str, Any]:
@@ -100,6 +110,7 @@ def setting_fields(one: SettingResults) -> dict[str, Any]:
         "gait": one.setting.gait,
         "observation": at.observation,
         "robot": one.setting.robot,
+        "world": one.setting.world,
         "agent": at.agent,
         **one.setting.parameters,
         "blocks": one.setting.trial.blocks,

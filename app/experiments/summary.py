@@ -11,7 +11,7 @@ from typing import Any
 from app.agents.appearance import title_of
 from app.experiments.claims import CLAIMS_OF
 from app.experiments.claims.judging import judge
-from app.experiments.config import ExperimentConfig, as_json
+from app.experiments.config import DISTURBED, ExperimentConfig, as_json
 from app.experiments.formatting import OBSERVATION_LABELS, gait_name, parameter_text
 from app.experiments.measures import (
     Reference,
@@ -32,6 +32,7 @@ from app.experiments.setting_results import (
 )
 from app.experiments.statistics import bootstrap_exceeds, improvement
 from app.experiments.trial import TrialResult
+from app.experiments.worlds import compare_in_worlds
 
 FORMAT = 1
 
@@ -53,13 +54,15 @@ def summarise(
     Returns:
         Plain types, fit for JSON: `trials` (counts), `settings` (one entry per setting), `pooled`
         (one per setting over its gaits), `curves` (settings with several blocks), `versus`
-        (pairs of learning agents), `timed` (races timed on this machine), and `claims` and
-        `story` as text. What cannot be computed yet is None, or an empty list.
+        (pairs of learning agents), `timed` (races timed on this machine), `worlds` (agents in the
+        worlds of a league or recovery), and `claims` and `story` as text. What cannot be computed
+        yet is None, or an empty list.
     """
     plan = _plan(config)
     settings = group_by_setting(plan, results)
     references = references_by_conditions(settings)
     walked = [one for one in settings if one.setting.role != "timed"]
+    is_disturbed = config.experiment in DISTURBED
     summary: dict[str, Any] = {
         "format": FORMAT,
         "experiment": config.experiment,
@@ -74,8 +77,9 @@ def summarise(
         "curves": [
             _curve(one, references, config.seed) for one in walked if one.setting.trial.blocks > 1
         ],
-        "versus": _versus(walked, config.seed),
+        "versus": [] if is_disturbed else _versus(walked, config.seed),
         "timed": [_timed(one) for one in settings if one.setting.role == "timed" and one.succeeded],
+        "worlds": compare_in_worlds(walked, config.seed) if is_disturbed else [],
     }
     summary["claims"] = judge(summary, CLAIMS_OF[config.experiment])
     summary["story"] = narrate(summary)
@@ -92,8 +96,7 @@ def _setting(
     one: SettingResults, references: Mapping[Any, Reference], config: ExperimentConfig
 ) -> dict[str, Any]:
     seeds = stratum(one, references)
-    practised = one.setting.training.steps if one.setting.role == "learner" else 0
-    cell = published(one.setting.gait, one.setting.training.agent, practised)
+    cell = published(one.setting.gait, one.setting.training.agent, one.setting.practised_steps)
     printed = compare_with_published(cell, seeds.total_m, seeds.finished_m)
     elapsed = [result.elapsed_s for result in one.succeeded if result.elapsed_s is not None]
     return {
@@ -249,6 +252,7 @@ def _trial_label(settings: Mapping[str, Setting], key: str, varied: Iterable[str
             title_of(training.agent),
             *values,
             gait_name(setting.gait),
+            *([] if setting.world == "flat" else [setting.world]),
             OBSERVATION_LABELS[training.observation],
             f"{setting.robot} robot",
             f"seed {number}",

@@ -11,9 +11,17 @@ from app.assembly import build_learner, build_walkers
 from app.domain.errors import Diverged
 from app.domain.settings import SettingValues
 from app.runs.clocks import Timetable, distance_at
-from app.runs.config import RACE_STEPS, LaneConfig, RaceConfig, TrainingConfig, WalkingProblem
+from app.runs.config import (
+    RACE_STEPS,
+    LaneConfig,
+    PlansWith,
+    RaceConfig,
+    TrainingConfig,
+    WalkingProblem,
+)
 from app.runs.racing import record_race
 from app.runs.recording import LaneRecording
+from app.runs.records import StepTaken
 from app.runs.results import race_result
 from app.runs.tables import Checkpoint, from_bytes, snapshot, to_bytes
 from app.runs.training import evaluate, train
@@ -29,11 +37,18 @@ class TrialConfig:
         blocks: number of consecutive blocks of practice; between blocks the table is saved to a
             file and loaded, and ε restarts (paper §5, Figure 4). 0 for no practice.
         rivals: agents that race in further lanes, to measure decision times by the wall clock.
+        evaluations: steps of practice after which the learner walks 50 steps from rest, ascending;
+            with any there is no race.
+        earning_steps: number of steps after each evaluation whose rewards are added up; 0 for none.
+        plans_with: what a searcher knows, as in `LaneConfig`.
     """
 
     training: TrainingConfig
     blocks: int = 1
     rivals: tuple[str, ...] = ()
+    evaluations: tuple[int, ...] = ()
+    earning_steps: int = 0
+    plans_with: PlansWith | None = None
 
     @property
     def must_be_alone(self) -> bool:
@@ -46,7 +61,8 @@ class TrialResult:
     """Result of a trial; deterministic except for `wall`.
 
     Attributes:
-        distances_m: distance over 50 steps from rest after each block; one entry without practice.
+        distances_m: distance over 50 steps from rest after each block, or at each of the trial's
+            evaluations; one entry without practice.
         finished_distance_m: distance under the paper clock when an agent without decision time
             has taken its 50 steps; None without a race.
         elapsed_s: duration of the 50 steps under the paper clock; None without a race.
@@ -54,6 +70,8 @@ class TrialResult:
         wall: with rivals, for each lane `agent`, `decision_s`, and under the wall clock
             `finished_distance_m`, `elapsed_s` and `rank`.
         failure: reason if there are no distances, one sentence.
+        earned_m: rewards of the practice that follows each evaluation, added up over
+            `TrialConfig.earning_steps` [m].
     """
 
     distances_m: tuple[float, ...] = ()
@@ -62,10 +80,14 @@ class TrialResult:
     transitions: int = 0
     wall: tuple[Mapping[str, Any], ...] | None = None
     failure: str | None = None
+    earned_m: tuple[float, ...] = ()
 
     def as_json(self) -> dict[str, Any]:
         """Convert to plain types; inverse of `from_json`."""
-        return asdict(self)
+        data = asdict(self)
+        if not self.earned_m:
+            del data["earned_m"]  # as in earlier versions
+        return data
 
     @classmethod
     def from_json(cls, lane_results: Mapping[str, Any]) -> "TrialResult":
@@ -80,6 +102,7 @@ class TrialResult:
                 **lane_results,
                 "distances_m": tuple(float(distance) for distance in lane_results["distances_m"]),
                 "wall": None if wall is None else tuple(dict(lane) for lane in wall),
+                "earned_m": tuple(float(sum_m) for sum_m in lane_results.get("earned_m", ())),
             }
         )
 
@@ -95,6 +118,8 @@ def run_trial(config: TrialConfig, timer: Callable[[], float] = time.perf_counte
         HexapodError: if the config is invalid: an unknown agent, an unreachable grid.
     """
     try:
+        if config.evaluations:
+            return _practise_and_evaluate(config)
         table, distances = _practise(config)
         if config.blocks > 1:
             return TrialResult(distances_m=distances)
@@ -121,6 +146,28 @@ def _practise(config: TrialConfig) -> tuple[Checkpoint | None, tuple[float, ...]
     return table, tuple(distances)
 
 
+def _practise_and_evaluate(config: TrialConfig) -> TrialResult:
+    """Practise once, and evaluate what was learned on the way."""
+    learner = build_learner(config.training)
+    rewards: list[float] = []
+    distances: list[float] = []
+
+    def evaluate_if_due() -> None:
+        if learner.step in config.evaluations:
+            evaluated = evaluate(learner, config.training, learner.epsilon)
+            distances.append(evaluated.distance_m)
+
+    evaluate_if_due()
+    for record in train(learner, config.training):
+        if isinstance(record, StepTaken):
+            rewards.append(record.reward_m)
+            evaluate_if_due()
+    earned = [sum(rewards[step : step + config.earning_steps]) for step in config.evaluations]
+    return TrialResult(
+        distances_m=tuple(distances), earned_m=tuple(earned) if config.earning_steps else ()
+    )
+
+
 def _file_round_trip(table: Checkpoint) -> Checkpoint:
     with tempfile.TemporaryDirectory(prefix="hexapods-") as folder:
         path = Path(folder) / "q.npz"
@@ -136,6 +183,7 @@ def _race(
     own = LaneConfig(
         agent=training.agent,
         observation=training.observation,
+        plans_with=config.plans_with,
         settings=training.settings if table is None else SettingValues(),
     )
     rivals = (LaneConfig(agent=one, observation=training.observation) for one in config.rivals)

@@ -258,7 +258,13 @@ def _check_agent(table: Checkpoint, agent: str, training_id: str) -> None:
         )
 
 
-TITLES = {"table1": "Table 1", "figure4": "Figure 4", "sweep": "Sweep"}
+TITLES = {
+    "table1": "Table 1",
+    "figure4": "Figure 4",
+    "sweep": "Sweep",
+    "league": "League",
+    "recovery": "Recovery",
+}
 MAX_WORKERS = 512
 MAX_SETTINGS = 2_000
 """All of them are summarised again and again while trials come in, and drawn in one report."""
@@ -322,7 +328,7 @@ def plan_of(config: ExperimentConfig) -> Plan:
 
 def _settings(config: ExperimentConfig) -> int:
     """Return the number of combinations of values, without those of look-ahead agents."""
-    names = ("gaits", "observations", "robots", "agents", *GRID)
+    names = ("gaits", "observations", "robots", "worlds", "agents", *GRID)
     lists = [*(getattr(config, name) for name in names), *config.settings.values()]
     return math.prod(map(len, lists))
 

@@ -73,6 +73,8 @@ class MujocoSimulator:
         robot, gait, grid: the walking problem.
         threads: number of threads of `expand`; 0 for one per core. Results do not depend on it.
         world: what happens to the robot and the ground, by step.
+        built: the robot as it was built, which is simulated; commands and measured feet are by the
+            kinematics of `robot`, as it was designed. None if both are the same.
 
     Raises:
         Unreachable: if a cell of the grid is out of a leg's reach.
@@ -86,11 +88,14 @@ class MujocoSimulator:
         grid: FootGrid,
         threads: int = 1,
         world: World = UNDISTURBED,
+        *,
+        built: Robot | None = None,
     ) -> None:
         check_reach(robot, gait, grid)
         world.check(robot, "mujoco")
         _silence_mujoco_log()
         self.robot, self.gait, self.grid, self.world = robot, gait, grid, world
+        self._built = robot if built is None else built
         self.model = self._model(world.as_of(0))
         self._motion = StepMotion(robot, gait, grid)
         self._substeps = robot.swing_substeps + robot.shift_substeps
@@ -188,7 +193,7 @@ class MujocoSimulator:
         return self._motion.joint_targets(self._plans(states, actions))
 
     def _model(self, conditions: World) -> mujoco.MjModel:
-        return compile_model(self.robot, conditions, self.gait.forward_deg)
+        return compile_model(self._built, conditions, self.gait.forward_deg)
 
     def _batches_of(self, conditions: World, count: int = 1) -> _Batches:
         """Return the simulations of these conditions, with room for so many states."""

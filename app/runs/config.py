@@ -26,7 +26,9 @@ from app.domain.settings import (
     complete,
     declared_fields,
 )
+from app.domain.tolerance import MAX_TOLERANCE, build_tolerance
 from app.domain.world import UNDISTURBED, World, world
+from app.runs.seeding import BUILDING, generator
 
 _log = logging.getLogger(__name__)
 SimulatorName = Literal["mujoco", "kinematic"]
@@ -59,6 +61,17 @@ GridSide = Annotated[
         unit="m",
         help="Side of the square in which each foot may be put; every leg must reach all of it.",
         examples=(0.03, 0.04),
+    ),
+]
+Tolerance = Annotated[
+    float,
+    Ge(0.0),
+    Le(MAX_TOLERANCE),
+    Setting(
+        title="Build tolerance",
+        phrase="tolerance\u00a0{}",
+        help="How far the robot that the seed draws differs from its design, as a share.",
+        examples=(0.03,),
     ),
 ]
 Seed = Annotated[
@@ -142,6 +155,7 @@ class WalkingProblem:
         divisions: points along each side of the foot grid.
         grid_side_m: side of the foot grid [m].
         world: what happens to the robot and the ground, by step.
+        tolerance: how far the robot that the run's seed draws differs from `robot`, as a share.
 
     Raises:
         UnknownName: if the gait or the simulator is unknown.
@@ -154,6 +168,7 @@ class WalkingProblem:
     divisions: Divisions = FootGrid.divisions
     grid_side_m: GridSide = FootGrid.side_m
     world: World = UNDISTURBED
+    tolerance: Tolerance = 0.0
 
     def __post_init__(self) -> None:
         if self.simulator not in SIMULATORS:
@@ -163,6 +178,11 @@ class WalkingProblem:
             setting.check(getattr(self, setting.name))
         resolve(self.gait, self.robot.azimuths_deg)
         FootGrid(self.grid_side_m, self.divisions)
+        if self.tolerance and self.simulator == "kinematic":
+            raise InvalidInput(
+                "the kinematic simulator knows no build tolerance; choose the simulator mujoco, or "
+                "tolerance 0"
+            )
         self.world.check(self.robot, self.simulator, getattr(self, "steps", None))
 
     @property
@@ -174,6 +194,17 @@ class WalkingProblem:
     def resolved_gait(self) -> Gait:
         """The gait with its leg pairs for this robot."""
         return resolve(self.gait, self.robot.azimuths_deg)
+
+    @property
+    def built_robot(self) -> Robot:
+        """The robot as it was built: drawn by the run's seed, the same for all who race with it.
+
+        A walking problem without a seed is that of the robot as designed.
+        """
+        seed: int | None = getattr(self, "seed", None)
+        if seed is None or not self.tolerance:
+            return self.robot
+        return build_tolerance(self.robot, self.tolerance, generator(seed, BUILDING))
 
 
 def problem_of(walk: WalkingProblem) -> Problem:

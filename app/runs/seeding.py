@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-LEARNING, EVALUATION, RACING, SENSING = range(4)
+LEARNING, EVALUATION, RACING, SENSING, BUILDING = range(5)
 
 
 def generator(seed: int, *key: int) -> np.random.Generator:

@@ -17,7 +17,15 @@ from app.domain.disturbances import (
 )
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.robot import Robot
-from app.domain.world import MAX_DISTURBANCES, UNDISTURBED, WORLDS, World, named_world, world
+from app.domain.world import (
+    MAX_DISTURBANCES,
+    UNDISTURBED,
+    WORLDS,
+    World,
+    named_world,
+    parse_world,
+    world,
+)
 
 HELD = {"leg": 2, "joint": "femur", "angle_rad": -0.9}
 
@@ -122,3 +130,18 @@ def test_named_worlds_suit_the_robot() -> None:
     with pytest.raises(UnknownName, match="unknown world 'moon'; choose one of: flat, slope"):
         named_world("moon")
     assert world([{"kind": "limp", "legs": [1, 4]}]) == named_world("limp-pair")
+
+
+def test_world_is_parsed_from_a_name_or_from_what_happens() -> None:
+    assert parse_world("limp-pair") == named_world("limp-pair") == parse_world("limp:legs=1,4")
+    assert parse_world("slope:degrees=4+payload:kg=1") == world(
+        [{"kind": "slope", "degrees": 4.0}, {"kind": "payload", "kg": 1.0}]
+    )
+    with pytest.raises(UnknownName, match="limp-pair"):
+        parse_world("moon")
+
+
+def test_later_world_begins_and_ends_later() -> None:
+    early = parse_world("limp:legs=1:at=3:until=5+slope:degrees=4")
+    assert early.later(10) == parse_world("limp:legs=1:at=13:until=15+slope:degrees=4:at=10")
+    assert early.later(10).as_of(9) == UNDISTURBED

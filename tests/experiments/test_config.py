@@ -52,6 +52,29 @@ def test_a_sweep_can_vary_every_grid_parameter() -> None:
     assert shown["observations"] == ["measured"]
 
 
+def test_league_and_recovery_vary_robots_and_worlds() -> None:
+    league, recovery = (experiment_config(name, {}) for name in ("league", "recovery"))
+    assert league.tolerance == recovery.tolerance == 0.03
+    assert league.worlds == ("flat", "limp-pair", "slope", "ice")
+    assert {"linear-model", "informed"} < set(league.agents)
+    assert (league.steps, recovery.steps) == ((250,), (100,))
+
+
+def test_papers_experiments_keep_no_tolerance() -> None:
+    for name in ("table1", "figure4", "sweep"):
+        config = experiment_config(name, {})
+        assert (config.worlds, config.tolerance) == (("flat",), 0.0)
+        with pytest.raises(UnknownName, match="tolerance"):
+            experiment_config(name, {"tolerance": 0.03})
+
+
+def test_config_of_an_earlier_version_is_on_flat_ground() -> None:
+    config = experiment_config("figure4", {})
+    stored = as_json(config)
+    del stored["worlds"], stored["tolerance"]
+    assert from_json(stored) == config
+
+
 def test_none_counts_as_not_given() -> None:
     given = {"seeds": None, "robots": None, "seed": 0}
     assert experiment_config("table1", given) == experiment_config("table1", {})
@@ -80,7 +103,7 @@ def test_a_config_round_trips_through_json(experiment: str, given: dict[str, Any
 @pytest.mark.parametrize(
     ("experiment", "given", "names"),
     [
-        ("table2", {}, "table1, figure4, sweep"),
+        ("table2", {}, "table1, figure4, sweep, league, recovery"),
         ("table1", {"seeds": 0}, f"seeds must be from 1 to {MAX_SEEDS:,}"),
         ("table1", {"seeds": MAX_SEEDS + 1}, f"from 1 to {MAX_SEEDS:,}"),
         ("table1", {"seeds": 2.5}, "a whole number"),
@@ -93,6 +116,12 @@ def test_a_config_round_trips_through_json(experiment: str, given: dict[str, Any
         ("sweep", {"gaits": ()}, "gaits must name at least one"),
         ("sweep", {"alpha": (0.1, 0.3, 0.1)}, "alpha names something twice"),
         ("sweep", {"robots": (robot("stiff"), robot("stiff"))}, "robots names something twice"),
+        ("sweep", {"worlds": ("ice",)}, "grid_side_m"),
+        ("league", {"worlds": ("moon",)}, "limp-pair"),
+        ("league", {"worlds": ("slope:degrees=80",)}, "degrees"),
+        ("recovery", {"worlds": ("limp:legs=1:at=25",)}, "leave out at and until"),
+        ("league", {"worlds": ()}, "worlds must name at least one"),
+        ("league", {"tolerance": 0.3}, "from 0 to 0.2"),
     ],
 )
 def test_an_invalid_config_is_refused_in_one_sentence(

@@ -143,3 +143,55 @@ def test_a_trial_differs_from_its_setting_in_the_seed_only() -> None:
     for trial in plan("figure4", seeds=2).trials():
         seedless = replace(trial.config.training, seed=0)
         assert replace(trial.config, training=seedless) == trial.setting.trial
+
+
+WORLDS = ("flat", "limp-pair")
+ONE_GAIT = {"gaits": ("left-right-origin",), "worlds": WORLDS, "agents": ("q-learning", "informed")}
+
+
+def test_league_walks_in_every_world_with_the_same_robots() -> None:
+    laid_out = plan("league", seeds=3, **ONE_GAIT)
+    keys = [setting.key for setting in laid_out.settings]
+    flat, limp = "left-right-origin/measured/stiff", "left-right-origin/measured/stiff/limp-pair"
+    assert keys == [
+        *(f"{place}/{agent}" for place in (flat, limp) for agent in (*SEARCHERS, "greedy/nominal")),
+        f"{flat}/q-learning/250",
+        f"{limp}/q-learning/250",
+    ]
+    robots: dict[int, set[Any]] = {}
+    for trial in laid_out.trials():
+        robots.setdefault(trial.seed_number, set()).add(trial.config.training.built_robot)
+    assert laid_out.total == len(keys) * 3
+    assert [len(drawn) for drawn in robots.values()] == [1, 1, 1]
+    assert len(set.union(*robots.values())) == 3
+
+
+SEARCHERS = ("greedy", "informed")
+
+
+def test_searchers_walk_once_where_nothing_varies() -> None:
+    laid_out = plan("league", seeds=3, tolerance=0.0, **{**ONE_GAIT, "worlds": ("ice", "noise")})
+    found = {
+        world: [laid_out.count(s) for s in laid_out.settings if s.world == world]
+        for world in ("ice", "noise")
+    }
+    # greedy, informed, nominal greedy; q-learning
+    assert found == {"ice": [1, 1, 1, 3], "noise": [3, 3, 3, 3]}
+
+
+def test_only_the_nominal_greedy_plans_with_the_design() -> None:
+    trials = plan("league", seeds=1, **ONE_GAIT).trials()
+    nominal = [trial.key for trial in trials if trial.config.plans_with == "nominal"]
+    assert nominal == [
+        "left-right-origin/measured/stiff/greedy/nominal#0",
+        "left-right-origin/measured/stiff/limp-pair/greedy/nominal#0",
+    ]
+
+
+def test_recovery_begins_after_the_practice() -> None:
+    settings = plan("recovery", seeds=1, **{**ONE_GAIT, "worlds": ("limp-pair",)}).settings
+    learner, searcher = settings[-1], settings[0]
+    assert learner.trial.evaluations == (100, 101, 125, 150, 200, 250)
+    assert learner.training.world.change_steps == (100,)
+    assert (learner.training.steps, learner.parameters["steps"]) == (300, 100)
+    assert searcher.training.world.change_steps == ()  # its world is so from the start

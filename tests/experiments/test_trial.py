@@ -4,17 +4,22 @@ import json
 import pickle
 import subprocess
 import sys
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from app.agents.registry import OURS
+from app.assembly import build_learner
 from app.domain.errors import UnknownName
+from app.domain.world import named_world
 from app.experiments.config import experiment_config
 from app.experiments.plan import Plan, Trial
 from app.experiments.trial import TrialConfig, TrialResult, run_trial
 from app.runs.config import TrainingConfig, training_config
+from app.runs.records import Evaluated, StepTaken
+from app.runs.training import train
 from tests.figures import GREEDY_H, H_M, interquartile_mean, kinematic_rows
 
 
@@ -138,3 +143,40 @@ def test_failing_agent_gives_a_result_with_the_failure() -> None:
 def test_an_unknown_agent_is_refused() -> None:
     with pytest.raises(UnknownName, match=", ".join(OURS)):
         run_trial(TrialConfig(training=practice(agent="skynet")))
+
+
+def test_evaluations_on_the_way_are_those_of_a_training() -> None:
+    training = practice(steps=60, seed=5)
+    learner = build_learner(replace(training, evaluate_every=20))
+    records = list(train(learner, replace(training, evaluate_every=20)))
+    curve = {one.step: one.distance_m for one in records if isinstance(one, Evaluated)}
+    rewards = [one.reward_m for one in records if isinstance(one, StepTaken)]
+
+    result = run_trial(
+        TrialConfig(training=training, evaluations=(0, 20, 40, 60), earning_steps=20)
+    )
+
+    assert result.distances_m[1:] == (curve[20], curve[40], curve[60])
+    assert result.earned_m == tuple(sum(rewards[n : n + 20]) for n in (0, 20, 40, 60))
+    assert TrialResult.from_json(json.loads(json.dumps(result.as_json()))) == result
+
+
+def test_learner_is_evaluated_in_the_world_as_it_is() -> None:
+    training = practice(steps=4, seed=1, simulator="mujoco", world=named_world("ice").later(2))
+    icy = practice(steps=4, seed=1, simulator="mujoco", world=named_world("ice"))
+    flat = practice(steps=4, seed=1, simulator="mujoco")
+
+    def frozen(config: TrainingConfig, steps: int) -> float:
+        (distance_m,) = run_trial(TrialConfig(training=config, evaluations=(steps,))).distances_m
+        return distance_m
+
+    assert frozen(training, 1) == frozen(flat, 1) != frozen(icy, 1)
+    assert frozen(training, 2) != frozen(flat, 2)
+
+
+def test_searcher_may_plan_with_the_robot_as_designed() -> None:
+    limp = practice(agent="greedy", steps=1, simulator="mujoco", world=named_world("limp-pair"))
+    knows = run_trial(TrialConfig(training=limp, blocks=0))
+    nominal = run_trial(TrialConfig(training=limp, blocks=0, plans_with="nominal"))
+
+    assert nominal.distances_m[0] < 0.5 * knows.distances_m[0]

@@ -17,4 +17,6 @@ CLAIMS_OF: Mapping[str, Sequence[Claim]] = {
     "table1": TABLE1_CLAIMS,
     "figure4": FIGURE4_CLAIMS,
     "sweep": SWEEP_CLAIMS,
+    "league": (),
+    "recovery": (),
 }

@@ -15,6 +15,8 @@ _NARRATIVES: Mapping[str, Sequence[tuple[str, Paragraph]]] = {
     "table1": TABLE1_NARRATIVE,
     "figure4": FIGURE4_NARRATIVE,
     "sweep": SWEEP_NARRATIVE,
+    "league": (),
+    "recovery": (),
 }
 
 

@@ -4,7 +4,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from app.experiments.claims.cases import cases_of
-from app.experiments.report import figure_curves, figure_sweep, figure_table1
+from app.experiments.config import DISTURBED
+from app.experiments.report import (
+    figure_curves,
+    figure_sweep,
+    figure_table1,
+    figure_worlds,
+)
 from app.experiments.report.drawing import Picture, figure_style
 
 
@@ -20,6 +26,8 @@ def panels(summary: Mapping[str, Any]) -> list[tuple[str, list[Picture]]]:
                 (case.label, figure_curves.panels(case, top, f"figure4-{number + 1}"))
                 for number, case in enumerate(cases)
             ]
+        if summary["experiment"] in DISTURBED:
+            return figure_worlds.panels(summary)
         pictures = [figure_sweep.panel(c, f"sweep-{n + 1}") for n, c in enumerate(cases)]
         return [("", pictures)]
 

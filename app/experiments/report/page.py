@@ -13,9 +13,15 @@ from markupsafe import Markup
 
 from app.agents.appearance import title_of
 from app.experiments.claims.cases import Case, cases_of
-from app.experiments.config import ExperimentConfig, as_json, experiment_config, fields_of
+from app.experiments.config import (
+    ExperimentConfig,
+    as_json,
+    default_agents,
+    experiment_config,
+    fields_of,
+)
 from app.experiments.formatting import counted, gait_name, listed
-from app.experiments.report import tables
+from app.experiments.report import figure_worlds, tables
 from app.experiments.report.drawing import Picture, agent_colours, inline_svg
 from app.experiments.report.figures import panels
 
@@ -23,6 +29,8 @@ TITLES: Mapping[str, str] = {
     "table1": "Table 1, many times over",
     "figure4": "Figure 4, many times over",
     "sweep": "A sweep",
+    "league": "A league of learners and searchers",
+    "recovery": "Recovery after something happened",
 }
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 """The page's Content-Security-Policy, also set by a `<meta>` element of the page."""
@@ -34,6 +42,8 @@ _OPTIONS = {
     "seeds": "seeds",
     "seed": "seed",
     "simulator": "simulator",
+    "worlds": "world",
+    "tolerance": "tolerance",
 }
 """Options by field; that of any other has its field's name."""
 
@@ -50,11 +60,13 @@ def page(summary: Mapping[str, Any]) -> str:
         "figures": [(heading, _inlined_figures(group)) for heading, group in panels(summary)],
         "cases": cases,
         "agents": _agent_colours(cases),
+        "world_agents": figure_worlds.colours(summary),
         "colors": agent_colours([]),
         "units": tables.UNITS,
         "table1": _tables_of("table1", tables.table1, summary, cases),
         "plain_tables": _tables_of("figure4", tables.curves, summary, cases)
-        + _tables_of("sweep", tables.sweep, summary, cases),
+        + _tables_of("sweep", tables.sweep, summary, cases)
+        + tables.worlds(summary),
         "versus": tables.versus(summary) if summary["versus"] else None,
         "story": [
             {"heading": section["heading"], "paragraphs": section["text"].split("\n")}
@@ -68,11 +80,14 @@ def page(summary: Mapping[str, Any]) -> str:
 def command(config: Mapping[str, Any]) -> str:
     """Return the shell command of an experiment: its seeds and all options other than defaults."""
     name = config["experiment"]
-    given = {"agents": tuple(config["agents"])} if "agents" in fields_of(name) else {}
-    defaults = as_json(experiment_config(name, given)) | {"agents": list(ExperimentConfig.agents)}
+    given: dict[str, Any] = {"simulator": config["simulator"]}
+    if "agents" in fields_of(name):
+        given["agents"] = tuple(config["agents"])
+    usual = {"agents": default_agents(name), "simulator": ExperimentConfig.simulator}
+    defaults = as_json(experiment_config(name, given)) | usual
     arguments = ["hexapods", *(["sweep"] if name == "sweep" else ["experiment", name])]
     for field in dict.fromkeys((*_OPTIONS, *config)):
-        if field in ("seeds", "seed") or config[field] != defaults.get(field):
+        if field in config and (field in ("seeds", "seed") or config[field] != defaults.get(field)):
             option = _OPTIONS.get(field, field.replace("_", "-"))
             arguments += [
                 part for text in _option_values(config[field]) for part in (f"--{option}", text)

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from app.agents.appearance import title_of
+from app.domain.text import metres
 from app.experiments.claims.cases import Case
 from app.experiments.formatting import (
     gait_name,
@@ -11,10 +12,13 @@ from app.experiments.formatting import (
     number,
     percent,
     shares,
+    world_name,
 )
 from app.experiments.narrative.sweep import combination_name
+from app.experiments.plan import EARNING_STEPS
 from app.experiments.published import COLUMNS, DISTANCES, published
 from app.experiments.statistics import CONFIDENCE
+from app.experiments.worlds import LEAGUE_SHARE, RECOVERY_SHARE
 
 UNITS: Mapping[str, str] = {
     "m": "metres",
@@ -160,6 +164,104 @@ def curves(case: Case) -> dict[str, Any]:
 def _curve_cell(curve: Mapping[str, Any], block: int) -> tuple[str, str]:
     value, low, high = curve["iqm_m"][block], curve["low_m"][block], curve["high_m"][block]
     return number(value), "" if low is None else _range_text(number(low), number(high))
+
+
+def worlds(summary: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Build the tables of a league or recovery: one for each world and gait, best first."""
+    groups: dict[tuple[str, ...], list[Mapping[str, Any]]] = {}
+    for one in summary.get("worlds", ()):
+        groups.setdefault(place_of(one), []).append(one)
+    is_recovery = summary["experiment"] == "recovery"
+    return [_world_table(rows, is_recovery, summary) for rows in groups.values()]
+
+
+def place_of(one: Mapping[str, Any]) -> tuple[str, str, str, str]:
+    """Return where an agent walks: world, gait, observation and robot."""
+    return one["world"], one["gait"], one["observation"], one["robot"]
+
+
+def place_name(place: tuple[str, ...], summary: Mapping[str, Any]) -> str:
+    """Describe a world and gait, with observation and robot where there are several."""
+    world, gait, observation, robot = place
+    names = [world_name(world), gait_name(gait)]
+    config = summary["config"]
+    names += [observation] if len(config["observations"]) > 1 else []
+    names += [f"{robot} robot"] if len(config["robots"]) > 1 else []
+    return ", ".join(names)
+
+
+def agent_name(one: Mapping[str, Any]) -> str:
+    """Return an agent's title, and what a searcher plans with unless it is the world."""
+    nominal = ", plans with the robot as designed on flat ground"
+    return title_of(one["agent"]) + (nominal if one["plans_with"] == "nominal" else "")
+
+
+def _world_table(
+    rows: Sequence[Mapping[str, Any]], is_recovery: bool, summary: Mapping[str, Any]
+) -> dict[str, Any]:
+    best_m = rows[0]["best_known_m"]
+    known = "" if best_m is None else f"; best known {metres(best_m)}"
+    ordered = sorted(rows, key=lambda one: -float(one["distance"]["iqm"]))
+    learner = next((one for one in rows if one["curve"]), None)
+    at: list[int] = learner["curve"]["steps"] if learner and is_recovery else []
+    share = percent(RECOVERY_SHARE if is_recovery else LEAGUE_SHARE)
+    columns = [f"After {step:,}" for step in at] or ["Distance", "Mean over practice"]
+    earning = [step for step in at if step % EARNING_STEPS == 0]
+    columns += [f"Earned in {step + 1:,}–{step + EARNING_STEPS:,}" for step in earning]
+    columns += [
+        "Of greedy",
+        "Of best known",
+        f"Steps to {share} of greedy",
+        f"Steps to {share} of best known",
+        "Seeds",
+    ]
+    return {
+        "label": f"{place_name(place_of(rows[0]), summary)}{known}",
+        "columns": columns,
+        "rows": [
+            {
+                "name": agent_name(one),
+                "cells": [
+                    *_distance_cells(one, at),
+                    *(
+                        _curve_cell(one["earned"], at.index(step)) if one["earned"] else (_NONE, "")
+                        for step in earning
+                    ),
+                    _share(one["of_greedy"], "iqm"),
+                    _share(one["of_best_known"], "iqm"),
+                    _until_cell(one["until_greedy"]),
+                    _until_cell(one["until_best_known"]),
+                    (f"{one['n']:,}", ""),
+                ],
+            }
+            for one in ordered
+        ],
+        "left_out": 0,
+    }
+
+
+def _distance_cells(one: Mapping[str, Any], at: Sequence[int]) -> list[tuple[str, str]]:
+    """Return the distances at the evaluations of a recovery, or the last and the mean [m]."""
+    if at and one["curve"]:
+        return [_curve_cell(one["curve"], place) for place in range(len(at))]
+    if at:
+        return [(_NONE, "")] * (len(at) - 1) + [_interval_cell(one["distance"])]
+    return [_interval_cell(one["distance"]), _interval_cell(one["mean_m"])]
+
+
+def _interval_cell(middle: Mapping[str, Any] | None) -> tuple[str, str]:
+    if middle is None:
+        return _NONE, ""
+    low, high = middle["low"], middle["high"]
+    return number(middle["iqm"]), "" if low is None else _range_text(number(low), number(high))
+
+
+def _until_cell(until: Mapping[str, Any] | None) -> tuple[str, str]:
+    if until is None:
+        return _NONE, ""
+    steps = until["median_steps"]
+    value = "not reached" if steps is None else f"{steps:,.0f}"
+    return value, f"by {percent(until['reached'])}"
 
 
 def sweep(case: Case) -> dict[str, Any]:

@@ -1,12 +1,12 @@
 """All trials of an experiment as CSV."""
 
 import csv
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from io import StringIO
 from typing import Any
 
 from app.domain.text import text_cell
-from app.experiments.config import ExperimentConfig
+from app.experiments.config import DISTURBED, ExperimentConfig
 from app.experiments.plan import Plan, Trial
 from app.experiments.trial import TrialResult
 
@@ -28,8 +28,8 @@ def trials_csv(
 ) -> bytes:
     """Return the completed and the set-aside trials in the plan's order, one row per distance.
 
-    A trial with several blocks has a row for each block. Text cells are protected against being
-    evaluated as formulas by a spreadsheet (`text_cell`).
+    A trial has a row for each block, and for each evaluation. Text cells are protected against
+    being evaluated as formulas by a spreadsheet (`text_cell`).
 
     Args:
         config: the experiment.
@@ -40,17 +40,18 @@ def trials_csv(
     writer = csv.writer(out)
     plan = Plan(config)
     varied = [name for name in plan.settings[0].parameters if name != "steps"]
-    writer.writerow((*_FIRST, *varied, *_LAST))
+    more = ("world",) if config.experiment in DISTURBED else ()
+    writer.writerow((*_FIRST, *more, *varied, *_LAST))
     for trial in plan.trials():
         if trial.key in results:
-            writer.writerows(_rows(trial, results[trial.key]))
+            writer.writerows(_rows(trial, results[trial.key], more))
         elif trial.key in set_aside:
             why = f"set aside: {set_aside[trial.key]}"
-            writer.writerows(_rows(trial, TrialResult(failure=why)))
+            writer.writerows(_rows(trial, TrialResult(failure=why), more))
     return out.getvalue().encode()
 
 
-def _rows(trial: Trial, result: TrialResult) -> Iterator[list[Any]]:
+def _rows(trial: Trial, result: TrialResult, more: Sequence[str]) -> Iterator[list[Any]]:
     training, setting = trial.config.training, trial.setting
     learns = setting.role != "reference"
     named = [trial.key, setting.role, setting.gait, training.observation, setting.robot]
@@ -59,13 +60,20 @@ def _rows(trial: Trial, result: TrialResult) -> Iterator[list[Any]]:
         yield [
             *map(text_cell, named),
             text_cell(training.agent),
+            *(text_cell(getattr(setting, name)) for name in more),
             *(text_cell(value) if isinstance(value, str) else value for value in varied),
             trial.seed_number,
             training.seed,
-            training.steps * (1 + block) if learns else 0,
+            _practised_steps(trial, block) if learns else 0,
             distance_m,
             result.finished_distance_m,
             result.elapsed_s,
             result.transitions or None,
             text_cell(result.failure or ""),
         ]
+
+
+def _practised_steps(trial: Trial, number: int) -> int:
+    """Return the steps of practice before one of a trial's distances."""
+    points = trial.config.evaluations
+    return points[number] if points else trial.config.training.steps * (1 + number)

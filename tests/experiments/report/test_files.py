@@ -139,6 +139,10 @@ def test_a_claim_has_its_verdict_in_every_case_and_its_numbers() -> None:
         ("sweep", {"alpha": (0.1, 0.3), "steps": (100, 200), "robots": ROBOTS}),
         ("sweep", {"robots": (robot("stiff"), robot({"friction": 0.3, "preset": "compliant"}))}),
         ("sweep", {"gaits": (LRO, GaitSpec(1, 2, pairs=((1, 2), (3, 4), (5, 6))))}),
+        ("league", {}),
+        ("league", {"agents": ("linear-model",), "steps": (50, 100), "tolerance": 0.1}),
+        ("league", {"simulator": "kinematic", "worlds": ("noise",)}),
+        ("recovery", {"worlds": ("limp:legs=1,4", "ice", "slope:degrees=4+payload:kg=1")}),
     ],
 )
 def test_the_command_on_the_page_reproduces_the_experiment(
@@ -156,11 +160,11 @@ def _understood(typed: list[str]) -> ExperimentConfig:
     experiment_command.add_to(commands)
     sweep_command.add_to(commands)
     options = parser.parse_args(typed[1:])
-    grid = {n: getattr(options, n) for n in GRID} if options.command == "sweep" else {}
-    grid |= settings_from(options)
+    if options.command == "experiment":
+        return experiment_command.config_from(options)
+    grid = {n: getattr(options, n) for n in GRID} | settings_from(options)
     agents = experiment_command.agents_from(options.agent)
-    name = "sweep" if options.command == "sweep" else options.experiment
-    return experiment_config(name, {**trial_grid_from(options), **grid, "agents": agents})
+    return experiment_config("sweep", {**trial_grid_from(options), **grid, "agents": agents})
 
 
 @pytest.fixture

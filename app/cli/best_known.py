@@ -1,0 +1,107 @@
+"""`hexapods best-known`: the farthest that a wide beam search walks, in each world and gait."""
+
+import argparse
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from app import __version__
+from app.assembly import build_simulator
+from app.cli.files import check_writable, write_whole
+from app.cli.options import CommandParser, integer, split
+from app.cli.terminal import progress
+from app.domain.errors import UnknownName
+from app.domain.gait import NAMED_GAITS
+from app.domain.robot import robot
+from app.domain.world import WORLDS, named_world
+from app.runs import best_known
+from app.runs.config import WalkingProblem, check_whole
+
+MAX_WIDTH = 4096
+_COMPUTED_BY = "hexapods best-known: a beam search over the whole walk, in MuJoCo"
+
+
+def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
+    """Add the command's parser."""
+    parser = commands.add_parser(
+        "best-known", help="search for the farthest walks", description=__doc__
+    )
+    parser.add_argument("--robot", default="stiff", help="presets, with commas (default stiff)")
+    parser.add_argument(
+        "--world", default=",".join(WORLDS), help=f"of {', '.join(WORLDS)} (default all)"
+    )
+    parser.add_argument(
+        "--gait", default=",".join(NAMED_GAITS), help=f"of {', '.join(NAMED_GAITS)} (default all)"
+    )
+    parser.add_argument(
+        "--width",
+        type=integer,
+        default=best_known.WIDTH,
+        help=f"walks that are kept after each step (default {best_known.WIDTH})",
+    )
+    parser.add_argument(
+        "--threads", type=integer, default=0, help="of the simulator (default one a core)"
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help="add the distances to this table; those that it has already are not computed again",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Search walk by walk, print each distance, and keep it at once.
+
+    Raises:
+        HexapodError: if the options are not valid, or the table cannot be written.
+    """
+    check_whole("width", options.width, 1, MAX_WIDTH)
+    problems = list(_problems(options))
+    rows = _read(options.out) if options.out else []
+    done = {_key(row) for row in rows}
+    with progress() as bar:
+        task = bar.add_task("searching", total=len(problems))
+        for names, walk in problems:
+            row = {**names, "width": options.width, "version": __version__}
+            if _key(row) not in done:
+                found = best_known.search(build_simulator(walk, options.threads), options.width)
+                print(f"{' '.join(names.values())}: {found:.3f} m", flush=True)
+                rows = [one for one in rows if {**one, **names} != one]
+                rows.append({**row, "distance_m": round(found, 6)})
+                if options.out:
+                    _write(options.out, rows)
+            bar.update(task, advance=1)
+    return 0
+
+
+def _problems(options: argparse.Namespace) -> Iterable[tuple[dict[str, str], WalkingProblem]]:
+    """Return the walking problems that were asked for, each with its names."""
+    gaits = split(options.gait)
+    for gait in gaits:
+        if gait not in NAMED_GAITS:
+            raise UnknownName("gait", gait, NAMED_GAITS)
+    chosen = [(name, robot(name)) for name in split(options.robot)]
+    for robot_name, one in chosen:
+        for world in split(options.world):
+            walks = named_world(world)
+            for gait in gaits:
+                names = {"robot": robot_name, "world": world, "gait": gait}
+                yield names, WalkingProblem(gait=gait, robot=one, world=walks)
+
+
+def _key(row: Mapping[str, Any]) -> tuple[Any, ...]:
+    return tuple(row[name] for name in ("robot", "world", "gait", "width", "version"))
+
+
+def _read(path: Path) -> list[dict[str, Any]]:
+    check_writable(str(path))
+    return best_known.read(path) if path.exists() and path.stat().st_size else []
+
+
+def _write(path: Path, rows: list[dict[str, Any]]) -> None:
+    lines = ",\n".join(f"    {json.dumps(row)}" for row in rows)
+    text = f'{{\n  "computed_by": {json.dumps(_COMPUTED_BY)},\n  "distances": [\n{lines}\n  ]\n}}\n'
+    write_whole(str(path), text.encode())

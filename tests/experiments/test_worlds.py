@@ -1,0 +1,114 @@
+"""Agents in the worlds of a league and a recovery, by hand and with made-up distances."""
+
+import json
+import math
+from typing import Any
+
+import pytest
+
+from app.api.experiment_answers import SummaryView
+from app.experiments.config import experiment_config
+from app.experiments.plan import Plan
+from app.experiments.report.page import page
+from app.experiments.report.trials_csv import trials_csv
+from app.experiments.summary import summarise
+from app.experiments.trial import TrialResult
+from app.experiments.worlds import mean_distance_m, steps_until
+from app.runs.best_known import kept
+
+LRO = "left-right-origin"
+WALKS_M = {"greedy": 0.5, "greedy/nominal": 0.1, "informed": 0.4}
+
+
+def summary(experiment: str, curve_m: tuple[float, ...], **given: Any) -> dict[str, Any]:
+    """Summarise made-up walks, in which each seed comes a millimetre farther than the last."""
+    asked = {"seeds": 4, "gaits": (LRO,), "agents": ("q-learning", "informed"), **given}
+    config = experiment_config(experiment, asked)
+    results = {}
+    for trial in Plan(config).trials():
+        more_m = 0.001 * trial.seed_number
+        walked_m = next(
+            (m for end, m in WALKS_M.items() if trial.setting.key.endswith(f"/{end}")), None
+        )
+        distances_m = curve_m if walked_m is None else (walked_m,)
+        earned_m = curve_m if trial.config.earning_steps else ()
+        results[trial.key] = TrialResult(
+            distances_m=tuple(metres + more_m for metres in distances_m), earned_m=earned_m
+        )
+    found = summarise(config, results)
+    SummaryView.model_validate(json.loads(json.dumps(found)))  # is what REST promises
+    trials_csv(config, results, {})
+    return found
+
+
+def entry(found: dict[str, Any], agent: str, world: str) -> dict[str, Any]:
+    (one,) = [
+        one
+        for one in found["worlds"]
+        if (one["agent"], one["world"], one["plans_with"]) == (agent, world, None)
+    ]
+    return dict(one)
+
+
+def test_mean_distance_is_the_area_under_the_curve() -> None:
+    # 0 → .2 m in 10 steps, then .2 → .4 m in 30: 1 + 9 over 40 steps
+    assert mean_distance_m([10, 40], [0.2, 0.4]) == pytest.approx(10 / 40)
+    # a recovery is evaluated at its start: .1 → .3 m in 10 steps
+    assert mean_distance_m([0, 10], [0.1, 0.3]) == pytest.approx(0.2)
+
+
+def test_steps_until_a_distance_are_those_of_the_first_evaluation() -> None:
+    assert steps_until([25, 50, 100], [0.1, 0.4, 0.3], 0.4) == 50
+    assert steps_until([25, 50, 100], [0.1, 0.4, 0.3], 0.41) == math.inf
+
+
+def test_league_measures_learners_against_greedy_and_best_known() -> None:
+    found = summary("league", (0.1, 0.3, 0.48), steps=(100,), worlds=("flat", "limp-pair"))
+    learner = entry(found, "q-learning", "limp-pair")
+    greedy_m, best_m = 0.5015, kept()["stiff", "limp-pair", LRO]  # greedy's mean over four seeds
+
+    assert learner["curve"]["steps"] == [25, 50, 100]
+    assert learner["distance"]["iqm"] == pytest.approx(0.4815)
+    assert learner["greedy_m"] == pytest.approx(greedy_m)
+    assert learner["greedy_nominal_m"] == pytest.approx(0.1015)
+    assert learner["best_known_m"] == best_m
+    assert learner["of_greedy"]["iqm"] == pytest.approx(0.4815 / greedy_m)
+    assert learner["of_best_known"]["iqm"] == pytest.approx(0.4815 / best_m)
+    assert learner["until_greedy"]["median_steps"] == 100
+    assert learner["until_greedy"]["reached"] == 1
+    assert learner["until_best_known"]["median_steps"] is None
+    assert entry(found, "informed", "flat")["curve"] is None
+    assert len(found["worlds"]) == 2 * 4
+
+
+def test_recovery_counts_from_when_it_happened() -> None:
+    curve_m = (0.05, 0.06, 0.3, 0.46, 0.5, 0.5)
+    found = summary("recovery", curve_m, worlds=("limp-pair",))
+    learner = entry(found, "q-learning", "limp-pair")
+
+    assert learner["steps"] == 100
+    assert learner["curve"]["steps"] == [0, 1, 25, 50, 100, 150]
+    assert learner["earned"]["iqm_m"] == pytest.approx(curve_m)
+    assert learner["until_greedy"]["of"] == 0.9
+    assert learner["until_greedy"]["median_steps"] == 50
+
+
+def test_half_grown_league_has_what_its_trials_show() -> None:
+    config = experiment_config("league", {"seeds": 2, "gaits": (LRO,), "worlds": ("ice",)})
+    assert summarise(config, {})["worlds"] == []
+    (first, *_) = Plan(config).trials()
+    (one,) = summarise(config, {first.key: TrialResult(distances_m=(0.4,))})["worlds"]
+    assert (one["agent"], one["n"], one["greedy_nominal_m"]) == ("greedy", 1, None)
+
+
+@pytest.mark.parametrize("experiment", ["league", "recovery"])
+def test_report_shows_each_world_with_its_references(experiment: str) -> None:
+    steps = {"steps": (50,)} if experiment == "league" else {}
+    curve_m = (0.1, 0.5) if experiment == "league" else (0.1, 0.2, 0.3, 0.4, 0.5, 0.5)
+    text = page(summary(experiment, curve_m, worlds=("limp-pair", "slope:degrees=4"), **steps))
+
+    assert "Two limp legs, Left-right, opposite; best known" in text
+    assert "Slope:degrees=4, Left-right, opposite</figcaption>" in text
+    assert "Greedy, plans with the robot as designed on flat ground" in text
+    assert "within 3&nbsp;% of its design" in text
+    assert ("Earned in 1–50" in text) == (experiment == "recovery")

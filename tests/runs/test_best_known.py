@@ -1,0 +1,87 @@
+"""Best known distances: the beam search over a whole walk, and the table that is kept."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+
+from app.assembly import build_simulator
+from app.domain.gait import NAMED_GAITS
+from app.domain.observation import legal_actions, observe
+from app.domain.robot import PRESETS, Robot, robot
+from app.domain.world import WORLDS, World, named_world
+from app.runs.best_known import PATH, best_known_m, kept, read, search
+from app.runs.config import WalkingProblem
+
+WALK = WalkingProblem(gait="left-right-origin")
+IDEAL = WalkingProblem(gait="left-right-origin", simulator="kinematic")
+
+
+def test_wide_beam_is_an_exhaustive_search() -> None:
+    simulator = build_simulator(IDEAL)
+    ends = [simulator.rest()]
+    for _ in range(2):
+        ends = [
+            simulator.step(state, action).state
+            for state in ends
+            for action in legal_actions(observe(simulator, state, "measured"), 4)
+        ]
+
+    assert search(simulator, width=200, steps=2) == max(end.distance_m for end in ends)
+
+
+def test_beam_of_the_kinematic_problem_is_as_good_as_greedy() -> None:
+    # Nothing is better than greedy without slip: every look-ahead comes to 24.833 h (docs/figures).
+    assert search(build_simulator(IDEAL), width=8) == pytest.approx(24.833 * 0.02, abs=2e-5)
+
+
+def test_search_is_deterministic_at_any_number_of_threads() -> None:
+    walk = replace(WALK, world=named_world("limp-pair"))
+    found = {search(build_simulator(walk, threads), width=2, steps=3) for threads in (1, 2)}
+
+    assert len(found) == 1
+
+
+def test_longer_walks_come_farther() -> None:
+    simulator = build_simulator(IDEAL)
+    found = [search(simulator, width=4, steps=steps) for steps in (2, 6, 12)]
+
+    assert all(near < far for near, far in pairwise(found))
+
+
+def test_table_says_how_its_distances_were_computed() -> None:
+    for row in read(PATH):
+        assert row["robot"] in PRESETS
+        assert row["world"] in WORLDS
+        assert row["gait"] in NAMED_GAITS
+        assert row["width"] >= 48
+    assert len(kept()) == len(read(PATH))
+    assert all(("stiff", "flat", gait) in kept() for gait in NAMED_GAITS)
+
+
+def test_distance_is_known_of_preset_robots_in_named_worlds() -> None:
+    flat, limp = WALK, replace(WALK, world=named_world("limp-pair"))
+
+    assert best_known_m(flat) == kept()["stiff", "flat", "left-right-origin"]
+    assert best_known_m(limp) == kept()["stiff", "limp-pair", "left-right-origin"]
+    assert best_known_m(flat, limp.world.as_of(0)) == best_known_m(limp)
+    assert best_known_m(replace(WALK, robot=robot("stiff"), tolerance=0.03)) == best_known_m(flat)
+
+
+@pytest.mark.parametrize(
+    "walk",
+    [
+        IDEAL,
+        replace(WALK, divisions=3),
+        replace(WALK, grid_side_m=0.03),
+        replace(WALK, robot=replace(Robot(), femur_m=0.081, name="stiff (modified)")),
+        replace(
+            WALK,
+            world=World(
+                (*named_world("limp-pair").disturbances, *named_world("slope").disturbances)
+            ),
+        ),
+    ],
+)
+def test_distance_of_any_other_walk_is_not_known(walk: WalkingProblem) -> None:
+    assert best_known_m(walk) is None
