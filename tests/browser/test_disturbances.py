@@ -1,4 +1,4 @@
-"""What happens to robots: a leg is broken while one practises, and a race is gone on with from its middle."""
+"""What happens to robots: a leg is broken in practice, and a race goes on from its middle."""
 
 import re
 from typing import Any
