@@ -16,6 +16,7 @@ from app.limits.memory_budget import MemoryBudget
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
+from app.stage.race_show import Original
 from app.stage.stage import Stage
 from app.storage.database.store import RunStore
 from app.storage.idempotency import Idempotency, Start
@@ -23,8 +24,9 @@ from app.storage.recordings import Recordings
 from app.storage.run import Run
 from app.what_if.what_if import WhatIf
 
-StreamEncoder = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock], bytes]
-"""Encodes a race's lanes, with its name and under a clock, as a recorded stream for viser."""
+StreamEncoder = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock, Original | None], bytes]
+"""Encodes a race's lanes as a recorded stream for viser: with the race's name, under a clock, and
+with the race from which it branched off, if any."""
 
 
 class HubCounters(Protocol):

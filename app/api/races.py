@@ -14,6 +14,7 @@ from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage import recording_export
+from app.stage.race_show import original_of
 from app.stage.timeline import timeline
 from app.storage.artifact_file import ArtifactFile
 from app.storage.errors import Conflict
@@ -86,7 +87,8 @@ def _recorded_stream(
         )
     name = f"film-{clock}.viser"
     while (film := services.store.open_artifact(run.id, name)) is None:
-        encoded = services.film(config, lanes, run.name, clock)
+        original = original_of(config, services.store, services.recordings)
+        encoded = services.film(config, lanes, run.name, clock, original)
         services.store.put_artifact(run.id, name, encoded)
     return film
 

@@ -4,13 +4,18 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from app.domain.errors import HexapodError
 from app.domain.world import UNDISTURBED, World
 from app.runs.clocks import Clock
+from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage.race_lane import RaceLane
 from app.stage.scene_spec import rest_pose
 from app.stage.show import RunLabel
 from app.stage.stage_frame import LaneView, Phase, SceneSpec, StageFrame
+from app.storage.database.store import RunStore
+from app.storage.recordings import Recordings
+from app.storage.run import world_of
 
 SPEED, LAST_LANE_SPEED = 2.0, 8.0
 PHOTO_FINISH_S = 3.0
@@ -31,6 +36,20 @@ class Original(NamedTuple):
     step: int
     world: World
     lanes: Sequence[LaneRecording]
+
+
+def original_of(config: RaceConfig, store: RunStore, recordings: Recordings) -> Original | None:
+    """Return the race from which another branched off; None if there is none, or no longer."""
+    branch = config.branch_from
+    if branch is None:
+        return None
+    try:
+        world = world_of(store.get(branch.race_id))
+        lanes = recordings.race(branch.race_id)
+    except HexapodError:
+        # Deleted, or its recording cannot be read: the fork can be shown all the same.
+        return None
+    return Original(branch.step, world, lanes) if lanes else None
 
 
 class RaceShow:

@@ -11,9 +11,9 @@ from app.domain.errors import HexapodError, InvalidInput
 from app.domain.world import UNDISTURBED, World
 from app.events.bus import Event, EventBus
 from app.runs.clocks import Clock
-from app.runs.config import Branch, RaceConfig, TrainingConfig
+from app.runs.config import RaceConfig, TrainingConfig
 from app.stage.practice_show import PracticeShow
-from app.stage.race_show import Original, RaceShow
+from app.stage.race_show import RaceShow, original_of
 from app.stage.scene_spec import race_scene, training_scene
 from app.stage.show import TIME_LAPSE, IdleShow, RunLabel, Show
 from app.stage.stage_frame import StageFrame
@@ -237,14 +237,13 @@ class Stage:
         config, recordings = run.config, self._recordings
         if isinstance(config, RaceConfig):
             spec = race_scene(config)
-            original = self._original(config.branch_from) if config.branch_from else None
             return RaceShow(
                 spec,
                 config.steps,
                 self._clock,
                 lambda: recordings.race(run.id),
                 world=config.world,
-                original=original,
+                original=original_of(config, self._store, recordings),
             )
         if not isinstance(config, TrainingConfig):
             raise InvalidInput(f"{run.id!r} is an {run.kind}; on stage are trainings and races")
@@ -257,15 +256,6 @@ class Stage:
             world=lambda: self._world,
             fell_at_step=(run.result or {}).get("fell_at_step"),
         )
-
-    def _original(self, branch: Branch) -> Original | None:
-        """Return the race from which another branched off; None if it was deleted meanwhile."""
-        try:
-            world = world_of(self._store.get(branch.race_id))
-            lanes = self._recordings.race(branch.race_id)
-        except HexapodError:
-            return None
-        return Original(branch.step, world, lanes) if lanes else None
 
     def _pace(self, run_id: str) -> float | str:
         """Return the present pace of a training: its last change, or the configured one."""

@@ -82,6 +82,7 @@ class PushArrows(Temporary):
                 shape.faces,
                 color=PUSH,
                 side="double",
+                receive_shadow=False,
                 position=(float(x), float(y), float(lane.qpos[2])),
                 wxyz=(math.cos(half), 0.0, 0.0, math.sin(half)),
             )

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
-from app.stage.race_show import RaceShow
+from app.stage.race_show import Original, RaceShow
 from app.stage.scene_spec import race_scene
 from app.stage.show import RunLabel
 from app.viewer.scene import StageScene
@@ -18,7 +18,11 @@ _LAST_FRAME_S = 2.0
 
 
 def recorded_stream(
-    config: RaceConfig, lanes: Sequence[LaneRecording], name: str = "Race", clock: Clock = "paper"
+    config: RaceConfig,
+    lanes: Sequence[LaneRecording],
+    name: str = "Race",
+    clock: Clock = "paper",
+    original: Original | None = None,
 ) -> bytes:
     """Render a race as the stage shows it, photo finish included, with the camera on the leader.
 
@@ -27,12 +31,13 @@ def recorded_stream(
         lanes: its complete recording.
         name: name of the race.
         clock: clock that times it.
+        original: the race from which it branched off, if it is known.
 
     Returns:
         the file in the format of the installed viser, whose version is part of the file.
     """
     spec = race_scene(config)
-    show = RaceShow(spec, config.steps, clock, lambda: lanes, world=config.world)
+    show = RaceShow(spec, config.steps, clock, lambda: lanes, world=config.world, original=original)
     show.advance(0.0, None, run_ended=True)
     duration_s = show.duration_s or 0.0
     speed = duration_s / MAX_LENGTH_S if duration_s > 2 * MAX_LENGTH_S else None

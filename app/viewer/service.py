@@ -14,6 +14,7 @@ from app.events.bus import EventBus
 from app.runs.clocks import Clock
 from app.runs.config import RaceConfig
 from app.runs.recording import LaneRecording
+from app.stage.race_show import Original
 from app.stage.stage import Stage
 from app.viewer.hub import Hub
 from app.viewer.recorded_stream import recorded_stream
@@ -59,11 +60,16 @@ class ViewerService:
         await asyncio.to_thread(self._resources.close)
 
     def recorded_stream(
-        self, config: RaceConfig, lanes: Sequence[LaneRecording], name: str, clock: Clock
+        self,
+        config: RaceConfig,
+        lanes: Sequence[LaneRecording],
+        name: str,
+        clock: Clock,
+        original: Original | None,
     ) -> bytes:
         """Return a race as a `.viser` file; only one is rendered at a time."""
         with self._recording_lock:
-            return recorded_stream(config, lanes, name, clock)
+            return recorded_stream(config, lanes, name, clock, original)
 
     def _open(self) -> None:
         server = self._resources.enter_context(in_process_viser())

@@ -5,7 +5,8 @@ import pytest
 import viser
 import zstandard
 
-from app.runs.config import RaceConfig
+from app.runs.config import Branch, RaceConfig
+from app.stage.race_show import original_of
 from app.viewer.recorded_stream import MAX_LENGTH_S, recorded_stream
 from tests.stage.stage_parts import StageParts
 
@@ -16,6 +17,13 @@ def decoded_header(data: bytes) -> dict[str, object]:
     size = int.from_bytes(inner[:8], "little")
     body: dict[str, object] = msgspec.msgpack.decode(inner[8 : 8 + size])
     return body
+
+
+def node_names(data: bytes) -> set[str]:
+    """Return the names of all scene nodes in a file."""
+    messages = decoded_header(data)["messages"]
+    assert isinstance(messages, list)
+    return {message.get("name", "") for _, message in messages}
 
 
 def test_file_has_the_whole_race_and_visers_version(parts: StageParts) -> None:
@@ -33,6 +41,20 @@ def test_file_has_the_whole_race_and_visers_version(parts: StageParts) -> None:
     assert isinstance(messages, list)
     texts = [m["updates"]["text"] for _, m in messages if "text" in m.get("updates", {})]
     assert any(text.endswith("done") for text in texts)
+
+
+def test_film_of_a_fork_has_the_original_as_ghosts(parts: StageParts) -> None:
+    original = parts.finished_race(("greedy",), steps=3)
+    run = parts.finished_race(("q-learning",), steps=3, branch_from=Branch(original.id, 1))
+    config, lanes = run.config, parts.recordings.race(run.id) or []
+    assert isinstance(config, RaceConfig)
+
+    with_ghosts = recorded_stream(
+        config, lanes, original=original_of(config, parts.store, parts.recordings)
+    )
+
+    assert "/world/cast/originals/0" in node_names(with_ghosts)
+    assert "/world/cast/originals/0" not in node_names(recorded_stream(config, lanes))
 
 
 def test_long_race_is_played_faster(parts: StageParts) -> None:
