@@ -47,7 +47,7 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         "--out",
         type=Path,
         metavar="FILE",
-        help="add the distances to this table, where they are farther than those in it; what it has "
+        help="add the distances to this table where they are farther than its own; what it has "
         "of this width and version is not computed again",
     )
     parser.set_defaults(run=run)
