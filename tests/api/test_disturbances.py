@@ -6,7 +6,8 @@ import pytest
 
 from app.assembly import build_walkers
 from app.domain.world import named_world, world
-from app.runs.config import Branch, RaceConfig, lane_config
+from app.runs.best_known import best_known_m
+from app.runs.config import Branch, RaceConfig, WalkingProblem, lane_config
 from app.runs.racing import record_race
 from tests.api.calls import WALK, Api, refused
 
@@ -182,3 +183,19 @@ def test_a_searcher_knows_the_start_unless_its_lane_says_otherwise() -> None:
 
     assert config.world == named_world("limp-pair")
     assert known == told > unaware + 0.03
+
+
+def test_robot_differs_from_its_design_by_the_tolerance(api: Api) -> None:
+    body = {**MUJOCO, "agent": "q-learning", "steps": 2, "evaluate_every": 0, "world": "limp-pair"}
+    plain, built, again = (
+        api.finished(api.start("/trainings", {**body, "seed": 3, **given}))
+        for given in ({}, {"tolerance": 0.1}, {"tolerance": 0.1})
+    )
+
+    assert (plain["config"]["tolerance"], built["config"]["tolerance"]) == (0.0, 0.1)
+    assert built["result"] == again["result"]
+    assert built["result"]["distance_m"] != plain["result"]["distance_m"]
+    best_m = best_known_m(WalkingProblem(gait=MUJOCO["gait"], world=named_world("limp-pair")))
+    assert best_m is not None
+    assert plain["result"]["best_known_m"] == built["result"]["best_known_m"] == best_m
+    assert api.get(f"/trainings/{plain['id']}/curve")["best_known_m"] == best_m
