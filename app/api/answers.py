@@ -334,10 +334,14 @@ class Evaluation(Answer):
 
 
 class CurveView(Answer):
-    """A learning curve, and the greedy agent's distance [m] as its reference."""
+    """A learning curve with its references: greedy's distance, and the best known one [m].
+
+    Both are of the world as it is now; the best known is null where it was not computed.
+    """
 
     evaluations: list[Evaluation]
     greedy_distance_m: float | None
+    best_known_m: float | None
 
 
 class ActionValue(Answer):

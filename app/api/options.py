@@ -137,6 +137,7 @@ _HELP = {
     "gaits": "Which gaits are tried.",
     "robots": "Which robots are tried.",
     "observations": "Which observations are tried.",
+    "worlds": "Which worlds are tried.",
     "agents": "Which agents learn or search, and are compared with each other.",
     "settings": "Combinations of values; each is tried over all seeds.",
     "trials": "Settings times seeds; agents that look ahead are tried once.",

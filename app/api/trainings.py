@@ -17,9 +17,12 @@ from app.archive import table_import
 from app.domain.disturbances import as_mapping
 from app.domain.errors import InvalidInput
 from app.runs import tables
+from app.runs.best_known import best_known_m
+from app.runs.config import TrainingConfig
 from app.storage.artifact_file import closing_after
 from app.storage.errors import Conflict
 from app.storage.json_text import finite
+from app.storage.run import Run, world_of
 from app.storage.stored_tables import open_table, read_rows
 
 router = run_routes("training")
@@ -82,13 +85,25 @@ def get_curve(
     run_id: RunPath,
     format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
 ) -> Response:
-    """Return the evaluations so far, and the one-step look-ahead agent's distance to compare."""
+    """Return the evaluations so far, with greedy's and the best known distance to compare."""
     run = find(services, "training", run_id)
     rows = services.store.evaluations(run_id)
     if negotiated(request, format, ("json", "csv")) == "csv":
         return attachment(curves.as_csv(rows), "text/csv; charset=utf-8", f"curve-{run_id}.csv")
-    shown = {"evaluations": rows, "greedy_distance_m": run.greedy_distance_m}
+    shown = {
+        "evaluations": rows,
+        "greedy_distance_m": run.greedy_distance_m,
+        "best_known_m": _best_known_m(run),
+    }
     return JSONResponse(finite(shown))
+
+
+def _best_known_m(run: Run) -> float | None:
+    """Return the best known distance in a training's world as it is now [m], if it is known."""
+    if not isinstance(run.config, TrainingConfig):
+        return None
+    step = min(run.done, run.config.steps - 1)
+    return best_known_m(run.config, world_of(run).as_of(step))
 
 
 @router.get(

@@ -47,7 +47,8 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         "--out",
         type=Path,
         metavar="FILE",
-        help="add the distances to this table; those that it has already are not computed again",
+        help="add the distances to this table where they are farther than its own; what it has "
+        "of this width and version is not computed again",
     )
     parser.set_defaults(run=run)
 
@@ -69,8 +70,7 @@ def run(options: argparse.Namespace) -> int:
             if _key(row) not in done:
                 found = best_known.search(build_simulator(walk, options.threads), options.width)
                 print(f"{' '.join(names.values())}: {found:.3f} m", flush=True)
-                rows = [one for one in rows if {**one, **names} != one]
-                rows.append({**row, "distance_m": round(found, 6)})
+                rows = _with({**row, "distance_m": round(found, 6)}, rows)
                 if options.out:
                     _write(options.out, rows)
             bar.update(task, advance=1)
@@ -92,8 +92,23 @@ def _problems(options: argparse.Namespace) -> Iterable[tuple[dict[str, str], Wal
                 yield names, WalkingProblem(gait=gait, robot=one, world=walks)
 
 
+def _with(row: dict[str, Any], rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return a table with one more row, or with that of the same walk that came farther."""
+    same = [_walk(one) == _walk(row) for one in rows]
+    if not any(same):
+        return [*rows, row]
+    return [
+        row if is_same and row["distance_m"] > one["distance_m"] else one
+        for one, is_same in zip(rows, same, strict=True)
+    ]
+
+
+def _walk(row: Mapping[str, Any]) -> tuple[Any, ...]:
+    return tuple(row[name] for name in ("robot", "world", "gait"))
+
+
 def _key(row: Mapping[str, Any]) -> tuple[Any, ...]:
-    return tuple(row[name] for name in ("robot", "world", "gait", "width", "version"))
+    return (*_walk(row), row["width"], row["version"])
 
 
 def _read(path: Path) -> list[dict[str, Any]]:

@@ -2,8 +2,9 @@
 
 - `types`: arrays, cells and actions; `errors`: the exception hierarchy; `text`: validation and
   escaping of names.
-- `robot`: morphology, servos and presets; `gait`: orientation and leg pairs; `grid`: the foot
-  grid; `observation`: how the state is read, and the legal actions.
+- `robot`: morphology, servos and presets; `tolerance`: robots as they are built; `gait`:
+  orientation and leg pairs; `grid`: the foot grid; `observation`: how the state is read, and the
+  legal actions.
 - `disturbances`: what can happen to a robot or the ground, by kind; `world`: all that happens in a
   run, and the conditions of each step.
 - `feet`: foot offsets and the kinematic law of a step; `kinematics`: inverse and forward

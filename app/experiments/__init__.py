@@ -1,4 +1,4 @@
-"""The paper's experiments repeated over many seeds, and their evaluation.
+"""Experiments over many seeds, the paper's and in other worlds, and their evaluation.
 
 - `config`: the experiments' parameters; `plan`: the grid of settings and their trials; `trial`:
   one trial (practice, walk, race) and its result.
@@ -8,7 +8,8 @@
 - `progress`: runs the remaining trials of an experiment and collects their outcomes; `folder`: the
   same with an append-only results file, from which it resumes.
 - `statistics`, `measures`, `setting_results`, `summary`: interquartile means, bootstrap intervals
-  and comparisons, from single results up to the summary document.
+  and comparisons, from single results up to the summary document; `worlds`: the part of a league
+  or recovery.
 - `published`: the paper's Table 1; `claims`: the paper's claims and their verdicts;
   `narrative`: explanatory text; `report`: HTML page, figures and CSV; `formatting`: numbers and
   names as text.

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Literal, get_args
 
+from app.agents.registry import learns
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import PAPER_OBSERVATIONS, Observation
@@ -194,6 +195,13 @@ def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentCo
     for name in specified:
         if name not in valid:
             raise UnknownName(f"field of {experiment}", name, valid)
+    if experiment == "recovery":
+        for agent in specified.get("agents", usual_agents):
+            if not learns(agent):
+                raise InvalidInput(
+                    f"{agent} does not learn, so it does not recover; greedy is there as a "
+                    "reference anyway"
+                )
     settings = {
         name: tuple(_normalized(value, own) for value in specified[name])
         if name in specified

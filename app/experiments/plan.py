@@ -121,7 +121,8 @@ class Plan:
             numbered = [(i, s) for i, s in enumerate(self.settings) if s.role == role]
             for seed_number in range(max((self.count(s) for _, s in numbered), default=0)):
                 for index, setting in numbered:
-                    yield self._trial(index, setting, seed_number)
+                    if seed_number < self.count(setting):
+                        yield self._trial(index, setting, seed_number)
 
     def _trial(self, index: int, setting: Setting, seed_number: int) -> Trial:
         # Where the seed draws the robot, all agents walk with the same ones.

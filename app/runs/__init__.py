@@ -7,5 +7,6 @@
 `clocks` computes decision and motion times of a race, `results` its distances, times and ranks.
 `tables` takes, restores, encodes and validates checkpoints; `table_file` reads a Q-table from its
 file row by row.
+`best_known` searches for the farthest walks, and has those that are kept.
 `seeding` spawns independent random generators from one seed.
 """

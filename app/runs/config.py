@@ -250,7 +250,7 @@ disturb disturbance disturbances elapsed_s experiment failed finished from gaits
 half_side_m help high high_m iqm_m json keep_learning key lanes low low_m mean_m n name
 observations out plans_with points_m practice probability published reaches_greedy relative
 relative_finished retry robots role run scheduler seeds start step table tls_ca tls_cert tls_key
-total training training_id verdict walk walkers workers
+total training training_id verdict walk walkers workers worlds
 """
 RESERVED = frozenset(_RESERVED.split())
 """Names that mean something else beside the settings in requests, answers, files or commands."""

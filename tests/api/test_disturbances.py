@@ -6,7 +6,8 @@ import pytest
 
 from app.assembly import build_walkers
 from app.domain.world import named_world, world
-from app.runs.config import Branch, RaceConfig, lane_config
+from app.runs.best_known import best_known_m
+from app.runs.config import Branch, RaceConfig, WalkingProblem, lane_config
 from app.runs.racing import record_race
 from tests.api.calls import WALK, Api, refused
 
@@ -217,3 +218,19 @@ def test_options_are_compressed_once_and_revalidated(api: Api) -> None:
     assert api.call("GET", "/options", headers=known).status_code == 304
     plain = api.call("GET", "/options", headers={"Accept-Encoding": "identity"})
     assert plain.json() == first.json()
+
+
+def test_robot_differs_from_its_design_by_the_tolerance(api: Api) -> None:
+    body = {**MUJOCO, "agent": "q-learning", "steps": 2, "evaluate_every": 0, "world": "limp-pair"}
+    plain, built, again = (
+        api.finished(api.start("/trainings", {**body, "seed": 3, **given}))
+        for given in ({}, {"tolerance": 0.1}, {"tolerance": 0.1})
+    )
+
+    assert (plain["config"]["tolerance"], built["config"]["tolerance"]) == (0.0, 0.1)
+    assert built["result"] == again["result"]
+    assert built["result"]["distance_m"] != plain["result"]["distance_m"]
+    best_m = best_known_m(WalkingProblem(gait=MUJOCO["gait"], world=named_world("limp-pair")))
+    assert best_m is not None
+    assert plain["result"]["best_known_m"] == built["result"]["best_known_m"] == best_m
+    assert api.get(f"/trainings/{plain['id']}/curve")["best_known_m"] == best_m

@@ -127,8 +127,8 @@ def test_same_idempotency_key_returns_the_same_experiment(serve: Serve) -> None:
 @pytest.mark.parametrize(
     ("body", "words"),
     [
-        ({}, "experiment is missing; it must be one of table1, figure4, sweep"),
-        ({"experiment": "table2"}, "one of table1, figure4, sweep"),
+        ({}, "experiment is missing; it must be one of table1, figure4, sweep, league, recovery"),
+        ({"experiment": "table2"}, "one of table1, figure4, sweep, league, recovery"),
         ({"seeds": 0}, "seeds must be a whole number from 1 to 10,000"),
         ({"seeds": 2.5}, "seeds must be"),
         ({"seed": -1}, "seed must be"),
@@ -153,6 +153,11 @@ def test_same_idempotency_key_returns_the_same_experiment(serve: Serve) -> None:
         ({"blocks": 2}, "blocks"),
         ({"experiment": "table1", "alpha": [0.1]}, "alpha"),
         ({"experiment": "figure4", "steps": [100]}, "steps"),
+        ({"experiment": "league", "alpha": None, "worlds": ["moon"]}, "limp-pair"),
+        ({"experiment": "league", "alpha": None, "tolerance": 0.3}, "tolerance"),
+        ({"experiment": "league", "alpha": None, "tolerance": 0.1}, "mujoco"),
+        ({"experiment": "recovery", "alpha": None, "worlds": ["ice:at=5"]}, "ice"),
+        ({"worlds": ["ice"]}, "worlds"),
         ({"seeds": 10_000, "alpha": [n / 100 for n in range(1, 51)]}, "trials"),
         ({"gamma": [n / 200 for n in range(100)], "alpha": [n / 100 for n in range(1, 101)]},
          "settings"),
@@ -180,7 +185,7 @@ def test_experiment_cannot_be_shown_on_stage(serve: Serve) -> None:
 def test_options_describe_every_experiment(api: Api) -> None:
     options = api.get("/options")
     shown = {one["name"]: one for one in options["experiments"]}
-    assert list(shown) == ["table1", "figure4", "sweep"]
+    assert list(shown) == ["table1", "figure4", "sweep", "league", "recovery"]
     assert shown["table1"]["defaults"]["robots"] == ["stiff", "compliant"]
     assert shown["table1"]["defaults"]["seeds"] == 30
     assert shown["figure4"]["defaults"]["blocks"] == 8
@@ -209,3 +214,28 @@ def test_what_if_compares_chosen_with_default_settings(api: Api) -> None:
     assert (answer["seeds"], len(answer["chosen"]["distances_m"])) == (30, 30)
     assert (answer["chosen"]["alpha"], answer["default"]["alpha"]) == (0.7, 0.3)
     assert answer["compute_s"] > 0
+
+
+@pytest.mark.parametrize("experiment", ["league", "recovery"])
+def test_league_and_recovery_run_on_the_server(experiment: str, api: Api) -> None:
+    body = {
+        "experiment": experiment,
+        "seeds": 3,
+        "simulator": "kinematic",
+        "gaits": "left-right-origin",
+        "agents": ["q-learning", "linear-model"],
+        "worlds": "noise",
+        "steps": 30,
+        "workers": 1,
+    }
+    run = api.finished(api.start("/experiments", body))
+    # greedy, greedy that plans without the noise, two learners; three seeds of each
+    assert run["progress"] == {"done": 12, "total": 12}
+    assert (run["config"]["worlds"], run["config"]["tolerance"]) == (["noise"], 0.0)
+    worlds = api.get(f"/experiments/{run['id']}/summary")["worlds"]
+    assert {one["agent"]: one["n"] for one in worlds} == {
+        "greedy": 3,
+        "q-learning": 3,
+        "linear-model": 3,
+    }
+    assert f"figures/{experiment}-1.png" in run["result"]["files"]

@@ -53,6 +53,7 @@ def test_curve_has_the_evaluations_as_json_and_csv(api: Api, trained: dict[str, 
     assert [row["step"] for row in curve["evaluations"]] == [50, 100]
     assert curve["evaluations"][-1]["distance_m"] == trained["result"]["distance_m"]
     assert curve["greedy_distance_m"] == pytest.approx(24.833 * 0.02, abs=1e-3 * 0.02)
+    assert curve["best_known_m"] is None  # it is computed in MuJoCo
     response = api.call(
         "GET", f"/trainings/{trained['id']}/curve", headers={"Accept": "text/csv, */*;q=0.1"}
     )

@@ -24,6 +24,21 @@ def test_distances_are_kept_and_not_computed_again(tmp_path: Path) -> None:
     assert "flat" not in printed[1]
 
 
+def test_farther_walk_replaces_a_shorter_one(tmp_path: Path) -> None:
+    command = ("best-known", "--gait", "left-right-origin", "--world", "flat", "--width", "1")
+    found = []
+    for distance_m in (0.1, 9.0):
+        row = {"robot": "stiff", "world": "flat", "gait": "left-right-origin", "width": 48}
+        old = {**row, "version": "0", "distance_m": distance_m}
+        (tmp_path / "known.json").write_text(json.dumps({"distances": [old]}))
+        assert in_process(*command, "--out", "known.json", folder=tmp_path).returncode == 0
+        found.append(json.loads((tmp_path / "known.json").read_text("utf-8"))["distances"])
+
+    ((farther,), (kept,)) = found
+    assert (farther["width"], kept) == (1, old)
+    assert 0.4 < farther["distance_m"] < 0.6
+
+
 @pytest.mark.parametrize(
     ("arguments", "names"),
     [

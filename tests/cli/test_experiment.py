@@ -138,7 +138,7 @@ def test_full_disk_ends_the_sweep_and_finished_trials_are_stored(tmp_path: Path)
         (("experiment", "table1", "--robot", "stiff,sloth"), "stiff, compliant, slippery"),
         (("experiment", "table1", "--robot", "stiff,stiff"), "robots names something twice"),
         (("experiment", "table1", "--simulator", "matrix"), "mujoco, kinematic"),
-        (("experiment", "table1", "--agent", "greedy"), "--agent is for figure4 and sweep"),
+        (("experiment", "table1", "--agent", "greedy"), "--agent is for the other experiments"),
         (
             ("experiment", "figure4", "--agent", "skynet"),
             "linear-model, greedy, two-step",
@@ -178,3 +178,34 @@ def test_foreign_results_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "mine" / TRIALS).write_text('{"format": 9, "versions": {}, "config": {}}\n')
     sentence = refusal(*SWEEP, "--out", "mine", folder=tmp_path, run=in_process)
     assert "results in format 9" in sentence
+
+
+def test_league_compares_agents_in_worlds(tmp_path: Path) -> None:
+    league = ("experiment", "league", *ONE_GAIT, "--agent", "linear-model,informed", "--seeds", "3")
+    done = output(*league, "--steps", "30", "--world", "flat,noise", folder=tmp_path)
+    # flat: greedy and informed once, noise: also the nominal greedy, of three seeds each
+    assert done["trials"]["total"] == (2 + 3) + (3 * 3 + 3)
+    assert {one["world"] for one in done["worlds"]} == {"flat", "noise"}
+    folder = tmp_path / "league-results"
+    assert len(kept(folder)) == done["trials"]["total"]
+    assert (folder / "figures" / "league-2.svg").is_file()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "names"),
+    [
+        (("table1", "--world", "ice"), "--world is for league and recovery"),
+        (("figure4", "--tolerance", "0.03"), "--tolerance is for league and recovery"),
+        (("league", "--world", "moon"), "limp-pair"),
+        (("league", "--tolerance", "0.5"), "from 0 to 0.2"),
+        (("league", "--simulator", "kinematic", "--world", "ice"), "the kinematic simulator knows"),
+        (("recovery", "--world", "limp:legs=9"), "legs 1 to 6"),
+        (("recovery", "--world", "limp:legs=1:at=4"), "leave out at and until"),
+        (("recovery", "--agent", "greedy"), "greedy does not learn"),
+    ],
+)
+def test_invalid_worlds_and_tolerances_are_refused(
+    arguments: tuple[str, ...], names: str, tmp_path: Path
+) -> None:
+    assert names in refusal("experiment", *arguments, folder=tmp_path, run=in_process)
+    assert not list(tmp_path.iterdir())

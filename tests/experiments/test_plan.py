@@ -177,6 +177,7 @@ def test_searchers_walk_once_where_nothing_varies() -> None:
     }
     # greedy, informed, nominal greedy; q-learning
     assert found == {"ice": [1, 1, 1, 3], "noise": [3, 3, 3, 3]}
+    assert len(list(laid_out.trials())) == laid_out.total
 
 
 def test_only_the_nominal_greedy_plans_with_the_design() -> None:
@@ -189,7 +190,7 @@ def test_only_the_nominal_greedy_plans_with_the_design() -> None:
 
 
 def test_recovery_begins_after_the_practice() -> None:
-    settings = plan("recovery", seeds=1, **{**ONE_GAIT, "worlds": ("limp-pair",)}).settings
+    settings = plan("recovery", seeds=1, gaits=ONE_GAIT["gaits"], worlds=("limp-pair",)).settings
     learner, searcher = settings[-1], settings[0]
     assert learner.trial.evaluations == (100, 101, 125, 150, 200, 250)
     assert learner.training.world.change_steps == (100,)
