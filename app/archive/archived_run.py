@@ -63,6 +63,7 @@ class _TrainingResult(UntrustedInput, frozen=True):
     greedy_distance_m: _OptionalMetres
     q_table_sha256: Annotated[str, Meta(pattern="^[0-9a-f]{64}$")] | None
     fell_at_step: Step | None = None
+    best_known_m: _OptionalMetres = None
 
 
 class _Figures(UntrustedInput, frozen=True):

@@ -60,6 +60,7 @@ class _Result(UntrustedInput, frozen=True):
     transitions: Large
     wall: list[_Lane] | None
     failure: PortableText | None
+    earned_m: Annotated[list[Metres], Meta(max_length=1_000)] | UnsetType = UNSET
 
 
 class _Row(UntrustedInput, frozen=True):

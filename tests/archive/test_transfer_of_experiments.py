@@ -12,6 +12,10 @@ from app.agents.registry import OURS
 from app.archive import archive
 from app.archive.archived_trials import TRIALS
 from app.archive.transfer import export_run
+from app.experiments.config import experiment_config
+from app.experiments.engine import Outcome
+from app.experiments.plan import Plan
+from app.experiments.trial import run_trial
 from app.storage.database.store import RunStore
 from app.storage.run import SUMMARY, State
 from tests.archive.test_transfer import Change, _set, imported, refusal, repacked, rewritten
@@ -148,3 +152,18 @@ def test_report_files_must_match_their_names(source: RunStore) -> None:
     allowed = _set("files", ["summary.json", "figures/x.png"], "run", "result")
     painted = repacked(rewritten(data, allowed), **{"figures/x_png": b"GIF", "trials_csv": None})
     assert "which is no PNG" in refusal(painted)
+
+
+def test_rewards_of_a_recovery_are_preserved(store: RunStore, tmp_path: Path) -> None:
+    given = {"seeds": 1, "simulator": "kinematic", "gaits": ("left-right-origin",), "steps": (5,)}
+    config = experiment_config("recovery", {**given, "agents": ("q-learning",)})
+    trials = list(Plan(config).trials())
+    rows = [Outcome(trial.key, run_trial(trial.config), None, 0.1).as_json() for trial in trials]
+    run = experiment(RUN_ID, state="stopped", config=config, total=3, done=len(rows), workers=1)
+    store.create(run)
+    store.append_trials(RUN_ID, rows)
+
+    with opened(tmp_path, None) as target:
+        assert imported(export_run(store, RUN_ID), target).config == config
+        assert list(target.trials(RUN_ID)) == list(store.trials(RUN_ID))
+        assert len(target.trials(RUN_ID)[-1]["result"]["earned_m"]) == 6

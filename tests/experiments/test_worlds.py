@@ -110,6 +110,6 @@ def test_report_shows_each_world_with_its_references(experiment: str) -> None:
 
     assert "Two limp legs, Left-right, opposite; best known" in text
     assert "Slope:degrees=4, Left-right, opposite</figcaption>" in text
-    assert "Greedy, plans with the robot as designed on flat ground" in text
+    assert "Greedy, nominal model" in text
     assert "within 3&nbsp;% of its design" in text
     assert ("Earned in 1–50" in text) == (experiment == "recovery")

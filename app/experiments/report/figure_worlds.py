@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 
 from app.agents.appearance import title_of
 from app.domain.text import metres
-from app.experiments.formatting import gait_name, world_name
+from app.experiments.formatting import world_name
 from app.experiments.report.drawing import (
     INK,
     MUTED,
@@ -48,8 +48,8 @@ def _panel(
     _draw(
         ax, entries, "after it happened" if summary["experiment"] == "recovery" else "of practice"
     )
-    ax.set_title(gait_name(place[1]), pad=12)
     title = place_name(place, summary)
+    ax.set_title(title.removeprefix(f"{world_name(place[0])}, "), pad=12)
     return Picture(name, title, _alt(entries, title), one)
 
 

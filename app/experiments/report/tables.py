@@ -192,7 +192,7 @@ def place_name(place: tuple[str, ...], summary: Mapping[str, Any]) -> str:
 
 def agent_name(one: Mapping[str, Any]) -> str:
     """Return an agent's title, and what a searcher plans with unless it is the world."""
-    nominal = ", plans with the robot as designed on flat ground"
+    nominal = ", nominal model"
     return title_of(one["agent"]) + (nominal if one["plans_with"] == "nominal" else "")
 
 
