@@ -53,12 +53,13 @@ def test_sweep_prints_its_progress_and_writes_a_report(tmp_path: Path) -> None:
 
 
 def test_table1_prints_json_and_adds_seeds_in_the_same_folder(tmp_path: Path) -> None:
-    table1 = ("experiment", "table1", *ONE_GAIT, "--robot", "stiff", "--out", "here")
-    first = output(*table1, "--seeds", "2", folder=tmp_path)
+    settings = ("--robot", "stiff", "--out", "here", "--workers", "1")
+    table1 = ("experiment", "table1", *ONE_GAIT, *settings)
+    first = output(*table1, "--seeds", "2", folder=tmp_path, run=in_process)
     # 2 readings × (greedy, two-step, 2 practices over 2 seeds, 1 race by the wall)
     assert first["trials"]["done"] == first["trials"]["total"] == 2 * (2 + 2 * 2 + 1)
     before = kept(tmp_path / "here")
-    more = output(*table1, "--seeds", "3", "--workers", "1", folder=tmp_path)
+    more = output(*table1, "--seeds", "3", folder=tmp_path, run=in_process)
     assert more["trials"]["done"] == 2 * (2 + 2 * 3 + 1)
     assert before.items() < kept(tmp_path / "here").items()
     assert {lane["agent"] for timed in more["timed"] for lane in timed["lanes"]} == {
@@ -109,8 +110,9 @@ def test_interrupted_sweep_is_resumed_by_the_same_command(tmp_path: Path) -> Non
 
 
 def test_full_disk_ends_the_sweep_and_finished_trials_are_stored(tmp_path: Path) -> None:
+    sweep = [sys.executable, "-m", "app.cli", *SWEEP, "--workers", "1"]
     done = subprocess.run(
-        ["sh", "-c", 'ulimit -f 8; exec "$0" "$@"', sys.executable, "-m", "app.cli", *SWEEP],
+        ["sh", "-c", 'ulimit -f 8; exec "$0" "$@"', *sweep],
         cwd=tmp_path,
         env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin"},
         capture_output=True,

@@ -1,0 +1,48 @@
+"""A shorter OpenAPI document, for the gate: few of the bodies that the same functions build."""
+
+from typing import Any
+
+AGENTS = ("QLearning", "Beam")
+"""The default one, which learns, and a search with settings of its own."""
+DISTURBANCES = ("Limp", "Patch")
+"""One of the robot, with a list, and one of the ground."""
+
+
+def shortened(contract: dict[str, Any]) -> dict[str, Any]:
+    """Return an OpenAPI document whose bodies have few agents, few disturbances and their settings.
+
+    The operation that disturbs a running training keeps all kinds of disturbances.
+    """
+    short: dict[str, Any] = _with_few_choices(contract)
+    schemas = short["components"]["schemas"]
+    settings = {
+        name: set(one["properties"]) for name, one in schemas.items() if name.endswith("Training")
+    }
+    kept = set().union(*(names for name, names in settings.items() if name.startswith(AGENTS)))
+    for name in set().union(*settings.values()) - kept:
+        schemas["ExperimentBody"]["properties"].pop(name, None)
+    return short
+
+
+def _with_few_choices(part: Any) -> Any:
+    if isinstance(part, list):
+        return [_with_few_choices(one) for one in part]
+    if not isinstance(part, dict):
+        return part
+    short = {name: _with_few_choices(one) for name, one in part.items()}
+    if _is_choice_of("QLearningTraining", short) or _is_choice_of("QLearningLane", short):
+        short["oneOf"] = [one for one in short["oneOf"] if _name_of(one).startswith(AGENTS)]
+    disturbances = short.get("disturbances", {}).get("items", {})
+    if _is_choice_of("LimpDisturbance", disturbances):
+        few = [one for one in disturbances["oneOf"] if _name_of(one).startswith(DISTURBANCES)]
+        short["disturbances"]["items"] = {"oneOf": few}
+    return short
+
+
+def _is_choice_of(name: str, schema: dict[str, Any]) -> bool:
+    """Tell whether a schema is a choice of several, of which one has this name."""
+    return name in {_name_of(one) for one in schema.get("oneOf", ())}
+
+
+def _name_of(reference: dict[str, str]) -> str:
+    return reference.get("$ref", "").rpartition("/")[2]
