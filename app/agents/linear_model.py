@@ -328,6 +328,14 @@ class LinearModel:
             "tuned_optimism": np.array([self._tuned_optimism]),
         }
 
+    def continue_from(self, state: AgentState) -> None:
+        """Load what was learned, but not the optimism that was tuned.
+
+        Raises:
+            ValueError: if it is of another number of pairs or cells.
+        """
+        self.load({**state, "tuned_optimism": np.array([np.nan])})
+
     def load(self, state: AgentState) -> None:
         """Restore a state that `state` returned.
 

@@ -38,6 +38,7 @@ from app.storage.run import (
     Run,
     config_as_json,
     run_config_from_json,
+    world_of,
 )
 
 FORMAT = 1
@@ -230,6 +231,8 @@ def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
         if not isinstance(run.config, TrainingConfig):
             raise ValueError(f"it is no training but a {run.kind}, and has changes")
         check_change(change, run.config.agent)
+    if isinstance(run.config, TrainingConfig):
+        world_of(run).check(run.config.robot, run.config.simulator, run.config.steps)
     _check_curve(run, curve)
     _check_lanes(run)
 

@@ -11,6 +11,7 @@ from app.archive.untrusted_input import Metres, Name, Share, Step
 from app.domain.disturbances import disturbance
 from app.domain.errors import DamagedFile, HexapodError, UnknownName
 from app.domain.settings import complete
+from app.domain.world import world
 from app.runs import seeding, tables
 from app.runs.config import TrainingConfig, agent_settings, changeable_settings, config_from_json
 from app.runs.tables import Checkpoint
@@ -28,6 +29,10 @@ class TableMeta(msgspec.Struct):
     next_action: tuple[int, int] | None = None
     next_epsilon: Share = 0.0
     changes: list[dict[str, Any]] = []
+    disturbances: list[dict[str, Any]] = []
+    measured_in: list[dict[str, Any]] = []
+    fell_at_step: Step | None = None
+    newest_epsilon: Share = 0.0
 
 
 def checked_table(
@@ -60,6 +65,8 @@ def checked_table(
             raise ValueError("its next action is not on the grid")
         for change in meta.changes:
             check_change(change, config.agent)
+        for happened in (meta.disturbances, meta.measured_in):
+            world(happened).check(config.robot, config.simulator, config.steps)
         seeding.load(np.random.default_rng(0), meta.rng)
         _check_state(checkpoint, config.agent)
     except HexapodError:

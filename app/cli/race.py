@@ -18,7 +18,7 @@ from app.cli.options import (
     walk_from,
 )
 from app.cli.terminal import progress, show_lanes
-from app.domain.errors import InvalidInput
+from app.domain.errors import InvalidInput, UnknownName
 from app.domain.settings import declared_fields
 from app.runs.clocks import CLOCKS, check_clock
 from app.runs.config import LaneConfig, RaceConfig, agent_settings, as_json, lane_config
@@ -83,10 +83,10 @@ def _lane(text: str, observation: Any) -> tuple[LaneConfig, Checkpoint | None]:
     agent, _, path = head.partition("=")
     values = dict(zip(given[::2], given[1::2], strict=True))
     declared = {**declared_fields(LaneConfig), **agent_settings(agent)}
-    settings: dict[str, Any] = {
-        name: declared[name].parse(value) if name in declared else value
-        for name, value in values.items()
-    }
+    for name in values:
+        if name not in declared:
+            raise UnknownName(f"setting of a {agent} lane", name, declared)
+    settings: dict[str, Any] = {name: declared[name].parse(value) for name, value in values.items()}
     table = read_table(path) if path else None
     if table is not None:
         if table.meta["agent"] != agent:

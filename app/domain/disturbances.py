@@ -102,6 +102,8 @@ class Disturbance:
 class _OfLegs(Disturbance):
     """Something that happens to legs, given by their numbers from 1."""
 
+    part: ClassVar[Key] = ()
+    """The part of a leg to which it happens; by default all of it."""
     legs: tuple[int, ...]
 
     def __post_init__(self) -> None:
@@ -118,7 +120,7 @@ class _OfLegs(Disturbance):
         object.__setattr__(self, "legs", tuple(sorted(legs)))
 
     def parts(self) -> "Mapping[Key, Disturbance]":
-        return {("leg", leg): replace(self, legs=(leg,)) for leg in self.legs}
+        return {("leg", leg, *self.part): replace(self, legs=(leg,)) for leg in self.legs}
 
     def check(self, robot: Robot) -> None:
         for leg in self.legs:
@@ -139,6 +141,7 @@ class Limp(_OfLegs):
     kind = "limp"
     title = "Limp legs"
     help = "The servos of these legs have no power: the legs hang and are dragged along."
+    part = ("power",)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -195,6 +198,7 @@ class Weak(_OfLegs):
     kind = "weak"
     title = "Weak servos"
     help = "The servos of these legs have only a share of their torque."
+    part = ("power",)
     torque_share: Annotated[
         float, Gt(0), Le(1), Setting(title="Share of torque", help="1 is all of it.")
     ]
@@ -207,6 +211,11 @@ class Repair(_OfLegs):
     kind = "repair"
     title = "Repaired legs"
     help = "These legs work again as they were built."
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.until_step is not None:
+            raise InvalidInput("repair: a repaired leg stays so; leave out until_step")
 
 
 @dataclass(frozen=True, kw_only=True)

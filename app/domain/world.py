@@ -32,6 +32,9 @@ from app.domain.errors import InvalidInput, UnknownName
 from app.domain.robot import Robot
 
 MAX_DISTURBANCES = 20
+"""Maximum that a request may start with."""
+MAX_IN_A_RUN = 200
+"""Maximum with all that happens while it runs."""
 KINEMATIC_KINDS = (SensorNoise.kind,)
 """Kinds that the kinematic simulator knows, which has no ground and no servos."""
 D = TypeVar("D", bound=Disturbance)
@@ -58,6 +61,8 @@ class World:
         for number, one in enumerate(self.disturbances):
             for other in self.disturbances[:number]:
                 _check_compatible(other, one)
+        for one in self.disturbances:
+            _check_possible(self, one)
 
     def __bool__(self) -> bool:
         return bool(self.disturbances)
@@ -71,9 +76,9 @@ class World:
         Raises:
             InvalidInput: if not; the message names what is valid.
         """
-        if len(self.disturbances) > MAX_DISTURBANCES:
+        if len(self.disturbances) > MAX_IN_A_RUN:
             raise InvalidInput(
-                f"a run has at most {MAX_DISTURBANCES} disturbances, not {len(self.disturbances)}"
+                f"a run has at most {MAX_IN_A_RUN} disturbances, not {len(self.disturbances)}"
             )
         for one in self.disturbances:
             one.check(robot)
@@ -116,7 +121,7 @@ class World:
             for key, part in one.parts().items():
                 newest[key] = replace(part, at_step=0, until_step=None)
         lasting = [one for one in newest.values() if not isinstance(one, Repair)]
-        return World(tuple(sorted(lasting, key=repr)))  # one order, so that equal ones are equal
+        return _conditions(lasting)
 
     def then(self, one: Disturbance) -> "World":
         """Return the world in which something else happens, after what begins in the same step.
@@ -181,40 +186,74 @@ def world(data: Iterable[Mapping[str, Any]]) -> World:
     return World(tuple(disturbance(one) for one in data))
 
 
+def _conditions(disturbances: Iterable[Disturbance]) -> World:
+    """Return a world of what holds at once, which was checked before; in one order."""
+    conditions = object.__new__(World)
+    object.__setattr__(conditions, "disturbances", tuple(sorted(disturbances, key=repr)))
+    return conditions
+
+
 def _covers(one: Disturbance, key: Key) -> bool:
     """Whether a disturbance replaces an earlier one of this key: of a leg all of its joints."""
     return any(key[: len(own)] == own for own in one.parts())
 
 
 def _check_compatible(one: Disturbance, other: Disturbance) -> None:
-    """Check that two disturbances can hold together, or that the later replaces the earlier.
+    """Check that two disturbances do not begin at once if they are of the same thing.
 
     Raises:
         InvalidInput: if they contradict each other.
     """
-    first, second = sorted((one, other), key=lambda d: d.at_step)
-    if isinstance(one, Push) or isinstance(other, Push) or not first.holds_at(second.at_step):
+    if one.at_step != other.at_step or isinstance(one, Push) or isinstance(other, Push):
         return
-    is_later = second.at_step > first.at_step
-    if isinstance(one, Patch) and isinstance(other, Patch):
-        if (one.from_m, one.to_m) != (other.from_m, other.to_m):
-            is_contradiction = one.from_m < other.to_m and other.from_m < one.to_m
-        else:
-            is_contradiction = not is_later
-    elif {type(one), type(other)} == {Patch, Rough}:
-        is_contradiction = True  # patches lie on flat ground
-    else:
-        replaces = is_later and (not isinstance(first, Lost) or isinstance(second, Lost | Repair))
-        shared = any(_covers(first, key) for key in second.parts()) or any(
-            _covers(second, key) for key in first.parts()
-        )
-        is_contradiction = shared and not replaces
-    if is_contradiction:
+    if any(_covers(one, key) for key in other.parts()) or any(
+        _covers(other, key) for key in one.parts()
+    ):
         raise InvalidInput(
-            f"{first.kind} at step {first.at_step:,} and {second.kind} at step "
-            f"{second.at_step:,} contradict each other; let one end before the other begins, or "
-            "leave one out"
+            f"{one.kind} and {other.kind} at step {one.at_step:,} contradict each other; let one "
+            "begin later, or leave one out"
         )
+
+
+def _check_possible(world: World, one: Disturbance) -> None:
+    """Check that something can happen, by what holds just before.
+
+    Raises:
+        InvalidInput: if it contradicts that.
+    """
+    if isinstance(one, Push | Repair):
+        return
+    earlier = [d for d in world.disturbances if d.at_step <= one.at_step and d is not one]
+    for held in _held_at(earlier, one.at_step):
+        same = any(_covers(held, key) for key in one.parts())
+        is_lost = isinstance(held, Lost) and same and not isinstance(one, Lost)
+        if is_lost or _is_patch_on_bumps(one, held) or _overlap(one, held):
+            raise InvalidInput(
+                f"{one.kind} at step {one.at_step:,} contradicts {held.kind}, which holds then; "
+                "let one end before the other begins, or leave one out"
+            )
+
+
+def _held_at(disturbances: Iterable[Disturbance], step: int) -> tuple[Disturbance, ...]:
+    """Return what holds in a step, by its newest, leg by leg."""
+    unchecked = object.__new__(World)
+    object.__setattr__(unchecked, "disturbances", tuple(disturbances))
+    return unchecked._conditions_at(step).disturbances
+
+
+def _is_patch_on_bumps(one: Disturbance, other: Disturbance) -> bool:
+    """Whether one is a patch and the other rough ground: patches lie on flat ground."""
+    rough = one if isinstance(one, Rough) else other
+    is_rough = isinstance(rough, Rough) and rough.amplitude_m > 0
+    return is_rough and (isinstance(one, Patch) or isinstance(other, Patch))
+
+
+def _overlap(one: Disturbance, other: Disturbance) -> bool:
+    """Whether two patches lie on each other, without being the same."""
+    if not isinstance(one, Patch) or not isinstance(other, Patch) or one.parts() == other.parts():
+        return False
+    places = (one.from_m, one.to_m), (other.from_m, other.to_m)
+    return places[0] != places[1] and one.from_m < other.to_m and other.from_m < one.to_m
 
 
 class NamedWorld(NamedTuple):
@@ -258,8 +297,9 @@ WORLDS: Mapping[str, NamedWorld] = {
     ),
     "lost-leg": NamedWorld("Lost leg", "Leg 2 is gone.", World((Lost(legs=(2,)),))),
     "weak": NamedWorld(
-        "Weak servos", "All servos have a third of their torque.",
-        World((Weak(legs=(1, 2, 3, 4, 5, 6), torque_share=0.33),)),
+        "Weak legs",
+        "Legs 1 to 4 have a third of their torque.",
+        World((Weak(legs=(1, 2, 3, 4), torque_share=0.33),)),
     ),
     "noise": NamedWorld(
         "Sensor noise", "Feet are measured 4 mm wrong.", World((SensorNoise(sd_m=0.004),))

@@ -30,7 +30,8 @@ class JobControl:
         exiting: whether `checkpoint_and_exit` arrived: end with a checkpoint, to be resumed later.
         changes: changes of rates and pace and disturbances during the run, each with the number of
             steps done.
-        disturb: lets something happen to a training, given in plain types.
+        disturb: lets something happen to a training, given in plain types; returns it with the step
+            in which it begins.
     """
 
     def __init__(
@@ -44,7 +45,7 @@ class JobControl:
         """
         self.stopped = self.exiting = False
         self.changes: list[dict[str, Any]] = []
-        self.disturb: Callable[[Mapping[str, Any]], None] = _refuse
+        self.disturb: Callable[[Mapping[str, Any]], Mapping[str, Any]] = _refuse
         self.send = send
         self._commands = commands
         self._paused = False
@@ -231,19 +232,17 @@ class JobControl:
 
     def _apply(self, changes: Mapping[str, Any], step: int, agent: object) -> None:
         if "disturbance" in changes:
-            self.disturb(changes["disturbance"])
+            changes = {**changes, "disturbance": self.disturb(changes["disturbance"])}
         others = ("pace", "disturbance")
         rates = {name: value for name, value in changes.items() if name not in others}
         if rates and isinstance(agent, Tunable):
             agent.tune(**rates)
         if "pace" in changes:
             self.keep_pace(changes["pace"], self._step_s)
-        if "disturbance" in changes:  # as it happens
-            changes = {**changes, "disturbance": {**changes["disturbance"], "at_step": step}}
         self.changes.append({"step": step, **changes})
 
 
-def _refuse(disturbance: Mapping[str, Any]) -> None:
+def _refuse(disturbance: Mapping[str, Any]) -> Mapping[str, Any]:
     raise InvalidInput(f"{disturbance['kind']} can only happen to a training")
 
 

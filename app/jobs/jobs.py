@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from app.domain.disturbances import Disturbance, as_mapping
+from app.domain.disturbances import Disturbance, as_mapping, disturbance
 from app.domain.errors import HexapodError, InvalidInput, UnknownName
 from app.events.bus import EventBus
 from app.events.run_view import run_view
@@ -301,8 +301,7 @@ class Jobs:
                 world_of(run).then(soon).check(config.robot, config.simulator, config.steps)
             return {"disturbance": as_mapping(given)}
 
-        step = self._change_live(run_id, checked).step
-        return replace(given, at_step=step)
+        return disturbance(self._change_live(run_id, checked).changes["disturbance"])
 
     def _change_live(self, run_id: str, checked: Callable[[Run], Mapping[str, Any]]) -> Changed:
         """Send a change to a training's process, and wait for the acknowledgement.

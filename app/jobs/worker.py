@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.assembly import build_learner, build_walkers, finish_training
-from app.domain.disturbances import disturbance
+from app.domain.disturbances import as_mapping, disturbance
 from app.domain.errors import HexapodError
 from app.events import logs
 from app.jobs.experiment_worker import experiment
@@ -84,7 +84,7 @@ def _train(task: TrainingTask, control: JobControl) -> None:
     if task.checkpoint is not None:
         restore(learner, task.checkpoint)
         made = task.checkpoint.meta["changes"]
-    control.disturb = lambda given: learner.disturb(disturbance(given), config)
+    control.disturb = lambda given: as_mapping(learner.disturb(disturbance(given), config))
     control.restore_changes(made, task.changes, learner.step, walker.agent)
     control.send(Began((rest_qpos,), learner.step))
     control.checkpoint_regularly(lambda: Checkpointed(_saved(learner, task, control), learner.step))

@@ -20,6 +20,7 @@ from app.domain.disturbances import (
     Payload,
     Rough,
     Slope,
+    Stuck,
     Weak,
 )
 from app.domain.robot import Robot
@@ -39,7 +40,7 @@ _ROUGH_BUMP_M = 0.08
 """Distance between independent heights; those between are interpolated."""
 _ROUGH_BASE_M = 0.1
 _ROUGH_MARGIN_M = 0.64
-"""Ground beyond the square, for legs of a robot near its edge."""
+"""Ground beyond the square, for legs of a robot near its edge; more for larger robots."""
 
 
 def apply_conditions(
@@ -53,7 +54,9 @@ def apply_conditions(
         conditions: a result of `World.as_of`.
         forward_deg: azimuth of the gait's forward direction in the body frame.
     """
-    for one in conditions.disturbances:
+    # All geoms are there before their friction is set, and a jammed servo has its power back last.
+    later = (Friction, Stuck)
+    for one in sorted(conditions.disturbances, key=lambda one: isinstance(one, later)):
         _apply(one, _Target(spec, robot, forward_deg))
     patches = sorted(conditions.all_of(Patch), key=lambda patch: patch.from_m)
     if patches:
@@ -97,6 +100,15 @@ def _weak(weak: Weak, target: _Target) -> None:
 
 
 @_apply.register
+def _stuck(stuck: Stuck, target: _Target) -> None:
+    """Let the servo hold the joint with all its torque, even without power: it is jammed."""
+    robot, servo = target.robot, target.spec.actuator(f"leg{stuck.leg}_{stuck.joint}")
+    servo.gainprm[0] = robot.servo_kp
+    servo.biasprm[1:3] = -robot.servo_kp, -robot.servo_kv
+    servo.forcerange = [-robot.servo_torque_nm, robot.servo_torque_nm]
+
+
+@_apply.register
 def _friction(friction: Friction, target: _Target) -> None:
     for geom in target.spec.geoms:
         if geom.contype:
@@ -118,12 +130,13 @@ def _rough(rough: Rough, target: _Target) -> None:
     if rough.amplitude_m == 0:
         return
     heights = rough_heights(rough)
-    margin = round(_ROUGH_MARGIN_M / _ROUGH_CELL_M)
+    margin_m = max(_ROUGH_MARGIN_M, 2 * target.robot.home_radius_m)
+    margin = round(margin_m / _ROUGH_CELL_M)
     half = heights.shape[0] // 2
     # Row and column 0 of a period lie at the origin.
     index = np.arange(-half - margin, half + margin + 1) % heights.shape[0]
     field = heights[np.ix_(index, index)]
-    radius = ROUGH_PERIOD_M / 2 + _ROUGH_MARGIN_M
+    radius = ROUGH_PERIOD_M / 2 + margin * _ROUGH_CELL_M
     target.spec.add_hfield(
         name="rough",
         size=[radius, radius, rough.amplitude_m, _ROUGH_BASE_M],
@@ -147,6 +160,7 @@ def _payload(payload: Payload, target: _Target) -> None:
         pos=payload_center_m(payload, target.robot, target.forward_deg),
         mass=payload.kg,
         priority=1,
+        friction=[target.robot.friction, 0.005, 0.0001],
         contype=1,
         conaffinity=0,
     )
@@ -166,7 +180,8 @@ def _lay_patches(spec: mujoco.MjSpec, patches: Sequence[Patch]) -> None:
     plane, behind_m = spec.geom("ground"), -_GROUND_END_M
     plane.conaffinity = 0
     for number, patch in enumerate(patches):
-        _add_strip(spec, f"ground{number}", behind_m, patch.from_m)
+        if patch.from_m > behind_m:
+            _add_strip(spec, f"ground{number}", behind_m, patch.from_m)
         strip = _add_strip(spec, f"patch{number}", patch.from_m, patch.to_m)
         strip.friction = [patch.friction, *strip.friction[1:]]
         strip.priority = 2  # its friction counts, not that of the feet

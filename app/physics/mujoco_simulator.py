@@ -138,7 +138,7 @@ class MujocoSimulator:
         conditions = self.world.as_of(state.steps)
         batch = self._batches_of(conditions).single
         pushes = self.world.pushes_at(state.steps)
-        moved = self._onto_period(state, conditions)
+        moved = self._placed(state, conditions)
         (end,), (reward,), recorded = self._advance(
             batch, conditions, [moved], [action], record=record, pushes=pushes
         )
@@ -165,7 +165,7 @@ class MujocoSimulator:
             return self._expand_by_conditions(states, actions)
         conditions = self.world.as_of(as_of or 0)
         batch = self._batches_of(conditions, len(states)).many
-        moved = [self._onto_period(state, conditions) for state in states]
+        moved = [self._placed(state, conditions) for state in states]
         ends, rewards, _ = self._advance(batch, conditions, moved, actions, record=False)
         return Expansion(ends, np.array(rewards))
 
@@ -291,17 +291,31 @@ class MujocoSimulator:
             targets[:, :, joint_index(stuck.leg, stuck.joint)] = stuck.angle_rad
         return targets, delayed
 
-    def _onto_period(self, state: MujocoState, conditions: World) -> MujocoState:
-        """Move a state by whole periods of rough ground to the one around the origin."""
-        if not conditions or conditions.one_of(Rough) is None:
+    def _placed(self, state: MujocoState, conditions: World) -> MujocoState:
+        """Return a state as the ground needs it.
+
+        On rough ground it is moved by whole periods to the one around the origin, and lifted over
+        the bumps as they begin; on other ground its row has the position in the world.
+        """
+        if not conditions and not any(state.origin_m):
             return state
-        shift = ROUGH_PERIOD_M * np.round(state.row[1:3] / ROUGH_PERIOD_M)
-        if not shift.any():
+        rough = conditions.one_of(Rough)
+        shift = np.negative(state.origin_m)
+        if rough is not None:
+            shift = ROUGH_PERIOD_M * np.round(state.row[1:3] / ROUGH_PERIOD_M)
+        begins = rough is not None and self._begins(rough, state.steps)
+        if not shift.any() and not begins:
             return state
         row = state.row.copy()
         row[1:3] -= shift
+        if rough is not None and begins:
+            row[3] += rough.amplitude_m
         x, y = np.add(state.origin_m, shift).tolist()
         return replace(state, row=_read_only_copy(row), origin_m=(x, y))
+
+    def _begins(self, rough: Rough, step: int) -> bool:
+        """Whether the ground gets these bumps in a step after the start."""
+        return step > 0 and self.world.as_of(step - 1).one_of(Rough) != rough
 
     def _reward(self, before: FloatArray, after: FloatArray) -> float:
         """Return the displacement along the robot's horizontal forward direction at the start [m].

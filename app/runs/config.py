@@ -429,6 +429,8 @@ class RaceConfig(WalkingProblem):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.branch_from is not None:
+            check_whole("branch_from.step", self.branch_from.step, 0, self.steps - 1)
         if not 1 <= len(self.lanes) <= MAX_LANES:
             raise InvalidInput(f"a race has 1 to {MAX_LANES} lanes, not {len(self.lanes)}")
         if self.steps * len(self.lanes) > MAX_RACE_STEPS:
@@ -481,7 +483,7 @@ def config_from_json(data: Mapping[str, Any]) -> TrainingConfig | RaceConfig:
     if "lanes" in values:
         lanes = tuple(_lane_from_json(lane) for lane in values.pop("lanes"))
         branch = values.pop("branch_from", None)  # earlier versions had none
-        branch_from = None if branch is None else Branch(**branch)
+        branch_from = None if branch is None else Branch(str(branch["race_id"]), branch["step"])
         return RaceConfig(**values, lanes=lanes, branch_from=branch_from)
     settings = {name: values.pop(name) for name in list(values) if name not in _TRAINING_FIELDS}
     return TrainingConfig(**values, settings=SettingValues(settings))

@@ -9,7 +9,7 @@ import hashlib
 import io
 import json
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -74,6 +74,7 @@ def snapshot(learner: Learner, config: TrainingConfig, **more: Any) -> Checkpoin
         "config": as_json(config),
         "disturbances": [as_mapping(one) for one in learner.world.disturbances],
         "fell_at_step": learner.fell_at_step,
+        "newest_epsilon": learner.newest_epsilon,
         "measured_in": [as_mapping(one) for one in learner.measured_in.disturbances],
         **more,
     }
@@ -97,6 +98,7 @@ def restore(learner: Learner, checkpoint: Checkpoint) -> None:
     walker.simulator.world = world(meta.get("disturbances", ()))
     learner.measured_in = world(meta.get("measured_in", ()))
     learner.fell_at_step = meta.get("fell_at_step")
+    learner.newest_epsilon = meta.get("newest_epsilon", 0.0)
     walker.agent.load(checkpoint.part(_AGENT))
     walker.place(walker.simulator.load(checkpoint.part(_STATE)))
     seeding.load(learner.rng, meta["rng"])
@@ -122,7 +124,7 @@ def continue_from(learner: Learner, checkpoint: Checkpoint) -> None:
     if isinstance(agent, Tabular):
         agent.continue_from(agent_state(checkpoint))
     else:
-        load_agent(agent, checkpoint)
+        _load(agent, checkpoint, getattr(agent, "continue_from", agent.load))
     try:
         seeding.load(learner.rng, checkpoint.meta["rng"])
     except (KeyError, TypeError, ValueError) as error:
@@ -140,9 +142,13 @@ def load_agent(agent: Agent, checkpoint: Checkpoint) -> None:
     Raises:
         TableMismatch: if the checkpoint is of another agent.
     """
+    _load(agent, checkpoint, agent.load)
+
+
+def _load(agent: Agent, checkpoint: Checkpoint, load: Callable[[Arrays], None]) -> None:
     try:
         # A copy, which the agent may change: others race with the same checkpoint.
-        agent.load({name: array.copy() for name, array in agent_state(checkpoint).items()})
+        load({name: array.copy() for name, array in agent_state(checkpoint).items()})
     except (IndexError, KeyError, TypeError, ValueError) as error:
         raise TableMismatch(
             f"{type(agent).__name__} cannot load what {checkpoint.meta['agent']} has learned; "

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from app.domain.disturbances import Disturbance
+from app.domain.disturbances import Disturbance, SensorNoise
 from app.domain.posture import has_fallen
 from app.domain.simulator import Motion
 from app.domain.types import Action
@@ -35,6 +35,7 @@ class Learner:
         next_action: the action that an on-policy agent has chosen to take next.
         next_epsilon: ε when it was chosen.
         fell_at_step: the first step in which the robot fell, counted from 0; None if it did not.
+        newest_epsilon: ε of the newest step.
     """
 
     walker: Walker
@@ -49,6 +50,7 @@ class Learner:
     next_action: Action | None = None
     next_epsilon: float = 0.0
     fell_at_step: int | None = None
+    newest_epsilon: float = 0.0
 
     @property
     def epsilon(self) -> float:
@@ -66,23 +68,29 @@ class Learner:
         """Return what holds in the next step, or after the last of `steps` steps in that one."""
         return self.world.as_of(min(self.step, steps - 1))
 
-    def disturb(self, disturbance: Disturbance, config: TrainingConfig) -> None:
+    def disturb(self, disturbance: Disturbance, config: TrainingConfig) -> Disturbance:
         """Let something happen from the next step on; an evaluation in the new world is due.
 
         Args:
-            disturbance: what happens; its `at_step` is replaced by the next step.
+            disturbance: what happens. Its `at_step` is replaced by the next step, of sensor noise
+                by the one after: the feet were measured already.
             config: the training's config.
+
+        Returns:
+            the disturbance, with the step in which it begins.
 
         Raises:
             InvalidInput: if it cannot happen to this robot, contradicts the world, or the training
                 has no more steps.
         """
-        world = self.world.then(replace(disturbance, at_step=self.step))
+        next_step = self.step + isinstance(disturbance, SensorNoise)
+        made = replace(disturbance, at_step=next_step)
+        world = self.world.then(made)
         world.check(config.robot, config.simulator, config.steps)
         self.walker.simulator.world = world
-        self.walker.place(self.walker.state)
-        if config.evaluate_every > 0:
-            self.due_epsilon = self.epsilon
+        if config.evaluate_every > 0 and next_step == self.step:
+            self.due_epsilon = self.newest_epsilon
+        return made
 
 
 def train(
@@ -106,6 +114,7 @@ def train(
         if learner.step == config.steps:
             return
         epsilon, episode = learner.epsilon, learner.step // config.steps_per_episode
+        learner.newest_epsilon = epsilon
         taken, earned_m = _practise(learner, episode, epsilon, record), learner.episode_reward_m
         has_ended = learner.step % config.steps_per_episode == 0 or learner.step == config.steps
         # Complete the state before the yield: the caller may checkpoint the learner there.

@@ -50,7 +50,8 @@ def test_something_happens_while_a_training_runs(api: Api) -> None:
     now = api.look(run)
     assert made == {"kind": "sensor-noise", "at_step": made["at_step"], "sd_m": 0.004}
     assert made["at_step"] > 0
-    assert now["changes"] == [{"step": made["at_step"], "disturbance": made}]
+    # The feet were measured already before the next step.
+    assert now["changes"] == [{"step": made["at_step"] - 1, "disturbance": made}]
 
     paused = api.tell(run, "pause").json()
     for sd_m in (0.01, 0.0):  # the second replaces the first, which began in the same step

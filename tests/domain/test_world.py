@@ -1,8 +1,12 @@
 """Worlds: which disturbances hold in a step, and which contradict each other."""
 
+from contextlib import suppress
+from dataclasses import replace
+
 import pytest
 
 from app.domain.disturbances import (
+    KINDS,
     Friction,
     Limp,
     Lost,
@@ -14,11 +18,12 @@ from app.domain.disturbances import (
     Slope,
     Stuck,
     Weak,
+    parse_disturbance,
 )
 from app.domain.errors import InvalidInput, UnknownName
-from app.domain.robot import Robot
+from app.domain.robot import Robot, robot
 from app.domain.world import (
-    MAX_DISTURBANCES,
+    MAX_IN_A_RUN,
     UNDISTURBED,
     WORLDS,
     World,
@@ -27,6 +32,22 @@ from app.domain.world import (
     world,
 )
 
+EXAMPLES = {
+    "limp": "limp:legs=1,2",
+    "stuck": "stuck:leg=2:joint=femur:angle_rad=-0.9",
+    "lost": "lost:legs=2",
+    "weak": "weak:legs=2:torque_share=0.5",
+    "repair": "repair:legs=2",
+    "slope": "slope:degrees=8",
+    "rough": "rough:amplitude_m=0.01",
+    "friction": "friction:value=0.1",
+    "patch": "patch:from_m=0.1:to_m=0.2:friction=0.05",
+    "payload": "payload:kg=1",
+    "push": "push:impulse_ns=2",
+    "sensor-noise": "sensor-noise:sd_m=0.004",
+    "delay": "delay:seconds=0.02",
+    "dead-band": "dead-band:radians=0.05",
+}
 HELD = {"leg": 2, "joint": "femur", "angle_rad": -0.9}
 
 
@@ -99,8 +120,35 @@ def test_a_push_is_in_one_step_and_not_among_the_conditions() -> None:
 )
 def test_contradictions_are_refused(one: object, other: object) -> None:
     for pair in ((one, other), (other, one)):
-        with pytest.raises(InvalidInput, match="contradict each other"):
+        with pytest.raises(InvalidInput, match="contradict"):
             World(pair)  # type: ignore[arg-type]
+
+
+def test_what_was_repaired_contradicts_nothing() -> None:
+    lost, repaired = Lost(legs=(2,)), Repair(legs=(2,), at_step=3)
+    assert World((lost, repaired, Stuck(**HELD, at_step=5)))  # type: ignore[arg-type]
+    flat = Rough(amplitude_m=0, at_step=3)
+    assert World((Rough(amplitude_m=0.01), flat, Patch(from_m=0, to_m=1, friction=1, at_step=4)))
+
+
+def test_power_and_joints_of_a_leg_are_different_things() -> None:
+    stuck = Stuck(**HELD)  # type: ignore[arg-type]
+    for power in (Limp(legs=(2,), at_step=5), Weak(legs=(2,), torque_share=0.5, at_step=5)):
+        assert stuck in World((stuck, power)).as_of(5).disturbances
+        assert len(World((stuck, power)).as_of(5).disturbances) == 2
+        assert World((power, replace(stuck, at_step=5))).as_of(5) == World((stuck, power)).as_of(5)
+        assert World((stuck, power, Repair(legs=(2,), at_step=9))).as_of(9) == UNDISTURBED
+
+
+@pytest.mark.parametrize("one", KINDS)
+@pytest.mark.parametrize("other", KINDS)
+def test_what_is_accepted_has_conditions(one: str, other: str) -> None:
+    """Every ordered pair of kinds is refused as it is made, or has conditions at any step."""
+    first = parse_disturbance(EXAMPLES[one])
+    second = replace(parse_disturbance(EXAMPLES[other]), at_step=4)
+    with suppress(InvalidInput):
+        made = World((first, second))
+        assert all(made.as_of(step).as_of(0) == made.as_of(step) for step in (0, 3, 4, 9))
 
 
 def test_what_ended_contradicts_nothing() -> None:
@@ -116,8 +164,8 @@ def test_a_run_refuses_what_it_cannot_show() -> None:
     with pytest.raises(InvalidInput, match="at_step must be from 0 to 49, the last step"):
         late.check(Robot(), "mujoco", steps=50)
     late.check(Robot(), "mujoco", steps=51)
-    many = World(tuple(SensorNoise(sd_m=0.001, at_step=i) for i in range(MAX_DISTURBANCES + 1)))
-    with pytest.raises(InvalidInput, match="at most 20 disturbances, not 21"):
+    many = World(tuple(SensorNoise(sd_m=0.001, at_step=i) for i in range(MAX_IN_A_RUN + 1)))
+    with pytest.raises(InvalidInput, match="at most 200 disturbances, not 201"):
         many.check(Robot(), "mujoco")
 
 
@@ -125,7 +173,8 @@ def test_named_worlds_suit_the_robot() -> None:
     for one in WORLDS.values():
         assert one.title
         assert one.help.endswith(".")
-        one.world.check(Robot(), "mujoco")
+        for legs in (4, 6, 8, 12):
+            one.world.check(robot({"n_legs": legs}), "mujoco")
     assert named_world("flat") == UNDISTURBED
     with pytest.raises(UnknownName, match="unknown world 'moon'; choose one of: flat, slope"):
         named_world("moon")

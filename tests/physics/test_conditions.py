@@ -1,5 +1,7 @@
 """What happens to a robot and the ground in MuJoCo, and that walks in it repeat to the last bit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -116,6 +118,8 @@ def test_friction_holds_for_all_that_touches_the_ground() -> None:
     model = build(Friction(value=0.3)).model
 
     assert model.geom("leg1_foot").friction[0] == model.geom("torso").friction[0] == 0.3
+    loaded = build(Friction(value=0.3), Payload(kg=1)).model
+    assert loaded.geom("payload").friction[0] == 0.3
 
 
 def test_a_patch_is_slippery_only_where_it_is() -> None:
@@ -127,6 +131,34 @@ def test_a_patch_is_slippery_only_where_it_is() -> None:
     assert far[-1].distance_m == pytest.approx(calm[-1].distance_m, abs=0.002)
     assert under[-1].distance_m == pytest.approx(ice[-1].distance_m, abs=0.01)
     assert abs(under[-1].distance_m - calm[-1].distance_m) > 0.02
+
+
+def test_patches_may_touch_each_other() -> None:
+    first, second = (Patch(from_m=a, to_m=a + 0.1, friction=0.1) for a in (0.1, 0.2))
+    assert build(first, second).rest().steps == 0
+
+
+def test_a_jammed_joint_holds_in_a_leg_without_power() -> None:
+    for state in walk(build(STUCK, Limp(legs=(2,))))[1:]:
+        assert joints(state)[1, 1] == pytest.approx(-0.9, abs=0.1)
+
+
+def test_bumps_that_appear_bury_no_foot() -> None:
+    early, late = (walk(build(Rough(amplitude_m=0.04, at_step=at)), 10)[-1] for at in (0, 3))
+    assert late.row[3] == pytest.approx(early.row[3], abs=0.02)
+
+
+def test_ground_after_bumps_is_where_it_was() -> None:
+    patch = Patch(from_m=-1, to_m=1, friction=0.02, at_step=1)
+    simulator = build(Rough(amplitude_m=0.01, until_step=1), patch)
+    state = simulator.step(simulator.rest(), Action(0, 2)).state
+    row = state.row.copy()
+    row[2] -= ROUGH_PERIOD_M
+    moved = replace(state, row=row, origin_m=(0.0, ROUGH_PERIOD_M))
+    ends = [simulator.step(one, Action(1, 2)).state for one in (state, moved)]
+
+    assert ends[0].distance_m == pytest.approx(ends[1].distance_m, abs=1e-9)
+    assert ends[1].origin_m == (0.0, 0.0)
 
 
 def test_a_push_moves_the_robot_in_its_direction_and_is_not_foreseen() -> None:

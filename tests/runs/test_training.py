@@ -312,6 +312,7 @@ def test_result_has_distance_greedy_distance_and_hash() -> None:
         "greedy_distance_m": learner.greedy_distance_m,
         "q_table_sha256": table_hash(learner),
         "fell_at_step": None,
+        "best_known_m": None,
     }
 
 
@@ -391,6 +392,24 @@ def test_what_happens_while_it_runs_equals_what_was_planned() -> None:
     for kind in (StepTaken, Evaluated):
         of_both = [[r for r in some if isinstance(r, kind)] for some in (told, records)]
         assert [r.distance_m for r in of_both[0]] == [r.distance_m for r in of_both[1]]
+        assert [r.epsilon for r in of_both[0]] == [r.epsilon for r in of_both[1]]
+
+
+def test_noise_that_begins_while_it_runs_spoils_no_chosen_action() -> None:
+    """An on-policy agent has chosen its next action by what it measured before."""
+    gait = "left-right-origin"
+    config = training_config(gait=gait, simulator="kinematic", agent="sarsa", steps=60)
+    for seed in range(6):
+        unbroken, saved = build_learner(replace(config, seed=seed)), None
+        for record in train(unbroken, replace(config, seed=seed)):
+            if isinstance(record, StepTaken) and record.step == 20:
+                unbroken.disturb(SensorNoise(sd_m=0.03), config)
+                saved = to_bytes(snapshot(unbroken, replace(config, seed=seed)))
+        assert saved is not None
+        resumed = build_learner(replace(config, seed=seed))
+        restore(resumed, from_bytes(saved, "it.npz"))
+        list(train(resumed, replace(config, seed=seed)))
+        assert resumed.walker.state == unbroken.walker.state
 
 
 def test_a_disturbance_needs_a_step_to_happen_in() -> None:
