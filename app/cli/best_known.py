@@ -11,6 +11,7 @@ from app.assembly import build_simulator
 from app.cli.files import check_writable, write_whole
 from app.cli.options import CommandParser, integer, split
 from app.cli.terminal import progress
+from app.domain.disturbances import SensorNoise
 from app.domain.errors import UnknownName
 from app.domain.gait import NAMED_GAITS
 from app.domain.robot import robot
@@ -19,6 +20,7 @@ from app.runs import best_known
 from app.runs.config import WalkingProblem, check_whole
 
 MAX_WIDTH = 4096
+_PHYSICAL = [name for name, one in WORLDS.items() if one.world.one_of(SensorNoise) is None]
 _COMPUTED_BY = "hexapods best-known: a beam search over the whole walk, in MuJoCo"
 
 
@@ -29,7 +31,9 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     )
     parser.add_argument("--robot", default="stiff", help="presets, with commas (default stiff)")
     parser.add_argument(
-        "--world", default=",".join(WORLDS), help=f"of {', '.join(WORLDS)} (default all)"
+        "--world",
+        default=",".join(_PHYSICAL),
+        help=f"of {', '.join(WORLDS)} (default all in which the physics differs)",
     )
     parser.add_argument(
         "--gait", default=",".join(NAMED_GAITS), help=f"of {', '.join(NAMED_GAITS)} (default all)"

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from app.domain.disturbances import SensorNoise
 from app.domain.grid import FootGrid
 from app.domain.observation import legal_actions, observe, planned_offsets
 from app.domain.robot import PRESETS
@@ -77,7 +78,7 @@ def _keep(simulator: Simulator[Any], ends: list[Any], width: int) -> list[Any]:
 def best_known_m(walk: WalkingProblem, conditions: World | None = None) -> float | None:
     """Return the kept distance of a walking problem [m]; None where it was not computed.
 
-    With a build tolerance it is that of the robot as designed.
+    With a build tolerance it is that of the robot as designed; sensor noise changes no physics.
 
     Args:
         walk: the walking problem.
@@ -88,10 +89,16 @@ def best_known_m(walk: WalkingProblem, conditions: World | None = None) -> float
         return None
     robot = next((name for name, one in PRESETS.items() if one == walk.robot), None)
     holds = walk.world.as_of(0) if conditions is None else conditions
-    world = next((name for name, one in WORLDS.items() if one.world.as_of(0) == holds), None)
+    physical = _without_noise(holds)
+    world = next((name for name, one in WORLDS.items() if one.world.as_of(0) == physical), None)
     if robot is None or world is None:
         return None
     return kept().get((robot, world, walk.resolved_gait.name))
+
+
+def _without_noise(conditions: World) -> World:
+    kept_on = (one for one in conditions.disturbances if not isinstance(one, SensorNoise))
+    return World(tuple(kept_on))
 
 
 @lru_cache(maxsize=1)

@@ -65,6 +65,7 @@ def test_distance_is_known_of_preset_robots_in_named_worlds() -> None:
     assert best_known_m(flat) == kept()["stiff", "flat", "left-right-origin"]
     assert best_known_m(limp) == kept()["stiff", "limp-pair", "left-right-origin"]
     assert best_known_m(flat, limp.world.as_of(0)) == best_known_m(limp)
+    assert best_known_m(replace(WALK, world=named_world("noise"))) == best_known_m(flat)
     assert best_known_m(replace(WALK, robot=robot("stiff"), tolerance=0.03)) == best_known_m(flat)
 
 
