@@ -23,7 +23,7 @@ from app.domain.errors import InvalidInput, UnknownName
 from app.domain.robot import AZIMUTH, MAX_LEGS, MIN_LEGS, MOUNT_RADIUS, PRESETS, RANGES
 from app.domain.settings import DeclaredSetting, declared_fields
 from app.domain.text import MAX_NAME, check_name, invisible_ranges
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.config import MAX_ID, LaneConfig, RaceConfig, TrainingConfig
 
 
 def _name(text: str) -> str:
@@ -92,7 +92,7 @@ Name = Annotated[
     ),
     AfterValidator(_name),
 ]
-RunId = Annotated[str, Field(min_length=1, max_length=64)]
+RunId = Annotated[str, Field(min_length=1, max_length=MAX_ID)]
 
 _TRAINING, _RACE = declared_fields(TrainingConfig), declared_fields(RaceConfig)
 _LANE = declared_fields(LaneConfig)

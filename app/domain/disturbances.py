@@ -15,6 +15,8 @@ from app.domain.kinematics import JOINT_LIMITS_RAD
 from app.domain.robot import MAX_LEGS, RANGES, Robot
 from app.domain.settings import Setting, declared_fields
 
+MAX_STEP = 10_000_000
+"""The highest step in which something may begin or end; no run has more."""
 Joint = Literal["coxa", "femur", "tibia"]
 Direction = Annotated[
     float,
@@ -58,12 +60,14 @@ class Disturbance:
     at_step: Annotated[
         int,
         Ge(0),
+        Le(MAX_STEP),
         Setting(title="Begins at step", help="The first step in which it holds; 0 is the start."),
     ] = 0
     until_step: (
         Annotated[
             int,
             Ge(1),
+            Le(MAX_STEP),
             Setting(title="Ends at step", help="The first step in which it no longer holds."),
         ]
         | None
@@ -403,13 +407,13 @@ def parse_disturbance(text: str) -> Disturbance:
     for part in parts:
         field, equals, value = part.partition("=")
         field = _SHORT.get(field, field)
-        if not equals or field in given:
+        if not equals or field in given or field == "kind":
             raise InvalidInput(
                 f"{text!r}: give each field once, as in limp:legs=1,4:at=25; {part!r} is not"
             )
         if field in settings:
             given[field] = settings[field].parse(value)
-        elif field == "legs" and all(leg.isdecimal() for leg in value.split(",")):
+        elif field == "legs" and all(leg.isdecimal() and len(leg) < 4 for leg in value.split(",")):
             given[field] = [int(leg) for leg in value.split(",")]
         else:
             given[field] = value

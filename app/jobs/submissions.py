@@ -11,7 +11,7 @@ from app.agents.registry import check_problem, learns, needs_practice
 from app.domain.disturbances import Disturbance
 from app.domain.errors import InvalidInput, TableMismatch
 from app.domain.kinematics import check_reach
-from app.domain.text import whole
+from app.domain.text import MAX_NAME, whole
 from app.experiments.config import GRID, ExperimentConfig
 from app.experiments.plan import Plan
 from app.runs.config import (
@@ -134,6 +134,12 @@ def new_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> li
     return [*trainings.values(), race]
 
 
+def _branch_name(original: str, step: int) -> str:
+    """Return the name of a branch; steps count from 1 there, as people count."""
+    end = f", from step {whole(step + 1)}"
+    return original[: MAX_NAME - len(end)] + end
+
+
 @dataclass(frozen=True)
 class BranchStart:
     """Request to race on from a moment of another race, with something else that happens.
@@ -178,8 +184,7 @@ def new_branch(start: BranchStart, store: RunStore, new_id: Callable[[], str]) -
     return Run(
         id=new_id(),
         kind="race",
-        # As people count: from 1.
-        name=start.name or f"{original.name}, from step {whole(step + 1)}",
+        name=start.name or _branch_name(original.name, step),
         config=replace(config, world=world, branch_from=start.branch),
         lane_training_ids=original.lane_training_ids,
         total=original.total,

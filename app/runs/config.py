@@ -33,8 +33,10 @@ from app.runs.seeding import BUILDING, generator
 _log = logging.getLogger(__name__)
 SimulatorName = Literal["mujoco", "kinematic"]
 SIMULATORS: tuple[SimulatorName, ...] = get_args(SimulatorName)
-MAX_STEPS = 10_000_000
+MAX_STEPS = disturbances.MAX_STEP
 MAX_LANES = 6
+MAX_ID = 64
+"""Maximum length of a run's id."""
 RACE_STEPS = 50
 """Default number of steps of a race, and number of steps of an evaluation (paper §5)."""
 MAX_RACE_STEPS = 300_000
@@ -430,7 +432,11 @@ class RaceConfig(WalkingProblem):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.branch_from is not None:
-            check_whole("branch_from.step", self.branch_from.step, 0, self.steps - 1)
+            race_id: Any = self.branch_from.race_id  # it may be from a file
+            step = self.branch_from.step
+            if not isinstance(race_id, str) or not race_id.isalnum() or len(race_id) > MAX_ID:
+                raise InvalidInput(f"branch_from.race_id must be the id of a race, not {race_id!r}")
+            check_whole("branch_from.step", step, 0, self.steps - 1)
         if not 1 <= len(self.lanes) <= MAX_LANES:
             raise InvalidInput(f"a race has 1 to {MAX_LANES} lanes, not {len(self.lanes)}")
         if self.steps * len(self.lanes) > MAX_RACE_STEPS:
@@ -483,7 +489,7 @@ def config_from_json(data: Mapping[str, Any]) -> TrainingConfig | RaceConfig:
     if "lanes" in values:
         lanes = tuple(_lane_from_json(lane) for lane in values.pop("lanes"))
         branch = values.pop("branch_from", None)  # earlier versions had none
-        branch_from = None if branch is None else Branch(str(branch["race_id"]), branch["step"])
+        branch_from = None if branch is None else Branch(branch["race_id"], branch["step"])
         return RaceConfig(**values, lanes=lanes, branch_from=branch_from)
     settings = {name: values.pop(name) for name in list(values) if name not in _TRAINING_FIELDS}
     return TrainingConfig(**values, settings=SettingValues(settings))
