@@ -178,7 +178,7 @@ def new_branch(start: BranchStart, store: RunStore, new_id: Callable[[], str]) -
     return Run(
         id=new_id(),
         kind="race",
-        name=start.name or f"{original.name}, from step {whole(step)}",
+        name=start.name or f"{original.name}, from step {whole(step + 1)}",  # as people count
         config=replace(config, world=world, branch_from=start.branch),
         lane_training_ids=original.lane_training_ids,
         total=original.total,

@@ -2,6 +2,7 @@
 import { computed, signal } from "@preact/signals";
 import * as api from "./api.js";
 import { configAtEnd } from "./changes.js";
+import { textOf } from "./disturbances.js";
 import {
   chooseLearner, form, link, mistakes, raceBody, setField, setFields, trainingBody, validSteps,
 } from "./form.js";
@@ -11,7 +12,9 @@ import {
 } from "./selectors.js";
 import { formRobot } from "./robots.js";
 import { agentOf, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
-import { markDeleted, options, rates, requestRun, requestStage, runs, scene, setEntry, stage } from "./store.js";
+import {
+  markDeleted, options, rates, requestRun, requestStage, runs, scene, served, setEntry, stage,
+} from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
@@ -268,14 +271,15 @@ export const deleteRun = (run) =>
  * @param {Run} run
  */
 export function copySettings(run) {
-  const { robot, agent, ...config } = run.kind === "race" ? configOfRace(run) : configAtEnd(run);
+  const { robot, agent, disturbances = [], ...config } = run.kind === "race" ? configOfRace(run) : configAtEnd(run);
   if (agent && learns(agent)) chooseLearner(agent);
   const racing = run.kind === "race" ? run.config.lanes.map((lane) => lane.agent) : [];
   const known = Object.keys({
     ...form.value, ...settingsOf([form.value.agent, ...racing]), ...laneSettings(racing),
   });
   const taken = Object.entries(config).filter(([field]) => known.includes(field) && field !== "name");
-  setFields({ ...Object.fromEntries(taken), robot: robot ? formRobot(robot) : form.value.robot });
+  const happens = { world: served().worlds[0].name, disturb: disturbances.map(textOf) };
+  setFields({ ...Object.fromEntries(taken), robot: robot ? formRobot(robot) : form.value.robot, ...happens });
 }
 
 /** The agent of a lane without training, and its settings. @param {LaneConfig} lane */

@@ -140,7 +140,8 @@ function joined(parts) {
     const { legs, ...rest } = one;
     const key = JSON.stringify({ ...rest, at_step: 0, until_step: 0, legs: Boolean(legs) });
     const before = found.get(key);
-    found.set(key, legs && before?.legs ? { ...one, legs: [...before.legs, ...legs].sort((a, b) => a - b) } : one);
+    const all = legs && before?.legs ? [...new Set([...before.legs, ...legs])].sort((a, b) => a - b) : legs;
+    found.set(key, all ? { ...one, legs: all } : one);
   }
   return [...found.values()];
 }
@@ -161,6 +162,16 @@ export function inTime(one) {
   if (one.at_step > 0 || one.kind === PUSH) words.push(from);
   if (one.until_step) words.push(`to step ${whole(one.until_step)}`);
   return words.join(" ");
+}
+
+/**
+ * What happens in the same step as one, where it is alike.
+ * @param {Disturbance[]} happenings
+ */
+export function joinedBySteps(happenings) {
+  const moments = [...new Set(happenings.map(({ at_step, until_step }) => `${at_step} ${until_step ?? ""}`))];
+  return moments.flatMap((moment) =>
+    joined(happenings.filter(({ at_step, until_step }) => `${at_step} ${until_step ?? ""}` === moment)));
 }
 
 /** What happened to each leg: "limp", "femur stuck". @param {Disturbance[]} conditions */
@@ -263,6 +274,7 @@ export function parseText(text) {
     seen.add(field);
     const { value: read, mistake } = parseField(value, kind.fields[field]);
     const title = kind.fields[field].title.toLowerCase();
+    if (mistake !== undefined && STEPS.includes(field)) return { mistake: `${kind.title}: enter a step, from 1` };
     if (mistake !== undefined) return { mistake: `${kind.title}, ${title}: ${mistake}` };
     found[field] = read;
   }

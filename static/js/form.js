@@ -1,5 +1,7 @@
 // The form's values, what was typed that is none, their query string, and the request bodies that they make.
 import { computed, signal } from "@preact/signals";
+import { isSimulated, parseText } from "./disturbances.js";
+import { listed } from "./format.js";
 import { parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
 import { agentOf, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
 import { options, served } from "./store.js";
@@ -40,7 +42,10 @@ const READERS = {
   observation: (text) => parseChoice(text, namesOf(served().observations)),
   lanes: (text) => parseChoices(text, namesOf(served().agents), limitsOf("lanes")),
   name: (text) => parseName(text, limitsOf("name")),
+  world: (text) => parseChoice(text, namesOf(served().worlds)),
 };
+/** A list of texts, each of which a link has as a part of its own. They are kept as they are, valid or not. */
+const REPEATED = "disturb";
 
 /**
  * A text as the value of a field, or why it is none.
@@ -61,8 +66,10 @@ function read(field, text, agents) {
 function commonDefaults() {
   const { training, race } = served().defaults;
   const own = settingsOf([training.agent]);
-  const common = Object.entries(training).filter(([field]) => field !== "agent" && !(field in own));
-  return { ...Object.fromEntries(common), race_steps: race.steps, name: "" };
+  const others = ["agent", "disturbances", ...Object.keys(own)];
+  const common = Object.entries(training).filter(([field]) => !others.includes(field));
+  const world = { world: served().worlds[0].name, disturb: [] };
+  return { ...Object.fromEntries(common), ...world, race_steps: race.steps, name: "" };
 }
 
 /**
@@ -134,8 +141,34 @@ export const wrong = computed(() => {
   const { lanes } = form.value;
   const ofLanes = Object.keys(laneSettings(lanes)).filter((field) => field in typed.value);
   for (const field of ofLanes) check(field, typed.value[field], lanes);
+  const { world, disturb, simulator } = form.value;
+  const impossible = disturbancesOf(world).find(({ kind }) => !isSimulated(kind, simulator));
+  if (impossible) found.world ??= { text: world, mistake: unknownTo(simulator, impossible.kind) };
+  for (const text of disturb) {
+    const mistake = mistakeInText(text, simulator);
+    if (mistake) found[REPEATED] ??= { text, mistake };
+  }
   return found;
 });
+
+/** What happens in a named world. @param {string} name */
+const disturbancesOf = (name) => served().worlds.find((world) => world.name === name)?.disturbances ?? [];
+
+/** @type {(simulator: string, kind: string) => string} */
+function unknownTo(simulator, kind) {
+  const others = served().simulators.map(({ name }) => name).filter((name) => isSimulated(kind, name));
+  return `The ${simulator} simulator knows no ${kind}: choose ${listed(others)}`;
+}
+
+/**
+ * Why a text of what happens is not valid; null if it is.
+ * @param {string} text
+ * @param {string} simulator
+ */
+export function mistakeInText(text, simulator) {
+  const { value, mistake } = parseText(text);
+  return mistake ?? (isSimulated(value.kind, simulator) ? null : unknownTo(simulator, value.kind));
+}
 
 /** Field → why its text is not valid; any entry disables the start. */
 export const mistakes = computed(() =>
@@ -200,8 +233,10 @@ const isChanged = computed(() => {
 /** The whole form as a query string, what is not valid as it was typed; empty texts are left out. */
 export function toQuery() {
   const valid = Object.entries(everyValue()).map(([field, value]) => [field, written(value)]);
-  const entries = valid.filter(([field, text]) => text !== "" && !(field in wrong.value));
-  return new URLSearchParams([...entries, ...Object.entries(wrong.value).map(([field, { text }]) => [field, text])]);
+  const entries = valid.filter(([field, text]) => text !== "" && field !== REPEATED && !(field in wrong.value));
+  const kept = Object.entries(wrong.value).filter(([field]) => field !== REPEATED);
+  const happenings = form.value.disturb.map((text) => [REPEATED, text]);
+  return new URLSearchParams([...entries, ...kept.map(([field, { text }]) => [field, text]), ...happenings]);
 }
 
 /**
@@ -224,6 +259,7 @@ export function readQuery(query) {
   const defaults = complete(found);
   const agents = [defaults.agent, ...defaults.lanes];
   const known = { ...defaults, ...served().settings, ...settingsOf(agents), ...laneSettings(agents) };
+  if (query.has(REPEATED)) found[REPEATED] = query.getAll(REPEATED);
   for (const [field, text] of query) {
     if (field in known && !(field in found) && !(field in texts)) take(field, text, agents);
   }
@@ -252,6 +288,7 @@ export const link = () =>
 
 const WALK_FIELDS = ["gait", "robot", "simulator", "divisions", "grid_side_m"];
 const RACE_FIELDS = ["race_steps", "lanes"];
+const WORLD_FIELDS = ["world", REPEATED];
 /** Fields on which what is learned does not depend. */
 const SHOW_FIELDS = ["evaluate_every", "pace"];
 
@@ -259,7 +296,17 @@ const SHOW_FIELDS = ["evaluate_every", "pace"];
 const select = (values, isWanted) =>
   Object.fromEntries(Object.entries(values).filter(([field]) => isWanted(field)));
 
-const walkFields = () => select(form.value, (field) => WALK_FIELDS.includes(field));
+const walkFields = () => ({ ...select(form.value, (field) => WALK_FIELDS.includes(field)), ...worldFields() });
+
+/** The named world and what happens besides, unless there is nothing. */
+function worldFields() {
+  const { world, disturb } = form.value;
+  const disturbances = disturb.flatMap((text) => parseText(text).value ?? []);
+  return {
+    ...(world === served().worlds[0].name ? {} : { world }),
+    ...(disturbances.length ? { disturbances } : {}),
+  };
+}
 
 const nameField = () => {
   const name = form.value.name.trim();
@@ -273,7 +320,8 @@ const ownFields = (agent) =>
 /** The practice of an agent: the fields that are common to all, and the agent's own. @param {string} agent */
 function practiceFields(agent) {
   const elsewhere = [
-    "agent", "name", "seed", ...WALK_FIELDS, ...RACE_FIELDS, ...Object.keys(laneSettings(form.value.lanes)),
+    "agent", "name", "seed", ...WALK_FIELDS, ...WORLD_FIELDS, ...RACE_FIELDS,
+    ...Object.keys(laneSettings(form.value.lanes)),
   ];
   const common = select(commonFields(), (field) => !elsewhere.includes(field));
   return { ...common, ...ownFields(agent) };
@@ -295,11 +343,12 @@ export const trainingBody = (continueFrom = null) => {
   return { agent, ...walkFields(), ...nameField(), ...practiceFields(agent), ...beginning(continueFrom) };
 };
 
-/** Request body of a what-if: the settings of the practice, without seed, pace and simulator. */
+/** Request body of a what-if, which has ideal robots: the settings of the practice, without seed, pace and world. */
 export function whatIfBody() {
   const { agent } = form.value;
   const body = { agent, ...walkFields(), ...practiceFields(agent) };
-  return select(body, (field) => field !== "simulator" && !SHOW_FIELDS.includes(field));
+  const others = ["simulator", "world", "disturbances", ...SHOW_FIELDS];
+  return select(body, (field) => !others.includes(field));
 }
 
 /**

@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getTimeline } from "./api.js";
 import { count, listed, metres } from "./format.js";
-import { clock, isActive, isToCome, raceInView, raceScene, shownRun } from "./selectors.js";
+import { clock, isActive, isToCome, originalRace, raceInView, raceScene, shownRun } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { connection, scene, stage } from "./store.js";
 
@@ -173,17 +173,20 @@ const ranked = (rows) =>
  * @param {number} number of the lane, from 0
  * @param {number} time race time that is shown [s]; Infinity after the race
  */
-function rowOf(race, { agent, training_id }, number, time) {
+function rowOf(race, { agent, training_id, plans_with }, number, time) {
   const lane = laneOf(race, number, time);
   const { seen, result } = lane;
   return {
     lane: number,
     agent,
     training_id,
+    plans_with,
     steps: seen?.steps ?? race.config.steps,
     decision_s: result?.steps ? result.decision_s / result.steps : null,
     ...placeOf(agent, seen, result),
     ...distancesOf(lane),
+    original: originalOf(number),
+    ...postureOf(lane),
     ...thinkingOf(seen),
     ...workOf(lane),
   };
@@ -221,6 +224,16 @@ function workOf({ seen, track, result, isDone, time }) {
   };
 }
 
+/**
+ * In which step the lane's robot fell, if that is shown already, and its heading at the end.
+ * @param {Lane} lane
+ */
+function postureOf({ seen, result, isDone }) {
+  const fell = result?.fell_at_step ?? null;
+  const isShown = fell !== null && (isDone || fell < (seen?.step ?? 0));
+  return { fell_at_step: isShown ? fell : null, heading_deg: isDone ? result?.heading_deg ?? null : null };
+}
+
 /** @type {(result: LaneResult | null) => ClockResult | undefined} */
 const timedResult = (result) => result?.clocks?.[clock.value];
 
@@ -253,6 +266,16 @@ function distancesOf({ seen, track, result, isDone, time }) {
     finished_m: isTimedOut.value ? timeOutDistance(track, timed) : null,
     total_m: isDone ? result?.total_distance_m ?? distance_m : null,
   };
+}
+
+/**
+ * How far a lane came in the race from which this one branches off; null without one.
+ * @param {number} number
+ */
+function originalOf(number) {
+  const result = originalRace.value?.result?.lanes?.[number];
+  const timed = timedResult(result ?? null);
+  return result && timed ? { finished_m: timed.finished_distance_m, total_m: result.total_distance_m } : null;
 }
 
 /** @param {SceneLane | null} seen */
@@ -373,13 +396,3 @@ function marginOf(rows, winner) {
  */
 export const ruleOf = (steps, clockTitle) =>
   `The furthest at time-out wins: when the first robot has used its ${count(steps, "step")} (${clockTitle}).`;
-
-/** What flat parts of a lane's line are under each clock. @type {Record<string, string>} */
-const FLAT_PARTS = {
-  paper: "Flat parts are thinking, which takes as long as it did in the paper.",
-  wall: "Flat parts are thinking, which takes as long as it did on this machine.",
-  free: "Thinking takes no time without a clock: in a flat part a robot gains no ground.",
-};
-
-/** @param {string} clockName */
-export const flatParts = (clockName) => FLAT_PARTS[clockName] ?? "Flat parts are thinking.";

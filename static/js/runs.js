@@ -49,12 +49,18 @@ export function followRuns(ids) {
   effect(requestMissing);
 }
 
-/** The runs on stage, with the trainings of its race: they may be older than those of the snapshot. */
+/** The race from which one branches off, if any. @type {(race: Run) => string[]} */
+const originalIds = ({ config: { branch_from: branch } }) => (branch ? [branch.race_id] : []);
+
+/**
+ * The runs on stage, with the trainings of its race and the race from which it branches off.
+ * They may be older than those of the snapshot.
+ */
 export const stageIds = computed(() => {
   const shown = [stage.value?.run_id, stage.value?.next_run_id].filter((id) => id !== null && id !== undefined);
   return shown.flatMap((id) => {
     const run = runs.value.get(id);
-    return run?.kind === "race" ? [id, ...trainingIds(run)] : [id];
+    return run?.kind === "race" ? [id, ...trainingIds(run), ...originalIds(run)] : [id];
   });
 });
 

@@ -101,6 +101,9 @@ export const raceInView = computed(() => {
   return races.find((race) => race.state === "finished") ?? null;
 });
 
+/** The race from which the one in view branches off. */
+export const originalRace = computed(() => get(raceInView.value?.config.branch_from?.race_id));
+
 /** The training of the learning curve. */
 export const trainingInView = computed(() => {
   if (shownRun.value?.kind === "training") return shownRun.value;
@@ -218,9 +221,11 @@ export const raceScene = computed(() =>
     : null,
 );
 
-/** The present step of the lane that has made the most, counted from 1; null without a race on stage. */
-export const stepShown = computed(() =>
-  raceScene.value ? Math.max(1, ...raceScene.value.lanes.map(({ step }) => step)) : null);
+/** The present step of the first lane that still walks, counted from 1; null if none does. */
+export const stepShown = computed(() => {
+  const walking = (raceScene.value?.lanes ?? []).filter(({ done }) => !done);
+  return walking.length ? Math.max(1, ...walking.map(({ step }) => step)) : null;
+});
 
 /** What holds in the step that is shown, of the run on stage, in words. */
 export const conditionsShown = computed(() => {

@@ -36,6 +36,16 @@ export const simulatorTitle = (name) => find(options.value?.simulators, name)?.t
 /** @param {string} name */
 export const clockTitle = (name) => find(options.value?.clocks, name)?.title ?? CLOCKS[name] ?? name;
 
+/** What flat parts of a lane's line are under each clock. @type {Record<string, string>} */
+const FLAT_PARTS = {
+  paper: "Flat parts are thinking, which takes as long as it did in the paper.",
+  wall: "Flat parts are thinking, which takes as long as it did on this machine.",
+  free: "Thinking takes no time without a clock: in a flat part a robot gains no ground.",
+};
+
+/** @param {string} clockName */
+export const flatParts = (clockName) => FLAT_PARTS[clockName] ?? "Flat parts are thinking.";
+
 /**
  * [name, title] of each, for a list of choices.
  * @param {Described[] | undefined} list
@@ -49,8 +59,8 @@ export const choicesOf = (list, nameOf) => (list ?? []).map(({ name }) => [name,
 /** @type {Record<string, string>} */
 const LABELS = {
   gait: "Gait", robot: "Robot", simulator: "Simulator", observation: "Observation", agent: "Learner", lanes: "Lanes",
-  name: "Name", experiment: "Experiment", seeds: "Seeds", gaits: "Gaits", robots: "Robots",
-  observations: "Observation", agents: "Agents",
+  name: "Name", world: "World", disturb: "What happens", experiment: "Experiment", seeds: "Seeds", gaits: "Gaits",
+  robots: "Robots", observations: "Observation", agents: "Agents",
 };
 
 /**

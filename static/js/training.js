@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getCurve, getRun } from "./api.js";
 import { rateChanges } from "./changes.js";
-import { happeningsOf } from "./disturbances.js";
+import { happeningsOf, joinedBySteps } from "./disturbances.js";
 import { trainingInView } from "./selectors.js";
 import { connection, evaluations, references, requestRun, runs, scene, setEntry } from "./store.js";
 
@@ -73,7 +73,8 @@ export const curve = computed(() => {
     if (part !== run) from += part.progress?.done ?? 0;
   }
   const greedy_m = [run, ...trainings].map(greedyOf).find(Number.isFinite) ?? null;
-  return { run, points, from, to: from + run.config.steps, greedy_m, blocks, changes, happenings };
+  const to = from + run.config.steps;
+  return { run, points, from, to, greedy_m, blocks, changes, happenings: joinedBySteps(happenings) };
 });
 
 /** A disturbance in the steps of all practice. @type {(one: Disturbance, from: number) => Disturbance} */

@@ -150,6 +150,10 @@ export interface FormValues {
   race_steps: number;
   lanes: string[];
   name: string;
+  /** The name of a world. */
+  world: string;
+  /** What happens besides, as on the command line. */
+  disturb: string[];
   [setting: string]: FormValue;
 }
 

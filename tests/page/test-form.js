@@ -24,9 +24,9 @@ beforeEach(() => {
 });
 
 test("the form begins with the server's defaults and nothing else", () => {
-  const { training } = OPTIONS.defaults;
+  const { disturbances: _, ...training } = OPTIONS.defaults.training;
   const lanes = { lanes: ["learner", "greedy"], "learner.keep_learning": false };
-  assert.deepEqual(form.value, { ...training, race_steps: 50, ...lanes, name: "" });
+  assert.deepEqual(form.value, { ...training, world: "flat", disturb: [], race_steps: 50, ...lanes, name: "" });
 });
 
 test("the address follows the form, and is clean again when the form is", () => {
@@ -244,4 +244,42 @@ test("a learner that keeps learning may begin in the race, with its settings in 
   setFields({ lanes: ["learner"], "learner.keep_learning": true, gamma: 0.5 });
   const settings = { alpha: 0.3, gamma: 0.5, epsilon_start: 1, epsilon_end: 0 };
   assert.deepEqual(raceBody({ isUnpractised: true }).lanes, [{ agent: "learner", keep_learning: true, ...settings }]);
+});
+
+test("a world and what happens are in the link, one by one, and in the requests", () => {
+  setFields({ world: "limp-pair", disturb: ["slope:degrees=8:at=25", "limp:legs=2"] });
+  const query = new URLSearchParams(location.search);
+  assert.equal(query.get("world"), "limp-pair");
+  assert.deepEqual(query.getAll("disturb"), ["slope:degrees=8:at=25", "limp:legs=2"]);
+  overrides.value = {};
+  readAddress();
+  const happens = {
+    world: "limp-pair",
+    disturbances: [{ kind: "slope", degrees: 8, at_step: 25 }, { kind: "limp", legs: [2], at_step: 0 }],
+  };
+  for (const { world, disturbances } of /** @type {any[]} */ ([trainingBody(), raceBody()])) {
+    assert.deepEqual({ world, disturbances }, happens);
+  }
+  const [{ training }] = /** @type {any[]} */ (raceBody().lanes);
+  for (const body of [training, whatIfBody()]) {
+    assert.ok(!["world", "disturb", "disturbances"].some((field) => field in body));
+  }
+  setFields({ world: "flat", disturb: [] });
+  assert.equal(location.search, "");
+  assert.ok(!("world" in trainingBody()) && !("disturbances" in trainingBody()));
+});
+
+test("what cannot happen is kept in the link as it is, explained, and holds the start", () => {
+  visit("/?disturb=limp:legs=1&disturb=fire:legs=2&world=moon");
+  readAddress();
+  assert.match(mistakes.value.disturb, /“fire” is nothing that can happen/);
+  assert.match(mistakes.value.world, /“moon” is not offered/);
+  setField("name", "a change of another field");
+  const query = new URLSearchParams(location.search);
+  assert.deepEqual([query.getAll("disturb"), query.get("world")], [["limp:legs=1", "fire:legs=2"], "moon"]);
+  setFields({ disturb: ["limp:legs=1"], world: "limp-pair", simulator: "kinematic" });
+  assert.match(mistakes.value.disturb, /The kinematic simulator knows no limp: choose mujoco/);
+  assert.match(mistakes.value.world, /knows no limp/);
+  setFields({ disturb: ["sensor-noise:sd_m=0.004"], world: "flat" });
+  assert.deepEqual(mistakes.value, {});
 });

@@ -2,9 +2,10 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  clipped, distanceAt, flatParts, headline, isTimedOut, ruleOf, shownTime, standings, timeSpent,
+  clipped, distanceAt, headline, isTimedOut, ruleOf, shownTime, standings, timeSpent,
 } from "../../static/js/race.js";
 import { applyEvent, options } from "../../static/js/store.js";
+import { flatParts } from "../../static/js/titles.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 /** @import { TimelinePoint } from "../../static/js/types.js" */

@@ -1,15 +1,15 @@
 // The race: its scoreboard, and its chart of distance against time.
 import { useMemo } from "preact/hooks";
 import uPlot from "uplot";
+import { happeningsOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
-import { clockTime, count, decision, metres, whole } from "../format.js";
-import {
-  clipped, distanceAt, flatParts, headline, isTimedOut, ruleOf, shownTime, standings, timeline,
-} from "../race.js";
-import { clock, isActive, raceInView, raceScene, simulatedPerDecision } from "../selectors.js";
+import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
+import { clipped, distanceAt, headline, isTimedOut, ruleOf, shownTime, standings, timeline } from "../race.js";
+import { filters } from "../runs.js";
+import { clock, isActive, originalRace, raceInView, raceScene, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs } from "../store.js";
-import { clockTitle } from "../titles.js";
+import { clockTitle, flatParts } from "../titles.js";
 import { practisedSteps } from "../training.js";
 import { AsTable, Empty, Plot } from "./charts.js";
 import { html, Icon } from "./elements.js";
@@ -28,10 +28,28 @@ export function Scoreboard() {
         ? html`
           <p class="headline">${headline.value}</p>
           <p class="dim">${ruleOf(rows[0].steps, clockTitle(clock.value))}</p>
+          <${BranchWords} />
           <${Board} rows=${rows} />
         `
         : html`<${StartList} />`}
     </section>
+  `;
+}
+
+/** What happens in the race, and of which one it is a branch. */
+function BranchWords() {
+  const race = raceInView.value;
+  const branch = race?.config.branch_from;
+  const happens = joinedBySteps(race ? happeningsOf(race) : []).map(inTime).join("; ");
+  if (!branch) return happens && html`<p class="happened">${sentence(happens)}.</p>`;
+  const original = originalRace.value;
+  const title = original?.name || "another race";
+  const find = () => (filters.value = { kind: "", state: "", search: branch.race_id });
+  return html`
+    <p class="happened">
+      The same as <a href="#runs" onClick=${find}>${title}</a> before step ${branch.step + 1}.
+      ${happens && ` ${sentence(happens)}.`}
+    </p>
   `;
 }
 
@@ -75,6 +93,15 @@ const Lane = ({ row, longest }) => html`
           <span>${row.hasCrossed && html`<${Icon} name="flag" />`}${activityOf(row)}</span>
           <span class="facts">${factsOf(row)}</span>
         </p>
+        ${postureOf(row) && html`<p class="happened">${postureOf(row)}</p>`}
+        <p class="dim">
+          ${row.original && html`
+            <span>
+              Original: ${metres(row.original.finished_m)} at time-out, ${metres(row.original.total_m)} in all
+            </span>
+          `}
+          <span>${knowledgeOf(row)}</span>
+        </p>
         ${row.isMarching && html`<p class="marching"><b>Marching on the spot:</b> ${reasonForMarching(row)}</p>`}
       </td>
     </tr>
@@ -96,6 +123,26 @@ function TimeStrip({ spent: { walked, thought }, longest }) {
 const factsOf = ({ decision_s, simulated }) =>
   [decision_s !== null && `${decision(decision_s)} a decision`, simulated !== null && `${whole(simulated)} simulated`]
     .filter(Boolean).join(", ");
+
+/** A robot that has turned less is said to walk straight [°]. */
+const LEAST_TURN_DEG = 20;
+
+/** Whether it fell or turned. */
+function postureOf({ fell_at_step, heading_deg }) {
+  const fell = typeof fell_at_step === "number" && `fell at step ${whole(fell_at_step + 1)}`;
+  const turned = Math.abs(heading_deg ?? 0) > LEAST_TURN_DEG &&
+    `turned ${Math.round(Math.abs(heading_deg))}° ${heading_deg > 0 ? "left" : "right"}`;
+  return sentence([fell, turned].filter(Boolean).join(", "));
+}
+
+/** What a search knows of what happens; empty if nothing does. */
+function knowledgeOf({ agent, plans_with }) {
+  const happens = raceInView.value ? happeningsOf(raceInView.value) : [];
+  if (!agentOf(agent).searches || !happens.length) return "";
+  if (plans_with === "world") return "plans with what happens";
+  if (plans_with === "nominal") return "plans with the robot as it was built, on flat ground";
+  return happens.some(({ at_step }) => at_step > 0) ? "plans with the robot as it was" : "";
+}
 
 function activityOf(row) {
   if (row.failure) return `Stopped: ${row.failure}`;

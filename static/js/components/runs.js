@@ -4,7 +4,7 @@ import { copySettings, deleteRun, isShown, pending, resumeRun, showOnStage } fro
 import { downloads } from "../api.js";
 import { changesInWords, rateChanges } from "../changes.js";
 import { paceOf } from "../experiments/runs.js";
-import { happeningsOf, inTime } from "../disturbances.js";
+import { happeningsOf, inTime, joinedBySteps } from "../disturbances.js";
 import { ago, count, listed, metres, sentence, whole } from "../format.js";
 import { formRobot, isSame } from "../robots.js";
 import { hasTable, isActive, isOperator } from "../selectors.js";
@@ -126,7 +126,7 @@ function summaryOf(run) {
     config.simulator === simulator ? "" : simulatorTitle(config.simulator),
   ];
   const own = run.kind === "race" ? ofRace(config) : ofTraining(run);
-  return [learner, ...own, ...place, ...happeningsOf(run).map(inTime)].filter(Boolean).join(" · ");
+  return [learner, ...own, ...place, ...joinedBySteps(happeningsOf(run)).map(inTime)].filter(Boolean).join(" · ");
 }
 
 const ofRace = ({ lanes, steps }) => [listed(lanes.map(laneTitle)), count(steps, "step")];

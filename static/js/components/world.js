@@ -1,5 +1,6 @@
 // What happens to a robot and its ground: a drawn hexapod whose legs are clicked, and sliders; for the training that
 // runs, and for a race that is held, which is raced on from there.
+import { signal } from "@preact/signals";
 import { useState } from "preact/hooks";
 import { branchRace, disturb, pending } from "../actions.js";
 import {
@@ -155,27 +156,32 @@ export function LiveWorld() {
 /** Shown while the replay of a race is held. */
 export const Branch = () => heldRace.value && html`<${BranchOf} key=${heldRace.value.id} race=${heldRace.value} />`;
 
+/** Kept while the replay goes on to another moment. */
+const isBranchOpen = signal(false);
+
 function BranchOf({ race }) {
   const [chosen, setChosen] = useState(/** @type {any[]} */ ([]));
   const { config } = race;
   // At the end nothing is left to walk: the middle is offered.
-  const step = Math.min(stepShown.value ?? config.steps, config.steps);
-  const isAtEnd = step >= config.steps;
-  const from = isAtEnd ? Math.floor(config.steps / 2) + 1 : step;
+  const from = stepShown.value ?? Math.floor(config.steps / 2) + 1;
   const before = conditionsAt(happeningsOf(race), from - 1);
   const conditions = conditionsAt([...before, ...chosen].map((one) => ({ ...one, at_step: 0 })), 0);
   const words = (now) => {
     const pushes = chosen.filter(({ kind }) => kind === PUSH).length ? ["a push"] : [];
     return html`<b>From step ${from}:</b> ${[...now, ...pushes].join(", ") || "as it was"}`;
   };
-  const start = () => branchRace(race, from - 1, chosen);
+  const start = () => {
+    isBranchOpen.value = false;
+    branchRace(race, from - 1, chosen);
+  };
   return html`
-    <details class="more branch">
+    <details class="more branch" open=${isBranchOpen.value}
+      onToggle=${({ target, currentTarget }) => target === currentTarget && (isBranchOpen.value = target.open)}>
       <summary>What if something had happened in this race?</summary>
       <${WorldControls} id="branch" config=${config} conditions=${conditions} sentenceOf=${words}
         onHappen=${(one) => setChosen((all) => [...all.filter((other) => !replaces(one, other)), one])}>
         <button type="button" class="secondary" disabled=${!chosen.length || pending.value.branch} onClick=${start}>
-          Race on from ${isAtEnd ? `step ${from}` : "here"}
+          Race on from ${stepShown.value === null ? `step ${from}` : "here"}
         </button>
       <//>
       <p class="sentence">Until then both races are the same. Hold the replay elsewhere for another step.</p>
