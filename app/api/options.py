@@ -2,15 +2,17 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import MISSING, fields
+from functools import lru_cache
 from typing import Annotated, Any
 
 from annotated_types import Ge, Le
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
 from app import __version__
 from app.agents.appearance import colors_of, description_of, title_of
 from app.agents.registry import OURS, keeps_learning, learns, needs_practice, searches
+from app.api.compression import CompressedContent
 from app.api.deps import ServicesDep
 from app.api.option_answers import OptionsView
 from app.domain import disturbances
@@ -54,9 +56,15 @@ router = APIRouter(prefix="/options", tags=["options"])
     response_model=OptionsView,
     summary="Gaits, robots, agents, clocks; defaults, limits and help",
 )
-def get_options(services: ServicesDep) -> Response:
+def get_options(services: ServicesDep, request: Request) -> Response:
     """Return the options, defaults, limits and help texts of all forms."""
-    return JSONResponse(catalogue(services.agents))
+    return _content(tuple(services.agents)).response(request.scope)
+
+
+@lru_cache(maxsize=1)
+def _content(agents: tuple[str, ...]) -> CompressedContent:
+    """Return the answer compressed: it is most of what a first visit transfers, and no secret."""
+    return CompressedContent(bytes(JSONResponse(catalogue(agents)).body), "application/json")
 
 
 _EXPERIMENTS = {

@@ -115,7 +115,7 @@ const fieldsInWords = (one) =>
     });
 
 /** What a kind makes of legs. @type {Record<string, string>} */
-const LEG_WORDS = { limp: "limp", lost: "lost", weak: "weak", repair: "repaired" };
+export const LEG_WORDS = { limp: "limp", lost: "lost", weak: "weak", repair: "repaired" };
 
 /** @param {number[]} legs */
 const legsInWords = (legs) => `leg${legs.length > 1 ? "s" : ""}${JOIN}${legs.join(", ")}`;

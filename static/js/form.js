@@ -358,7 +358,9 @@ export function whatIfBody() {
 function laneFields(agent) {
   const values = Object.keys(laneSettings([agent])).map((field) => [field.slice(agent.length + 1), form.value[field]]);
   const { keeps_learning } = agentOf(agent);
-  return Object.fromEntries(values.filter(([name, value]) => name !== "keep_learning" || value !== keeps_learning));
+  const isGiven = (/** @type {any[]} */ [name, value]) =>
+    value !== null && (name !== "keep_learning" || value !== keeps_learning);
+  return Object.fromEntries(values.filter(isGiven));
 }
 
 /** Agent → id of a training. @typedef {Record<string, string | undefined>} TrainingIds */

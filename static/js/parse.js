@@ -170,6 +170,7 @@ export function parseSetting(text, setting) {
     return ["true", "false"].includes(text) ? { value: text === "true" } : refused(text, setting);
   }
   if (setting.choices.includes(text)) return { value: text };
+  if (kind === "choice" && text === "" && setting.default === null) return { value: null };
   if (!setting.is_number) return setting.choices.length ? refused(text, setting) : { value: text };
   const parsed = parseNumber(text, setting, setting.is_whole);
   return parsed.mistake === undefined ? parsed : refused(text, setting);

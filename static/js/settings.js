@@ -145,16 +145,17 @@ export function settingsOf(names) {
 }
 
 /**
- * The settings of lanes, by form field such as `beam.width`: the own ones of a searcher, and whether a learner
- * keeps learning; a learner's other settings are those of its practice.
+ * The settings of lanes, by form field such as `beam.width`: the own ones of a searcher and what it knows, and
+ * whether a learner keeps learning; a learner's other settings are those of its practice.
  * @param {string[]} names of the lanes' agents
  * @returns {Record<string, SettingOption>}
  */
 export function laneSettings(names) {
   const ofLane = (/** @type {string} */ name) => {
-    const { settings, keeps_learning } = agentOf(name);
+    const { settings, searches, keeps_learning } = agentOf(name);
     const keepLearning = { ...settingOf("keep_learning"), default: keeps_learning };
-    return Object.entries(learns(name) ? { keep_learning: keepLearning } : settings);
+    const ofSearch = searches ? { plans_with: settingOf("plans_with") } : {};
+    return Object.entries(learns(name) ? { keep_learning: keepLearning } : { ...settings, ...ofSearch });
   };
   return Object.fromEntries(names.flatMap((name) => ofLane(name).map(([own, setting]) => [`${name}.${own}`, setting])));
 }

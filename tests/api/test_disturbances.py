@@ -208,3 +208,12 @@ def test_options_tell_what_can_happen(api: Api) -> None:
     assert {"greedy", "beam", "mcts"} <= searching
     assert not searching & {"q-learning", "linear-model"}
     assert options["settings"]["plans_with"]["choices"] == ["world", "nominal"]
+
+
+def test_options_are_compressed_once_and_revalidated(api: Api) -> None:
+    first = api.call("GET", "/options", headers={"Accept-Encoding": "gzip"})
+    assert first.headers["content-encoding"] == "gzip"
+    known = {"Accept-Encoding": "gzip", "If-None-Match": first.headers["etag"]}
+    assert api.call("GET", "/options", headers=known).status_code == 304
+    plain = api.call("GET", "/options", headers={"Accept-Encoding": "identity"})
+    assert plain.json() == first.json()

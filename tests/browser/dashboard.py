@@ -62,6 +62,11 @@ class Dashboard:
         """A button by its whole name."""
         return self.page.get_by_role("button", name=name, exact=True)
 
+    def unfold_settings(self) -> None:
+        """Open every group of settings, and what is folded in them."""
+        for words in ("In what", "Against whom", "More settings"):
+            self.page.locator(".settings summary", has_text=words).click()
+
     @property
     def rows(self) -> Locator:
         """The scoreboard's lanes, the leader first."""

@@ -1,4 +1,4 @@
-"""What happens to robots: a leg is broken while one practises, and a race is gone on with from its middle."""
+"""What happens to robots: a leg is broken in practice, and a race goes on from its middle."""
 
 import re
 from typing import Any
@@ -27,7 +27,7 @@ def test_a_leg_is_broken_while_a_robot_practises(
 ) -> None:
     page = dashboard.page
     dashboard.open(f"{shared_server.address}?{LONG}")
-    expect(page.get_by_role("group", name="Legs of the robot")).to_have_count(0)
+    expect(page.get_by_role("group", name="Legs, seen from above")).to_have_count(0)
     dashboard.button("Train, don’t race").click()
     leg = page.get_by_role("button", name=re.compile("^Leg 1"))
     expect(leg).to_have_attribute("aria-pressed", "false")

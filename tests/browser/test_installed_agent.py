@@ -153,7 +153,7 @@ def test_the_page_changes_it_during_a_training(
 ) -> None:
     dashboard.open(f"{served.address}?agent=wanderer&simulator=kinematic&steps=100000&pace=4")
     page = dashboard.page
-    page.get_by_text("More settings").click()
+    dashboard.unfold_settings()
     expect(page.get_by_label("Optimism")).to_have_value("0.5")
     dashboard.button("Train, don’t race").click()
     expect(page.get_by_role("slider", name="Exploration now ε")).to_be_visible()

@@ -88,7 +88,7 @@ def test_settings_of_the_learner_act_on_its_training(dashboard: Dashboard, serve
 def test_each_learner_of_a_race_has_its_own_settings(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
     dashboard.open(f"{server.address}?{SHORT}")
-    page.get_by_text("More settings").click()
+    dashboard.unfold_settings()
     page.get_by_role("checkbox", name="Two-step", exact=True).uncheck()
     learner(dashboard).select_option("Sarsa(λ)")
     expect(page.get_by_role("checkbox", name="Sarsa(λ)", exact=True)).to_be_checked()

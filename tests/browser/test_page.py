@@ -22,7 +22,11 @@ def test_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
     expect(dashboard.primary).to_have_text("Train 500 steps, then race")
     expect(page.locator(".start-list li")).to_have_count(3)
     expect(page.locator(".empty")).to_have_count(3)
-    expect(page.get_by_role("radio")).to_have_count(4)
+    # Gaits and worlds are folded until someone asks for them.
+    expect(page.locator(".group > summary")).to_contain_text(
+        ["Who learns Q-learning", "In what Left-right, opposite", "Against whom Q-learning, Greedy"]
+    )
+    expect(page.get_by_role("radio")).to_have_count(0)
     assert page.url == server.address
     page.get_by_role("link", name="Runs").click()
     expect(page.get_by_text("No runs yet.")).to_be_visible()
@@ -67,8 +71,8 @@ def test_the_button_and_the_scoreboard_stay_in_view(
     rate, its_help = dashboard.box("#field-alpha"), dashboard.box("#help-alpha")
     assert 0 <= its_help["y"] - rate["y"] - rate["height"] < 8
 
-    page.get_by_text("More settings").click()
-    expect(page.get_by_label("Robot")).to_be_in_viewport(ratio=1)
+    page.locator(".settings summary", has_text="In what").click()
+    expect(page.get_by_role("radiogroup", name="Gait")).to_be_in_viewport(ratio=1)
     expect(dashboard.primary).to_be_in_viewport(ratio=1)
     expect(page.get_by_role("region", name="Scoreboard")).to_be_in_viewport(ratio=1)
 
@@ -93,10 +97,14 @@ def test_the_button_and_the_scoreboard_stay_in_view(
 def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> None:
     page = dashboard.page
     dashboard.open(shared_server.address)
+    dashboard.unfold_settings()
     page.get_by_role("radio", name="Front-back, mirrored").check(force=True)
+    page.get_by_role("radio", name="Payload").check(force=True)
+    page.get_by_label("Add what happens").select_option("Two limp legs")
+    dashboard.button("Leg 2").click()
+    page.get_by_label("From step").fill("11")
     page.get_by_role("spinbutton", name="Practice, as a number").fill("750")
     page.get_by_role("slider", name="Discount γ").fill("0.5")
-    page.get_by_text("More settings").click()
     page.get_by_label("Robot").select_option("slippery")
     page.get_by_role("checkbox", name="Two-step", exact=True).uncheck()
     link = page.url
@@ -104,9 +112,16 @@ def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> N
 
     dashboard.open(link)
     expect(dashboard.primary).to_have_text(re.compile("^Train 750 steps"))
-    expect(page.get_by_role("radio", name="Front-back, mirrored")).to_be_checked()
     expect(page.get_by_role("slider", name="Discount γ")).to_have_value("0.5")
-    page.get_by_text("More settings").click()
+    dashboard.unfold_settings()
+    expect(page.get_by_role("radio", name="Front-back, mirrored")).to_be_checked()
+    expect(page.get_by_role("radio", name="Payload")).to_be_checked()
+    expect(page.get_by_role("group", name="Limp legs").locator("[aria-pressed=true]")).to_have_text(
+        ["1", "2", "4"]
+    )
+    expect(page.get_by_label("From step")).to_have_value("11")
+    assert "disturb=limp%3Alegs%3D1%2C2%2C4%3Aat%3D10" in page.url
+    assert dashboard.violations() == []
     expect(page.get_by_label("Robot")).to_have_value("slippery")
     expect(page.get_by_role("checkbox", name="Two-step", exact=True)).not_to_be_checked()
     page.get_by_role("button", name="Share").click()
@@ -166,7 +181,7 @@ def test_a_phone_needs_no_scrolling_sideways(
         assert top["y"] + top["height"] <= below["y"]
 
         page.locator("summary", has_text="Settings").first.click()
-        page.get_by_text("More settings").click()
+        dashboard.unfold_settings()
         assert dashboard.scroll_width() == PHONE["width"]
         assert dashboard.violations() == []
         page.mouse.wheel(0, 600)
@@ -183,7 +198,7 @@ def test_a_phone_needs_no_scrolling_sideways(
 def test_axe_finds_nothing(dashboard: Dashboard, shared_server: Serving, theme: str) -> None:
     dashboard.page.emulate_media(color_scheme="light" if theme == "light" else "dark")
     dashboard.open(shared_server.address)
-    dashboard.page.get_by_text("More settings").click()
+    dashboard.unfold_settings()
     assert dashboard.violations() == []
     dashboard.page.get_by_role("link", name="Runs").click()
     expect(dashboard.page.get_by_role("heading", name="Runs")).to_be_visible()

@@ -173,7 +173,7 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
     expect(other.page.locator(".next-rates")).to_contain_text(
         re.compile(r"with α\s0\.3, pace\smax\.$")
     )
-    other.page.get_by_text("More settings").click()
+    other.unfold_settings()
     expect(other.page.get_by_label("Pace")).to_have_value("8")
     alpha.fill("0.75")
     expect(page.get_by_role("slider", name="Learning rate α")).to_have_value("0.75")

@@ -77,7 +77,7 @@ def test_wrong_values_of_each_field_stay_and_are_explained(
 ) -> None:
     page = dashboard.page
     dashboard.open(shared_server.address)
-    page.get_by_text("More settings").click()
+    dashboard.unfold_settings()
     fields = page.locator(".settings").get_by_role("spinbutton")
     expect(page.locator(".settings input[type=number]")).to_have_count(0)
     names = check_each_field_keeps_what_is_typed(page, fields, dashboard.primary)
@@ -120,7 +120,7 @@ def test_a_link_is_kept_as_it_says(dashboard: Dashboard, shared_server: Serving)
     expect(unknown).to_be_visible()
     unknown.get_by_role("button", name="Dismiss").click()
     expect(unknown).to_have_count(0)
-    page.get_by_text("More settings").click()
+    dashboard.unfold_settings()
     for field in wrong:
         expect(page.locator(f"#mistake-{field}")).to_be_visible()
     expect(
@@ -169,7 +169,7 @@ def test_a_custom_robot_stays_whole_from_link_to_run_to_form(
     }
 
     def expect_custom_robot() -> None:
-        page.get_by_text("More settings").click()
+        dashboard.unfold_settings()
         chosen = page.get_by_label("Robot").locator("option:checked")
         expect(chosen).to_have_text("Custom: stiff, femur 0.1\u00a0m")
 

@@ -88,3 +88,20 @@ test("a race without practice is offered if all of its learners keep learning", 
   setFields({ "learner.keep_learning": true });
   assert.ok(labels().includes("Race without practice"));
 });
+
+test("what happens by a run's config is copied, and replaces what the form had", () => {
+  const { config } = makeRun({});
+  const disturbances = [{ kind: "limp", at_step: 25, legs: [1, 4] }, { kind: "slope", at_step: 0, degrees: 8 }];
+  overrides.value = { world: "limp-pair", disturb: ["limp:legs=2"] };
+  copySettings(makeRun({ config: { ...config, disturbances } }));
+  assert.deepEqual([form.value.world, form.value.disturb], ["flat", ["limp:legs=1,4:at=25", "slope:degrees=8"]]);
+  copySettings(makeRun({}));
+  assert.deepEqual(form.value.disturb, []);
+});
+
+test("what happened while it ran is no setting", () => {
+  const disturbance = { kind: "limp", at_step: 5, legs: [1] };
+  const run = makeRun({ changes: [{ step: 5, disturbance }, { step: 6, alpha: 0.5 }] });
+  assert.deepEqual(rateChanges(run).map(({ name }) => name), ["alpha"]);
+  assert.ok(!("disturbance" in configAtEnd(run)));
+});

@@ -25,7 +25,7 @@ beforeEach(() => {
 
 test("the form begins with the server's defaults and nothing else", () => {
   const { disturbances: _, ...training } = OPTIONS.defaults.training;
-  const lanes = { lanes: ["learner", "greedy"], "learner.keep_learning": false };
+  const lanes = { lanes: ["learner", "greedy"], "learner.keep_learning": false, "greedy.plans_with": null };
   assert.deepEqual(form.value, { ...training, world: "flat", disturb: [], race_steps: 50, ...lanes, name: "" });
 });
 
@@ -282,4 +282,16 @@ test("what cannot happen is kept in the link as it is, explained, and holds the 
   assert.match(mistakes.value.world, /knows no limp/);
   setFields({ disturb: ["sensor-noise:sd_m=0.004"], world: "flat" });
   assert.deepEqual(mistakes.value, {});
+});
+
+test("a search plans with what it is told to, and by default is told nothing", () => {
+  assert.deepEqual(raceBody().lanes[1], { agent: "greedy" });
+  enter("greedy.plans_with", "nominal");
+  assert.deepEqual(raceBody().lanes[1], { agent: "greedy", plans_with: "nominal" });
+  readQuery(toQuery());
+  assert.equal(form.value["greedy.plans_with"], "nominal");
+  enter("greedy.plans_with", "hope");
+  assert.match(mistakes.value["greedy.plans_with"], /“hope” is not valid/);
+  enter("greedy.plans_with", "");
+  assert.deepEqual([form.value["greedy.plans_with"], mistakes.value], [null, {}]);
 });

@@ -4,6 +4,8 @@ import { beforeEach, test } from "node:test";
 import {
   clipped, distanceAt, headline, isTimedOut, ruleOf, shownTime, standings, timeSpent,
 } from "../../static/js/race.js";
+import { stageIds } from "../../static/js/runs.js";
+import { heldRace, stepShown } from "../../static/js/selectors.js";
 import { applyEvent, options } from "../../static/js/store.js";
 import { flatParts } from "../../static/js/titles.js";
 import { makeRun, OPTIONS } from "./options.js";
@@ -139,4 +141,48 @@ test("only long decisions are shown as thinking", () => {
     lanes: [sceneLane({ ...thinking, futures_total: 12 }), sceneLane({ ...thinking, lane: 1, futures_total: 156 })],
   });
   assert.deepEqual((standings.value ?? []).map(({ isThinking }) => isThinking), [false, true]);
+});
+
+test("a race that branches off has the original's distances beside its own", () => {
+  const branch_from = { race_id: RACE.id, step: 20 };
+  const disturbances = [{ kind: "limp", at_step: 20, legs: [1] }];
+  const config = { ...RACE.config, branch_from, disturbances };
+  const race = makeRun({ ...RACE, id: "branch", created_at: "2031-01-01T00:00:00Z", config });
+  applyEvent("snapshot", { runs: [RACE, race], stage: STAGE, scene: null });
+  const originals = (standings.value ?? []).map(({ agent, original }) => [agent, original]);
+  assert.deepEqual(originals, [
+    ["greedy", { finished_m: 0.3, total_m: 0.5 }], ["learner", { finished_m: 0.2, total_m: 0.5 }],
+  ]);
+  applyEvent("stage", { ...STAGE, run_id: "branch" });
+  assert.deepEqual(stageIds.value, ["branch", RACE.id]);
+  applyEvent("snapshot", { runs: [RACE], stage: STAGE, scene: null });
+  assert.equal(standings.value?.[0].original, null);
+});
+
+test("a fall is told once it is shown, and the heading at the end", () => {
+  const lane = { ...laneResult("learner"), fell_at_step: 7, heading_deg: 35 };
+  const race = makeRun({ ...RACE, id: "fall", result: { lanes: [lane, laneResult("greedy", 2)] } });
+  const postureAt = (/** @type {number} */ step) => {
+    applyEvent("snapshot", {
+      runs: [race], stage: { ...STAGE, run_id: "fall" },
+      scene: {
+        run_id: "fall", kind: "race", clock: "paper", phase: "race", time_s: 1, knowledge: null,
+        lanes: [sceneLane({ step, done: step === 50 }), sceneLane({ lane: 1, rank: 2 })],
+      },
+    });
+    const [{ fell_at_step, heading_deg }] = standings.value ?? [];
+    return [fell_at_step, heading_deg];
+  };
+  assert.deepEqual([postureAt(7), postureAt(8), postureAt(50)], [[null, null], [7, null], [7, 35]]);
+});
+
+test("a race can be raced on while its replay is held", () => {
+  const lanes = [sceneLane({ step: 50, done: true }), sceneLane({ lane: 1, step: 12 })];
+  showScene({ phase: "race", time_s: 1, lanes });
+  assert.deepEqual([heldRace.value, stepShown.value], [null, 12]);
+  applyEvent("stage", { ...STAGE, run_id: RACE.id, playing: false });
+  assert.equal(heldRace.value?.id, RACE.id);
+  showScene({ phase: "finished", time_s: 9, lanes: lanes.map((lane) => ({ ...lane, done: true })) });
+  applyEvent("stage", { ...STAGE, run_id: RACE.id, ended: true });
+  assert.deepEqual([heldRace.value?.id, stepShown.value], [RACE.id, null]);
 });

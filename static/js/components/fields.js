@@ -174,12 +174,15 @@ function NumberControl({ name, setting, ...rest }) {
   return html`<${NumberField} field=${name} setting=${setting} step=${step} ...${rest} />`;
 }
 
-function Choice({ name, setting: { choices }, value, onValue }) {
+function Choice({ name, setting: { choices, default: first }, value, onValue }) {
   const kept = wrong.value[name];
   return html`
-    <select ...${attributesOf(name)} onChange=${({ target }) => onValue(target.value)}>
+    <select ...${attributesOf(name)} onChange=${({ target }) => onValue(target.value || null)}>
       ${kept && html`<${InvalidOption} text=${kept.text} />`}
-      ${!kept && !choices.includes(value) && html`<option value="" selected disabled>choose</option>`}
+      ${first === null && html`<option value="" selected=${!kept && value === null}>by default</option>`}
+      ${first !== null && !kept && !choices.includes(value) && html`
+        <option value="" selected disabled>choose</option>
+      `}
       ${choices.map((one) => html`<option value=${one} selected=${!kept && one === value}>${one}</option>`)}
     </select>
     <${MistakeOf} field=${name} />

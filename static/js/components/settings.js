@@ -1,27 +1,77 @@
 // The settings of a run. Those of the learner that are live also change a training that runs.
+import { useState } from "preact/hooks";
 import { tune } from "../actions.js";
 import { presentRates, rateInWords } from "../changes.js";
+import { inTime, parseText } from "../disturbances.js";
 import { chooseLearner, enter, form, setField, wrong } from "../form.js";
+import { count, listed } from "../format.js";
 import { liveTraining } from "../selectors.js";
 import {
-  agentOf, beginningOf, fullTitle, furtherSettings, kindOf, laneSettings, learners, mainSettings, quantityOf, settingOf,
-  sliderOf,
+  agentOf, beginningOf, fullTitle, furtherSettings, kindOf, laneSettings, learners, mainSettings, quantityOf,
+  ratesInWords, settingOf, settingsOf, sliderOf,
 } from "../settings.js";
 import { evaluations, options, served } from "../store.js";
-import { choicesOf, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
+import { choicesOf, gaitTitle, labelOf, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
 import { HexapodGlyph, html } from "./elements.js";
 import {
   attributesOf, Description, MistakeOf, NumberField, SelectField, SettingField, SettingRow, Slider,
 } from "./fields.js";
+import { Happenings, WorldPicker } from "./world.js";
 
 /** @import { Run } from "../types.js" */
 
 /** What the slider of the practice reaches, which is less than the server accepts: any other number can be typed. */
 const PRACTICE = { min: 50, max: 2000, step: 50 };
 
+/** In the order of a thought: who learns, in what, against whom. Each group is one line when folded. */
 export const Settings = () => html`
   <div class="settings">
-    <${GaitPicker} />
+    <${Group} title="Who learns" chosen=${learnerChosen()} fields=${learnerFields()} isFirst><${WhoLearns} /><//>
+    <${Group} title="In what" chosen=${placeChosen()} fields=${PLACE_FIELDS}><${InWhat} /><//>
+    <${Group} title="Against whom" chosen=${rivalsChosen()} fields=${rivalFields()}><${AgainstWhom} /><//>
+  </div>
+`;
+
+/** Show the opened fields where the settings scroll inside their panel. */
+const showOpened = ({ target }) => {
+  const scroller = target.closest(".folded");
+  if (target.open) scroller?.scrollTo({ top: target.offsetTop - scroller.offsetTop });
+};
+
+/** `fields` are those inside: one that is not valid is named by the summary. */
+function Group({ title, chosen, fields, isFirst = false, children }) {
+  const [isOpen, setOpen] = useState(isFirst);
+  const mistaken = fields.filter((field) => field in wrong.value).map(labelOf);
+  const onToggle = (event) => {
+    if (event.target.open !== isOpen && !isFirst) showOpened(event);
+    setOpen(event.target.open);
+  };
+  return html`
+    <details class="group" open=${isOpen} onToggle=${onToggle}>
+      <summary>
+        <b>${title}</b>${" "}
+        ${mistaken.length
+          ? html`<span class="bad">Not valid: ${listed(mistaken)}</span>`
+          : html`<span class="dim">${chosen.filter(Boolean).join(" · ")}</span>`}
+      </summary>
+      <div class="group-fields">${children}</div>
+    </details>
+  `;
+}
+
+// ---- who learns
+
+const learnerFields = () => [
+  "agent", "steps", "seed", "observation", "pace", "steps_per_episode", "evaluate_every", "name",
+  ...Object.keys(settingsOf([form.value.agent])),
+];
+
+function learnerChosen() {
+  const { agent, steps, seed } = form.value;
+  return [agentOf(agent).title, count(steps, "step"), ...ratesInWords(agent, form.value), seed && `seed ${seed}`];
+}
+
+const WhoLearns = () => html`
     <div class="sliders">
       <${Learner} />
       <${Slider} field="steps" ...${PRACTICE}
@@ -38,7 +88,6 @@ export const Settings = () => html`
         choices=${choicesOf(options.value?.observations, observationTitle)} />
     </div>
     <${MoreSettings} />
-  </div>
 `;
 
 const Learner = () => html`
@@ -149,32 +198,59 @@ const PACES = [
   ["max", "As fast as possible"], [0.5, "Half real time"], [1, "Real time"], [2, "×2"], [4, "×4"], [8, "×8"],
 ];
 
-/** Show the opened fields where the settings scroll inside their panel. */
-const onMore = ({ target }) => {
-  const scroller = target.closest(".folded");
-  if (target.open) scroller?.scrollTo({ top: target.offsetTop - scroller.offsetTop });
-};
-
 const MoreSettings = () => html`
-  <details class="more" onToggle=${onMore}>
+  <details class="more" onToggle=${showOpened}>
     <summary>More settings</summary>
     <div class="more-fields">
-      <${SelectField} field="robot" label="Robot" choices=${robotChoices()} />
-      <${SelectField} field="simulator" label="Simulator"
-        choices=${choicesOf(options.value?.simulators, simulatorTitle)} />
       <${Pace} />
-      <${Figure} field="divisions" />
-      <${Figure} field="grid_side_m" step=${0.005} />
       ${furtherSettings(form.value.agent).map(([name, setting]) => html`
         <${SettingField} key=${name} name=${name} setting=${setting} />
       `)}
       <${Figure} field="steps_per_episode" />
       <${Figure} field="evaluate_every" />
-      <${Figure} field="race_steps" />
-      <${Lanes} />
       <${Name} />
     </div>
   </details>
+`;
+
+// ---- in what: gait, robot, world and damage
+
+const PLACE_FIELDS = ["gait", "robot", "simulator", "divisions", "grid_side_m", "world", "disturb"];
+
+function placeChosen() {
+  const { gait, robot, simulator, world, disturb } = form.value;
+  const happens = disturb.flatMap((text) => parseText(text).value ?? []).map(inTime);
+  return [
+    gaitTitle(gait), robotTitle(robot), simulator !== served().defaults.training.simulator && simulatorTitle(simulator),
+    served().worlds.find(({ name }) => name === world)?.title, ...happens,
+  ];
+}
+
+const InWhat = () => html`
+  <${GaitPicker} />
+  <${WorldPicker} />
+  <${Happenings} />
+  <div class="more-fields">
+    <${SelectField} field="robot" label="Robot" choices=${robotChoices()} />
+    <${SelectField} field="simulator" label="Simulator"
+      choices=${choicesOf(options.value?.simulators, simulatorTitle)} />
+    <${Figure} field="divisions" />
+    <${Figure} field="grid_side_m" step=${0.005} />
+  </div>
+`;
+
+// ---- against whom
+
+const rivalFields = () => ["lanes", "race_steps", ...Object.keys(laneSettings(form.value.lanes))];
+
+const rivalsChosen = () =>
+  [form.value.lanes.map((agent) => agentOf(agent).title).join(", "), count(form.value.race_steps, "step")];
+
+const AgainstWhom = () => html`
+  <div class="more-fields">
+    <${Lanes} />
+    <${Figure} field="race_steps" />
+  </div>
 `;
 
 /** The presets, and a custom robot that a link or a run has brought. */
