@@ -210,13 +210,18 @@ function refuseTuning(run, sent, error) {
 
 // ---- what happens to robots
 
+/** The last of what was to happen: an answer waits for the end of a step, in which the next leg may be clicked. */
+let lastDisturbed = Promise.resolve(/** @type {unknown} */ (null));
+
 /**
- * Let something happen to a training from its next step on.
+ * Let something happen to a training from its next step on, after what was to happen before.
  * @param {Run} run
  * @param {object} disturbance without its step
  */
-export const disturb = (run, disturbance) =>
-  attempt("disturb", () => api.disturbTraining(run.id, disturbance));
+export function disturb(run, disturbance) {
+  lastDisturbed = lastDisturbed.then(() => attempt("disturb", () => api.disturbTraining(run.id, disturbance)));
+  return lastDisturbed;
+}
 
 /**
  * Race on from a step of a race, in which something happens.

@@ -114,6 +114,7 @@ def test_a_link_is_kept_as_it_says(dashboard: Dashboard, shared_server: Serving)
         "seed": "−5",
         "robot": "tank",
         "lanes": "greedy,ghost",
+        "world": "flatland",
     }
     dashboard.open(f"{shared_server.address}?{urlencode({**wrong, 'alhpa': '0.5'})}")
     unknown = page.locator(".notice").filter(has_text="alhpa=0.5")
@@ -135,6 +136,7 @@ def test_a_link_is_kept_as_it_says(dashboard: Dashboard, shared_server: Serving)
     assert dashboard.violations() == []
 
     page.get_by_role("radio", name="Front-back, mirrored").check(force=True)
+    page.get_by_role("radio", name="Flat ground").check(force=True)
     page.locator("#held-start").get_by_role("button", name="Seed").click()
     seed = page.locator("#field-seed")
     expect(seed).to_be_focused()

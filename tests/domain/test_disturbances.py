@@ -65,10 +65,7 @@ def test_fields_are_numbers_of_their_types() -> None:
         ("limp:legs=1:at", "give each field once"),
         ("limp:kind=lost:legs=1", "give each field once"),
         (f"limp:legs={'9' * 5000}", "list of numbers of legs"),
-        (
-            f"limp:legs=1:until={'9' * 400}",
-            "until_step must be a whole number from 1 to 10,000,000",
-        ),
+        ("limp:legs=1:until=99999999", "until_step must be a whole number from 1 to 10,000,000"),
         ("limp:legs=1:at=-1", "at_step must be a whole number from 0 to 10,000,000"),
         ("limp:legs=1:at=9:until=9", "until_step must be over at_step, 9, not 9"),
         ("limp:legs=1:angle=9", "choose one of: at_step, until_step, legs"),

@@ -1,7 +1,7 @@
 // What happens to a robot and its ground: a drawn hexapod whose legs are clicked, and sliders; for the training that
 // runs, and for a race that is held, which is raced on from there.
 import { signal } from "@preact/signals";
-import { useState } from "preact/hooks";
+import { useRef, useState } from "preact/hooks";
 import { branchRace, disturb, pending } from "../actions.js";
 import {
   conditionsAt, conditionsInWords, conditionsNow, happeningsOf, isSimulated, kindNamed, LEG_WORDS, legStates, mainField,
@@ -68,9 +68,12 @@ const slidable = () => served().disturbances.flatMap((kind) => {
   return main ? [{ kind, name: main[0], field: main[1] }] : [];
 });
 
-/** It takes effect when the slider is let go: a run has only so many disturbances. */
+const PAUSE_MS = 500;
+
+/** It takes effect when the slider, or its key, has been let go: a run has only so many disturbances. */
 function KindSlider({ one: { kind, name, field }, conditions, simulator, onHappen }) {
   const [draft, setDraft] = useState(/** @type {number | null} */ (null));
+  const timer = useRef(/** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined));
   const ends = sliderOf(field) ?? { min: 0, max: 1, step: 0.01 };
   const present = conditions.find((other) => other.kind === kind.name)?.[name];
   const value = draft ?? present ?? null;
@@ -80,6 +83,10 @@ function KindSlider({ one: { kind, name, field }, conditions, simulator, onHappe
   const send = async (chosen) => {
     await onHappen({ kind: kind.name, [name]: chosen });
     if (!isPush) setDraft(null);
+  };
+  const onChange = ({ target }) => {
+    clearTimeout(timer.current);
+    if (!isPush) timer.current = setTimeout(() => send(Number(target.value)), PAUSE_MS);
   };
   // Friction has no value at which nothing happens: it is the robot's own until it is set.
   const at = value ?? (field.minimum === 0 ? 0 : 1);
@@ -91,7 +98,7 @@ function KindSlider({ one: { kind, name, field }, conditions, simulator, onHappe
       <input type="range" id=${id} min=${ends.min} max=${ends.max} step=${ends.step} value=${at} disabled=${!isKnown}
         style=${{ "--share": `${(100 * (at - ends.min)) / (ends.max - ends.min)}%` }} aria-valuetext=${words}
         onInput=${({ target }) => setDraft(Number(target.value))}
-        onChange=${({ target }) => !isPush && send(Number(target.value))} />
+        onChange=${onChange} />
       <output class="num" for=${id}>${words}</output>
       ${isPush && html`
         <button type="button" class="secondary compact" disabled=${!isKnown || !value} onClick=${() => send(value)}>
@@ -244,7 +251,8 @@ export const WorldPicker = () => html`
       ${served().worlds.map(({ name, title, disturbances }, number) => html`
         <label class="gait" key=${name}>
           <input class="sr-only" type="radio" name="world" value=${name} id=${number ? undefined : "field-world"}
-            checked=${name === form.value.world} onChange=${() => setField("world", name)} />
+            checked=${name === (wrong.value.world?.text ?? form.value.world)}
+            onChange=${() => setField("world", name)} />
           <${WorldPicture} disturbances=${disturbances} />
           <span>${title}</span>
         </label>
