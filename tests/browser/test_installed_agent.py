@@ -118,8 +118,8 @@ def test_the_command_line_has_options_for_its_settings(command: str) -> None:
         check=True,
         env={**os.environ, "COLUMNS": "200"},
     ).stdout
-    assert "--optimism" in said
-    assert "a number from 0 to 5 (default 0.5)" in said
+    assert "--patience" in said
+    assert "How long it waits. Valid: a number from 0 to 1 (default 0.25)" in said
 
 
 def test_a_value_out_of_its_limits_is_refused(client: httpx2.Client) -> None:
