@@ -286,7 +286,7 @@ export const link = () =>
 
 // ---- request bodies
 
-const WALK_FIELDS = ["gait", "robot", "simulator", "divisions", "grid_side_m"];
+const WALK_FIELDS = ["gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance"];
 const RACE_FIELDS = ["race_steps", "lanes"];
 const WORLD_FIELDS = ["world", REPEATED];
 /** Fields on which what is learned does not depend. */
