@@ -191,13 +191,19 @@ def legal_columns(state: int, pairs: int, cells: int) -> tuple[int, ...]:
     return tuple(columns)
 
 
+def table_size(pairs: int, cells: int) -> int:
+    """Return the number of values of a table: cells^pairs states times pairs · cells actions."""
+    size: int = cells**pairs * pairs * cells
+    return size
+
+
 def check_size(pairs: int, cells: int) -> None:
     """Check that a table of this shape has at most `MAX_VALUES` values.
 
     Raises:
         InvalidInput: if it is larger.
     """
-    values: int = cells**pairs * pairs * cells
+    values = table_size(pairs, cells)
     if values > MAX_VALUES:
         raise InvalidInput(
             f"a table of {pairs} leg pairs and {cells} cells has {values:,} values; the most is "
@@ -222,7 +228,7 @@ def check_arrays(arrays: Mapping[str, NDArray[np.generic]], pairs: int, cells: i
     has_equal_shapes = where.ndim == 1 and where.shape == q.shape == n.shape
     if kinds != "ifu" or not has_equal_shapes or not np.isfinite(q).all():
         raise TableMismatch("the table's values, visits and places do not fit together")
-    if where.size and not (where.min() >= 0 and where.max() < cells**pairs * pairs * cells):
+    if where.size and not (where.min() >= 0 and where.max() < table_size(pairs, cells)):
         raise TableMismatch("the table has values for states that do not exist")
     if not np.all(np.diff(where) > 0):
         raise TableMismatch(NOT_RISING)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.agents.protocol import AgentState, Problem
-from app.agents.q_table import check_places
+from app.agents.q_table import check_places, table_size
 from app.domain.errors import InvalidInput
 
 MAX_MODEL_VALUES = 300_000
@@ -160,7 +160,7 @@ def check_problem(problem: Problem, **settings: Any) -> None:  # noqa: ARG001  #
         InvalidInput: if it would not.
     """
     pairs, cells = len(problem.pairs), len(problem.cells_m)
-    values = cells**pairs * pairs * cells
+    values = table_size(pairs, cells)
     if values > MAX_MODEL_VALUES:
         raise InvalidInput(
             f"a learner with a model of the world takes at most {MAX_MODEL_VALUES:,} state-action "

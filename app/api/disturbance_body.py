@@ -1,6 +1,6 @@
 """Request bodies of disturbances, one model for each kind, built from the declared fields."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import MISSING, fields
 from typing import Annotated, Any, Literal
 
@@ -10,7 +10,7 @@ from app.api.fields import INTEGRAL, Body, Declared, TaggedUnion
 from app.domain.disturbances import KINDS, LEGS, Disturbance, disturbance
 from app.domain.robot import MAX_LEGS
 from app.domain.settings import declared_fields
-from app.domain.world import MAX_DISTURBANCES, World, named_world
+from app.domain.world import MAX_DISTURBANCES
 
 Leg = Annotated[
     # The upper limit depends on the robot, so the domain validates it.
@@ -60,14 +60,3 @@ Disturbances = Annotated[
         description="What happens to the robot and the ground, by step.",
     ),
 ]
-
-
-def world_of(name: str | None, bodies: Sequence[DisturbanceBody]) -> World:
-    """Return the named world, if any, with more disturbances.
-
-    Raises:
-        UnknownName: if there is no world of this name.
-        InvalidInput: if the disturbances contradict each other.
-    """
-    start = named_world(name).disturbances if name is not None else ()
-    return World((*start, *(body.disturbance() for body in bodies)))

@@ -7,7 +7,7 @@ from pydantic import ConfigDict, Discriminator, Field, Tag, WithJsonSchema, mode
 from pydantic_core import PydanticCustomError
 
 from app.api.descriptions import VALID
-from app.api.disturbance_body import Disturbances, Leg, world_of
+from app.api.disturbance_body import Disturbances, Leg
 from app.api.fields import (
     INTEGRAL,
     Body,
@@ -31,7 +31,7 @@ from app.domain.errors import InvalidInput
 from app.domain.gait import NAMED_GAITS, GaitSpec, Symmetry
 from app.domain.observation import Observation
 from app.domain.robot import robot
-from app.domain.world import WORLDS
+from app.domain.world import WORLDS, world_from
 from app.jobs.submissions import BranchStart, LaneStart, RaceStart, TrainingStart
 from app.runs.clocks import Clock
 from app.runs.config import (
@@ -110,7 +110,7 @@ class WalkBody(Body):
             divisions=self.divisions,
             grid_side_m=self.grid_side_m,
             tolerance=self.tolerance,
-            world=world_of(self.world, self.disturbances),
+            world=world_from(self.world, (body.disturbance() for body in self.disturbances)),
         )
 
 

@@ -14,7 +14,7 @@ from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS, Robot, robot
 from app.domain.settings import REQUIRED, DeclaredSetting, Value, declared_fields
-from app.domain.world import WORLDS, World, named_world
+from app.domain.world import WORLDS, world_from
 from app.experiments.config import settings_by_name
 from app.runs.config import (
     SIMULATORS,
@@ -180,14 +180,8 @@ def walk_from(options: argparse.Namespace) -> dict[str, Any]:
         "divisions": options.divisions,
         "grid_side_m": options.grid_side_m,
         "tolerance": options.tolerance,
-        "world": _read_world(options.world, options.disturb),
+        "world": world_from(options.world, map(parse_disturbance, options.disturb)),
     }
-
-
-def _read_world(name: str | None, texts: Sequence[str]) -> World:
-    """Return the world of this name, if any, with what else happens."""
-    start = named_world(name).disturbances if name is not None else ()
-    return World((*start, *map(parse_disturbance, texts)))
 
 
 def read_gait(text: str) -> str | GaitSpec:

@@ -307,6 +307,16 @@ WORLDS: Mapping[str, NamedWorld] = {
 }  # fmt: skip
 
 
+def world_from(name: str | None, more: Iterable[Disturbance]) -> World:
+    """Return the world of a name, or an undisturbed one, with what else happens.
+
+    Raises:
+        UnknownName: if there is no world of this name.
+        InvalidInput: if what happens contradicts itself.
+    """
+    return (UNDISTURBED if name is None else named_world(name)) + more
+
+
 def named_world(name: str) -> World:
     """Return a world by its name.
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from app.agents.q_table import MAX_VALUES
+from app.agents.q_table import MAX_VALUES, table_size
 from app.agents.registry import check_problem, learns, needs_practice
 from app.domain.disturbances import Disturbance
 from app.domain.errors import InvalidInput, TableMismatch
@@ -212,7 +212,7 @@ def check_walk(walk: WalkingProblem) -> None:
     gait, grid = walk.resolved_gait, walk.grid
     check_reach(walk.robot, gait, grid)
     pairs, cells = len(gait.pairs), len(grid)
-    values = cells**pairs * pairs * cells
+    values = table_size(pairs, cells)
     if values > MAX_VALUES:
         raise InvalidInput(
             f"{pairs} leg pairs on {cells} cells have {values:,} state-action values; the most is "

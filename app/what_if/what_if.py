@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from app.agents.q_table import table_size
 from app.agents.registry import learns
 from app.domain.errors import InvalidInput
 from app.domain.settings import SettingValues
@@ -133,8 +134,7 @@ def _check_limits(training: TrainingConfig) -> None:
             f"a what-if practises at most {MAX_STEPS:,} steps, not {training.steps:,}"
         )
     check_training(training)
-    pairs, cells = len(training.resolved_gait.pairs), len(training.grid)
-    values = cells**pairs * pairs * cells
+    values = table_size(len(training.resolved_gait.pairs), len(training.grid))
     if values > MAX_VALUES:
         raise InvalidInput(
             f"a table of {values:,} values is too large for a what-if, which takes "
