@@ -1,17 +1,16 @@
 """Fixtures for every test: a real browser with WebGL2 in software, and a real PostgreSQL.
 
-`make test` runs the tests in several processes (pytest-xdist). Tests marked `alone` have the
-machine to themselves.
+`make test` runs the tests in several processes (pytest-xdist).
 """
 
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 
 import hypothesis
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 from xdist.remote import Producer
 
-from tests.in_parallel import FileByFile, MachineLock
+from tests.in_parallel import FileByFile
 from tests.install_browser import HOW_TO_GET_ONE, find_browser
 from tests.postgresql import PostgresServer, postgres_server
 
@@ -30,47 +29,18 @@ _CHROMIUM_OPTIONS = [
 ]
 
 
-_LOCK = pytest.StashKey[MachineLock]()
-
-
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put browser tests last, and before them the tests marked `alone`.
+    """Put browser tests last.
 
     Playwright's synchronous interface keeps an event loop running in the main thread for as long
     as it is open, and in that time no other test can `asyncio.run` there.
     """
-    items.sort(key=lambda item: ("browser" in getattr(item, "fixturenames", ()), is_alone(item)))
-
-
-def is_alone(item: pytest.Item | None) -> bool:
-    """Tell whether a test must not run beside others."""
-    return item is not None and item.get_closest_marker("alone") is not None
-
-
-@pytest.hookimpl(wrapper=True, tryfirst=True)
-def pytest_runtest_protocol(
-    item: pytest.Item, nextitem: pytest.Item | None
-) -> Generator[None, object, object]:
-    """Hold the lock on the machine around each test; outside of its time limit."""
-    lock = item.config.stash[_LOCK]
-    lock.acquire(alone=is_alone(item))
-    try:
-        return (yield)
-    finally:
-        # Between two tests that run alone there is nothing to wait for.
-        if not (is_alone(item) and is_alone(nextitem)):
-            lock.release()
+    items.sort(key=lambda item: "browser" in getattr(item, "fixturenames", ()))
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> FileByFile:
     """Keep the tests of a file in one process, and their order."""
     return FileByFile(config, log)
-
-
-def pytest_configure(config: pytest.Config) -> None:
-    """Open the lock on the machine."""
-    config.stash[_LOCK] = lock = MachineLock()
-    config.add_cleanup(lock.close)
 
 
 @pytest.fixture(scope="session")

@@ -1,12 +1,8 @@
-"""Tests in several processes: the order in which they are handed out, and those that run alone."""
+"""Tests in several processes: the order in which they are handed out."""
 
-import fcntl
 from itertools import groupby
-from pathlib import Path
 
 from xdist.scheduler import LoadScopeScheduling
-
-_FOLDER = Path(__file__).parent
 
 
 class FileByFile(LoadScopeScheduling):  # type: ignore[misc]  # without types, as all of xdist
@@ -33,36 +29,3 @@ class FileByFile(LoadScopeScheduling):  # type: ignore[misc]  # without types, a
 
 def _file(nodeid: str) -> str:
     return nodeid.partition("::")[0]
-
-
-class MachineLock:
-    """Readers-writer lock between processes: their tests share the machine, or one has it alone.
-
-    It consists of locks on two files of the checkout, which the system releases when a process
-    dies. A process that waits for its turn holds `_queue`: so a test that waits for all others to
-    end is not overtaken by the next ones.
-    """
-
-    def __init__(self) -> None:
-        self._queue = (_FOLDER / "conftest.py").open("rb")
-        self._machine = (_FOLDER / "in_parallel.py").open("rb")
-        self._is_held = False
-
-    def acquire(self, *, alone: bool) -> None:
-        """Wait until a test may run; return at once if the lock was not released after the last."""
-        if self._is_held:
-            return
-        fcntl.flock(self._queue, fcntl.LOCK_EX)
-        fcntl.flock(self._machine, fcntl.LOCK_EX if alone else fcntl.LOCK_SH)
-        fcntl.flock(self._queue, fcntl.LOCK_UN)
-        self._is_held = True
-
-    def release(self) -> None:
-        """Let tests of other processes run."""
-        fcntl.flock(self._machine, fcntl.LOCK_UN)
-        self._is_held = False
-
-    def close(self) -> None:
-        """Close both files, which releases the lock."""
-        self._queue.close()
-        self._machine.close()

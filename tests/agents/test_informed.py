@@ -146,7 +146,7 @@ def test_results_do_not_depend_on_the_number_of_threads(agent: str) -> None:
         )
         (walker,) = build_walkers(config, [None], threads=threads)
         found = []
-        for _ in range(3):
+        for _ in range(2):
             walker.carry_out(walker.decide())
             found.append(walker.simulator.pose(walker.state).tobytes())
         return found

@@ -71,7 +71,6 @@ def controlling_stage(server: Serving) -> Iterator[list[float]]:
         commander.join()
 
 
-@pytest.mark.alone
 @pytest.mark.timeout(1200)
 def test_frame_rate_and_latencies_with_many_viewers(server: Serving) -> None:
     start_moving(server)

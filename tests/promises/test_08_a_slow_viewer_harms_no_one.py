@@ -21,7 +21,6 @@ MOST_LOST = at_length(0.5, 0.05)
 FLAT_BYTES = 20_000_000
 
 
-@pytest.mark.alone
 @pytest.mark.timeout(600)
 def test_stalled_viewers_cost_the_others_no_frames_and_the_server_no_memory(
     server: Serving,

@@ -36,8 +36,6 @@ BODY = {
 # SO_LINGER with a timeout of 0: closing resets the connection (RST) without a shutdown.
 _RESET = struct.pack("ii", 1, 0)
 
-pytestmark = pytest.mark.alone
-
 
 class Events:
     """Client of the server-sent events, which can drop its connection."""

@@ -144,7 +144,6 @@ def operate(server: Served, until_s: float) -> tuple[list[float], list[dict[str,
     return latencies_s, runs
 
 
-@pytest.mark.alone
 @pytest.mark.timeout(600)
 def test_anonymous_load_fails_no_run(launch: Callable[..., Served], tmp_path: Path) -> None:
     with (tmp_path / "log").open("w") as log:

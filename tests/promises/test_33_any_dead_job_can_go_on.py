@@ -47,7 +47,6 @@ def test_a_dead_job_is_detected_and_can_be_resumed(launch: Callable[..., Served]
         assert server.client.get(f"{path}/curve").json()["evaluations"] == curve
 
 
-@pytest.mark.alone
 def test_a_change_to_a_stopped_process_delays_no_other_request(
     launch: Callable[..., Served],
 ) -> None:

@@ -111,11 +111,9 @@ def stopping_runs(server: Served) -> Iterator[None]:
     def stop_all() -> None:
         with httpx2.Client(base_url=server.address, timeout=120, trust_env=False) as client:
             while not finished.wait(0.5):
-                for kind in ("races", "trainings", "experiments"):
-                    for state in ("paused", "running", "queued"):
-                        runs = client.get(f"/api/v1/{kind}?state={state}").json()["items"]
-                        for run in runs:
-                            client.post(f"/api/v1/{kind}/{run['id']}/stop")
+                for state in ("paused", "running", "queued"):
+                    for run in client.get(f"/api/v1/runs?state={state}").json()["items"]:
+                        client.post(f"/api/v1/{run['kind']}s/{run['id']}/stop")
 
     stopper = threading.Thread(target=stop_all)
     stopper.start()
