@@ -18,14 +18,9 @@ from app.domain.simulator import Simulator
 from app.domain.world import UNDISTURBED, World
 from app.physics.mujoco_simulator import MujocoSimulator
 from app.runs.best_known import best_known_m
-from app.runs.config import (
-    LaneConfig,
-    RaceConfig,
-    TrainingConfig,
-    WalkingProblem,
-    agent_settings,
-    check_lane,
-)
+from app.runs.config import TrainingConfig, WalkingProblem, agent_settings
+from app.runs.lane import LaneConfig, check_lane
+from app.runs.race_config import RaceConfig
 from app.runs.seeding import EVALUATION, LEARNING, RACING, SENSING, generator
 from app.runs.tables import Checkpoint, check_fits, continue_from, load_agent
 from app.runs.training import Learner, evaluate, measure_baseline

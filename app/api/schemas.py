@@ -36,12 +36,12 @@ from app.jobs.submissions import BranchStart, LaneStart, RaceStart, TrainingStar
 from app.runs.clocks import Clock
 from app.runs.config import (
     RACE_STEPS,
-    Branch,
     SimulatorName,
     TrainingConfig,
     WalkingProblem,
     training_config,
 )
+from app.runs.race_config import Branch
 
 WorldName = Annotated[
     str,

@@ -21,7 +21,10 @@ from app.cli.terminal import progress, show_lanes
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.settings import declared_fields
 from app.runs.clocks import CLOCKS, check_clock
-from app.runs.config import LaneConfig, RaceConfig, agent_settings, as_json, lane_config
+from app.runs.config import agent_settings
+from app.runs.config_json import as_json
+from app.runs.lane import LaneConfig, lane_config
+from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
 from app.runs.recording import LaneRecording
 from app.runs.results import postures, race_result

@@ -18,7 +18,7 @@ from rich.table import Table
 from rich.text import Text
 
 from app.agents.appearance import name_of
-from app.runs.config import RaceConfig
+from app.runs.race_config import RaceConfig
 
 
 class _Rate(ProgressColumn):

@@ -4,7 +4,8 @@ from datetime import UTC, datetime
 from typing import Any
 
 from app.events.damage import as_shown
-from app.runs.config import RaceConfig, TrainingConfig
+from app.runs.config import TrainingConfig
+from app.runs.race_config import RaceConfig
 from app.storage.run import PAUSED, RESUMABLE, AnyRun, DamagedRun, Run, config_as_json
 
 

@@ -31,7 +31,7 @@ from app.jobs.messages import (
     TrialsDone,
 )
 from app.jobs.worker_process import Exit, WorkerProcess
-from app.runs.config import RaceConfig
+from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.runs.records import Evaluated, Reference
 from app.runs.results import postures, race_result

@@ -14,15 +14,9 @@ from app.domain.kinematics import check_reach
 from app.domain.text import MAX_NAME, whole
 from app.experiments.config import GRID, ExperimentConfig
 from app.experiments.plan import Plan
-from app.runs.config import (
-    Branch,
-    LaneConfig,
-    RaceConfig,
-    TrainingConfig,
-    WalkingProblem,
-    lane_config,
-    problem_of,
-)
+from app.runs.config import TrainingConfig, WalkingProblem, problem_of
+from app.runs.lane import LaneConfig, lane_config
+from app.runs.race_config import Branch, RaceConfig
 from app.runs.tables import Checkpoint, check_fits
 from app.storage.database.store import RunStore
 from app.storage.run import Run

@@ -7,7 +7,7 @@ from app.domain.posture import has_fallen, heading_deg
 from app.domain.robot import Robot
 from app.domain.world import World
 from app.runs.clocks import CLOCKS, Clock, Timetable, crossing_s, distance_at
-from app.runs.config import RaceConfig
+from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
 
 

@@ -13,7 +13,8 @@ from app.domain.gait import NAMED_GAITS
 from app.domain.grid import FootGrid
 from app.domain.robot import robot
 from app.domain.types import Action
-from app.runs.config import LaneConfig, RaceConfig, lane_config
+from app.runs.lane import LaneConfig, lane_config
+from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
 from app.runs.results import race_result
 from tests.agents.walkers import kinematic_walker

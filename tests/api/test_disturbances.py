@@ -7,7 +7,9 @@ import pytest
 from app.assembly import build_walkers
 from app.domain.world import named_world, world
 from app.runs.best_known import best_known_m
-from app.runs.config import Branch, RaceConfig, WalkingProblem, lane_config
+from app.runs.config import WalkingProblem
+from app.runs.lane import lane_config
+from app.runs.race_config import Branch, RaceConfig
 from app.runs.racing import record_race
 from tests.api.calls import WALK, Api, refused
 

@@ -13,19 +13,16 @@ from app.domain.gait import GaitSpec
 from app.domain.robot import robot
 from app.domain.settings import Setting, SettingValues
 from app.runs.config import (
-    LaneConfig,
-    RaceConfig,
     TrainingConfig,
     WalkingProblem,
     agent_settings,
-    as_json,
     changeable_settings,
-    config_from_json,
-    gait_from_json,
-    lane_config,
     training_config,
     usable_agents,
 )
+from app.runs.config_json import as_json, config_from_json, gait_from_json
+from app.runs.lane import LaneConfig, lane_config
+from app.runs.race_config import RaceConfig
 from tests.own_agents import Restless
 
 GAIT = "left-right-origin"

@@ -12,7 +12,9 @@ from app.agents.protocol import Transition
 from app.assembly import build_learner, build_walkers
 from app.domain.simulator import WalkState
 from app.physics.mujoco_simulator import MujocoState
-from app.runs.config import LaneConfig, RaceConfig, lane_config, training_config
+from app.runs.config import training_config
+from app.runs.lane import LaneConfig, lane_config
+from app.runs.race_config import RaceConfig
 from app.runs.racing import race, record_race
 from app.runs.records import LaneFailed, LaneStep, RaceRecord, StepTaken
 from app.runs.results import race_result

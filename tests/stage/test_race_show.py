@@ -8,7 +8,8 @@ import pytest
 from app.domain.disturbances import Limp, Lost, Push
 from app.domain.robot import Robot
 from app.domain.world import World
-from app.runs.config import Branch, LaneConfig, RaceConfig
+from app.runs.lane import LaneConfig
+from app.runs.race_config import Branch, RaceConfig
 from app.runs.results import finish_s, postures, race_result
 from app.stage.race_show import LAST_LANE_SPEED, PHOTO_FINISH_S, SPEED
 from app.stage.stage_frame import StageFrame

@@ -1,0 +1,131 @@
+"""Lanes of races: their configs, with checks against their agents."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Annotated, Any, Literal
+
+from app.agents import registry
+from app.domain.errors import InvalidInput
+from app.domain.observation import Observation, check_observation
+from app.domain.settings import Setting, SettingValues, Value, complete, declared_fields
+from app.runs.config import agent_settings
+
+PlansWith = Annotated[
+    Literal["world", "nominal"],
+    Setting(
+        title="Plans with",
+        help="The world as it is, or the robot and flat ground as if nothing had happened.",
+    ),
+]
+KeepLearning = Annotated[
+    bool,
+    Setting(
+        title="Keeps learning",
+        help="Whether it learns from each step of the race too; without practice it begins there.",
+    ),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LaneConfig:
+    """Config of one lane of a race. `lane_config` adds the agent's defaults.
+
+    Attributes:
+        agent: a registered name or `my.module:Agent`.
+        observation: observation mode; for a trained agent that of its table.
+        keep_learning: whether the agent learns from each step of the race.
+        plans_with: of a searcher, what it knows: `world` is the world as it is in each step,
+            `nominal` the robot and flat ground as if nothing had happened; None is the world as it
+            was at the start, since nobody tells a robot what happens later.
+        settings: the agent's settings by name; none for a trained agent, which has those of its
+            training.
+    """
+
+    agent: str
+    observation: Observation = "measured"
+    keep_learning: KeepLearning = False
+    plans_with: PlansWith | None = None
+    settings: SettingValues[Value] = field(default_factory=SettingValues)
+
+    def __post_init__(self) -> None:
+        check_observation(self.observation)
+        for setting in declared_fields(LaneConfig).values():
+            setting.check(getattr(self, setting.name))
+
+
+_LANE_FIELDS = frozenset(one.name for one in fields(LaneConfig)) - {"settings"}
+
+
+def lane_config(
+    agent: str,
+    *,
+    observation: Observation = LaneConfig.observation,
+    keep_learning: bool | None = None,
+    plans_with: str | None = None,
+    has_training: bool = False,
+    **settings: Any,
+) -> LaneConfig:
+    """Create the config of a lane, with its agent's settings validated and completed.
+
+    Args:
+        agent: a registered name or `my.module:Agent`.
+        observation: observation mode.
+        keep_learning: whether the agent learns in the race; None for the agent's default.
+        plans_with: what a searcher knows; see `LaneConfig`.
+        has_training: whether the agent races with what it learned in a training.
+        settings: the agent's settings by name.
+
+    Raises:
+        UnknownName, InvalidInput: if the agent, a setting or a value is invalid.
+    """
+    if keep_learning is None:
+        keep_learning = registry.keeps_learning(agent)
+    lane = LaneConfig(
+        agent=agent,
+        observation=observation,
+        keep_learning=keep_learning,
+        plans_with=plans_with,  # type: ignore[arg-type]  # it is checked
+        settings=SettingValues(settings),
+    )
+    check_lane(lane, has_training)
+    if has_training:
+        return lane
+    return replace(lane, settings=complete(agent_settings(agent), settings, agent))
+
+
+def check_lane(lane: LaneConfig, has_training: bool) -> None:
+    """Check a lane against its agent, which is imported.
+
+    Raises:
+        UnknownName, InvalidInput: if the agent does not exist, does not learn but should, or does
+            not have these settings.
+    """
+    if lane.keep_learning and not registry.learns(lane.agent):
+        raise InvalidInput(
+            f"{lane.agent} does not learn, so it cannot keep learning; leave out keep_learning"
+        )
+    if lane.plans_with is not None and not registry.searches(lane.agent):
+        raise InvalidInput(f"{lane.agent} plans with no simulator; leave out plans_with")
+    if has_training and lane.settings:
+        raise InvalidInput(
+            "a lane with training takes its settings from there; leave out "
+            + ", ".join(lane.settings)
+        )
+    if not has_training:
+        complete(agent_settings(lane.agent), lane.settings, lane.agent)
+
+
+def lane_as_json(lane: LaneConfig) -> dict[str, Any]:
+    """Convert a lane to plain types; its settings become flat fields."""
+    return {name: getattr(lane, name) for name in sorted(_LANE_FIELDS)} | dict(lane.settings)
+
+
+def lane_from_json(data: Mapping[str, Any]) -> LaneConfig:
+    """Parse the output of `lane_as_json`; the agent is not imported.
+
+    Raises:
+        InvalidInput: if a value is invalid.
+    """
+    own = {name: value for name, value in data.items() if name in _LANE_FIELDS}
+    settings = {name: value for name, value in data.items() if name not in _LANE_FIELDS}
+    return LaneConfig(**own, settings=SettingValues(settings))
