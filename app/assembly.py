@@ -162,7 +162,7 @@ def _planner(
     """Return the simulator that a lane's search plans with; see `LaneConfig.plans_with`."""
     if lane.plans_with == "world":
         return simulator
-    if lane.plans_with is None:
+    if lane.plans_with in (None, "start"):
         known = replace(config, world=config.world.at_start)
     else:
         known = replace(config, world=UNDISTURBED, tolerance=0.0)

@@ -27,7 +27,7 @@ from app.runs.lane import LaneConfig, lane_config
 from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
 from app.runs.recording import LaneRecording
-from app.runs.results import postures, race_result
+from app.runs.results import lane_details, race_result
 from app.runs.tables import Checkpoint
 from app.runs.walker import Walker
 
@@ -46,7 +46,8 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         required=True,
         metavar="AGENT[=Q.NPZ][,SETTING=VALUE]",
         help="once for each lane: greedy, look-ahead,depth=3, q-learning=q.npz, "
-        "q-learning=q.npz,keep_learning=true, my.module:Agent[=q.npz]",
+        "q-learning=q.npz,keep_learning=true, greedy,plans_with=nominal, my.module:Agent[=q.npz]; "
+        f"plans_with: {declared_fields(LaneConfig)['plans_with'].about.help}",
     )
     add_settings(parser, declared_fields(RaceConfig), ("steps", "seed"))
     parser.add_argument("--clock", default="paper", help=f"to show: {', '.join(CLOCKS)}")
@@ -71,8 +72,8 @@ def run(options: argparse.Namespace) -> int:
     walkers = build_walkers(config, [table for _, table in lanes])
     lanes_recorded = _race(walkers, config)
     result = race_result(lanes_recorded, config.steps)
-    for lane, posture in zip(result["lanes"], postures(lanes_recorded, config), strict=True):
-        lane.update(posture)
+    for lane, details in zip(result["lanes"], lane_details(lanes_recorded, config), strict=True):
+        lane.update(details)
     if options.json:
         print(json.dumps({"config": as_json(config), "result": result}))
     else:

@@ -34,7 +34,7 @@ from app.jobs.worker_process import Exit, WorkerProcess
 from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.runs.records import Evaluated, Reference
-from app.runs.results import postures, race_result
+from app.runs.results import lane_details, race_result
 from app.storage.database.engine import retry_during_outage
 from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost, StorageFailed
@@ -364,7 +364,7 @@ class Job:
             result["lanes"],
             self._run.lane_training_ids,
             _trained_robots(task),
-            postures(lanes, task.config),
+            lane_details(lanes, task.config),
             strict=True,
         )
         result["lanes"] = [
@@ -373,9 +373,9 @@ class Job:
                 "training_id": training,
                 "trained_robot": robot,
                 **lane,
-                **posture,
+                **details,
             }
-            for lane, training, robot, posture in numbered
+            for lane, training, robot, details in numbered
         ]
         return {**result, "shared_machine": self.shared}
 

@@ -8,13 +8,17 @@ from app.agents import registry
 from app.domain.errors import InvalidInput
 from app.domain.observation import Observation, check_observation
 from app.domain.settings import Setting, SettingValues, Value, complete, declared_fields
-from app.runs.config import agent_settings
+from app.runs.config import WalkingProblem, agent_settings
 
+Knowledge = Literal["world", "start", "nominal"]
+"""What a search knows: `world` is the world as it is in each step, `start` as it was at the start,
+`nominal` the robot as it was designed, on flat ground."""
 PlansWith = Annotated[
-    Literal["world", "nominal"],
+    Knowledge,
     Setting(
         title="Plans with",
-        help="The world as it is, or the robot and flat ground as if nothing had happened.",
+        help="What a search knows: the world as it is in each step, the world as it was at the "
+        "start, or the nominal robot, as it was designed, on flat ground. By default the start.",
     ),
 ]
 KeepLearning = Annotated[
@@ -34,9 +38,8 @@ class LaneConfig:
         agent: a registered name or `my.module:Agent`.
         observation: observation mode; for a trained agent that of its table.
         keep_learning: whether the agent learns from each step of the race.
-        plans_with: of a searcher, what it knows: `world` is the world as it is in each step,
-            `nominal` the robot and flat ground as if nothing had happened; None is the world as it
-            was at the start, since nobody tells a robot what happens later.
+        plans_with: of a searcher, what it knows; None is `start`, since nobody tells a robot what
+            happens later. `plans_with` says what that comes to.
         settings: the agent's settings by name; none for a trained agent, which has those of its
             training.
     """
@@ -91,6 +94,23 @@ def lane_config(
     if has_training:
         return lane
     return replace(lane, settings=complete(agent_settings(agent), settings, agent))
+
+
+def plans_with(lane: LaneConfig, walk: WalkingProblem) -> Knowledge | None:
+    """Return what a lane's search knows in a race; None if its agent does not search.
+
+    What is left out in the lane, the start, is called `world` where nothing changes after it, and
+    `nominal` where nothing held at it.
+    """
+    try:
+        searches = registry.searches(lane.agent)
+    except InvalidInput:
+        return lane.plans_with  # its package has been removed since
+    if lane.plans_with is not None or not searches:
+        return lane.plans_with
+    if not walk.world.change_steps:
+        return "world"
+    return "start" if walk.world.at_start or walk.tolerance else "nominal"
 
 
 def check_lane(lane: LaneConfig, has_training: bool) -> None:

@@ -184,6 +184,8 @@ def test_worlds_and_disturbances_are_options(tmp_path: Path) -> None:
     assert [one["kind"] for one in printed["config"]["disturbances"]] == ["slope", "limp"]
     assert printed["result"]["lanes"][0]["fell_at_step"] is None
     assert abs(printed["result"]["lanes"][0]["heading_deg"]) < 45
+    assert printed["config"]["lanes"][0]["plans_with"] is None  # as it was given
+    assert printed["result"]["lanes"][0]["plans_with"] == "start"
 
 
 @pytest.mark.parametrize(
