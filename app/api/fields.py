@@ -107,6 +107,7 @@ Divisions = Annotated[int, Declared(_TRAINING["divisions"])]
 GridSide = Annotated[float, Declared(_TRAINING["grid_side_m"])]
 Tolerance = Annotated[float, Declared(_TRAINING["tolerance"])]
 KeepLearning = Annotated[bool, Declared(_LANE["keep_learning"])]
+LaneObservation = Annotated[Any, Declared(_LANE["observation"])]
 PlansWith = Annotated[Any, Declared(_LANE["plans_with"])]
 Pace = Annotated[Literal["max"] | float, Declared(_TRAINING["pace"])]
 

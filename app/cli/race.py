@@ -23,7 +23,7 @@ from app.domain.settings import declared_fields
 from app.runs.clocks import CLOCKS, check_clock
 from app.runs.config import agent_settings
 from app.runs.config_json import as_json
-from app.runs.lane import LaneConfig, lane_config
+from app.runs.lane import LaneConfig, lane_config, observation_of
 from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
 from app.runs.recording import LaneRecording
@@ -39,14 +39,17 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
     parser = commands.add_parser("race", help="race agents", description=__doc__)
     add_walk_options(parser)
-    add_observation(parser, "of lanes without a table; a trained lane uses its table's")
+    add_observation(
+        parser, "of lanes without a table that say nothing else; a trained lane uses its table's"
+    )
     parser.add_argument(
         "--lane",
         action="append",
         required=True,
         metavar="AGENT[=Q.NPZ][,SETTING=VALUE]",
         help="once for each lane: greedy, look-ahead,depth=3, q-learning=q.npz, "
-        "q-learning=q.npz,keep_learning=true, greedy,plans_with=nominal, my.module:Agent[=q.npz]; "
+        "q-learning=q.npz,keep_learning=true, greedy,plans_with=nominal, "
+        "sarsa,keep_learning=true,observation=planned, my.module:Agent[=q.npz]; "
         f"plans_with: {declared_fields(LaneConfig)['plans_with'].about.help}",
     )
     add_settings(parser, declared_fields(RaceConfig), ("steps", "seed"))
@@ -92,11 +95,11 @@ def _lane(text: str, observation: Any) -> tuple[LaneConfig, Checkpoint | None]:
             raise UnknownName(f"setting of a {agent} lane", name, declared)
     settings: dict[str, Any] = {name: declared[name].parse(value) for name, value in values.items()}
     table = read_table(path) if path else None
-    if table is not None:
-        if table.meta["agent"] != agent:
-            raise InvalidInput(f"{path} was learned by {table.meta['agent']}, not by {agent}")
-        observation = table.meta["observation"]
-    lane = lane_config(agent, observation=observation, has_training=table is not None, **settings)
+    if table is not None and table.meta["agent"] != agent:
+        raise InvalidInput(f"{path} was learned by {table.meta['agent']}, not by {agent}")
+    practised = None if table is None else table.meta["observation"]
+    settings["observation"] = observation_of(settings.get("observation"), practised, observation)
+    lane = lane_config(agent, has_training=table is not None, **settings)
     if needs_practice(agent) and table is None and not lane.keep_learning:
         raise InvalidInput(
             f"a {agent} lane needs its table: --lane {agent}=q.npz (hexapods train --out q.npz "

@@ -21,6 +21,13 @@ PlansWith = Annotated[
         "start, or the nominal robot, as it was designed, on flat ground. By default the start.",
     ),
 ]
+LaneObservation = Annotated[
+    Observation,
+    Setting(
+        title="Observation",
+        help="How the agent reads its state; with a training as in the training.",
+    ),
+]
 KeepLearning = Annotated[
     bool,
     Setting(
@@ -45,7 +52,7 @@ class LaneConfig:
     """
 
     agent: str
-    observation: Observation = "measured"
+    observation: LaneObservation = "measured"
     keep_learning: KeepLearning = False
     plans_with: PlansWith | None = None
     settings: SettingValues[Value] = field(default_factory=SettingValues)
@@ -57,6 +64,31 @@ class LaneConfig:
 
 
 _LANE_FIELDS = frozenset(one.name for one in fields(LaneConfig)) - {"settings"}
+
+
+def observation_of(
+    given: Observation | None,
+    of_training: Observation | None,
+    default: Observation = LaneConfig.observation,
+) -> Observation:
+    """Return the observation mode of a lane.
+
+    Args:
+        given: what is asked for the lane; None if nothing is.
+        of_training: the mode in which its agent has practised; None without a training.
+        default: the mode of a lane without a training for which nothing is asked.
+
+    Raises:
+        InvalidInput: if what is asked contradicts the training.
+    """
+    if of_training is None:
+        return default if given is None else given
+    if given not in (None, of_training):
+        raise InvalidInput(
+            f"observation must be {of_training}, in which its training was learned, not {given}; "
+            "leave it out, or choose another training"
+        )
+    return of_training
 
 
 def lane_config(

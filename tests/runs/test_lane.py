@@ -8,7 +8,7 @@ from app.domain.disturbances import Limp, Push, Slope
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.world import World
 from app.runs.config import WalkingProblem
-from app.runs.lane import LaneConfig, lane_config, plans_with
+from app.runs.lane import LaneConfig, lane_config, observation_of, plans_with
 from tests.own_agents import Restless
 
 
@@ -56,6 +56,15 @@ class Eager(Restless):
 def test_invalid_lane_is_refused_with_the_valid_values(asked: dict[str, Any], message: str) -> None:
     with pytest.raises(InvalidInput, match=message):
         lane_config(**asked)
+
+
+def test_a_lane_reads_its_state_as_its_training_did_or_else_as_it_says() -> None:
+    assert observation_of(None, None) == "measured"
+    assert observation_of(None, None, "commanded") == "commanded"
+    assert observation_of("planned", None, "commanded") == "planned"
+    assert observation_of(None, "planned") == observation_of("planned", "planned") == "planned"
+    with pytest.raises(InvalidInput, match="must be planned, in which its training was learned"):
+        observation_of("measured", "planned")
 
 
 NOW, LATER = Slope(degrees=5.0), Limp(legs=(1,), at_step=9)
