@@ -24,7 +24,7 @@ from app.runs.race_config import RaceConfig
 from app.runs.seeding import EVALUATION, LEARNING, RACING, SENSING, generator
 from app.runs.tables import Checkpoint, check_fits, continue_from, load_agent
 from app.runs.training import Learner, evaluate, measure_baseline
-from app.runs.walker import Readings, SimulatorExpand, Walker
+from app.runs.walker import Sensors, SimulatorExpand, Walker
 
 _NOT_OFFERED = ("settings", "world", "tolerance")
 """Fields of a training that its agent's constructor does not get: no agent is told of the world."""
@@ -69,7 +69,7 @@ def build_learner(
         config.agent,
         config.observation,
         rng=rng,
-        sensors=_sensors(config.seed),
+        noise=_noise(config.seed),
         offered=offered,
         explore=True,
     )
@@ -87,7 +87,7 @@ def build_learner(
             config.agent,
             config.observation,
             rng=evaluation_rng,
-            sensors=_sensors(config.seed, EVALUATION),
+            noise=_noise(config.seed, EVALUATION),
             offered=offered,
             explore=False,
         )
@@ -104,7 +104,7 @@ def build_learner(
             "greedy",
             "measured",
             rng=rng,
-            sensors=_sensors(config.seed, EVALUATION),
+            noise=_noise(config.seed, EVALUATION),
             offered={},
             explore=False,
         )
@@ -144,7 +144,7 @@ def build_walkers(
             lane.agent,
             lane.observation,
             rng=generator(config.seed, RACING, number),
-            sensors=_sensors(config.seed, RACING, number),
+            noise=_noise(config.seed, RACING, number),
             offered=offered,
             explore=lane.keep_learning,
             planner=_planner(config, lane, simulator, threads),
@@ -169,7 +169,7 @@ def _planner(
     return simulator if known == config else build_simulator(known, threads)
 
 
-def _sensors(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
+def _noise(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
     """Return what makes the generator of a walk's errors of measurement after so many steps."""
     return lambda steps: generator(seed, SENSING, *key, steps)
 
@@ -234,7 +234,7 @@ def _walker(
     observation: Observation,
     *,
     rng: np.random.Generator,
-    sensors: Callable[[int], np.random.Generator],
+    noise: Callable[[int], np.random.Generator],
     offered: Mapping[str, Any],
     explore: bool,
     planner: Simulator[Any] | None = None,
@@ -247,14 +247,14 @@ def _walker(
     expand = None
     if "expand" in registry.parameter_names(agent_class):
         expand = SimulatorExpand(planner or simulator, observation)
-    readings = Readings(simulator, sensors)
+    sensors = Sensors(simulator, noise)
     arguments = {
         **offered,
         "rng": rng,
         "problem": Problem(simulator.gait.pairs, simulator.grid.cells),
         "explore": explore,
         "expand": expand,
-        "observe": readings,
+        "observe": sensors,
     }
     agent = registry.build(agent_class, arguments)
-    return Walker(simulator, agent, observation, expand, readings)
+    return Walker(simulator, agent, observation, expand, sensors)

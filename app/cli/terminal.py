@@ -81,7 +81,7 @@ def show_lanes(config: RaceConfig, result: dict[str, Any], clock: str) -> None:
     lanes = zip(config.lanes, result["lanes"], strict=True)
     for own, lane in sorted(lanes, key=lambda both: both[1]["clocks"][clock]["rank"]):
         name = name_of(own.agent, own.settings, own.keep_learning, title=own.agent)
-        name += f", plans with {lane['plans_with']}" if lane["plans_with"] else ""
+        name += f"\n   plans with {lane['plans_with']}" if lane["plans_with"] else ""
         timed, total = lane["clocks"][clock], lane["total_distance_m"]
         rows.append(
             (
