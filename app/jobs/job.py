@@ -251,7 +251,8 @@ class Job:
         self._store.get(self.run_id)
         if self.stopping:
             if self._has_begun:
-                self.end("stopped", f"It did not answer when it was to stop, so {end.how}.")
+                error = f"It did not answer when it was to stop, so {end.how}."
+                self.end("stopped", error, self._result_so_far())
             elif self._run.done:
                 self.end("stopped", "It was stopped before it went on; what was done is kept.")
             else:
@@ -357,6 +358,13 @@ class Job:
             self.end("failed", f"No lane could finish the race: {failures[0]}", result)
         else:
             self.end(ended.outcome, result=result)
+
+    def _result_so_far(self) -> dict[str, Any] | None:
+        """Return the result of what is recorded of a race; None for other runs."""
+        lanes = self._recordings.race(self.run_id)
+        if lanes is None or not isinstance(self._task, RaceTask):
+            return None
+        return self._race_result(lanes, self._task)
 
     def _race_result(self, lanes: list[LaneRecording], task: RaceTask) -> dict[str, Any]:
         result = race_result(lanes, task.config.steps)

@@ -20,8 +20,13 @@ from app.domain.simulator import Simulator, Step, WalkState
 from app.domain.types import Action, Cells, FloatArray
 from app.runs.records import ActionValues
 
-_MAX_BATCH = 2048
-"""Transitions simulated at once: the servo targets of one take some 10 kB."""
+_MAX_BATCH = 1024
+"""Transitions simulated at once: the servo targets of one take some 10 kB, and no interruption is
+heeded meanwhile, for half a second or so in MuJoCo."""
+
+
+class Interrupted(BaseException):
+    """Raised to abandon a decision; no `Exception`, so that no agent takes it for a failure."""
 
 
 class FutureNode:
@@ -120,11 +125,13 @@ class SimulatorExpand:
     Attributes:
         transitions: number of transitions simulated so far.
         here: root node, the current state of the robot.
+        interrupt: called before each batch; may raise `Interrupted`.
     """
 
     def __init__(self, simulator: Simulator[Any], observation: Observation) -> None:
         self._simulator, self._observation = simulator, observation
         self.transitions = 0
+        self.interrupt: Callable[[], None] = lambda: None
         self.here = FutureNode(self, simulator.rest())
 
     def __call__(
@@ -143,6 +150,7 @@ class SimulatorExpand:
         ends: list[FutureNode] = []
         rewards: list[FloatArray] = []
         for first in range(0, len(states), _MAX_BATCH):
+            self.interrupt()
             part = slice(first, first + _MAX_BATCH)
             expansion = self._simulator.expand(
                 states[part], actions[part], as_of=self.here.state.steps
@@ -213,6 +221,11 @@ class Walker:
     def transitions(self) -> int:
         """Number of transitions that the agent has simulated so far."""
         return self._expand.transitions if self._expand else 0
+
+    def interrupt_by(self, interrupt: Callable[[], None]) -> None:
+        """Let a function interrupt the agent's search, by raising `Interrupted`."""
+        if self._expand:
+            self._expand.interrupt = interrupt
 
     def decide(self) -> Action:
         """Return the action that the agent chooses in the current state.

@@ -21,6 +21,7 @@ from app.runs.results import race_result
 from app.runs.seeding import RACING, generator
 from app.runs.tables import snapshot, to_bytes
 from app.runs.training import train
+from app.runs.walker import Interrupted
 from tests.own_agents import Restless
 
 
@@ -230,6 +231,20 @@ def test_agent_that_fails_to_learn_ends_its_own_lane_only() -> None:
     assert isinstance(failed, LaneFailed)
     assert (failed.step, failed.reason) == (2, "its agent failed: RuntimeError: too hard")
     assert len(of_lane(records, 1)) == 3
+
+
+def test_decision_may_be_interrupted_and_is_no_failure() -> None:
+    walkers = build_walkers(config("greedy", "two-step", steps=3), [None, None])
+    records = race(walkers, 3, ticking())
+    assert [next(records).lane, next(records).lane] == [0, 1]
+
+    def interrupt() -> None:
+        raise Interrupted
+
+    for walker in walkers:
+        walker.interrupt_by(interrupt)
+    with pytest.raises(Interrupted):
+        next(records)
 
 
 class Unteachable(Restless):
