@@ -18,18 +18,13 @@ from app.domain.simulator import Simulator
 from app.domain.world import UNDISTURBED, World
 from app.physics.mujoco_simulator import MujocoSimulator
 from app.runs.best_known import best_known_m
-from app.runs.config import (
-    LaneConfig,
-    RaceConfig,
-    TrainingConfig,
-    WalkingProblem,
-    agent_settings,
-    check_lane,
-)
+from app.runs.config import TrainingConfig, WalkingProblem, agent_settings
+from app.runs.lane import LaneConfig, check_lane
+from app.runs.race_config import RaceConfig
 from app.runs.seeding import EVALUATION, LEARNING, RACING, SENSING, generator
 from app.runs.tables import Checkpoint, check_fits, continue_from, load_agent
 from app.runs.training import Learner, evaluate, measure_baseline
-from app.runs.walker import Readings, SimulatorExpand, Walker
+from app.runs.walker import Sensors, SimulatorExpand, Walker
 
 _NOT_OFFERED = ("settings", "world", "tolerance")
 """Fields of a training that its agent's constructor does not get: no agent is told of the world."""
@@ -74,7 +69,7 @@ def build_learner(
         config.agent,
         config.observation,
         rng=rng,
-        sensors=_sensors(config.seed),
+        noise=_noise(config.seed),
         offered=offered,
         explore=True,
     )
@@ -92,7 +87,7 @@ def build_learner(
             config.agent,
             config.observation,
             rng=evaluation_rng,
-            sensors=_sensors(config.seed, EVALUATION),
+            noise=_noise(config.seed, EVALUATION),
             offered=offered,
             explore=False,
         )
@@ -109,7 +104,7 @@ def build_learner(
             "greedy",
             "measured",
             rng=rng,
-            sensors=_sensors(config.seed, EVALUATION),
+            noise=_noise(config.seed, EVALUATION),
             offered={},
             explore=False,
         )
@@ -149,7 +144,7 @@ def build_walkers(
             lane.agent,
             lane.observation,
             rng=generator(config.seed, RACING, number),
-            sensors=_sensors(config.seed, RACING, number),
+            noise=_noise(config.seed, RACING, number),
             offered=offered,
             explore=lane.keep_learning,
             planner=_planner(config, lane, simulator, threads),
@@ -167,14 +162,14 @@ def _planner(
     """Return the simulator that a lane's search plans with; see `LaneConfig.plans_with`."""
     if lane.plans_with == "world":
         return simulator
-    if lane.plans_with is None:
+    if lane.plans_with in (None, "start"):
         known = replace(config, world=config.world.at_start)
     else:
         known = replace(config, world=UNDISTURBED, tolerance=0.0)
     return simulator if known == config else build_simulator(known, threads)
 
 
-def _sensors(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
+def _noise(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
     """Return what makes the generator of a walk's errors of measurement after so many steps."""
     return lambda steps: generator(seed, SENSING, *key, steps)
 
@@ -239,7 +234,7 @@ def _walker(
     observation: Observation,
     *,
     rng: np.random.Generator,
-    sensors: Callable[[int], np.random.Generator],
+    noise: Callable[[int], np.random.Generator],
     offered: Mapping[str, Any],
     explore: bool,
     planner: Simulator[Any] | None = None,
@@ -252,14 +247,14 @@ def _walker(
     expand = None
     if "expand" in registry.parameter_names(agent_class):
         expand = SimulatorExpand(planner or simulator, observation)
-    readings = Readings(simulator, sensors)
+    sensors = Sensors(simulator, noise)
     arguments = {
         **offered,
         "rng": rng,
         "problem": Problem(simulator.gait.pairs, simulator.grid.cells),
         "explore": explore,
         "expand": expand,
-        "observe": readings,
+        "observe": sensors,
     }
     agent = registry.build(agent_class, arguments)
-    return Walker(simulator, agent, observation, expand, readings)
+    return Walker(simulator, agent, observation, expand, sensors)

@@ -11,7 +11,9 @@ from app.assembly import build_learner, build_walkers
 from app.domain.observation import Observation
 from app.domain.robot import robot
 from app.domain.types import FloatArray
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
+from app.runs.config import TrainingConfig, training_config
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.runs.tables import Checkpoint, from_bytes, snapshot, to_bytes
 from app.runs.training import evaluate, train, walk
 from tests.promises.length import at_length

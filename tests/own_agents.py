@@ -1,5 +1,6 @@
 """Agents as a user might write them, good and bad; found as `tests.own_agents:Name`."""
 
+import time
 from collections.abc import Sequence
 
 import numpy as np
@@ -34,6 +35,14 @@ class ThreeStep(LookAhead):
 
     def __init__(self, expand: Expand) -> None:
         super().__init__(expand, depth=3)
+
+
+class Ponderous(Restless):
+    """Thinks for longer than anyone waits."""
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        time.sleep(600)
+        return super().act(observation, legal)
 
 
 class Plain(Restless):

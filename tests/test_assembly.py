@@ -15,7 +15,9 @@ from app.domain.kinematic import KinematicSimulator
 from app.domain.observation import OBSERVATIONS, Observation, observe
 from app.domain.robot import Robot, robot
 from app.physics.mujoco_simulator import MujocoSimulator
-from app.runs.config import LaneConfig, RaceConfig, WalkingProblem, training_config
+from app.runs.config import WalkingProblem, training_config
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.runs.tables import Checkpoint, snapshot
 from app.runs.training import train
 from app.runs.walker import FutureNode

@@ -14,7 +14,9 @@ import pytest
 from app.assembly import build_learner, build_walkers
 from app.experiments.config import experiment_config
 from app.experiments.plan import Plan
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
+from app.runs.config import TrainingConfig, training_config
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
 from app.runs.tables import Checkpoint, snapshot
 from app.runs.training import train

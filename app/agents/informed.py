@@ -3,7 +3,7 @@
 The paper names an "informed search with a reasonable heuristic" as future work. The heuristic here
 is the kinematic law of a step (`app.domain.feet`): the body's displacement if no foot slips and no
 joint gives way, computed from where the feet are. What the simulator answers corrects it: their
-difference, the residual, is learned by Bayesian linear regression (Bishop 2006, §3.3).
+difference, the residual, is learned by Bayesian linear regression.
 """
 
 from collections.abc import Sequence
@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from app.agents.bayesian_regression import BayesianRegression
 from app.agents.protocol import Expand, Node, Problem
 from app.agents.search import Budget, Search
 from app.domain.types import Action, Cells, FloatArray, IntArray
@@ -81,9 +82,10 @@ class Informed(Search):
         nodes, rewards = self._expand(
             [one.sequence.node for one in candidates], [one.action for one in candidates]
         )
+        offsets_m = np.array([one.offsets_m for one in candidates])
+        self._model.learn(offsets_m, np.array([one.action for one in candidates]), rewards)
         longer = []
         for one, node, reward in zip(candidates, nodes, rewards.tolist(), strict=True):
-            self._model.learn(one.offsets_m, one.action, reward)
             first = one.action if one.sequence.first is None else one.sequence.first
             longer.append(_Sequence(node, one.sequence.sum_m + reward, first))
         return longer
@@ -134,8 +136,8 @@ class RewardModel:
         start = np.zeros((self._pairs, 2))
         some = self._actions[:1]
         count = self._features(start, self._land(start, some), some).shape[1]
-        self._weights = np.zeros(count)
-        self._covariance = np.eye(count) * PRIOR_DEVIATION_M**2
+        deviation_m = np.full(count, PRIOR_DEVIATION_M)
+        self._residual = BayesianRegression(np.zeros(count), deviation_m, NOISE_DEVIATION_M)
 
     def predict(self, offsets_m: FloatArray, actions: IntArray) -> tuple[FloatArray, FloatArray]:
         """Predict the rewards of some actions, and the offsets after them by the kinematic law.
@@ -149,7 +151,7 @@ class RewardModel:
         """
         landed = self._land(offsets_m, actions)
         law = landed[:, :, 1].mean(axis=1)
-        residual = (self._features(offsets_m, landed, actions) * self._weights).sum(axis=1)
+        residual = self._residual.expected(self._features(offsets_m, landed, actions))
         landed[:, :, 1] -= law[:, None]
         return law + residual, landed
 
@@ -162,16 +164,22 @@ class RewardModel:
             best[number] = np.where(stays, -np.inf, rewards).max()
         return best
 
-    def learn(self, offsets_m: FloatArray, action: Action, reward_m: float) -> None:
-        """Update the residual with a simulated reward (recursive least squares)."""
-        actions = np.array([action])
+    def learn(self, offsets_m: FloatArray, actions: IntArray, rewards_m: FloatArray) -> None:
+        """Update the residual with simulated rewards.
+
+        Args:
+            offsets_m: offsets before each step, (pairs, 2), or (n, pairs, 2).
+            actions: n actions, (n, 2).
+            rewards_m: their rewards, (n,).
+        """
         landed = self._land(offsets_m, actions)
-        (features,) = self._features(offsets_m, landed, actions)
-        residual = reward_m - float(landed[0, :, 1].mean())
-        gain = (self._covariance * features).sum(axis=1)
-        variance = float((features * gain).sum()) + NOISE_DEVIATION_M**2
-        self._weights += gain * ((residual - float((features * self._weights).sum())) / variance)
-        self._covariance -= gain[:, None] * (gain / variance)
+        features = self._features(offsets_m, landed, actions)
+        residuals = rewards_m - landed[:, :, 1].mean(axis=1)
+        # All at once, as each update inverts a matrix; without BLAS, see `BayesianRegression`.
+        self._residual.set_evidence(
+            self._residual.moments + np.einsum("nd,ne->de", features, features),
+            self._residual.products + (features * residuals[:, None]).sum(axis=0),
+        )
 
     def _land(self, offsets_m: FloatArray, actions: IntArray) -> FloatArray:
         """Return the offsets once the pair of each action has landed, (n, pairs, 2)."""

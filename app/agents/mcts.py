@@ -11,7 +11,7 @@ from app.agents.search import Budget, Search
 from app.domain.types import Action, Cells
 
 HORIZON = 3
-"""Length of a simulated sequence of steps."""
+"""Length of a simulated sequence of steps, if the budget pays for two of them."""
 EXPLORATION = 1 / math.sqrt(2)
 """Constant of the upper confidence bound, for returns from 0 to 1 (Kocsis and Szepesvári, §2.3)."""
 
@@ -32,11 +32,12 @@ class _Place:
 class Mcts(Search):
     """Agent that simulates random sequences of steps, more of those that begin well.
 
-    Each sequence has `HORIZON` steps: through the tree by the upper confidence bound of their
-    returns, which are normalised to the range seen so far in the decision, then at random. Steps
-    are deterministic, so each is simulated once and kept: a sequence costs only what is new in it.
-    The action that most sequences began with is taken; ties go to the higher mean return. The tree
-    is not kept for the next decision.
+    Each sequence has `HORIZON` steps, with a small budget fewer, so that two first steps at least
+    are compared: through the tree by the upper confidence bound of their returns, which are
+    normalised to the range seen so far in the decision, then at random. Steps are deterministic, so
+    each is simulated once and kept: a sequence costs only what is new in it. The last, which the
+    budget may cut short, counts by its mean reward. The action that most sequences began with is
+    taken; ties go to the higher mean return. The tree is not kept for the next decision.
 
     Args:
         expand: simulates the transitions.
@@ -51,6 +52,7 @@ class Mcts(Search):
     def __init__(self, expand: Expand, rng: np.random.Generator, *, budget: Budget = 156) -> None:
         super().__init__(expand)
         self._rng, self._budget = rng, budget
+        self._horizon = max(1, min(HORIZON, budget // 2))
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         """Return the action that most of the simulated sequences began with."""
@@ -67,7 +69,7 @@ class Mcts(Search):
     def _simulate(self, root: _Place) -> None:
         """Simulate one sequence of steps, and add its return to all nodes on its way."""
         path, place, is_known = [root], root, True
-        while len(path) <= HORIZON:
+        while len(path) <= self._horizon:
             untried = [one for one in place.node.legal if one not in place.children]
             if untried and is_known:
                 is_known = False
@@ -78,11 +80,12 @@ class Mcts(Search):
                 action = self._random(place.node.legal)
             if action not in place.children:
                 if self._left == 0:
-                    return
+                    break
                 place.children[action] = self._step(place, action)
             place = place.children[action]
             path.append(place)
-        total_m = sum(one.reward_m for one in path)
+        stretch = self._horizon / (len(path) - 1)  # over 1 if the budget cut it short
+        total_m = stretch * sum(one.reward_m for one in path)
         self._lowest, self._highest = min(self._lowest, total_m), max(self._highest, total_m)
         for one in path:
             one.visits += 1

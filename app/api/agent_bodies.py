@@ -14,7 +14,8 @@ from app.api.fields import Declared, TaggedUnion
 from app.api.schemas import BranchBody, ChangeBody, LaneBody, PracticeBody, RaceBody, TrainingBody
 from app.domain.settings import REQUIRED, DeclaredSetting
 from app.experiments.config import settings_by_name
-from app.runs.config import MAX_LANES, TrainingConfig, agent_settings, changeable_settings
+from app.runs.config import TrainingConfig, agent_settings, changeable_settings
+from app.runs.race_config import MAX_LANES
 from app.stage.scene_spec import PAPERS_LANES
 
 

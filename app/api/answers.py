@@ -17,6 +17,7 @@ from app.domain.settings import Value
 from app.experiments.config import ExperimentName
 from app.runs.clocks import Clock
 from app.runs.config import SimulatorName
+from app.runs.lane import Knowledge
 from app.storage.run import State
 
 Preset = Annotated[str, Field(json_schema_extra={"enum": list(PRESETS)})]
@@ -107,7 +108,9 @@ class LaneView(Answer):
 
     agent: str
     keep_learning: bool
-    plans_with: Literal["world", "nominal"] | None
+    plans_with: Annotated[
+        Knowledge | None, Field(description="what its search knows; null if it does not search")
+    ]
     observation: Observation
     training_id: str | None
 
@@ -228,6 +231,8 @@ class LaneFigures(Answer):
 class LaneResult(Answer):
     """Result of a lane; `trained_robot` is set if its table was learned on another robot.
 
+    `plans_with` is what its search knew, null if it does not search.
+
     `fell_at_step` is counted from 0, null if it did not fall; `heading_deg` is 0 along the track.
     """
 
@@ -240,6 +245,7 @@ class LaneResult(Answer):
     decision_s: float
     simulated_transitions: Count
     clocks: LaneFigures
+    plans_with: Knowledge | None = None
     fell_at_step: Count | None = None
     heading_deg: float | None = None
 

@@ -14,7 +14,7 @@ from app.jobs.jobs import Jobs
 from app.limits.client_slots import ClientSlots
 from app.limits.memory_budget import MemoryBudget
 from app.runs.clocks import Clock
-from app.runs.config import RaceConfig
+from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage.race_show import Original
 from app.stage.stage import Stage

@@ -12,7 +12,9 @@ from app.domain.text import MAX_NAME, NAMES
 from app.domain.world import MAX_DISTURBANCES, WORLDS
 from app.experiments.config import EXPERIMENTS, MAX_SEEDS
 from app.runs.clocks import CLOCKS
-from app.runs.config import MAX_LANES, SIMULATORS, LaneConfig, TrainingConfig
+from app.runs.config import SIMULATORS, TrainingConfig
+from app.runs.lane import LaneConfig
+from app.runs.race_config import MAX_LANES
 from app.storage.run import KINDS, STATES
 
 MAX_PAGE = 100

@@ -8,6 +8,7 @@ from app.api.answers import Answer, Count, ExperimentConfigView
 from app.domain.observation import Observation
 from app.domain.settings import Value
 from app.experiments.config import ExperimentName
+from app.runs.lane import Knowledge
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Decided = Literal["yes", "no", "not established"]
@@ -242,7 +243,7 @@ class WorldView(Named):
     key: str
     role: Literal["learner", "reference"]
     gait: str
-    plans_with: Literal["world", "nominal"] | None
+    plans_with: Knowledge | None
     n: Count
     greedy_m: float | None
     greedy_nominal_m: float | None

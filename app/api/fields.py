@@ -23,7 +23,9 @@ from app.domain.errors import InvalidInput, UnknownName
 from app.domain.robot import AZIMUTH, MAX_LEGS, MIN_LEGS, MOUNT_RADIUS, PRESETS, RANGES
 from app.domain.settings import DeclaredSetting, declared_fields
 from app.domain.text import MAX_NAME, check_name, invisible_ranges
-from app.runs.config import MAX_ID, LaneConfig, RaceConfig, TrainingConfig
+from app.runs.config import TrainingConfig
+from app.runs.lane import LaneConfig
+from app.runs.race_config import MAX_ID, RaceConfig
 
 
 def _name(text: str) -> str:
@@ -105,6 +107,7 @@ Divisions = Annotated[int, Declared(_TRAINING["divisions"])]
 GridSide = Annotated[float, Declared(_TRAINING["grid_side_m"])]
 Tolerance = Annotated[float, Declared(_TRAINING["tolerance"])]
 KeepLearning = Annotated[bool, Declared(_LANE["keep_learning"])]
+LaneObservation = Annotated[Any, Declared(_LANE["observation"])]
 PlansWith = Annotated[Any, Declared(_LANE["plans_with"])]
 Pace = Annotated[Literal["max"] | float, Declared(_TRAINING["pace"])]
 

@@ -33,17 +33,15 @@ from app.experiments.config import (
 from app.experiments.config import as_json as experiment_as_json
 from app.jobs.submissions import MAX_SETTINGS, TITLES
 from app.runs.config import (
-    MAX_LANES,
-    MAX_RACE_STEPS,
     RACE_STEPS,
-    LaneConfig,
-    RaceConfig,
     TrainingConfig,
     agent_settings,
-    as_json,
     changeable_settings,
     training_config,
 )
+from app.runs.config_json import as_json
+from app.runs.lane import LaneConfig
+from app.runs.race_config import MAX_LANES, MAX_RACE_STEPS, RaceConfig
 from app.stage.scene_spec import PAPERS_LANES
 from app.what_if.what_if import MAX_STEPS as MAX_WHAT_IF_STEPS
 from app.what_if.what_if import SEEDS as WHAT_IF_SEEDS

@@ -11,7 +11,7 @@ from app.api.deps import Services, ServicesDep
 from app.api.formats import attachment, negotiated
 from app.api.runs import RunPath, find, run_routes
 from app.runs.clocks import Clock
-from app.runs.config import RaceConfig
+from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage import recording_export
 from app.stage.race_show import original_of

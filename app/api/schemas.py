@@ -15,6 +15,7 @@ from app.api.fields import (
     EvaluateEvery,
     GridSide,
     KeepLearning,
+    LaneObservation,
     Name,
     Pace,
     PlansWith,
@@ -36,12 +37,12 @@ from app.jobs.submissions import BranchStart, LaneStart, RaceStart, TrainingStar
 from app.runs.clocks import Clock
 from app.runs.config import (
     RACE_STEPS,
-    Branch,
     SimulatorName,
     TrainingConfig,
     WalkingProblem,
     training_config,
 )
+from app.runs.race_config import Branch
 
 WorldName = Annotated[
     str,
@@ -169,6 +170,7 @@ class LaneBody(Body):
     training: Annotated[PracticeBody | None, Field(description=VALID["training"])] = None
     keep_learning: KeepLearning | None = None
     plans_with: PlansWith | None = None
+    observation: LaneObservation | None = None
 
     def start(self, walk: WalkingProblem, seed: int) -> LaneStart:
         """Convert to the request of the service."""
@@ -183,6 +185,7 @@ class LaneBody(Body):
             self.keep_learning,
             self.plans_with,
             settings,
+            self.observation,
         )
 
 

@@ -17,7 +17,8 @@ from app.domain.simulator import Motion
 from app.domain.types import Action, Cells
 from app.experiments.config import ExperimentConfig
 from app.runs import tables
-from app.runs.config import RaceConfig, TrainingConfig, WalkingProblem
+from app.runs.config import TrainingConfig, WalkingProblem
+from app.runs.race_config import RaceConfig
 from app.runs.recording import race_recording
 from app.runs.records import ActionValues
 from app.runs.stored_practice import practice_recording

@@ -13,7 +13,8 @@ from app.domain.errors import DamagedFile, HexapodError, UnknownName
 from app.domain.settings import complete
 from app.domain.world import world
 from app.runs import seeding, tables
-from app.runs.config import TrainingConfig, agent_settings, changeable_settings, config_from_json
+from app.runs.config import TrainingConfig, agent_settings, changeable_settings
+from app.runs.config_json import config_from_json
 from app.runs.tables import Checkpoint
 
 

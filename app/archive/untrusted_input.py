@@ -6,7 +6,8 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from app.runs.config import MAX_LANES, MAX_STEPS
+from app.runs.config import MAX_STEPS
+from app.runs.race_config import MAX_LANES
 
 _MAX_M = 1e6
 _MAX_S = 1e9

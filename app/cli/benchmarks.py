@@ -19,7 +19,9 @@ from app.domain.types import Action, FloatArray
 from app.physics.mjcf import compile_visual_model
 from app.physics.mujoco_simulator import MujocoSimulator, MujocoState
 from app.runs.clocks import motion_s
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, WalkingProblem
+from app.runs.config import TrainingConfig, WalkingProblem
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.runs.racing import race
 from app.runs.records import LaneStep, StepTaken
 from app.runs.training import train

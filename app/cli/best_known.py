@@ -17,7 +17,8 @@ from app.domain.gait import NAMED_GAITS
 from app.domain.robot import robot
 from app.domain.world import WORLDS, named_world
 from app.runs import best_known
-from app.runs.config import WalkingProblem, check_whole
+from app.runs.config import WalkingProblem
+from app.runs.race_config import check_whole
 
 MAX_WIDTH = 4096
 _PHYSICAL = [name for name, one in WORLDS.items() if one.world.one_of(SensorNoise) is None]

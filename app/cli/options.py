@@ -16,13 +16,8 @@ from app.domain.robot import PRESETS, Robot, robot
 from app.domain.settings import REQUIRED, DeclaredSetting, Value, declared_fields
 from app.domain.world import WORLDS, world_from
 from app.experiments.config import settings_by_name
-from app.runs.config import (
-    SIMULATORS,
-    TrainingConfig,
-    WalkingProblem,
-    gait_from_json,
-    usable_agents,
-)
+from app.runs.config import SIMULATORS, TrainingConfig, WalkingProblem, usable_agents
+from app.runs.config_json import gait_from_json
 
 _GAIT_FIELDS = ("right_leg", "left_leg", "symmetry", "pairs")
 

@@ -21,10 +21,13 @@ from app.cli.terminal import progress, show_lanes
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.settings import declared_fields
 from app.runs.clocks import CLOCKS, check_clock
-from app.runs.config import LaneConfig, RaceConfig, agent_settings, as_json, lane_config
+from app.runs.config import agent_settings
+from app.runs.config_json import as_json
+from app.runs.lane import LaneConfig, lane_config, observation_of
+from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
 from app.runs.recording import LaneRecording
-from app.runs.results import postures, race_result
+from app.runs.results import lane_details, race_result
 from app.runs.tables import Checkpoint
 from app.runs.walker import Walker
 
@@ -36,14 +39,18 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
     parser = commands.add_parser("race", help="race agents", description=__doc__)
     add_walk_options(parser)
-    add_observation(parser, "of lanes without a table; a trained lane uses its table's")
+    add_observation(
+        parser, "of lanes without a table that say nothing else; a trained lane uses its table's"
+    )
     parser.add_argument(
         "--lane",
         action="append",
         required=True,
         metavar="AGENT[=Q.NPZ][,SETTING=VALUE]",
         help="once for each lane: greedy, look-ahead,depth=3, q-learning=q.npz, "
-        "q-learning=q.npz,keep_learning=true, my.module:Agent[=q.npz]",
+        "q-learning=q.npz,keep_learning=true, greedy,plans_with=nominal, "
+        "sarsa,keep_learning=true,observation=planned, my.module:Agent[=q.npz]; "
+        f"plans_with: {declared_fields(LaneConfig)['plans_with'].about.help}",
     )
     add_settings(parser, declared_fields(RaceConfig), ("steps", "seed"))
     parser.add_argument("--clock", default="paper", help=f"to show: {', '.join(CLOCKS)}")
@@ -68,8 +75,8 @@ def run(options: argparse.Namespace) -> int:
     walkers = build_walkers(config, [table for _, table in lanes])
     lanes_recorded = _race(walkers, config)
     result = race_result(lanes_recorded, config.steps)
-    for lane, posture in zip(result["lanes"], postures(lanes_recorded, config), strict=True):
-        lane.update(posture)
+    for lane, details in zip(result["lanes"], lane_details(lanes_recorded, config), strict=True):
+        lane.update(details)
     if options.json:
         print(json.dumps({"config": as_json(config), "result": result}))
     else:
@@ -88,11 +95,11 @@ def _lane(text: str, observation: Any) -> tuple[LaneConfig, Checkpoint | None]:
             raise UnknownName(f"setting of a {agent} lane", name, declared)
     settings: dict[str, Any] = {name: declared[name].parse(value) for name, value in values.items()}
     table = read_table(path) if path else None
-    if table is not None:
-        if table.meta["agent"] != agent:
-            raise InvalidInput(f"{path} was learned by {table.meta['agent']}, not by {agent}")
-        observation = table.meta["observation"]
-    lane = lane_config(agent, observation=observation, has_training=table is not None, **settings)
+    if table is not None and table.meta["agent"] != agent:
+        raise InvalidInput(f"{path} was learned by {table.meta['agent']}, not by {agent}")
+    practised = None if table is None else table.meta["observation"]
+    settings["observation"] = observation_of(settings.get("observation"), practised, observation)
+    lane = lane_config(agent, has_training=table is not None, **settings)
     if needs_practice(agent) and table is None and not lane.keep_learning:
         raise InvalidInput(
             f"a {agent} lane needs its table: --lane {agent}=q.npz (hexapods train --out q.npz "

@@ -18,7 +18,7 @@ from app.cli.terminal import show_lanes, show_table
 from app.domain.errors import InvalidInput
 from app.events.damage import as_shown
 from app.events.run_view import run_view
-from app.runs.config import RaceConfig
+from app.runs.race_config import RaceConfig
 from app.settings import Settings, read_settings
 from app.storage.errors import NotFound
 from app.storage.json_text import json_text

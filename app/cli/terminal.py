@@ -18,7 +18,7 @@ from rich.table import Table
 from rich.text import Text
 
 from app.agents.appearance import name_of
-from app.runs.config import RaceConfig
+from app.runs.race_config import RaceConfig
 
 
 class _Rate(ProgressColumn):
@@ -81,6 +81,7 @@ def show_lanes(config: RaceConfig, result: dict[str, Any], clock: str) -> None:
     lanes = zip(config.lanes, result["lanes"], strict=True)
     for own, lane in sorted(lanes, key=lambda both: both[1]["clocks"][clock]["rank"]):
         name = name_of(own.agent, own.settings, own.keep_learning, title=own.agent)
+        name += f"\n   plans with {lane['plans_with']}" if lane["plans_with"] else ""
         timed, total = lane["clocks"][clock], lane["total_distance_m"]
         rows.append(
             (

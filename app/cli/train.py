@@ -17,7 +17,8 @@ from app.cli.options import (
 from app.cli.terminal import progress
 from app.domain.errors import InvalidInput
 from app.domain.settings import declared_fields
-from app.runs.config import TrainingConfig, WalkingProblem, as_json, training_config
+from app.runs.config import TrainingConfig, WalkingProblem, training_config
+from app.runs.config_json import as_json
 from app.runs.records import Evaluated, StepTaken
 from app.runs.tables import Checkpoint, snapshot, to_bytes
 from app.runs.training import Learner, train

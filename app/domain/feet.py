@@ -46,6 +46,11 @@ class Feet(NamedTuple):
             (*self.forward_m[:pair], y, *self.forward_m[pair + 1 :]),
         )
 
+    def moved(self, by_m: FloatArray) -> "Feet":
+        """Return the offsets with the pairs' leaders moved, by (pairs, 2) [m]."""
+        lateral, forward = (np.array((self.lateral_m, self.forward_m)) + by_m.T).tolist()
+        return Feet(self.commanded, tuple(lateral), tuple(forward))
+
     def centred(self) -> tuple["Feet", float]:
         """Return the offsets after the shift phase, and the body's forward displacement [m].
 

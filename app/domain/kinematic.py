@@ -1,7 +1,7 @@
 """The kinematic simulator: steps without slip by the law of `app.domain.feet`, without physics."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -67,6 +67,9 @@ class KinematicSimulator:
     ) -> Expansion[KinematicState]:
         steps = [self.step(s, a) for s, a in zip(states, actions, strict=True)]
         return Expansion([s.state for s in steps], np.array([s.reward_m for s in steps]))
+
+    def estimate(self, state: KinematicState, error_m: FloatArray) -> KinematicState:
+        return replace(state, feet=state.feet.moved(error_m))
 
     def pair_offsets(self, state: KinematicState) -> Sequence[tuple[float, float]]:
         return list(zip(state.feet.lateral_m, state.feet.forward_m, strict=True))

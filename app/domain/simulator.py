@@ -102,6 +102,15 @@ class Simulator(Protocol[S]):
             Diverged: if the physics diverges.
         """
 
+    def estimate(self, state: S, error_m: FloatArray) -> S:
+        """Return a state as sensors with these errors tell it: the feet are off, all else is exact.
+
+        Args:
+            state: the true state.
+            error_m: errors of the measured offsets of the pairs' leaders, (pairs, 2) [m]; those of
+                their partners are mirrored.
+        """
+
     def pair_offsets(self, state: S) -> Sequence[tuple[float, float]]:
         """Return the feet's actual offsets (x, y) from home in the robot frame [m], per pair.
 

@@ -4,7 +4,9 @@ from datetime import UTC, datetime
 from typing import Any
 
 from app.events.damage import as_shown
-from app.runs.config import RaceConfig, TrainingConfig
+from app.runs.config import TrainingConfig
+from app.runs.lane import plans_with
+from app.runs.race_config import RaceConfig
 from app.storage.run import PAUSED, RESUMABLE, AnyRun, DamagedRun, Run, config_as_json
 
 
@@ -64,8 +66,11 @@ def _whole_view(run: Run, queue_position: int | None) -> dict[str, Any]:
 def _config(run: Run) -> dict[str, Any]:
     config = config_as_json(run.config)
     if isinstance(run.config, RaceConfig):
-        lanes = zip(config["lanes"], run.lane_training_ids, strict=True)
-        config["lanes"] = [{**lane, "training_id": training} for lane, training in lanes]
+        lanes = zip(run.config.lanes, config["lanes"], run.lane_training_ids, strict=True)
+        config["lanes"] = [
+            {**fields, "plans_with": plans_with(lane, run.config), "training_id": training}
+            for lane, fields, training in lanes
+        ]
     elif isinstance(run.config, TrainingConfig):
         config["continue_from"] = run.continued_from
     return config

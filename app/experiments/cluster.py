@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from app.domain.errors import HexapodError, InvalidInput
 from app.experiments.own_cluster import cores, own_cluster
 from app.experiments.worker import difference, versions
-from app.runs.config import check_whole
+from app.runs.race_config import check_whole
 
 if TYPE_CHECKING:
     from distributed import Client

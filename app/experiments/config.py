@@ -18,13 +18,9 @@ from app.domain.settings import (
     declared_fields,
 )
 from app.domain.world import parse_world
-from app.runs.config import (
-    SimulatorName,
-    TrainingConfig,
-    agent_settings,
-    check_whole,
-    gait_from_json,
-)
+from app.runs.config import SimulatorName, TrainingConfig, agent_settings
+from app.runs.config_json import gait_from_json
+from app.runs.race_config import check_whole
 
 ExperimentName = Literal["table1", "figure4", "sweep", "league", "recovery"]
 EXPERIMENTS: tuple[ExperimentName, ...] = get_args(ExperimentName)

@@ -11,14 +11,9 @@ from app.assembly import build_learner, build_walkers
 from app.domain.errors import Diverged
 from app.domain.settings import SettingValues
 from app.runs.clocks import Timetable, distance_at
-from app.runs.config import (
-    RACE_STEPS,
-    LaneConfig,
-    PlansWith,
-    RaceConfig,
-    TrainingConfig,
-    WalkingProblem,
-)
+from app.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem
+from app.runs.lane import LaneConfig, PlansWith
+from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
 from app.runs.recording import LaneRecording
 from app.runs.records import StepTaken

@@ -10,6 +10,7 @@ import numpy as np
 from app.experiments.setting_results import SettingResults, setting_fields
 from app.experiments.statistics import Points, iqm_interval, share_at_least
 from app.runs.best_known import best_known_m
+from app.runs.lane import Knowledge, LaneConfig, plans_with
 
 LEAGUE_SHARE = 0.95
 """Share of a reference's distance from which a learner of a league counts as having reached it."""
@@ -45,6 +46,12 @@ def compare_in_worlds(settings: Sequence[SettingResults], seed: int) -> list[dic
     return [_entry(one, references[one.conditions], seed) for one in settings if one.total_m]
 
 
+def _plans_with(one: SettingResults) -> Knowledge | None:
+    trial = one.setting.trial
+    lane = LaneConfig(agent=trial.training.agent, plans_with=trial.plans_with)
+    return plans_with(lane, trial.training)
+
+
 def _best_known_m(one: SettingResults) -> float | None:
     """Return the best known distance in the world as it is in the end."""
     training = one.setting.training
@@ -58,7 +65,7 @@ def _entry(one: SettingResults, known: Mapping[str, Any], seed: int) -> dict[str
         "key": one.setting.key,
         "role": one.setting.role,
         **setting_fields(one),
-        "plans_with": one.setting.trial.plans_with,
+        "plans_with": _plans_with(one),
         "n": len(one.total_m),
         "greedy_m": greedy_m,
         "greedy_nominal_m": known.get("greedy_nominal_m"),

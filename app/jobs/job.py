@@ -31,10 +31,10 @@ from app.jobs.messages import (
     TrialsDone,
 )
 from app.jobs.worker_process import Exit, WorkerProcess
-from app.runs.config import RaceConfig
+from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.runs.records import Evaluated, Reference
-from app.runs.results import postures, race_result
+from app.runs.results import lane_details, race_result
 from app.storage.database.engine import retry_during_outage
 from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost, StorageFailed
@@ -251,7 +251,8 @@ class Job:
         self._store.get(self.run_id)
         if self.stopping:
             if self._has_begun:
-                self.end("stopped", f"It did not answer when it was to stop, so {end.how}.")
+                error = f"It did not answer when it was to stop, so {end.how}."
+                self.end("stopped", error, self._result_so_far())
             elif self._run.done:
                 self.end("stopped", "It was stopped before it went on; what was done is kept.")
             else:
@@ -358,13 +359,20 @@ class Job:
         else:
             self.end(ended.outcome, result=result)
 
+    def _result_so_far(self) -> dict[str, Any] | None:
+        """Return the result of what is recorded of a race; None for other runs."""
+        lanes = self._recordings.race(self.run_id)
+        if lanes is None or not isinstance(self._task, RaceTask):
+            return None
+        return self._race_result(lanes, self._task)
+
     def _race_result(self, lanes: list[LaneRecording], task: RaceTask) -> dict[str, Any]:
         result = race_result(lanes, task.config.steps)
         numbered = zip(
             result["lanes"],
             self._run.lane_training_ids,
             _trained_robots(task),
-            postures(lanes, task.config),
+            lane_details(lanes, task.config),
             strict=True,
         )
         result["lanes"] = [
@@ -373,9 +381,9 @@ class Job:
                 "training_id": training,
                 "trained_robot": robot,
                 **lane,
-                **posture,
+                **details,
             }
-            for lane, training, robot, posture in numbered
+            for lane, training, robot, details in numbered
         ]
         return {**result, "shared_machine": self.shared}
 

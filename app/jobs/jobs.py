@@ -246,7 +246,7 @@ class Jobs:
             job = self._live_job(run_id, LIVE, "stopped")
             job.stop()
         if not job.ended.wait(job.stop_grace_s):
-            job.process.kill()
+            job.process.kill(f"it was ended after {job.stop_grace_s:.0f} s; what was done is kept")
             job.ended.wait(_KILL_S)
         return self._store.get(run_id)
 

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.experiments.config import ExperimentConfig
-from app.runs.config import RaceConfig, TrainingConfig
+from app.runs.config import TrainingConfig
+from app.runs.race_config import RaceConfig
 from app.runs.records import RaceRecord, TrainingRecord
 from app.runs.tables import Checkpoint
 

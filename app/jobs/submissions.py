@@ -11,18 +11,13 @@ from app.agents.registry import check_problem, learns, needs_practice
 from app.domain.disturbances import Disturbance
 from app.domain.errors import InvalidInput, TableMismatch
 from app.domain.kinematics import check_reach
+from app.domain.observation import Observation
 from app.domain.text import MAX_NAME, whole
 from app.experiments.config import GRID, ExperimentConfig
 from app.experiments.plan import Plan
-from app.runs.config import (
-    Branch,
-    LaneConfig,
-    RaceConfig,
-    TrainingConfig,
-    WalkingProblem,
-    lane_config,
-    problem_of,
-)
+from app.runs.config import TrainingConfig, WalkingProblem, problem_of
+from app.runs.lane import LaneConfig, lane_config, observation_of
+from app.runs.race_config import Branch, RaceConfig
 from app.runs.tables import Checkpoint, check_fits
 from app.storage.database.store import RunStore
 from app.storage.run import Run
@@ -52,6 +47,7 @@ class LaneStart:
         keep_learning: whether the agent learns in the race; None for the agent's default.
         plans_with: what a searcher knows; see `LaneConfig`.
         settings: the agent's settings that are given with the lane, by name.
+        observation: observation mode; None for that of the training, or the default.
     """
 
     agent: str
@@ -60,6 +56,7 @@ class LaneStart:
     keep_learning: bool | None = None
     plans_with: str | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
+    observation: Observation | None = None
 
     @property
     def has_training(self) -> bool:
@@ -230,17 +227,17 @@ def _lane(lane: LaneStart, walk: WalkingProblem, store: RunStore) -> LaneConfig:
         raise InvalidInput(f"{lane.agent} does not learn, so it takes no table")
     if lane.training_id is not None and lane.training is not None:
         raise InvalidInput("give training_id or training, not both")
-    observation = LaneConfig.observation
+    practised: Observation | None = None
     if lane.training is not None:
-        observation = lane.training.config.observation
+        practised = lane.training.config.observation
     elif lane.training_id is not None:
         table = load_table(store, lane.training_id)
         check_fits(table, walk)
         _check_agent(table, lane.agent, lane.training_id)
-        observation = table.meta["observation"]
+        practised = table.meta["observation"]
     config = lane_config(
         lane.agent,
-        observation=observation,
+        observation=observation_of(lane.observation, practised),
         keep_learning=lane.keep_learning,
         plans_with=lane.plans_with,
         has_training=lane.has_training,

@@ -10,7 +10,8 @@ from dataclasses import replace
 
 from app.experiments.config import ExperimentConfig
 from app.jobs.messages import ExperimentTask, RaceTask, Task, TrainingTask
-from app.runs.config import RaceConfig, TrainingConfig
+from app.runs.config import TrainingConfig
+from app.runs.race_config import RaceConfig
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
 from app.storage.run import NOT_ENDED, RESUMABLE, SUMMARY, Run

@@ -41,7 +41,7 @@ from app.runs.racing import race
 from app.runs.records import LaneStep, StepTaken
 from app.runs.tables import restore, snapshot, to_bytes
 from app.runs.training import Learner, train
-from app.runs.walker import Walker
+from app.runs.walker import Interrupted, Walker
 
 HEARTBEAT_EVERY_S = 1.0
 _logger = logging.getLogger(__name__)
@@ -53,7 +53,8 @@ def main(pipe: Connection, niceness: int) -> None:
     logs.install("warning")
     task: Task = pipe.recv()
     commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
-    threading.Thread(target=_receive_commands, args=(pipe, commands), daemon=True).start()
+    stopping = threading.Event()
+    threading.Thread(target=_receive_commands, args=(pipe, commands, stopping), daemon=True).start()
     send = _one_at_a_time(pipe)
     threading.Thread(target=_send_heartbeats, args=(send,), daemon=True).start()
     control = JobControl(send, commands)
@@ -63,7 +64,7 @@ def main(pipe: Connection, niceness: int) -> None:
         elif isinstance(task, ExperimentTask):
             experiment(task, control.send, commands)
         else:
-            _race(task, control)
+            _race(task, control, stopping)
     except HexapodError as error:
         control.send(Failed(str(error)))
     except Exception as error:
@@ -129,15 +130,24 @@ def _interruptible(learner: Learner, control: JobControl) -> Learner:
     return learner
 
 
-def _race(task: RaceTask, control: JobControl) -> None:
+def _race(task: RaceTask, control: JobControl, stopping: threading.Event) -> None:
+    def interrupt_if_stopping() -> None:
+        if stopping.is_set():
+            raise Interrupted
+
     walkers = build_walkers(task.config, task.tables)
+    for walker in walkers:
+        walker.interrupt_by(interrupt_if_stopping)
     control.send(Began(tuple(_pose(walker) for walker in walkers)))
     done = 0
-    for record in race(walkers, task.config.steps, time.perf_counter):
-        done += isinstance(record, LaneStep)
-        control.report(record, done)
-        if not control.wait_for_turn(done):
-            break
+    try:
+        for record in race(walkers, task.config.steps, time.perf_counter):
+            done += isinstance(record, LaneStep)
+            control.report(record, done)
+            if not control.wait_for_turn(done):
+                break
+    except Interrupted:
+        control.wait_for_turn(done)  # executes the command that stops it
     control.flush()
     if not control.exiting:
         control.send(Ended("stopped" if control.stopped else "finished", None))
@@ -165,10 +175,21 @@ def _send_heartbeats(send: Callable[[Message | Heartbeat], None]) -> None:
             time.sleep(HEARTBEAT_EVERY_S)
 
 
-def _receive_commands(pipe: Connection, commands: "queue.SimpleQueue[Command]") -> None:
-    """Queue commands from the pipe; exit when the server closes it or dies."""
+def _receive_commands(
+    pipe: Connection, commands: "queue.SimpleQueue[Command]", stopping: threading.Event
+) -> None:
+    """Queue commands from the pipe; exit when the server closes it or dies.
+
+    Args:
+        pipe: from the server.
+        commands: the queue.
+        stopping: set once a command to stop is in the queue.
+    """
     try:
         while True:
-            commands.put(pipe.recv())
+            command: Command = pipe.recv()
+            commands.put(command)
+            if command.verb == "stop":
+                stopping.set()
     except (EOFError, OSError):
         os._exit(1)

@@ -15,7 +15,7 @@ from app.domain.errors import Diverged
 from app.domain.feet import Feet
 from app.domain.gait import Gait
 from app.domain.grid import FootGrid
-from app.domain.kinematics import check_reach
+from app.domain.kinematics import JOINT_LIMITS_RAD, check_reach
 from app.domain.motion import StepMotion, StepPlan, recorded_substeps
 from app.domain.robot import Robot
 from app.domain.simulator import Expansion, Motion, Step
@@ -344,6 +344,23 @@ class MujocoSimulator:
             f"the physics diverged at step {steps[bad]}; try a smaller robot.dt_s, a "
             "lower servo_kp or heavier links"
         )
+
+    def estimate(self, state: MujocoState, error_m: FloatArray) -> MujocoState:
+        legs, gait = self._motion.legs, self.gait
+        angles = state.row[self._joints].reshape(-1, 3)
+        feet = np.array(legs.foot_offsets(angles.ravel().tolist()))
+        measured = feet.copy()
+        for (leader, partner), (x, y) in zip(gait.pairs, error_m.tolist(), strict=True):
+            measured[leader - 1, :2] += x, y
+            measured[partner - 1, :2] += -x, y
+        low, high = np.array([*JOINT_LIMITS_RAD.values()]).T
+        # As differences, so that an error of 0 changes nothing.
+        moved = angles + (legs.joint_angles(measured) - legs.joint_angles(feet))
+        row = state.row.copy()
+        is_reached = np.isfinite(moved).all(axis=1, keepdims=True)
+        # A foot that seems to be out of reach stays where it is.
+        row[self._joints] = np.where(is_reached, np.clip(moved, low, high), angles).ravel()
+        return replace(state, row=_read_only_copy(row))
 
     def pair_offsets(self, state: MujocoState) -> Sequence[tuple[float, float]]:
         feet = self._motion.legs.foot_offsets(state.row[self._joints].tolist())

@@ -1,12 +1,12 @@
-"""Configs of trainings and races: complete, validated and immutable.
+"""Walking problems and configs of trainings: complete, validated and immutable.
 
 Fields that a user may choose are declared as settings (`app.domain.settings`).
 """
 
 import logging
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
-from typing import Annotated, Any, Literal, NamedTuple, get_args
+from dataclasses import dataclass, field, fields, replace
+from typing import Annotated, Any, Literal, get_args
 
 from annotated_types import Ge, Le
 
@@ -17,7 +17,7 @@ from app.domain.errors import HexapodError, InvalidInput, UnknownName
 from app.domain.gait import Gait, GaitSpec, resolve
 from app.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M, FootGrid
 from app.domain.observation import Observation, check_observation
-from app.domain.robot import Robot, as_mapping, robot
+from app.domain.robot import Robot
 from app.domain.settings import (
     DeclaredSetting,
     Setting,
@@ -27,20 +27,15 @@ from app.domain.settings import (
     declared_fields,
 )
 from app.domain.tolerance import MAX_TOLERANCE, build_tolerance
-from app.domain.world import UNDISTURBED, World, world
+from app.domain.world import UNDISTURBED, World
 from app.runs.seeding import BUILDING, generator
 
 _log = logging.getLogger(__name__)
 SimulatorName = Literal["mujoco", "kinematic"]
 SIMULATORS: tuple[SimulatorName, ...] = get_args(SimulatorName)
 MAX_STEPS = disturbances.MAX_STEP
-MAX_LANES = 6
-MAX_ID = 64
-"""Maximum length of a run's id."""
 RACE_STEPS = 50
 """Default number of steps of a race, and number of steps of an evaluation (paper §5)."""
-MAX_RACE_STEPS = 300_000
-"""Maximum of steps, summed over a race's lanes: every step is recorded, in about 3 kB."""
 
 Divisions = Annotated[
     int,
@@ -122,26 +117,6 @@ Pace = Annotated[
         unit="times real time",
         help="How fast it practises: max, or a number of times real time.",
         live=True,
-    ),
-]
-RaceSteps = Annotated[
-    int,
-    Ge(1),
-    Le(MAX_RACE_STEPS),
-    Setting(title="Steps of the race", help="How many steps each robot has in the race."),
-]
-PlansWith = Annotated[
-    Literal["world", "nominal"],
-    Setting(
-        title="Plans with",
-        help="The world as it is, or the robot and flat ground as if nothing had happened.",
-    ),
-]
-KeepLearning = Annotated[
-    bool,
-    Setting(
-        title="Keeps learning",
-        help="Whether it learns from each step of the race too; without practice it begins there.",
     ),
 ]
 
@@ -243,7 +218,8 @@ class TrainingConfig(WalkingProblem):
         check_observation(self.observation)
 
 
-_TRAINING_FIELDS = frozenset(one.name for one in fields(TrainingConfig))
+TRAINING_FIELDS = frozenset(one.name for one in fields(TrainingConfig))
+"""Names of the fields of a training; all other names are settings of its agent."""
 
 
 _RESERVED = """
@@ -271,7 +247,7 @@ def agent_settings(agent: str) -> Mapping[str, DeclaredSetting]:
                 f"agent {agent} declares a setting named {name!r}, which means something else in "
                 "requests and files; rename the parameter"
             )
-    return {name: one for name, one in found.items() if name not in _TRAINING_FIELDS}
+    return {name: one for name, one in found.items() if name not in TRAINING_FIELDS}
 
 
 def usable_agents() -> tuple[str, ...]:
@@ -307,212 +283,7 @@ def training_config(agent: str = TrainingConfig.agent, **given: Any) -> Training
     Raises:
         UnknownName, InvalidInput: if the agent, a setting or a value is invalid.
     """
-    own = {name: value for name, value in given.items() if name in _TRAINING_FIELDS}
-    settings = {name: value for name, value in given.items() if name not in _TRAINING_FIELDS}
+    own = {name: value for name, value in given.items() if name in TRAINING_FIELDS}
+    settings = {name: value for name, value in given.items() if name not in TRAINING_FIELDS}
     config = TrainingConfig(agent=agent, **own)
     return replace(config, settings=complete(agent_settings(agent), settings, agent))
-
-
-@dataclass(frozen=True, kw_only=True)
-class LaneConfig:
-    """Config of one lane of a race. `lane_config` adds the agent's defaults.
-
-    Attributes:
-        agent: a registered name or `my.module:Agent`.
-        observation: observation mode; for a trained agent that of its table.
-        keep_learning: whether the agent learns from each step of the race.
-        plans_with: of a searcher, what it knows: `world` is the world as it is in each step,
-            `nominal` the robot and flat ground as if nothing had happened; None is the world as it
-            was at the start, since nobody tells a robot what happens later.
-        settings: the agent's settings by name; none for a trained agent, which has those of its
-            training.
-    """
-
-    agent: str
-    observation: Observation = "measured"
-    keep_learning: KeepLearning = False
-    plans_with: PlansWith | None = None
-    settings: SettingValues[Value] = field(default_factory=SettingValues)
-
-    def __post_init__(self) -> None:
-        check_observation(self.observation)
-        for setting in declared_fields(LaneConfig).values():
-            setting.check(getattr(self, setting.name))
-
-
-_LANE_FIELDS = frozenset(one.name for one in fields(LaneConfig)) - {"settings"}
-
-
-def lane_config(
-    agent: str,
-    *,
-    observation: Observation = LaneConfig.observation,
-    keep_learning: bool | None = None,
-    plans_with: str | None = None,
-    has_training: bool = False,
-    **settings: Any,
-) -> LaneConfig:
-    """Create the config of a lane, with its agent's settings validated and completed.
-
-    Args:
-        agent: a registered name or `my.module:Agent`.
-        observation: observation mode.
-        keep_learning: whether the agent learns in the race; None for the agent's default.
-        plans_with: what a searcher knows; see `LaneConfig`.
-        has_training: whether the agent races with what it learned in a training.
-        settings: the agent's settings by name.
-
-    Raises:
-        UnknownName, InvalidInput: if the agent, a setting or a value is invalid.
-    """
-    if keep_learning is None:
-        keep_learning = registry.keeps_learning(agent)
-    lane = LaneConfig(
-        agent=agent,
-        observation=observation,
-        keep_learning=keep_learning,
-        plans_with=plans_with,  # type: ignore[arg-type]  # it is checked
-        settings=SettingValues(settings),
-    )
-    check_lane(lane, has_training)
-    if has_training:
-        return lane
-    return replace(lane, settings=complete(agent_settings(agent), settings, agent))
-
-
-def check_lane(lane: LaneConfig, has_training: bool) -> None:
-    """Check a lane against its agent, which is imported.
-
-    Raises:
-        UnknownName, InvalidInput: if the agent does not exist, does not learn but should, or does
-            not have these settings.
-    """
-    if lane.keep_learning and not registry.learns(lane.agent):
-        raise InvalidInput(
-            f"{lane.agent} does not learn, so it cannot keep learning; leave out keep_learning"
-        )
-    if lane.plans_with is not None and not registry.searches(lane.agent):
-        raise InvalidInput(f"{lane.agent} plans with no simulator; leave out plans_with")
-    if has_training and lane.settings:
-        raise InvalidInput(
-            "a lane with training takes its settings from there; leave out "
-            + ", ".join(lane.settings)
-        )
-    if not has_training:
-        complete(agent_settings(lane.agent), lane.settings, lane.agent)
-
-
-class Branch(NamedTuple):
-    """The moment of another race at which a race branches off; until then both are the same."""
-
-    race_id: str
-    step: int
-    """Number of steps that they share."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class RaceConfig(WalkingProblem):
-    """Config of a race of one to six lanes, 50 steps each by default.
-
-    Attributes:
-        lanes: in order.
-        steps: of each lane.
-        seed: seed of all random generators of the run.
-        branch_from: the race whose first steps this one repeats, if any.
-
-    Raises:
-        InvalidInput: if there are no or too many lanes, or too many steps in all.
-    """
-
-    lanes: tuple[LaneConfig, ...]
-    steps: RaceSteps = RACE_STEPS
-    seed: Seed = 0
-    branch_from: Branch | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.branch_from is not None:
-            race_id: Any = self.branch_from.race_id  # it may be from a file
-            step = self.branch_from.step
-            if not isinstance(race_id, str) or not race_id.isalnum() or len(race_id) > MAX_ID:
-                raise InvalidInput(f"branch_from.race_id must be the id of a race, not {race_id!r}")
-            check_whole("branch_from.step", step, 0, self.steps - 1)
-        if not 1 <= len(self.lanes) <= MAX_LANES:
-            raise InvalidInput(f"a race has 1 to {MAX_LANES} lanes, not {len(self.lanes)}")
-        if self.steps * len(self.lanes) > MAX_RACE_STEPS:
-            raise InvalidInput(
-                f"a race records every step, so steps times lanes must be at most "
-                f"{MAX_RACE_STEPS:,}, not {self.steps * len(self.lanes):,}"
-            )
-
-
-def as_json(config: WalkingProblem) -> dict[str, Any]:
-    """Convert a config to plain types, as in API responses and in files."""
-    data: dict[str, Any] = {}
-    for one in fields(config):
-        value = getattr(config, one.name)
-        data |= value if isinstance(value, SettingValues) else {one.name: value}
-    data["robot"] = as_mapping(config.robot)
-    del data["world"]
-    data["disturbances"] = [disturbances.as_mapping(one) for one in config.world.disturbances]
-    if isinstance(config.gait, GaitSpec):
-        data["gait"] = {k: v for k, v in asdict(config.gait).items() if v is not None}
-    if isinstance(config, RaceConfig):
-        data["lanes"] = [_lane_as_json(lane) for lane in config.lanes]
-        branch = config.branch_from
-        data["branch_from"] = None if branch is None else branch._asdict()
-    return data
-
-
-def _lane_as_json(lane: LaneConfig) -> dict[str, Any]:
-    return {name: getattr(lane, name) for name in sorted(_LANE_FIELDS)} | dict(lane.settings)
-
-
-def _lane_from_json(data: Mapping[str, Any]) -> LaneConfig:
-    own = {name: value for name, value in data.items() if name in _LANE_FIELDS}
-    settings = {name: value for name, value in data.items() if name not in _LANE_FIELDS}
-    return LaneConfig(**own, settings=SettingValues(settings))
-
-
-def config_from_json(data: Mapping[str, Any]) -> TrainingConfig | RaceConfig:
-    """Parse the output of `as_json`; a config with lanes is that of a race.
-
-    Keys that are no field of a training, or of a lane, are its agent's settings; the agent is not
-    imported.
-
-    Raises:
-        InvalidInput: if a value is invalid.
-        KeyError, TypeError, ValueError: if it is not the output of `as_json`.
-    """
-    values = {**data, "gait": gait_from_json(data["gait"]), "robot": robot(data["robot"])}
-    values["world"] = world(values.pop("disturbances", ()))  # earlier versions had none
-    if "lanes" in values:
-        lanes = tuple(_lane_from_json(lane) for lane in values.pop("lanes"))
-        branch = values.pop("branch_from", None)  # earlier versions had none
-        branch_from = None if branch is None else Branch(branch["race_id"], branch["step"])
-        return RaceConfig(**values, lanes=lanes, branch_from=branch_from)
-    settings = {name: values.pop(name) for name in list(values) if name not in _TRAINING_FIELDS}
-    return TrainingConfig(**values, settings=SettingValues(settings))
-
-
-def gait_from_json(value: str | Mapping[str, Any]) -> str | GaitSpec:
-    """Parse a gait from the output of `as_json`."""
-    if isinstance(value, str):
-        return value
-    parts = dict(value)
-    if "pairs" in parts:
-        parts["pairs"] = tuple((int(a), int(b)) for a, b in parts["pairs"])
-    return GaitSpec(**parts)
-
-
-def check_whole(name: str, value: int, low: int, high: int | None) -> None:
-    """Check that a value is an integer from `low` to `high`; `high` None is no upper limit.
-
-    Raises:
-        InvalidInput: if it is not.
-    """
-    if isinstance(value, bool) or not isinstance(value, int):
-        raise InvalidInput(f"{name} must be a whole number, not {value!r}")
-    if value < low or (high is not None and value > high):
-        limits = f"at least {low}" if high is None else f"from {low} to {high:,}"
-        raise InvalidInput(f"{name} must be {limits}, not {value:,}")

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.domain.errors import Diverged, HexapodError
 from app.domain.simulator import Motion
-from app.runs.config import RaceConfig
+from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.runs.records import LaneFailed, LaneStep, RaceRecord
 from app.runs.walker import Walker

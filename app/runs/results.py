@@ -7,7 +7,8 @@ from app.domain.posture import has_fallen, heading_deg
 from app.domain.robot import Robot
 from app.domain.world import World
 from app.runs.clocks import CLOCKS, Clock, Timetable, crossing_s, distance_at
-from app.runs.config import RaceConfig
+from app.runs.lane import plans_with
+from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
 
 
@@ -38,19 +39,21 @@ def race_result(lanes: Sequence[LaneRecording], steps: int) -> dict[str, Any]:
     }
 
 
-def postures(lanes: Sequence[LaneRecording], config: RaceConfig) -> list[dict[str, Any]]:
-    """Return for each lane in which step the robot fell, or None, and its heading at the end [°].
+def lane_details(lanes: Sequence[LaneRecording], config: RaceConfig) -> list[dict[str, Any]]:
+    """Return for each lane what its search knew, in which step it fell, and its heading at the end.
 
-    The step is counted from 0. The heading is 0 along the track, and 90 to the left.
+    None if it does not search, or did not fall. The step is counted from 0. The heading is in
+    degrees: 0 along the track, and 90 to the left.
     """
     return [
         {
+            "plans_with": plans_with(own, config),
             "fell_at_step": fell_at_step(lane, config.robot, config.world),
             "heading_deg": heading_deg(
                 lane.start_qpos(len(lane.steps)).tolist(), lane.rest_qpos.tolist()
             ),
         }
-        for lane in lanes
+        for own, lane in zip(config.lanes, lanes, strict=True)
     ]
 
 

@@ -23,7 +23,8 @@ from app.domain.errors import DamagedFile, TableMismatch
 from app.domain.grid import FootGrid
 from app.domain.world import world
 from app.runs import seeding
-from app.runs.config import TrainingConfig, WalkingProblem, as_json
+from app.runs.config import TrainingConfig, WalkingProblem
+from app.runs.config_json import as_json
 from app.runs.recording import Arrays
 from app.runs.training import Learner
 

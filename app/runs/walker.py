@@ -20,8 +20,13 @@ from app.domain.simulator import Simulator, Step, WalkState
 from app.domain.types import Action, Cells, FloatArray
 from app.runs.records import ActionValues
 
-_MAX_BATCH = 2048
-"""Transitions simulated at once: the servo targets of one take some 10 kB."""
+_MAX_BATCH = 1024
+"""Transitions simulated at once: the servo targets of one take some 10 kB, and no interruption is
+heeded meanwhile, for half a second or so in MuJoCo."""
+
+
+class Interrupted(BaseException):
+    """Raised to abandon a decision; no `Exception`, so that no agent takes it for a failure."""
 
 
 class FutureNode:
@@ -31,7 +36,7 @@ class FutureNode:
         self,
         expand: "SimulatorExpand",
         state: WalkState,
-        observed: "Readings | None" = None,
+        observed: "Sensors | None" = None,
         legal: Sequence[Action] = (),
     ) -> None:
         """Create a node.
@@ -57,46 +62,51 @@ class FutureNode:
         return self._expand.offsets_m(self.state)
 
 
-class Readings:
-    """The observations of a robot's current state, each read at most once per state.
+class Sensors:
+    """The robot's sensors: observations of its current state, each read at most once per state.
 
-    Args:
-        simulator: simulates the robot.
-        sensors: makes the generator of the errors of measurement after so many steps, where sensors
-            are noisy; None for no errors.
+    Attributes:
+        error_m: errors of the measured offsets in this state, the same for all that is read from
+            it, (pairs, 2) [m]; None where sensors are exact.
     """
 
     def __init__(
         self,
         simulator: Simulator[Any],
-        sensors: Callable[[int], np.random.Generator] | None = None,
+        noise: Callable[[int], np.random.Generator] | None = None,
     ) -> None:
-        self._simulator, self._sensors = simulator, sensors
+        """Create the sensors of a robot at rest.
+
+        Args:
+            simulator: simulates the robot.
+            noise: makes the generator of the errors of measurement after so many steps, where
+                sensors are noisy; None for no errors.
+        """
+        self._simulator, self._noise = simulator, noise
         self.at(simulator.rest())
 
     def at(self, state: WalkState) -> None:
         """Set the current state of the robot."""
         self._state = state
         self._read: dict[Observation, Cells] = {}
-        self._error_m = self._error()
+        self.error_m = self._error()
 
     def _error(self) -> FloatArray | None:
-        """Draw the errors of measurement, (pairs, 2) [m]: the same for all readings of a state."""
         steps = self._state.steps
         noise = self._simulator.world.as_of(steps).one_of(SensorNoise)
-        if noise is None or self._sensors is None:
+        if noise is None or self._noise is None:
             return None
-        return self._sensors(steps).normal(0, noise.sd_m, (len(self._simulator.gait.pairs), 2))
+        return self._noise(steps).normal(0, noise.sd_m, (len(self._simulator.gait.pairs), 2))
 
     @property
     def offsets_m(self) -> Sequence[tuple[float, float]]:
         """Measured offset (x, y) of each pair's leader from home, with errors [m]."""
-        return measured_offsets(self._simulator, self._state, self._error_m)
+        return measured_offsets(self._simulator, self._state, self.error_m)
 
     def __call__(self, how: Observation) -> Cells:
         """Return the cells that an agent observes in the current state, one per pair."""
         if how not in self._read:
-            self._read[how] = observe(self._simulator, self._state, how, self._error_m)
+            self._read[how] = observe(self._simulator, self._state, how, self.error_m)
         return self._read[how]
 
     @property
@@ -108,17 +118,20 @@ class Readings:
 class SimulatorExpand:
     """Implements the `Expand` protocol by simulation, and counts simulated transitions.
 
-    All of a search holds under the conditions of the step that is about to be taken: nothing that
-    is to come is foreseen.
+    A search begins in the state that the robot's sensors tell: where they are noisy, the feet of
+    the root stand where they are measured. All of a search holds under the conditions of the step
+    that is about to be taken: nothing that is to come is foreseen.
 
     Attributes:
         transitions: number of transitions simulated so far.
         here: root node, the current state of the robot.
+        interrupt: called before each batch; may raise `Interrupted`.
     """
 
     def __init__(self, simulator: Simulator[Any], observation: Observation) -> None:
         self._simulator, self._observation = simulator, observation
         self.transitions = 0
+        self.interrupt: Callable[[], None] = lambda: None
         self.here = FutureNode(self, simulator.rest())
 
     def __call__(
@@ -137,6 +150,7 @@ class SimulatorExpand:
         ends: list[FutureNode] = []
         rewards: list[FloatArray] = []
         for first in range(0, len(states), _MAX_BATCH):
+            self.interrupt()
             part = slice(first, first + _MAX_BATCH)
             expansion = self._simulator.expand(
                 states[part], actions[part], as_of=self.here.state.steps
@@ -146,14 +160,16 @@ class SimulatorExpand:
         self.transitions += len(actions)
         return ends, np.concatenate(rewards) if rewards else np.empty(0)
 
-    def at(self, state: WalkState, observed: Readings, legal: Sequence[Action]) -> None:
-        """Set the current state of the robot, the root of the search.
+    def at(self, state: WalkState, observed: Sensors, legal: Sequence[Action]) -> None:
+        """Set the current state of the robot, of which the root of the search is an estimate.
 
         Args:
-            state: the state.
+            state: the true state.
             observed: what the robot's sensors say.
             legal: the legal actions.
         """
+        if observed.error_m is not None:
+            state = self._simulator.estimate(state, observed.error_m)
         self.here = FutureNode(self, state, observed, legal)
 
     def offsets_m(self, state: WalkState) -> Sequence[tuple[float, float]]:
@@ -185,26 +201,31 @@ class Walker:
         agent: Agent,
         observation: Observation,
         expand: SimulatorExpand | None = None,
-        readings: Readings | None = None,
+        sensors: Sensors | None = None,
     ) -> None:
         self.simulator, self.agent, self.observation = simulator, agent, observation
         self.keeps_learning = False
-        self._expand, self._readings = expand, readings or Readings(simulator)
+        self._expand, self._sensors = expand, sensors or Sensors(simulator)
         self.place(simulator.rest())
 
     def place(self, state: WalkState) -> None:
         """Set the current state, and update the observation and the legal actions."""
         self.state = state
-        self._readings.at(state)
-        self.observed: Cells = self._readings(self.observation)
+        self._sensors.at(state)
+        self.observed: Cells = self._sensors(self.observation)
         self.legal = legal_actions(self.observed, len(self.simulator.grid))
         if self._expand:
-            self._expand.at(state, self._readings, self.legal)
+            self._expand.at(state, self._sensors, self.legal)
 
     @property
     def transitions(self) -> int:
         """Number of transitions that the agent has simulated so far."""
         return self._expand.transitions if self._expand else 0
+
+    def interrupt_by(self, interrupt: Callable[[], None]) -> None:
+        """Let a function interrupt the agent's search, by raising `Interrupted`."""
+        if self._expand:
+            self._expand.interrupt = interrupt
 
     def decide(self) -> Action:
         """Return the action that the agent chooses in the current state.

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from app.domain.errors import HexapodError
 from app.domain.world import UNDISTURBED, World
 from app.runs.clocks import Clock
-from app.runs.config import RaceConfig
+from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage.race_lane import RaceLane
 from app.stage.scene_spec import rest_pose

@@ -12,7 +12,9 @@ from app.domain.grid import FootGrid
 from app.domain.kinematic import KinematicSimulator
 from app.domain.robot import Robot
 from app.domain.types import FloatArray
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig
+from app.runs.config import TrainingConfig
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.stage.stage_frame import LaneSpec, SceneSpec
 
 PAPERS_LANES = ("q-learning", "greedy", "two-step")

@@ -11,7 +11,8 @@ from app.domain.errors import HexapodError, InvalidInput
 from app.domain.world import UNDISTURBED, World
 from app.events.bus import Event, EventBus
 from app.runs.clocks import Clock
-from app.runs.config import RaceConfig, TrainingConfig
+from app.runs.config import TrainingConfig
+from app.runs.race_config import RaceConfig
 from app.stage.practice_show import PracticeShow
 from app.stage.race_show import RaceShow, original_of
 from app.stage.scene_spec import race_scene, training_scene

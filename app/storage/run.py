@@ -9,7 +9,9 @@ from app.domain.disturbances import disturbance
 from app.domain.world import UNDISTURBED, World
 from app.experiments import config as experiments
 from app.experiments.config import ExperimentConfig
-from app.runs.config import RaceConfig, TrainingConfig, as_json, config_from_json
+from app.runs.config import TrainingConfig
+from app.runs.config_json import as_json, config_from_json
+from app.runs.race_config import RaceConfig
 
 Kind = Literal["training", "race", "experiment"]
 State = Literal["queued", "running", "paused", "finished", "stopped", "failed", "interrupted"]

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from app.runs.clocks import Clock
-from app.runs.config import RaceConfig
+from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage.race_show import Original, RaceShow
 from app.stage.scene_spec import race_scene

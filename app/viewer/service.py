@@ -12,7 +12,7 @@ from starlette.routing import BaseRoute, Route, WebSocketRoute
 
 from app.events.bus import EventBus
 from app.runs.clocks import Clock
-from app.runs.config import RaceConfig
+from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage.race_show import Original
 from app.stage.stage import Stage

@@ -16,7 +16,7 @@ import msgspec
 from starlette.websockets import WebSocket, WebSocketDisconnect
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-from app.runs.config import MAX_LANES
+from app.runs.race_config import MAX_LANES
 from app.viewer.viser_internals import stream
 
 FREE = "free"

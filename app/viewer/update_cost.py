@@ -7,7 +7,8 @@ import time
 from collections.abc import Callable
 
 from app.assembly import build_walkers
-from app.runs.config import LaneConfig, RaceConfig
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
 from app.stage.race_show import RaceShow
 from app.stage.scene_spec import PAPERS_LANES, race_scene

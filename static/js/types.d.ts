@@ -186,6 +186,7 @@ export interface LaneConfig {
   agent: string;
   training_id?: string | null;
   keep_learning?: boolean;
+  /** In a run of a search always one of `world`, `start`, `nominal`. */
   plans_with?: string | null;
   /** A setting of the agent, if the lane has no training. */
   [setting: string]: any;

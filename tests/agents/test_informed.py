@@ -13,7 +13,8 @@ from app.domain.gait import NAMED_GAITS
 from app.domain.grid import FootGrid
 from app.domain.robot import robot
 from app.domain.types import Action
-from app.runs.config import LaneConfig, RaceConfig, lane_config
+from app.runs.lane import LaneConfig, lane_config
+from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
 from app.runs.results import race_result
 from tests.agents.walkers import kinematic_walker
@@ -53,8 +54,7 @@ def test_model_learns_what_the_law_does_not_know() -> None:
     slips, holds = Action(0, 1), Action(2, 1)
     law = 0.02 / 3
     for _ in range(20):
-        model.learn(HOME, slips, law / 2)
-        model.learn(HOME, holds, law)
+        model.learn(HOME, np.array([slips, holds]), np.array([law / 2, law]))
 
     rewards, _ = model.predict(HOME, np.array([slips, holds]))
     assert rewards.tolist() == pytest.approx([law / 2, law], rel=0.05)
@@ -64,8 +64,7 @@ def test_prediction_does_not_depend_on_how_many_are_made_at_once() -> None:
     model, rng = RewardModel(PROBLEM), np.random.default_rng(0)
     actions = np.array([[pair, cell] for pair in range(3) for cell in range(5)])
     offsets = rng.uniform(-0.02, 0.02, (3, 2))
-    for action in actions:
-        model.learn(offsets, Action(*action), float(rng.normal(0, 0.01)))
+    model.learn(offsets, actions, rng.normal(0, 0.01, len(actions)))
     together, _ = model.predict(offsets, actions)
 
     assert together.tolist() == [model.predict(offsets, one[None])[0][0] for one in actions]

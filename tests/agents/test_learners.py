@@ -19,7 +19,9 @@ from app.domain.observation import legal_actions
 from app.domain.types import Action, Cells
 from app.domain.world import UNDISTURBED
 from app.experiments.trial import TrialConfig, run_trial
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
+from app.runs.config import TrainingConfig, training_config
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.runs.seeding import RACING, generator
 from app.runs.tables import Checkpoint, from_bytes, restore, snapshot, table_of, to_bytes
 from app.runs.training import Learner, evaluate, train

@@ -34,6 +34,24 @@ def test_no_more_than_the_budget_is_simulated(budget: int) -> None:
     assert expand.transitions == budget
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_with_two_transitions_the_better_of_two_first_steps_is_taken(seed: int) -> None:
+    """The first steps of A earn 3, 1 and 2: which two are tried is random, not which is taken."""
+    rewards = dict(zip(((0, 0), (0, 1), (0, 2)), (3.0, 1.0, 2.0), strict=True))
+    world = Graph(WORLD)
+    taken = Mcts(world, np.random.default_rng(seed), budget=2).act((0,), ())
+
+    assert world.calls == [1, 1]
+    assert rewards[taken] >= 2
+
+
+def test_sequence_that_the_budget_cuts_short_counts() -> None:
+    """Of seven transitions the last begins a third sequence, perhaps with the best first step."""
+    world: World = {"A": [("B", 0.0), ("B", 0.0), ("B", 9.0)], "B": [("B", 0.0), ("B", 0.0)]}
+    for seed in range(8):
+        assert Mcts(Graph(world), np.random.default_rng(seed), budget=7).act((0,), ()) == (0, 2)
+
+
 def test_known_sequences_cost_nothing() -> None:
     """Of this graph there are 3 · 2 · 2 sequences, of 3 + 6 + 12 transitions."""
     world = Graph(WORLD)

@@ -11,7 +11,8 @@ from app.api.experiment_body import ExperimentBody
 from app.api.schemas import ChangeBody, LaneBody, PracticeBody, RaceBody, TrainingBody
 from app.cli import _parser
 from app.experiments.config import ExperimentConfig
-from app.runs.config import RESERVED, RaceConfig, TrainingConfig
+from app.runs.config import RESERVED, TrainingConfig
+from app.runs.race_config import RaceConfig
 
 BODIES = (PracticeBody, TrainingBody, LaneBody, RaceBody, ExperimentBody, ChangeBody)
 ANSWERS = (

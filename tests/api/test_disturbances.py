@@ -7,7 +7,9 @@ import pytest
 from app.assembly import build_walkers
 from app.domain.world import named_world, world
 from app.runs.best_known import best_known_m
-from app.runs.config import Branch, RaceConfig, WalkingProblem, lane_config
+from app.runs.config import WalkingProblem
+from app.runs.lane import lane_config
+from app.runs.race_config import Branch, RaceConfig
 from app.runs.racing import record_race
 from tests.api.calls import WALK, Api, refused
 
@@ -90,7 +92,7 @@ def test_what_cannot_happen_to_a_running_training_changes_nothing(api: Api) -> N
         ({"disturbances": {"kind": "slope"}}, "a list of at most 20"),
         ({"world": "moon"}, "choose one of: flat, slope"),
         ({"simulator": "kinematic", "world": "slope"}, "knows no slope"),
-        ({"lanes": [{**GREEDY, "plans_with": "hope"}]}, "world, or nominal"),
+        ({"lanes": [{**GREEDY, "plans_with": "hope"}]}, "world, or start, or nominal"),
         (
             {"lanes": [{"agent": "q-learning", "training": {}, "plans_with": "world"}]},
             "q-learning plans with no simulator",
@@ -121,6 +123,9 @@ def test_a_branch_is_the_same_race_to_the_last_bit_until_its_step(
     race = api.finished(api.start("/races", {"branch_from": branch, "disturbances": [LIMP]}))
 
     assert race["config"]["branch_from"] == branch
+    for run, said in ((original, ["world", "world"]), (race, ["nominal", "world"])):
+        assert [lane["plans_with"] for lane in run["config"]["lanes"]] == said
+        assert [lane["plans_with"] for lane in run["result"]["lanes"]] == said
     assert race["config"]["disturbances"] == [{"kind": "limp", "at_step": 8, "legs": [1, 4]}]
     before, after = distances(api, original), distances(api, race)
     for lane in (0, 1):
@@ -175,15 +180,16 @@ def test_results_tell_where_robots_fell_and_face(api: Api) -> None:
 
 def test_a_searcher_knows_the_start_unless_its_lane_says_otherwise() -> None:
     """Legs 1 and 4 are limp: a plan for the whole robot treads on the spot."""
-    lanes = tuple(lane_config("greedy", plans_with=how) for how in (None, "world", "nominal"))
+    modes = (None, "start", "world", "nominal")
+    lanes = tuple(lane_config("greedy", plans_with=how) for how in modes)
     config = RaceConfig(
         gait=WALK["gait"], lanes=lanes, steps=12, world=world([LIMP]), branch_from=Branch("x", 3)
     )
-    *_, recorded = record_race(build_walkers(config, [None] * 3), config, lambda: 0.0)
-    known, told, unaware = (lane.distance_m for lane in recorded)
+    *_, recorded = record_race(build_walkers(config, [None] * 4), config, lambda: 0.0)
+    known, same, told, unaware = (lane.distance_m for lane in recorded)
 
     assert config.world == named_world("limp-pair")
-    assert known == told > unaware + 0.03
+    assert known == same == told > unaware + 0.03
 
 
 def test_options_tell_what_can_happen(api: Api) -> None:
@@ -209,7 +215,7 @@ def test_options_tell_what_can_happen(api: Api) -> None:
     searching = {one["name"] for one in options["agents"] if one["searches"]}
     assert {"greedy", "beam", "mcts"} <= searching
     assert not searching & {"q-learning", "linear-model"}
-    assert options["settings"]["plans_with"]["choices"] == ["world", "nominal"]
+    assert options["settings"]["plans_with"]["choices"] == ["world", "start", "nominal"]
 
 
 def test_options_are_compressed_once_and_revalidated(api: Api) -> None:

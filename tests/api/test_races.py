@@ -93,6 +93,16 @@ def test_lane_has_settings_of_its_own(api: Api) -> None:
     assert transitions == [3 * 12, 3 * 156]
 
 
+def test_lane_has_an_observation_of_its_own(api: Api) -> None:
+    learner = {"agent": "q-learning", "keep_learning": True, "observation": "planned"}
+    practice = {**PRACTICE, "observation": "commanded"}
+    practised = {"agent": "q-learning", "training": practice, "observation": "commanded"}
+    race = api.race(lanes=[learner, {"agent": "greedy"}, practised], steps=3)
+    api.stop(race)
+    seen = [lane["observation"] for lane in race["config"]["lanes"]]
+    assert seen == ["planned", "measured", "commanded"]
+
+
 def test_lane_may_learn_in_the_race_without_practice(api: Api) -> None:
     lane = {"agent": "q-learning", "keep_learning": True, "epsilon_start": 0.1}
     race = api.finished(api.race(lanes=[lane], steps=10))
@@ -110,6 +120,14 @@ def test_lane_may_learn_in_the_race_without_practice(api: Api) -> None:
         ({"agent": "look-ahead", "width": 5}, "unknown field 'width'"),
         ({"agent": "greedy", "keep_learning": True}, "Lane 1: greedy does not learn, so it cannot"),
         ({"agent": "greedy", "keep_learning": 1}, "keep_learning must be true or false"),
+        (
+            {"agent": "greedy", "observation": "guessed"},
+            "observation must be measured, or commanded, or planned",
+        ),
+        (
+            {"agent": "q-learning", "training": {}, "observation": "planned"},
+            "Lane 1: observation must be measured, in which its training was learned, not planned",
+        ),
         ({"agent": "q-learning"}, "Lane 1: q-learning races with what it has learned"),
         (
             {"agent": "q-learning", "training": {}, "alpha": 0.5},

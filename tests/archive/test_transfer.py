@@ -16,7 +16,8 @@ from app.archive import archive
 from app.archive.transfer import RUN, export_run, import_run
 from app.domain.errors import InvalidInput
 from app.domain.settings import SettingValues
-from app.runs.config import RaceConfig, lane_config
+from app.runs.lane import lane_config
+from app.runs.race_config import RaceConfig
 from app.runs.recording import race_arrays
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound

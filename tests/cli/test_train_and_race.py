@@ -62,7 +62,7 @@ def test_lanes_take_settings_and_keep_learning(folder: Path) -> None:
     lanes = (
         "look-ahead,depth=2",
         "q-learning=q.npz,keep_learning=true",
-        "q-learning,keep_learning=true,alpha=0.5",
+        "q-learning,keep_learning=true,alpha=0.5,observation=planned",
     )
     race = ("race", *QUICK, "--steps", "5", *(part for lane in lanes for part in ("--lane", lane)))
     printed = output(*race, folder=folder)
@@ -71,9 +71,12 @@ def test_lanes_take_settings_and_keep_learning(folder: Path) -> None:
         for one in printed["config"]["lanes"]
     ]
     assert settings == [(2, False, None), (None, True, None), (None, True, 0.5)]
+    seen = [one["observation"] for one in printed["config"]["lanes"]]
+    assert seen == ["measured", "measured", "planned"]
     assert printed["result"]["lanes"][0]["simulated_transitions"] == 5 * 156
     shown = hexapods(*race, folder=folder).stdout.replace("\u00a0", " ")
     assert "look-ahead, depth 2" in shown
+    assert "plans with" in shown
     assert "q-learning, α 0.5, keeps learning" in shown
 
 
@@ -151,10 +154,21 @@ def test_invalid_input_to_train_is_refused_in_one_sentence(
         ((*QUICK, "--lane", "look-ahead,depth=0"), "depth must be a whole number from 1 to 50"),
         ((*QUICK, "--lane", "look-ahead,depth=deep"), "depth must be a whole number from 1 to 50"),
         ((*QUICK, "--lane", "look-ahead,depth=5"), "choose depth 4 or less"),
-        ((*QUICK, "--lane", "greedy,depth=2"), "choose one of: keep_learning, plans_with"),
+        (
+            (*QUICK, "--lane", "greedy,depth=2"),
+            "choose one of: observation, keep_learning, plans_with",
+        ),
         ((*QUICK, "--lane", "greedy,agent=beam"), "unknown setting of a greedy lane 'agent'"),
         ((*QUICK, "--lane", "greedy,keep_learning=true"), "greedy does not learn"),
         ((*QUICK, "--lane", "q-learning=q.npz,alpha=0.5"), "leave out alpha"),
+        (
+            (*QUICK, "--lane", "q-learning=q.npz,observation=planned"),
+            "observation must be measured, in which its training was learned, not planned",
+        ),
+        (
+            (*QUICK, "--lane", "greedy,observation=guessed"),
+            "observation must be measured, or commanded, or planned, not 'guessed'",
+        ),
         ((*QUICK,), "--lane"),
     ],
 )
@@ -184,6 +198,8 @@ def test_worlds_and_disturbances_are_options(tmp_path: Path) -> None:
     assert [one["kind"] for one in printed["config"]["disturbances"]] == ["slope", "limp"]
     assert printed["result"]["lanes"][0]["fell_at_step"] is None
     assert abs(printed["result"]["lanes"][0]["heading_deg"]) < 45
+    assert printed["config"]["lanes"][0]["plans_with"] is None  # as it was given
+    assert printed["result"]["lanes"][0]["plans_with"] == "start"
 
 
 @pytest.mark.parametrize(

@@ -227,3 +227,27 @@ def test_the_number_of_legs_is_a_parameter(build: Build, legs: int) -> None:
     assert len(state.commanded) == len(simulator.pair_offsets(state)) == legs // 2
     assert simulator.pose(state).shape == (7 + 3 * legs,)
     assert 0.03 < state.distance_m < 0.2
+
+
+def test_estimate_has_the_feet_where_they_are_measured_and_all_else_as_it_is(
+    build: Build,
+) -> None:
+    for gait in NAMED_GAITS:
+        simulator = build(gait)
+        (*_, state) = walk(simulator, simulator.rest(), 5)
+        error_m = np.random.default_rng(0).normal(0, 0.004, (3, 2))
+        true_m = np.array(simulator.pair_offsets(state))
+
+        estimate = simulator.estimate(state, error_m)
+
+        assert np.allclose(simulator.pair_offsets(estimate), true_m + error_m, atol=1e-9)
+        assert np.array_equal(simulator.pose(estimate)[:7], simulator.pose(state)[:7])
+        assert (estimate.distance_m, estimate.steps) == (state.distance_m, state.steps)
+        assert estimate.commanded == state.commanded
+        assert np.allclose(simulator.pair_offsets(state), true_m, atol=0)
+
+
+def test_estimate_without_an_error_is_the_state(build: Build, simulator: Simulator[Any]) -> None:
+    (*_, state) = walk(simulator, simulator.rest(), 5)
+    same = simulator.estimate(state, np.zeros((3, 2)))
+    assert bits(simulator, same) == bits(simulator, state)

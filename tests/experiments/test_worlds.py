@@ -46,7 +46,7 @@ def entry(found: dict[str, Any], agent: str, world: str) -> dict[str, Any]:
     (one,) = [
         one
         for one in found["worlds"]
-        if (one["agent"], one["world"], one["plans_with"]) == (agent, world, None)
+        if (one["agent"], one["world"]) == (agent, world) and one["plans_with"] != "nominal"
     ]
     return dict(one)
 
@@ -79,6 +79,8 @@ def test_league_measures_learners_against_greedy_and_best_known() -> None:
     assert learner["until_greedy"]["reached"] == 1
     assert learner["until_best_known"]["median_steps"] is None
     assert entry(found, "informed", "flat")["curve"] is None
+    assert entry(found, "informed", "limp-pair")["plans_with"] == "world"
+    assert learner["plans_with"] is None
     assert len(found["worlds"]) == 2 * 4
 
 
@@ -111,5 +113,6 @@ def test_report_shows_each_world_with_its_references(experiment: str) -> None:
     assert "Two limp legs, Left-right, opposite; best known" in text
     assert "Slope:degrees=4, Left-right, opposite</figcaption>" in text
     assert "Greedy, nominal model" in text
+    assert "Greedy, true model" in text
     assert "within 3&nbsp;% of its design" in text
     assert ("Earned in 1–50" in text) == (experiment == "recovery")

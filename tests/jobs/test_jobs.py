@@ -11,6 +11,7 @@ import pytest
 
 from app.domain.errors import InvalidInput
 from app.events.bus import EventBus
+from app.jobs.job import Job
 from app.jobs.jobs import Jobs
 from app.jobs.queue import MAX_QUEUED, RunQueue
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
@@ -116,6 +117,38 @@ def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: RunSto
     assert (stopped.state, stopped.done, stopped.error) == ("stopped", 1, None)
     assert stopped.result is not None
     assert stopped.result["greedy_distance_m"] is None
+
+
+def test_stop_interrupts_a_long_decision(jobs: Jobs, store: RunStore) -> None:
+    """The beam simulates some 25,000 transitions, for 10 s or so; greedy's step is kept."""
+    beam = LaneStart("beam", settings={"width": 1000, "depth": 5})
+    walk = WalkingProblem(gait="left-right-origin")
+    race = jobs.race(RaceStart(walk, [LaneStart("greedy"), beam], 50, 0))
+    wait_for_progress(store, race)
+    began_s = time.monotonic()
+    stopped = jobs.stop(race.id)
+
+    assert time.monotonic() - began_s < 5
+    assert (stopped.state, stopped.error) == ("stopped", None)
+    assert stopped.result is not None
+    assert [lane["steps"] for lane in stopped.result["lanes"]] == [1, 0]
+
+
+def test_race_whose_agent_does_not_let_itself_be_stopped_is_ended(
+    jobs: Jobs, store: RunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Job, "stop_grace_s", 0.5)
+    lanes = [LaneStart("greedy"), LaneStart("tests.own_agents:Ponderous")]
+    race = jobs.race(RaceStart(WALK, lanes, 50, 0))
+    wait_for_progress(store, race)
+    stopped = jobs.stop(race.id)
+
+    assert stopped.state == "stopped"
+    assert stopped.error == (
+        "It did not answer when it was to stop, so it was ended after 0 s; what was done is kept."
+    )
+    assert stopped.result is not None
+    assert [lane["steps"] for lane in stopped.result["lanes"]] == [1, 0]
 
 
 def test_starting_run_stops_at_once(jobs: Jobs, store: RunStore) -> None:

@@ -11,7 +11,9 @@ from app.domain.errors import DamagedFile, InvalidInput
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
+from app.runs.config import TrainingConfig, training_config
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.runs.tables import snapshot, to_bytes
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict

@@ -132,7 +132,7 @@ export const OPTIONS = {
     ...Object.fromEntries(["steps_per_episode", "evaluate_every", "divisions", "race_steps"]
       .map((name) => [name, setting(name, { minimum: 0, is_whole: true, default: 50 })])),
     keep_learning: setting("Keeps learning", { is_number: false, is_boolean: true, default: false }),
-    plans_with: setting("Plans with", { is_number: false, choices: ["world", "nominal"] }),
+    plans_with: setting("Plans with", { is_number: false, choices: ["world", "start", "nominal"] }),
     pace: setting("Pace", { choices: ["max"], minimum: 0.01, maximum: 1000, default: "max" }),
     ...TRACER, ...LEARNER,
   },

@@ -184,3 +184,18 @@ def test_the_state_is_the_full_integration_state() -> None:
 
 def test_models_are_cached() -> None:
     assert build().model is build("front-back-origin").model is compile_model(Robot())
+
+
+def test_estimate_keeps_velocities_and_joint_limits() -> None:
+    """A foot that seems to be half a metre away is out of reach: the joints stay where they are."""
+    simulator = build()
+    state = simulator.step(simulator.rest(), Action(0, 1)).state
+    near, far = (simulator.estimate(state, np.full((3, 2), by_m)) for by_m in (0.004, 0.5))
+    joints = slice(8, 8 + simulator.model.nu)
+
+    assert np.array_equal(far.row, state.row)
+    assert not np.allclose(near.row[joints], state.row[joints], atol=0.01)
+    assert np.array_equal(np.delete(near.row, joints), np.delete(state.row, joints))
+    (end,), (reward_m,) = simulator.expand([near], [Action(1, 1)])
+    assert np.isfinite(end.row).all()
+    assert abs(reward_m) < 0.03

@@ -8,7 +8,8 @@ from typing import Any
 
 from app.agents.protocol import Tunable
 from app.assembly import build_learner
-from app.runs.config import TrainingConfig, config_from_json
+from app.runs.config import TrainingConfig
+from app.runs.config_json import config_from_json
 from app.runs.records import Evaluated, StepTaken
 from app.runs.tables import from_bytes, snapshot, to_bytes
 from app.runs.training import train

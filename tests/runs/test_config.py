@@ -1,6 +1,5 @@
 """Configs of trainings and races: valid values and refusals."""
 
-import json
 import math
 from typing import Annotated, Any
 
@@ -8,28 +7,20 @@ import pytest
 
 from app.agents import registry
 from app.agents.q_learning import QLearning
-from app.domain.errors import InvalidInput, UnknownName
+from app.domain.errors import InvalidInput
 from app.domain.gait import GaitSpec
 from app.domain.robot import robot
-from app.domain.settings import Setting, SettingValues
+from app.domain.settings import Setting
 from app.runs.config import (
-    LaneConfig,
-    RaceConfig,
-    TrainingConfig,
     WalkingProblem,
     agent_settings,
-    as_json,
     changeable_settings,
-    config_from_json,
-    gait_from_json,
-    lane_config,
     training_config,
     usable_agents,
 )
 from tests.own_agents import Restless
 
 GAIT = "left-right-origin"
-LANES = (LaneConfig(agent="greedy"),)
 
 
 def test_the_defaults_are_the_papers() -> None:
@@ -48,7 +39,6 @@ def test_the_defaults_are_the_papers() -> None:
         "mujoco",
         "stiff",
     )
-    assert RaceConfig(gait=GAIT, lanes=LANES).steps == 50
 
 
 @pytest.mark.parametrize(
@@ -87,138 +77,14 @@ def test_invalid_training_is_refused_with_the_valid_values(
         training_config(**{"gait": GAIT, **asked})
 
 
-@pytest.mark.parametrize(
-    ("asked", "message"),
-    [
-        ({"lanes": ()}, "a race has 1 to 6 lanes, not 0"),
-        ({"lanes": LANES * 7}, "a race has 1 to 6 lanes, not 7"),
-        ({"steps": 0}, "steps must be a whole number from 1"),
-        ({"seed": -3}, "seed must be a whole number of at least 0"),
-    ],
-)
-def test_invalid_race_is_refused_with_the_valid_values(asked: dict[str, Any], message: str) -> None:
-    with pytest.raises(InvalidInput, match=message):
-        RaceConfig(**{"gait": GAIT, "lanes": LANES, **asked})
-
-
 def test_gait_with_legs_that_the_robot_lacks_is_refused() -> None:
     with pytest.raises(InvalidInput, match="no leg 6; this robot has legs 1 to 4"):
         WalkingProblem(gait=GaitSpec(6, 1, "origin"), robot=robot({"n_legs": 4}))
 
 
-def test_unknown_observation_mode_of_a_lane_is_refused() -> None:
-    with pytest.raises(UnknownName, match="observation"):
-        LaneConfig(agent="greedy", observation="guessed")  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize("pace", ["max", 0.01, 1, 1000])
 def test_pace_is_max_or_a_multiple_of_real_time(pace: float | str) -> None:
     assert training_config(gait=GAIT, pace=pace).pace == pace
-
-
-@pytest.mark.parametrize(
-    "gait", [GAIT, GaitSpec(6, 1, "vertical"), GaitSpec(1, 2, pairs=((1, 6), (2, 3), (4, 5)))]
-)
-def test_config_in_plain_types_is_valid_json_and_has_the_same_gait(
-    gait: str | GaitSpec,
-) -> None:
-    made = robot({"preset": "compliant", "n_legs": 6, "friction": 0.5})
-    shown = json.loads(json.dumps(as_json(training_config(gait=gait, robot=made))))
-
-    assert gait_from_json(shown.pop("gait")) == gait
-    assert robot(shown.pop("robot")) == made
-    assert shown.pop("disturbances") == []
-    assert training_config(gait=gait, robot=made, **shown) == training_config(gait=gait, robot=made)
-
-
-@pytest.mark.parametrize(
-    "config",
-    [
-        training_config(gait=GAIT),
-        TrainingConfig(
-            gait=GaitSpec(1, 4, pairs=((1, 4), (2, 6), (3, 5))),
-            robot=robot({"preset": "slippery", "n_legs": 6, "mount_radius_m": 0.12}),
-            simulator="kinematic",
-            seed=2**70,
-            pace=2.5,
-            agent="my.module:Agent",
-            settings=SettingValues({"width": 3, "mode": "wide"}),
-        ),
-        training_config(
-            gait=GaitSpec(1, 3, "vertical"), robot=robot({"n_legs": 8, "femur_m": 0.1})
-        ),
-        RaceConfig(gait=GAIT, lanes=(*LANES, LaneConfig(agent="x", observation="commanded"))),
-        RaceConfig(
-            gait=GAIT,
-            lanes=(
-                lane_config("look-ahead", depth=2),
-                lane_config("q-learning", keep_learning=True, alpha=0.5),
-            ),
-        ),
-    ],
-)
-def test_config_round_trips_through_json(config: TrainingConfig | RaceConfig) -> None:
-    assert config_from_json(json.loads(json.dumps(as_json(config)))) == config
-
-
-def test_lane_in_plain_types_has_its_settings_as_flat_fields() -> None:
-    race = RaceConfig(gait=GAIT, lanes=(lane_config("look-ahead", depth=2),))
-    assert as_json(race)["lanes"] == [
-        {
-            "agent": "look-ahead",
-            "observation": "measured",
-            "keep_learning": False,
-            "plans_with": None,
-            "depth": 2,
-        }
-    ]
-
-
-def test_race_of_an_earlier_version_has_lanes_that_do_not_keep_learning() -> None:
-    stored = {**as_json(RaceConfig(gait=GAIT, lanes=LANES))}
-    stored["lanes"] = [{"agent": "greedy", "observation": "measured"}]
-    assert config_from_json(stored) == RaceConfig(gait=GAIT, lanes=LANES)
-
-
-def test_lane_has_the_defaults_of_its_agent() -> None:
-    assert dict(lane_config("look-ahead").settings) == {"depth": 3}
-    assert lane_config("q-learning", keep_learning=True).settings["alpha"] == 0.3
-    eager = f"{__name__}:Eager"
-    assert lane_config(eager).keep_learning
-    assert not lane_config(eager, keep_learning=False).keep_learning
-    assert not lane_config("q-learning", has_training=True).keep_learning
-    assert dict(lane_config("q-learning", has_training=True).settings) == {}
-
-
-class Eager(Restless):
-    """An agent that learns in a race unless it is told otherwise."""
-
-    keeps_learning = True
-
-
-@pytest.mark.parametrize(
-    ("asked", "message"),
-    [
-        ({"agent": "look-ahead", "depth": 0}, "depth must be a whole number from 1 to 50, not 0"),
-        ({"agent": "look-ahead", "width": 2}, "unknown setting of look-ahead 'width'.*: depth"),
-        ({"agent": "greedy", "depth": 2}, "greedy has no settings, so none named 'depth'"),
-        (
-            {"agent": "greedy", "keep_learning": True},
-            "greedy does not learn, so it cannot keep learning; leave out keep_learning",
-        ),
-        (
-            {"agent": "q-learning", "has_training": True, "alpha": 0.1, "gamma": 0.5},
-            "a lane with training takes its settings from there; leave out alpha, gamma",
-        ),
-        (
-            {"agent": "q-learning", "has_training": True, "keep_learning": 1},
-            "keep_learning must be true or false, not 1",
-        ),
-    ],
-)
-def test_invalid_lane_is_refused_with_the_valid_values(asked: dict[str, Any], message: str) -> None:
-    with pytest.raises(InvalidInput, match=message):
-        lane_config(**asked)
 
 
 class Older(Restless):

@@ -12,13 +12,16 @@ from app.agents.protocol import Transition
 from app.assembly import build_learner, build_walkers
 from app.domain.simulator import WalkState
 from app.physics.mujoco_simulator import MujocoState
-from app.runs.config import LaneConfig, RaceConfig, lane_config, training_config
+from app.runs.config import training_config
+from app.runs.lane import LaneConfig, lane_config
+from app.runs.race_config import RaceConfig
 from app.runs.racing import race, record_race
 from app.runs.records import LaneFailed, LaneStep, RaceRecord, StepTaken
 from app.runs.results import race_result
 from app.runs.seeding import RACING, generator
 from app.runs.tables import snapshot, to_bytes
 from app.runs.training import train
+from app.runs.walker import Interrupted
 from tests.own_agents import Restless
 
 
@@ -228,6 +231,20 @@ def test_agent_that_fails_to_learn_ends_its_own_lane_only() -> None:
     assert isinstance(failed, LaneFailed)
     assert (failed.step, failed.reason) == (2, "its agent failed: RuntimeError: too hard")
     assert len(of_lane(records, 1)) == 3
+
+
+def test_decision_may_be_interrupted_and_is_no_failure() -> None:
+    walkers = build_walkers(config("greedy", "two-step", steps=3), [None, None])
+    records = race(walkers, 3, ticking())
+    assert [next(records).lane, next(records).lane] == [0, 1]
+
+    def interrupt() -> None:
+        raise Interrupted
+
+    for walker in walkers:
+        walker.interrupt_by(interrupt)
+    with pytest.raises(Interrupted):
+        next(records)
 
 
 class Unteachable(Restless):

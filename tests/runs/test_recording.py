@@ -10,7 +10,9 @@ from app.assembly import build_learner, build_walkers
 from app.domain.simulator import Motion
 from app.domain.types import Action
 from app.runs.clocks import Timetable
-from app.runs.config import LaneConfig, RaceConfig, training_config
+from app.runs.config import training_config
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
 from app.runs.recording import (
     FIRST_STEPS,

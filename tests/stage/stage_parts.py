@@ -9,7 +9,9 @@ import numpy as np
 from app.assembly import build_learner, build_walkers
 from app.events.bus import EventBus
 from app.events.run_view import run_view
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
+from app.runs.config import TrainingConfig, training_config
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.runs.racing import race
 from app.runs.recording import LaneRecording
 from app.runs.records import StepTaken

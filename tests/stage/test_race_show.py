@@ -8,8 +8,9 @@ import pytest
 from app.domain.disturbances import Limp, Lost, Push
 from app.domain.robot import Robot
 from app.domain.world import World
-from app.runs.config import Branch, LaneConfig, RaceConfig
-from app.runs.results import finish_s, postures, race_result
+from app.runs.lane import LaneConfig
+from app.runs.race_config import Branch, RaceConfig
+from app.runs.results import finish_s, lane_details, race_result
 from app.stage.race_show import LAST_LANE_SPEED, PHOTO_FINISH_S, SPEED
 from app.stage.stage_frame import StageFrame
 from tests.stage.stage_parts import FRAME_S, StageParts
@@ -235,7 +236,7 @@ def test_fall_is_shown_from_its_step_on(parts: StageParts) -> None:
     world = World((Lost(legs=(1, 2, 3), at_step=1),))
     run = parts.finished_race(("q-learning",), 5, simulator="mujoco", world=world)
     assert isinstance(run.config, RaceConfig)
-    fell = postures(parts.recordings.race(run.id) or [], run.config)[0]["fell_at_step"]
+    fell = lane_details(parts.recordings.race(run.id) or [], run.config)[0]["fell_at_step"]
     parts.stage.set(run_id=run.id)
 
     lanes = [frame.lanes[0] for frame in parts.watch_to_end()]

@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from app.runs.config import LaneConfig, RaceConfig
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.stage.stage import REPLAY_AFTER_S
 from app.storage.errors import NotFound
 from app.storage.run import Page

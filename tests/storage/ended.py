@@ -9,7 +9,9 @@ from app.assembly import build_learner, build_walkers, finish_training
 from app.experiments.plan import Plan
 from app.experiments.summary import summarise
 from app.experiments.trial import run_trial
-from app.runs.config import LaneConfig, RaceConfig, training_config
+from app.runs.config import training_config
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
 from app.runs.records import Evaluated, StepTaken
 from app.runs.results import race_result

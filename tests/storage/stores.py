@@ -10,7 +10,9 @@ from app.domain.gait import GaitSpec
 from app.domain.robot import robot
 from app.domain.settings import SettingValues
 from app.experiments.config import ExperimentConfig
-from app.runs.config import LaneConfig, RaceConfig, TrainingConfig, training_config
+from app.runs.config import TrainingConfig, training_config
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.settings import Settings
 from app.storage.database.opening import open_store
 from app.storage.database.store import RunStore

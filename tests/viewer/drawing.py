@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from app.domain.robot import Robot
-from app.runs.config import LaneConfig, RaceConfig
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 from app.stage.scene_spec import race_scene, rest_pose
 from app.stage.stage_frame import LaneView, SceneSpec, StageFrame
 from app.viewer.snapshot import Snapshot

@@ -5,7 +5,7 @@ import pytest
 import viser
 import zstandard
 
-from app.runs.config import Branch, RaceConfig
+from app.runs.race_config import Branch, RaceConfig
 from app.stage.race_show import original_of
 from app.viewer.recorded_stream import MAX_LENGTH_S, recorded_stream
 from tests.stage.stage_parts import StageParts

@@ -8,7 +8,7 @@ import msgspec
 import pytest
 from starlette.websockets import WebSocket
 
-from app.runs.config import MAX_LANES
+from app.runs.race_config import MAX_LANES
 from app.viewer.session import Counters, Session, decode_view, valid_view
 from app.viewer.viser_internals import stream
 

@@ -190,10 +190,17 @@ def place_name(place: tuple[str, ...], summary: Mapping[str, Any]) -> str:
     return ", ".join(names)
 
 
+_MODELS = {
+    None: "",
+    "world": ", true model",
+    "start": ", model of the start",
+    "nominal": ", nominal model",
+}
+
+
 def agent_name(one: Mapping[str, Any]) -> str:
-    """Return an agent's title, and what a searcher plans with unless it is the world."""
-    nominal = ", nominal model"
-    return title_of(one["agent"]) + (nominal if one["plans_with"] == "nominal" else "")
+    """Return an agent's title, and of a searcher the model that it plans with."""
+    return title_of(one["agent"]) + _MODELS[one["plans_with"]]
 
 
 def _world_table(

@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Any, TypeVar
 
 from app.domain.text import visible
-from app.runs.config import RaceConfig
+from app.runs.race_config import RaceConfig
 from app.storage.database.columns import decode_json
 from app.storage.database.queries import MAX_CELL_CHARS, public_id
 from app.storage.errors import Damaged

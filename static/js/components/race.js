@@ -135,14 +135,14 @@ function postureOf({ fell_at_step, heading_deg }) {
   return sentence([fell, turned].filter(Boolean).join(", "));
 }
 
-/** What a search knows of what happens; empty if nothing does. */
-function knowledgeOf({ agent, plans_with }) {
-  const happens = raceInView.value ? happeningsOf(raceInView.value) : [];
-  if (!agentOf(agent).searches || !happens.length) return "";
-  if (plans_with === "world") return "plans with what happens";
-  if (plans_with === "nominal") return "plans with the robot as it was built, on flat ground";
-  return happens.some(({ at_step }) => at_step > 0) ? "plans with the robot as it was" : "";
-}
+const KNOWLEDGE = {
+  world: "plans with the world as it is",
+  start: "plans with the world as it was at the start",
+  nominal: "plans with the robot as designed, on flat ground",
+};
+
+/** What a search knows; empty if the agent does not search. */
+const knowledgeOf = ({ plans_with }) => KNOWLEDGE[plans_with] ?? "";
 
 function activityOf(row) {
   if (row.failure) return `Stopped: ${row.failure}`;

@@ -1,0 +1,80 @@
+"""Configs as JSON: what is written is read again, and what earlier versions wrote."""
+
+import json
+
+import pytest
+
+from app.domain.gait import GaitSpec
+from app.domain.robot import robot
+from app.domain.settings import SettingValues
+from app.runs.config import TrainingConfig, training_config
+from app.runs.config_json import as_json, config_from_json, gait_from_json
+from app.runs.lane import LaneConfig, lane_config
+from app.runs.race_config import RaceConfig
+
+GAIT = "left-right-origin"
+LANES = (LaneConfig(agent="greedy"),)
+
+
+@pytest.mark.parametrize(
+    "gait", [GAIT, GaitSpec(6, 1, "vertical"), GaitSpec(1, 2, pairs=((1, 6), (2, 3), (4, 5)))]
+)
+def test_config_in_plain_types_is_valid_json_and_has_the_same_gait(
+    gait: str | GaitSpec,
+) -> None:
+    made = robot({"preset": "compliant", "n_legs": 6, "friction": 0.5})
+    shown = json.loads(json.dumps(as_json(training_config(gait=gait, robot=made))))
+
+    assert gait_from_json(shown.pop("gait")) == gait
+    assert robot(shown.pop("robot")) == made
+    assert shown.pop("disturbances") == []
+    assert training_config(gait=gait, robot=made, **shown) == training_config(gait=gait, robot=made)
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        training_config(gait=GAIT),
+        TrainingConfig(
+            gait=GaitSpec(1, 4, pairs=((1, 4), (2, 6), (3, 5))),
+            robot=robot({"preset": "slippery", "n_legs": 6, "mount_radius_m": 0.12}),
+            simulator="kinematic",
+            seed=2**70,
+            pace=2.5,
+            agent="my.module:Agent",
+            settings=SettingValues({"width": 3, "mode": "wide"}),
+        ),
+        training_config(
+            gait=GaitSpec(1, 3, "vertical"), robot=robot({"n_legs": 8, "femur_m": 0.1})
+        ),
+        RaceConfig(gait=GAIT, lanes=(*LANES, LaneConfig(agent="x", observation="commanded"))),
+        RaceConfig(
+            gait=GAIT,
+            lanes=(
+                lane_config("look-ahead", depth=2),
+                lane_config("q-learning", keep_learning=True, alpha=0.5),
+            ),
+        ),
+    ],
+)
+def test_config_round_trips_through_json(config: TrainingConfig | RaceConfig) -> None:
+    assert config_from_json(json.loads(json.dumps(as_json(config)))) == config
+
+
+def test_lane_in_plain_types_has_its_settings_as_flat_fields() -> None:
+    race = RaceConfig(gait=GAIT, lanes=(lane_config("look-ahead", depth=2),))
+    assert as_json(race)["lanes"] == [
+        {
+            "agent": "look-ahead",
+            "observation": "measured",
+            "keep_learning": False,
+            "plans_with": None,
+            "depth": 2,
+        }
+    ]
+
+
+def test_race_of_an_earlier_version_has_lanes_that_do_not_keep_learning() -> None:
+    stored = {**as_json(RaceConfig(gait=GAIT, lanes=LANES))}
+    stored["lanes"] = [{"agent": "greedy", "observation": "measured"}]
+    assert config_from_json(stored) == RaceConfig(gait=GAIT, lanes=LANES)

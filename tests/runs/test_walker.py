@@ -1,0 +1,64 @@
+"""Walkers: from where a search plans if sensors are noisy."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.assembly import build_walkers
+from app.domain.disturbances import SensorNoise
+from app.domain.world import UNDISTURBED, World
+from app.runs.lane import lane_config
+from app.runs.race_config import RaceConfig
+from app.runs.walker import FutureNode, Walker
+
+
+def walkers(
+    world: World = UNDISTURBED, *, simulator: Any = "kinematic", seed: int = 0
+) -> list[Walker]:
+    lanes = tuple(lane_config("greedy", plans_with=how) for how in (None, "nominal"))
+    config = RaceConfig(
+        gait="left-right-origin", simulator=simulator, lanes=lanes, world=world, seed=seed
+    )
+    return build_walkers(config, [None, None], threads=1)
+
+
+def root_of(walker: Walker) -> FutureNode:
+    assert walker._expand is not None
+    return walker._expand.here
+
+
+@pytest.mark.parametrize("simulator", ["kinematic", "mujoco"])
+def test_a_search_plans_from_where_the_feet_are_measured(simulator: str) -> None:
+    """Whatever its model knows: the sensors tell it the same."""
+    noisy = World((SensorNoise(sd_m=0.004),))
+    for walker in walkers(noisy, simulator=simulator):
+        for _ in range(3):
+            walker.carry_out(walker.decide())
+            root, true_m = root_of(walker), walker.simulator.pair_offsets(walker.state)
+            planned_from_m = walker.simulator.pair_offsets(root.state)
+            assert np.allclose(planned_from_m, root.offsets_m, atol=1e-9)  # one draw for all
+            assert np.abs(np.subtract(planned_from_m, true_m)).max() > 0.001
+            assert root.state.distance_m == walker.state.distance_m
+
+
+def test_a_search_plans_from_the_true_state_where_sensors_are_exact() -> None:
+    later = World((SensorNoise(sd_m=0.004, at_step=2, until_step=4),))
+    for walker in (*walkers(), *walkers(later)):
+        is_noisy = []
+        for _ in range(5):
+            is_noisy.append(root_of(walker).state is not walker.state)
+            walker.carry_out(walker.decide())
+        assert is_noisy == [walker.simulator.world == later and step in (2, 3) for step in range(5)]
+
+
+def test_noise_makes_greedy_choose_other_steps() -> None:
+    def distance_m(world: World, seed: int = 0) -> float:
+        walker = walkers(world, seed=seed)[0]
+        for _ in range(50):
+            walker.carry_out(walker.decide())
+        return float(walker.state.distance_m)
+
+    noisy = World((SensorNoise(sd_m=0.02),))
+    assert distance_m(noisy) < 0.95 * distance_m(World())
+    assert distance_m(noisy) == distance_m(noisy) != distance_m(noisy, seed=1)
