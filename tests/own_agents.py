@@ -2,13 +2,18 @@
 
 import time
 from collections.abc import Sequence
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from app.agents.linear_model import LinearModel
 from app.agents.lookahead import LookAhead
 from app.agents.protocol import AgentState, Expand, Observe, Problem, Transition
 from app.domain.observation import OBSERVATIONS
+from app.domain.settings import Setting
 from app.domain.types import Action, Cells
+
+Mood = Annotated[Literal["dull", "bright"], Setting(title="Mood", help="Whether it thinks.")]
 
 
 class Restless:
@@ -43,6 +48,18 @@ class Ponderous(Restless):
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         time.sleep(600)
         return super().act(observation, legal)
+
+
+class Moody(LinearModel):
+    """Walks well, unless it is dull, which it is by default: then it takes what comes first."""
+
+    def __init__(self, *args: Any, mood: Mood = "dull", **settings: Any) -> None:
+        super().__init__(*args, **settings)
+        self._mood = mood
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        thought = super().act(observation, legal)
+        return thought if self._mood == "bright" else legal[0]
 
 
 class Plain(Restless):

@@ -1,7 +1,7 @@
 """The `hexapods` command line: each command parses its options and makes one call.
 
-Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `best-known`, `runs` (list, show,
-delete), `export`, `imports`, `doctor` (with checks in `data_diagnostics` and
+Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `tune`, `best-known`, `runs` (list,
+show, delete), `export`, `imports`, `doctor` (with checks in `data_diagnostics` and
 `physics_diagnostics`), `bench` (with the measurements in `benchmarks`). Their module docstrings are
 the descriptions in `--help`.
 Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments
@@ -26,6 +26,7 @@ COMMANDS = {
     "race": "race",
     "experiment": "experiment",
     "sweep": "sweep",
+    "tune": "tune",
     "best-known": "best_known",
     "runs": "runs",
     "export": "export",

@@ -18,8 +18,8 @@ from app.experiments.folder import ResultsFolder, open_results
 from app.experiments.own_cluster import cores
 from app.experiments.plan import Trial
 
-_INTERRUPTED = 130
-_RATE_WINDOW_S = 300.0  # trials of one experiment take from a second to half a minute
+INTERRUPTED = 130
+RATE_WINDOW_S = 300.0  # trials of one experiment take from a second to half a minute
 _HEAD = ("setting", "seeds", "total m", "95 %", "at time-out m", "of greedy")
 
 
@@ -37,20 +37,20 @@ def run_experiment(
         HexapodError: if the experiment cannot be run or completed; finished trials are stored.
     """
     path: Path = options.out or Path(f"{config.experiment}-results")
-    print_line = _discard if options.json else print
+    print_line = discard if options.json else print
     with open_results(path, config) as folder:
         total, remaining = folder.plan.total, folder.remaining(options.retry)
         done = total - len(remaining)
         before = f"; {done:,} are there already" if done else ""
-        print_line(f"{total:,} trials {_workers_text(cluster)}, kept in {path}{before}")
-        with _stop_signals() as interrupted:
+        print_line(f"{total:,} trials {workers_text(cluster)}, kept in {path}{before}")
+        with stop_signals() as interrupted:
             _run(remaining, cluster, folder, lambda: not interrupted.is_set())
         if interrupted.is_set():
             print_line(
                 f"\nInterrupted: {folder.done:,} of {total:,} trials are kept in {path}; the same "
                 "command goes on from there."
             )
-            return _INTERRUPTED
+            return INTERRUPTED
         summary = _report(cluster, folder)
     if options.json:
         print(json.dumps(summary))
@@ -59,7 +59,8 @@ def run_experiment(
     return 0
 
 
-def _workers_text(cluster: ClusterSpec) -> str:
+def workers_text(cluster: ClusterSpec) -> str:
+    """Describe where trials run: `on 2 workers`."""
     if cluster.scheduler is not None:
         return f"on the cluster of {cluster.scheduler}"
     workers = cluster.workers or cores()
@@ -73,7 +74,7 @@ def _run(
     should_continue: Callable[[], bool],
 ) -> None:
     running, total = closing(folder.run(remaining, cluster, should_continue)), folder.plan.total
-    with progress("trials", _RATE_WINDOW_S) as bar, running as outcomes:
+    with progress("trials", RATE_WINDOW_S) as bar, running as outcomes:
         task = bar.add_task("trials", total=total, completed=total - len(remaining))
         for _ in outcomes:
             aside = f", {len(folder.set_aside)} set aside" if folder.set_aside else ""
@@ -126,7 +127,7 @@ def _row(setting: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 @contextmanager
-def _stop_signals() -> Iterator[threading.Event]:
+def stop_signals() -> Iterator[threading.Event]:
     """Handle SIGINT and SIGTERM: yield an event that the first signal sets.
 
     The experiment then stops once the cluster can be shut down; a second signal raises
@@ -149,5 +150,5 @@ def _stop_signals() -> Iterator[threading.Event]:
             signal.signal(number, handler)
 
 
-def _discard(_: str) -> None:
+def discard(_: str) -> None:
     """Print nothing; used with `--json`."""

@@ -239,8 +239,14 @@ def as_json(config: ExperimentConfig) -> dict[str, Any]:
     return {k: list(v) if isinstance(v, tuple) else v for k, v in data.items()}
 
 
-def from_json(data: Mapping[str, Any]) -> ExperimentConfig:
+def from_json(
+    data: Mapping[str, Any], kind: type[ExperimentConfig] = ExperimentConfig
+) -> ExperimentConfig:
     """Parse the output of `as_json`; keys that are no field are settings of the agents.
+
+    Args:
+        data: the output of `as_json`.
+        kind: class of the config.
 
     Raises:
         InvalidInput: if a value is invalid.
@@ -249,8 +255,8 @@ def from_json(data: Mapping[str, Any]) -> ExperimentConfig:
     values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in data.items()}
     values["robots"] = tuple(robot(one) for one in data["robots"])
     values["gaits"] = tuple(gait_from_json(one) for one in data["gaits"])
-    own = {one.name for one in fields(ExperimentConfig)}
+    own = {one.name for one in fields(kind)}
     settings = {name: values.pop(name) for name in list(values) if name not in own}
     if single := [name for name, value in settings.items() if not isinstance(value, tuple)]:
         raise InvalidInput(f"{single[0]} must be a list of values")
-    return ExperimentConfig(**values, settings=SettingValues(settings))
+    return kind(**values, settings=SettingValues(settings))

@@ -83,7 +83,7 @@ def run_trials(
 
 def run_on(
     client: "Client", trials: Iterable[Trial], may_continue: Callable[[], bool] = lambda: True
-) -> Iterator[Outcome]:
+) -> Generator[Outcome, None, None]:
     """Run trials as `run_trials` does, on a cluster that is already connected."""
     return _Engine(client, may_continue).run(trials)
 
@@ -119,7 +119,7 @@ class _Engine:
         self._threads, self._counted_s = 0, -_WORKER_COUNT_S
         self._without_workers_since_s: float | None = None
 
-    def run(self, trials: Iterable[Trial]) -> Iterator[Outcome]:
+    def run(self, trials: Iterable[Trial]) -> Generator[Outcome, None, None]:
         timed: list[Trial] = []
         untimed = _split_timed(trials, timed)
         while True:

@@ -27,6 +27,7 @@ SUMMARY = "summary.json"
 
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _SYNC_S = 0.5
+_GROWING = ("seeds", "trials")
 _CHOOSE = "choose another folder"
 
 
@@ -130,13 +131,16 @@ class ResultsFolder(Progress):
         if differs is not None:
             raise InvalidInput(f"{self.path} has results of {differs}; {_CHOOSE}")
         try:
-            there = as_json(from_json(head["config"]))
+            there = as_json(from_json(head["config"], type(self.plan.config)))
         except (HexapodError, KeyError, TypeError, ValueError) as error:
             raise DamagedFile(f"{self.path / TRIALS} has a damaged head ({error})") from error
         here = as_json(self.plan.config)
-        # Each trial's seed depends on its number only, so that more seeds extend the results.
+        # Each trial's seed depends on its number only, so that more seeds extend the results; and
+        # a tuning asks for the same settings first, however many are to come.
         every = dict.fromkeys((*here, *there))
-        names = [name for name in every if name != "seeds" and here.get(name) != there.get(name)]
+        names = [
+            name for name in every if name not in _GROWING and here.get(name) != there.get(name)
+        ]
         if names:
             raise InvalidInput(
                 f"{self.path} has results of another experiment, which differs in "

@@ -93,15 +93,19 @@ class Trial(NamedTuple):
 class Plan:
     """The settings of an experiment, and their trials."""
 
-    def __init__(self, config: ExperimentConfig) -> None:
+    def __init__(self, config: ExperimentConfig, more: Sequence[Setting] = ()) -> None:
         """Expand the config; nothing is run.
+
+        Args:
+            config: the experiment.
+            more: settings beside those of the config.
 
         Raises:
             InvalidInput, UnknownName, Unreachable: if a setting is invalid, or there are too many
                 trials.
         """
         self.config = config
-        self.settings: Sequence[Setting] = _settings(config)
+        self.settings: Sequence[Setting] = [*_settings(config), *more]
         self.total = sum(self.count(setting) for setting in self.settings)
         if self.total > MAX_TRIALS:
             raise InvalidInput(

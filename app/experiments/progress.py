@@ -3,13 +3,16 @@
 import time
 from collections.abc import Callable, Generator, Iterable, Mapping
 from contextlib import closing
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from app.experiments.cluster import ClusterSpec
 from app.experiments.config import ExperimentConfig
-from app.experiments.engine import Outcome, run_trials
+from app.experiments.engine import Outcome, run_on, run_trials
 from app.experiments.plan import Plan, Trial
 from app.experiments.trial import TrialResult
+
+if TYPE_CHECKING:
+    from distributed import Client
 
 
 class Progress:
@@ -52,13 +55,26 @@ class Progress:
         self, trials: Iterable[Trial], spec: ClusterSpec, may_continue: Callable[[], bool]
     ) -> Generator[Outcome, None, None]:
         """Run trials on a cluster, add each outcome, and yield it; see `run_trials`."""
+        yield from self._collect(lambda poll: run_trials(trials, spec, poll), may_continue)
+
+    def run_on(
+        self, client: "Client", trials: Iterable[Trial], may_continue: Callable[[], bool]
+    ) -> Generator[Outcome, None, None]:
+        """Run trials as `run` does, on a cluster that is already connected."""
+        yield from self._collect(lambda poll: run_on(client, trials, poll), may_continue)
+
+    def _collect(
+        self,
+        start: Callable[[Callable[[], bool]], Generator[Outcome, None, None]],
+        may_continue: Callable[[], bool],
+    ) -> Generator[Outcome, None, None]:
         started_s = time.monotonic() - self.wall_s
 
         def poll() -> bool:
             self.wall_s = time.monotonic() - started_s
             return may_continue()
 
-        with closing(run_trials(trials, spec, poll)) as outcomes:
+        with closing(start(poll)) as outcomes:
             for outcome in outcomes:
                 self.wall_s = time.monotonic() - started_s
                 self.add(outcome)

@@ -234,8 +234,8 @@ def _world_table(
                         _curve_cell(one["earned"], at.index(step)) if one["earned"] else (_NONE, "")
                         for step in earning
                     ),
-                    _share(one["of_greedy"], "iqm"),
-                    _share(one["of_best_known"], "iqm"),
+                    share_cell(one["of_greedy"], "iqm"),
+                    share_cell(one["of_best_known"], "iqm"),
                     _until_cell(one["until_greedy"]),
                     _until_cell(one["until_best_known"]),
                     (f"{one['n']:,}", ""),
@@ -252,11 +252,12 @@ def _distance_cells(one: Mapping[str, Any], at: Sequence[int]) -> list[tuple[str
     if at and one["curve"]:
         return [_curve_cell(one["curve"], place) for place in range(len(at))]
     if at:
-        return [(_NONE, "")] * (len(at) - 1) + [_interval_cell(one["distance"])]
-    return [_interval_cell(one["distance"]), _interval_cell(one["mean_m"])]
+        return [(_NONE, "")] * (len(at) - 1) + [interval_cell(one["distance"])]
+    return [interval_cell(one["distance"]), interval_cell(one["mean_m"])]
 
 
-def _interval_cell(middle: Mapping[str, Any] | None) -> tuple[str, str]:
+def interval_cell(middle: Mapping[str, Any] | None) -> tuple[str, str]:
+    """Return a distance and its interval as text [m]."""
     if middle is None:
         return _NONE, ""
     low, high = middle["low"], middle["high"]
@@ -282,9 +283,9 @@ def sweep(case: Case) -> dict[str, Any]:
             {
                 "name": combination_name(one, case),
                 "cells": [
-                    _share(one["relative"], "iqm"),
-                    _share(one["walkers"]),
-                    _share(one["beats_greedy"]),
+                    share_cell(one["relative"], "iqm"),
+                    share_cell(one["walkers"]),
+                    share_cell(one["beats_greedy"]),
                     (f"{one['n']:,}", ""),
                 ],
             }
@@ -294,7 +295,8 @@ def sweep(case: Case) -> dict[str, Any]:
     }
 
 
-def _share(share: Mapping[str, Any] | None, middle: str = "share") -> tuple[str, str]:
+def share_cell(share: Mapping[str, Any] | None, middle: str = "share") -> tuple[str, str]:
+    """Return a share, which has the name `middle`, and its interval as text."""
     if share is None:
         return _NONE, ""
     low, high = share["low"], share["high"]

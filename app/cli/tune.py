@@ -1,0 +1,256 @@
+"""`hexapods tune`: search for the settings of a learner that walk farthest.
+
+What is found is compared with the defaults on seeds that the search never saw.
+"""
+
+import argparse
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, get_args
+
+from app.cli.options import (
+    CommandParser,
+    add_observation,
+    add_settings,
+    integer,
+    read_gait,
+    read_robot,
+    split,
+)
+from app.cli.terminal import progress, show_table
+from app.cli.trial_options import add_machine_options, cluster_from
+from app.cli.trials import INTERRUPTED, RATE_WINDOW_S, discard, stop_signals, workers_text
+from app.domain.errors import InvalidInput
+from app.domain.gait import NAMED_GAITS
+from app.domain.robot import PRESETS
+from app.domain.settings import declared_fields
+from app.domain.world import WORLDS
+from app.experiments.cluster import ClusterSpec, connect
+from app.experiments.engine import Outcome
+from app.experiments.folder import ResultsFolder, open_results
+from app.experiments.own_cluster import cores
+from app.experiments.plan import Trial
+from app.experiments.tuning.config import Objective, TuningConfig, tuning_config
+from app.runs.config import SIMULATORS, TrainingConfig, WalkingProblem
+
+if TYPE_CHECKING:
+    from app.experiments.tuning.tuning import Tuning
+
+_HEAD = ("on held-out seeds", "distance m", "mean over practice m", "of greedy", "seeds")
+
+
+def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
+    """Add the command's parser."""
+    parser = commands.add_parser(
+        "tune", help="search for the best settings of a learner", description=__doc__
+    )
+    parser.add_argument("agent", help="a learner, such as q-learning; my.module:Agent too")
+    _add_place_options(parser)
+    usual = TuningConfig
+    parser.add_argument(
+        "--trials",
+        type=integer,
+        default=usual.trials,
+        help=f"settings to try, the defaults first (default {usual.trials})",
+    )
+    parser.add_argument(
+        "--seeds",
+        type=integer,
+        default=usual.search_seeds,
+        help=f"for each of them (default {usual.search_seeds})",
+    )
+    parser.add_argument(
+        "--held-out",
+        type=integer,
+        default=usual.seeds,
+        help=f"other seeds, for the comparison in the end (default {usual.seeds})",
+    )
+    parser.add_argument(
+        "--seed", type=integer, default=usual.seed, help="of which all are spawned (default 0)"
+    )
+    parser.add_argument(
+        "--objective",
+        choices=get_args(Objective),
+        default=usual.objective,
+        help="the mean distance after the practice (default), or area: on average over it",
+    )
+    parser.add_argument(
+        "--settings",
+        metavar="LIST",
+        help="of the agent, with commas (default all that declare limits or choices)",
+    )
+    parser.add_argument(
+        "--range",
+        action="append",
+        default=[],
+        metavar="NAME=LOW:HIGH",
+        help="where to search a setting, or NAME=VALUE,VALUE; once for each. Positive numbers "
+        "that span two orders are searched on a logarithmic scale",
+    )
+    parser.add_argument(
+        "--beside", metavar="LIST", help="agents to run on the held-out seeds, with commas"
+    )
+    add_machine_options(parser)
+    parser.set_defaults(run=run)
+
+
+def _add_place_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--gait", required=True, help=f"{', '.join(NAMED_GAITS)}, or JSON as for train"
+    )
+    parser.add_argument(
+        "--robot", default="stiff", help=f"{', '.join(PRESETS)}; a TOML file, or JSON"
+    )
+    parser.add_argument("--simulator", default="mujoco", help=" or ".join(SIMULATORS))
+    parser.add_argument(
+        "--world",
+        default="flat",
+        help=f"{', '.join(WORLDS)}; or what happens, such as limp:legs=1,4",
+    )
+    add_observation(parser, "how the learner reads its state (default measured)")
+    add_settings(parser, declared_fields(WalkingProblem))
+    add_settings(parser, declared_fields(TrainingConfig), ("steps",))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the tuning, or resume it from its results folder.
+
+    Raises:
+        HexapodError: if the options are not valid, or the tuning cannot be completed; finished
+            trials are stored.
+    """
+    cluster, config = cluster_from(options), config_from(options)
+    # Imported here, as Optuna and SciPy take a second to import.
+    from app.experiments.tuning.tuning import Tuning  # noqa: PLC0415
+
+    tuning = Tuning(config)
+    path: Path = options.out or Path("tuning-results")
+    print_line = discard if options.json else print
+    with open_results(path, config) as folder:
+        before = f"; {folder.done:,} are there already" if folder.done else ""
+        print_line(
+            f"{config.trials:,} settings of {config.agent} on {config.search_seeds:,} seeds, then "
+            f"{config.seeds:,} held-out seeds: about {tuning.total:,} trials "
+            f"{workers_text(cluster)}, kept in {path}{before}"
+        )
+        _run(tuning, cluster, folder, options.retry)
+        if not tuning.is_complete:
+            print_line(
+                f"\nInterrupted: {folder.done:,} trials are kept in {path}; the same command goes "
+                "on from there."
+            )
+            return INTERRUPTED
+        summary = _report(tuning, cluster, folder)
+    if options.json:
+        print(json.dumps(summary))
+    else:
+        _print_summary(summary, path)
+    return 0
+
+
+def config_from(options: argparse.Namespace) -> TuningConfig:
+    """Return the tuning that the options ask for.
+
+    Raises:
+        HexapodError: if the options are not valid.
+    """
+    return tuning_config(
+        options.agent,
+        settings=None if options.settings is None else split(options.settings),
+        ranges=options.range,
+        beside=() if options.beside is None else split(options.beside),
+        gaits=(read_gait(options.gait),),
+        robots=(read_robot(options.robot),),
+        simulator=options.simulator,
+        worlds=(options.world,),
+        observations=(options.observation,),
+        divisions=(options.divisions,),
+        grid_side_m=(options.grid_side_m,),
+        tolerance=options.tolerance,
+        steps=(options.steps,),
+        trials=options.trials,
+        search_seeds=options.seeds,
+        seeds=options.held_out,
+        seed=options.seed,
+        objective=options.objective,
+    )
+
+
+def _run(tuning: "Tuning", cluster: ClusterSpec, folder: ResultsFolder, retry: bool) -> None:
+    with stop_signals() as interrupted, ExitStack() as stack:
+
+        @cache
+        def client() -> Any:
+            return stack.enter_context(connect(cluster))
+
+        def run_all(trials: Sequence[Trial]) -> Iterable[Outcome]:
+            # A cluster is started by the first trial that is not there already.
+            if not trials or interrupted.is_set():
+                return ()
+            return folder.run_on(client(), trials, lambda: not interrupted.is_set())
+
+        with progress("trials", RATE_WINDOW_S) as bar:
+            task = bar.add_task("trials", total=tuning.total, completed=folder.done)
+            for _ in tuning.run(folder, run_all, retry):
+                aside = f", {len(folder.set_aside)} set aside" if folder.set_aside else ""
+                bar.update(task, advance=1, description=f"trials{aside}")
+
+
+def _report(tuning: "Tuning", cluster: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
+    # Imported here, as SciPy and Matplotlib take a second to import.
+    from app.experiments.tuning.report import write_tuning  # noqa: PLC0415
+    from app.experiments.tuning.summary import summarise_tuning  # noqa: PLC0415
+
+    workers = None if cluster.scheduler is not None else cluster.workers or cores()
+    summary = summarise_tuning(tuning, folder, workers)
+    try:
+        write_tuning(folder.path, tuning, folder, summary)
+    except OSError as error:
+        raise InvalidInput(
+            f"cannot write the report to {folder.path} ({error.strerror}); all trials are kept "
+            "there, and the same command writes it once it can"
+        ) from error
+    return summary
+
+
+def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
+    from app.experiments.tuning.report import held_out_name  # noqa: PLC0415
+    from app.experiments.tuning.summary import options_text  # noqa: PLC0415
+
+    entries = sorted(summary["held_out"], key=lambda one: -float(one["distance"]["iqm"]))
+    rows = [(held_out_name(one), *_row(one)) for one in entries]
+    show_table("Interquartile means (95 % intervals)", _HEAD, rows)
+    best_known_m = entries[0]["best_known_m"] if entries else None
+    if best_known_m is not None:
+        print(f"Best known: {best_known_m:.3f} m")
+    for one in summary["trials"]["set_aside"]:
+        print(f"Set aside: {one['key']}: {one['reason']}")
+    for sentence in summary["said"]:
+        print(sentence)
+    search = summary["search"]
+    if not search["is_default"]:
+        print(f"Tuned: {options_text(search['candidates'][search['best']]['values'])}")
+    print(
+        f"{summary['trials']['done']:,} trials in {summary['cost']['wall_s']:,.0f} s. The report "
+        f"is {path / 'report.html'}."
+    )
+
+
+def _row(one: Mapping[str, Any]) -> tuple[str, ...]:
+    share = one["of_greedy"]
+    return (
+        _interval_text(one["distance"]),
+        _interval_text(one["mean_m"]),
+        "" if share is None else f"{100 * share['iqm']:.0f} %",
+        str(one["n"]),
+    )
+
+
+def _interval_text(middle: Mapping[str, Any] | None) -> str:
+    if middle is None:
+        return ""
+    between = f" ({middle['low']:.3f}–{middle['high']:.3f})" if middle["low"] is not None else ""
+    return f"{middle['iqm']:.3f}{between}"

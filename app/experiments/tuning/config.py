@@ -1,0 +1,144 @@
+"""Configs of tunings: a league of one learner in one place, and a search before it."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+from app.agents.registry import learns
+from app.domain.errors import InvalidInput, UnknownName
+from app.domain.gait import GaitSpec
+from app.domain.observation import Observation
+from app.domain.settings import DeclaredSetting
+from app.experiments.config import (
+    MAX_SEEDS,
+    MAX_TRIALS,
+    ExperimentConfig,
+    ExperimentName,
+)
+from app.experiments.tuning.ranges import SearchRange, declared_range, parse_range
+from app.runs.config import agent_settings, check_whole, usable_agents
+
+Objective = Literal["distance", "area"]
+OBJECTIVES: Mapping[Objective, str] = {
+    "distance": "distance after the practice",
+    "area": "distance on average over the practice",
+}
+"""What is searched for: the mean over the seeds of the distance in an evaluation after the
+practice, or of the area under the learning curve divided by its steps."""
+MAX_CANDIDATES = 10_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class TuningConfig(ExperimentConfig):
+    """Config of a tuning. `tuning_config` adds the ranges that the agent declares.
+
+    The fields of the experiment are those of the league on the held-out seeds, in one place: the
+    first agent is tuned, the others walk beside it, and `seeds` is the number of held-out seeds.
+
+    Attributes:
+        trials: number of settings that are tried, the defaults first.
+        search_seeds: number of seeds for each of them, other ones than those held out.
+        objective: what is searched for.
+        ranges: where, as `parse_range` reads it, one for each setting.
+
+    Raises:
+        UnknownName, InvalidInput: if a value is invalid, empty or repeated.
+    """
+
+    experiment: ExperimentName = "league"
+    gaits: tuple[str | GaitSpec, ...]
+    observations: tuple[Observation, ...] = ("measured",)
+    trials: int = 40
+    search_seeds: int = 8
+    objective: Objective = "distance"
+    ranges: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_whole("trials", self.trials, 1, MAX_CANDIDATES)
+        check_whole("search_seeds", self.search_seeds, 1, MAX_SEEDS)
+        for name in ("gaits", "observations", "robots", "worlds", "steps"):
+            if len(getattr(self, name)) > 1:
+                raise InvalidInput(f"a tuning is in one place, so {name} must name one")
+        if self.objective not in OBJECTIVES:
+            raise UnknownName("objective", self.objective, get_args(Objective))
+        if self.trials * self.search_seeds > MAX_TRIALS:
+            raise InvalidInput(
+                f"the search has {self.trials * self.search_seeds:,} trials, the most is "
+                f"{MAX_TRIALS:,}; choose fewer trials or fewer seeds"
+            )
+
+    @property
+    def agent(self) -> str:
+        """The agent that is tuned."""
+        return self.agents[0]
+
+    @property
+    def search_ranges(self) -> tuple[SearchRange, ...]:
+        """Where to search."""
+        settings = agent_settings(self.agent)
+        return tuple(parse_range(text, settings) for text in self.ranges)
+
+
+def tuning_config(
+    agent: str,
+    *,
+    settings: Sequence[str] | None = None,
+    ranges: Iterable[str] = (),
+    beside: Sequence[str] = (),
+    **given: Any,
+) -> TuningConfig:
+    """Create the config of a tuning.
+
+    Args:
+        agent: the learner.
+        settings: names of the settings to search; by default those that declare their values and
+            those of `ranges`.
+        ranges: `NAME=LOW:HIGH` or `NAME=VALUE,VALUE` in place of what is declared.
+        beside: agents that walk on the held-out seeds too.
+        given: other attributes of `TuningConfig`.
+
+    Raises:
+        UnknownName, InvalidInput: if a value is invalid, or there is nothing to tune.
+    """
+    if not learns(agent):
+        learners = [name for name in usable_agents() if learns(name)]
+        raise InvalidInput(
+            f"{agent} does not learn, so there is nothing to tune; choose one of: "
+            f"{', '.join(learners)}"
+        )
+    declared = agent_settings(agent)
+    if not declared:
+        raise InvalidInput(f"{agent} has no settings, so there is nothing to tune")
+    found = _given_ranges(ranges, declared, settings)
+    for name in declared if settings is None else settings:
+        if name not in declared:
+            raise UnknownName(f"setting of {agent}", name, declared)
+        range_ = found.get(name) or declared_range(declared[name])
+        if range_ is not None:
+            found[name] = range_
+        elif settings is not None:
+            raise InvalidInput(
+                f"{name} has no limits between which to search; name them with --range"
+            )
+    if not found:
+        raise InvalidInput(
+            f"no setting of {agent} has limits between which to search; name them with --range"
+        )
+    ordered = tuple(str(found[name]) for name in declared if name in found)
+    return TuningConfig(agents=(agent, *beside), ranges=ordered, **given)
+
+
+def _given_ranges(
+    texts: Iterable[str],
+    declared: Mapping[str, DeclaredSetting],
+    settings: Sequence[str] | None,
+) -> dict[str, SearchRange]:
+    found: dict[str, SearchRange] = {}
+    for one in (parse_range(text, declared) for text in texts):
+        if one.name in found:
+            raise InvalidInput(f"the range of {one.name} is given twice")
+        if settings is not None and one.name not in settings:
+            raise InvalidInput(f"{one.name} has a range, but is not one of the settings to tune")
+        found[one.name] = one
+    return found

@@ -1,0 +1,134 @@
+"""`hexapods tune`, as a user runs it."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from app.experiments.folder import TRIALS
+from app.experiments.trial import TrialResult
+from app.experiments.tuning.summary import summarise_tuning
+from tests.cli.running import ROOT, hexapods, in_process, output, refusal
+from tests.experiments.test_tuning import config, tuned
+
+PLACE = ("--gait", "left-right-origin", "--simulator", "kinematic", "--steps", "50")
+SIZE = ("--trials", "12", "--seeds", "3", "--held-out", "5", "--objective", "area")
+TUNE = ("tune", "q-learning", *PLACE, *SIZE)
+
+
+def start(*arguments: str, folder: Path) -> "subprocess.Popen[str]":
+    return subprocess.Popen(
+        [sys.executable, "-m", "app.cli", *arguments],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def kept(file: Path) -> dict[str, TrialResult]:
+    """Return the stored results by key; check that no key is repeated."""
+    _, *lines = file.read_text("utf-8").splitlines()
+    trials = [json.loads(line) for line in lines]
+    assert len({trial["key"] for trial in trials}) == len(trials)
+    return {trial["key"]: TrialResult.from_json(trial["result"]) for trial in trials}
+
+
+def test_stopped_and_killed_it_goes_on_and_gives_what_an_unbroken_one_gives(tmp_path: Path) -> None:
+    file, lines = tmp_path / "tuning-results" / TRIALS, 0
+    for end in (signal.SIGTERM, signal.SIGKILL):
+        process = start(*TUNE, "--workers", "1", folder=tmp_path)
+        while not file.exists() or len(file.read_bytes().splitlines()) < lines + 10:
+            assert process.poll() is None
+            time.sleep(0.02)
+        process.send_signal(end)
+        out, err = process.communicate(timeout=60)
+        lines = len(file.read_bytes().splitlines())
+        if end == signal.SIGTERM:
+            assert (process.returncode, err) == (130, "")
+            assert f"Interrupted: {lines - 1} trials are kept in tuning-results; the same" in out
+
+    done = hexapods(*TUNE, "--workers", "2", folder=tmp_path)
+    assert (done.returncode, done.stderr) == (0, ""), "Optuna's log stays silent"
+    first, *_ = done.stdout.splitlines()
+    # greedy once, and five seeds of the defaults and of the tuned
+    assert "12 settings of q-learning on 3 seeds, then 5 held-out seeds: about 47 trials" in first
+    assert first.endswith(" are there already")
+    for text in ("Q-learning, defaults", "Greedy", "12 combinations of settings of Q-learning"):
+        assert text in done.stdout
+    assert done.stdout.rstrip().endswith("The report is tuning-results/report.html.")
+
+    tuning, progress = tuned(config(steps=(50,), trials=12, search_seeds=3, objective="area"))
+    assert kept(file) == progress.results
+    expected = json.loads(json.dumps(summarise_tuning(tuning, progress, workers=None)))
+    again = output(*TUNE, folder=tmp_path, run=in_process)
+    assert {**again, "cost": None} == {**expected, "cost": None}
+    assert {one.name for one in file.parent.iterdir()} == {
+        TRIALS,
+        "report.html",
+        "summary.json",
+        "trials.csv",
+    }
+
+
+@pytest.mark.parametrize(
+    ("arguments", "names"),
+    [
+        (("greedy", *PLACE), "greedy does not learn, so there is nothing to tune; choose one of:"),
+        (("skynet", *PLACE), "linear-model, greedy"),
+        (("tests.own_agents:Restless", *PLACE), "has no settings, so there is nothing to tune"),
+        (("q-learning",), "--gait"),
+        (("q-learning", "--gait", "moonwalk"), "left-right-origin"),
+        (("q-learning", *PLACE, "--world", "moon"), "limp-pair"),
+        (("q-learning", *PLACE, "--world", "ice"), "the kinematic simulator knows"),
+        (("q-learning", *PLACE, "--world", "limp:legs=1:at=4"), "leave out at and until"),
+        (("q-learning", *PLACE, "--trials", "0"), "trials must be from 1 to 10,000, not 0"),
+        (("q-learning", *PLACE, "--trials", "many"), "must be a whole number"),
+        (("q-learning", *PLACE, "--seeds", "0"), "search_seeds must be from 1"),
+        (("q-learning", *PLACE, "--held-out", "0"), "seeds must be from 1"),
+        (("q-learning", *PLACE, "--settings", "alpha,beta"), "alpha, gamma"),
+        (("q-learning", *PLACE, "--range", "alpha=0.1:2"), "over 0 and at most 1"),
+        (("q-learning", *PLACE, "--range", "alpha"), "NAME=LOW:HIGH"),
+        (("q-learning", *PLACE, "--objective", "speed"), "distance"),
+        (("q-learning", *PLACE, "--beside", "skynet"), "linear-model, greedy"),
+        (("q-learning", *PLACE, "--workers", "0"), "workers must be from 1 to 512"),
+        (("q-learning", *PLACE, "--scheduler", "127.0.0.1"), "tcp://HOST:PORT"),
+        (("q-learning", *PLACE, "--out", "/proc/nowhere"), "cannot keep results in"),
+    ],
+)
+def test_invalid_input_is_refused_in_one_sentence(
+    arguments: tuple[str, ...], names: str, tmp_path: Path
+) -> None:
+    assert names in refusal("tune", *arguments, folder=tmp_path, run=in_process)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_results_of_another_experiment_are_refused(tmp_path: Path) -> None:
+    folder = ("--out", "mine", "--workers", "1", "--seeds", "1")
+    league = ("experiment", "league", *PLACE, "--agent", "r-max", *folder)
+    assert in_process(*league, folder=tmp_path).returncode == 0
+
+    sentence = refusal(*TUNE, "--out", "mine", folder=tmp_path, run=in_process)
+    assert "mine has results of another experiment" in sentence
+
+
+def test_nothing_but_a_tuning_imports_optuna(tmp_path: Path) -> None:
+    code = (
+        "import sys, app.server, app.cli; app.cli._parser(); print('optuna' in sys.modules); "
+        "import app.experiments.tuning.tuning; print('optuna' in sys.modules)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.split() == ["False", "True"]
