@@ -37,6 +37,10 @@ class ExperimentOption(Described):
     fields: list[str]
     grid: list[str]
     defaults: dict[str, Any]
+    simulator_defaults: dict[str, dict[str, Any]] = Field(
+        description="by simulator: the defaults that are others there"
+    )
+    agents: list[str] = Field(description="the agents that it can compare")
 
 
 class DefaultsView(Answer):

@@ -26,6 +26,8 @@ from app.experiments.config import (
     GRID,
     MAX_SEEDS,
     MAX_TRIALS,
+    ExperimentName,
+    compares,
     experiment_config,
     fields_of,
     settings_by_name,
@@ -275,6 +277,7 @@ def _experiments(agents: Collection[str]) -> list[dict[str, Any]]:
     options = []
     for name in EXPERIMENTS:
         defaults = experiment_as_json(experiment_config(name, {}))
+        others = _simulator_defaults(name, defaults)
         defaults["robots"] = [robot["preset"] for robot in defaults["robots"]]
         fields = [*fields_of(name), *(settings if name == "sweep" else ())]
         options.append(
@@ -285,9 +288,27 @@ def _experiments(agents: Collection[str]) -> list[dict[str, Any]]:
                 "fields": fields,
                 "grid": [field for field in (GRID[0], *settings, *GRID[1:]) if field in fields],
                 "defaults": defaults,
+                "simulator_defaults": others,
+                "agents": [one for one in agents if "agents" in fields and compares(name, one)],
             }
         )
     return options
+
+
+def _simulator_defaults(
+    name: ExperimentName, defaults: Mapping[str, Any]
+) -> dict[str, dict[str, Any]]:
+    """Return the defaults of an experiment that are others in a simulator, by simulator."""
+    return {
+        simulator: {
+            field: value
+            for field, value in experiment_as_json(
+                experiment_config(name, {"simulator": simulator})
+            ).items()
+            if field != "simulator" and value != defaults[field]
+        }
+        for simulator in _SIMULATORS
+    }
 
 
 def _described(sentences: dict[str, str]) -> list[dict[str, str]]:

@@ -154,6 +154,11 @@ def default_agents(experiment: ExperimentName) -> list[str]:
     return list(_DEFAULTS[experiment].get("agents", ExperimentConfig.agents))
 
 
+def compares(experiment: str, agent: str) -> bool:
+    """Whether an experiment compares an agent; a recovery compares learners only."""
+    return experiment != "recovery" or learns(agent)
+
+
 def settings_by_name(agents: Iterable[str]) -> Mapping[str, Sequence[DeclaredSetting]]:
     """Return the settings of some agents by name, each with the declarations of its agents.
 
@@ -191,13 +196,12 @@ def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentCo
     for name in specified:
         if name not in valid:
             raise UnknownName(f"field of {experiment}", name, valid)
-    if experiment == "recovery":
-        for agent in specified.get("agents", usual_agents):
-            if not learns(agent):
-                raise InvalidInput(
-                    f"{agent} does not learn, so it does not recover; greedy is there as a "
-                    "reference anyway"
-                )
+    for agent in specified.get("agents", usual_agents):
+        if not compares(experiment, agent):
+            raise InvalidInput(
+                f"{agent} does not learn, so it does not recover; greedy is there as a "
+                "reference anyway"
+            )
     settings = {
         name: tuple(_normalized(value, own) for value in specified[name])
         if name in specified

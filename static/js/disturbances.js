@@ -1,5 +1,5 @@
 // What happens to robots and to the ground: what holds in a step, its words, and its text in links and commands.
-import { listed, whole } from "./format.js";
+import { listed, sentence, whole } from "./format.js";
 import { parseSetting, quoted } from "./parse.js";
 import { options } from "./store.js";
 
@@ -287,3 +287,46 @@ export function parseText(text) {
 
 /** @param {DisturbanceKind} kind */
 const namesOf = ({ fields }) => listed(Object.keys(fields).map(shortName));
+
+// ---- worlds of an experiment: a name, or what happens, joined by +
+
+/**
+ * The worlds of a text: "flat, limp:legs=1,4+slope:degrees=4". Names and kinds begin with a letter, so a comma
+ * before a number belongs to a list of legs.
+ * @param {string} text
+ */
+export const splitWorlds = (text) =>
+  text.split(/;|,(?=\s*(?:[a-z]|$))/i).map((one) => one.trim()).filter(Boolean);
+
+/**
+ * What happens in a world, or why there is no such world.
+ * @param {string} text
+ * @returns {Parsed<Disturbance[]>}
+ */
+export function parseWorld(text) {
+  const named = worldNamed(text);
+  if (named) return { value: named.disturbances };
+  if (!text.includes(":")) return { mistake: `${quoted(text)} is no world: choose among these, or say what happens` };
+  /** @type {Disturbance[]} */
+  const happenings = [];
+  for (const part of text.split("+")) {
+    const { value, mistake } = parseText(part.trim());
+    if (mistake !== undefined) return { mistake };
+    happenings.push(value);
+  }
+  return happenings.some(({ at_step, until_step }) => at_step > 0 || until_step)
+    ? { mistake: `${quoted(text)}: it holds from the start to the end, so leave out at and until` }
+    : { value: happenings };
+}
+
+/** @param {string} name */
+export const worldNamed = (name) => options.value?.worlds.find((world) => world.name === name);
+
+/**
+ * A world in words: "Slope", "legs 2, 5 limp, slope 4°".
+ * @param {string} text
+ */
+export function worldTitle(text) {
+  const { value } = parseWorld(text);
+  return worldNamed(text)?.title ?? (value ? sentence(value.map(inWords).join(", ")) : text);
+}

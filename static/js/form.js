@@ -155,7 +155,7 @@ export const wrong = computed(() => {
 const disturbancesOf = (name) => served().worlds.find((world) => world.name === name)?.disturbances ?? [];
 
 /** @type {(simulator: string, kind: string) => string} */
-function unknownTo(simulator, kind) {
+export function unknownTo(simulator, kind) {
   const others = served().simulators.map(({ name }) => name).filter((name) => isSimulated(kind, name));
   return `The ${simulator} simulator knows no ${kind}: choose ${listed(others)}`;
 }

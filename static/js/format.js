@@ -84,7 +84,7 @@ export function whole(value) {
  * A share from 0 to 1: "42 %".
  * @param {number} share
  */
-export const percentage = (share) => `${Math.round(100 * share)} %`;
+export const percentage = (share) => `${String(Math.round(100 * share)).replace("-", MINUS)} %`;
 
 /**
  * A number with its noun: "500 steps", "1 step".

@@ -1,4 +1,5 @@
 // Display names of what the server knows by identifiers, and of experiments' fields, values and runs.
+import { worldTitle } from "./disturbances.js";
 import { experimentOf } from "./experiments/form.js";
 import { count, sentence } from "./format.js";
 import { customRobotInWords, partInWords, presetOf } from "./robots.js";
@@ -60,7 +61,7 @@ export const choicesOf = (list, nameOf) => (list ?? []).map(({ name }) => [name,
 const LABELS = {
   gait: "Gait", robot: "Robot", simulator: "Simulator", observation: "Observation", agent: "Learner", lanes: "Lanes",
   name: "Name", world: "World", disturb: "What happens", experiment: "Experiment", seeds: "Seeds", gaits: "Gaits",
-  robots: "Robots", observations: "Observation", agents: "Agents",
+  robots: "Robots", observations: "Observation", agents: "Agents", worlds: "Worlds",
 };
 
 /**
@@ -141,11 +142,21 @@ export function valueTitle(field, value) {
   return (VALUE_TITLES[field] ?? String)(value);
 }
 
+/** @param {string} name */
+const settingTitle = (name) => (options.value?.settings[name]?.title ?? name).toLowerCase();
+
 /** @param {Run} run */
 export const runTitle = (run) => run.name || experimentOf(run.config.experiment)?.title || run.config.experiment;
 
 /** Fields of an experiment's config that are told apart from what it sweeps. */
-const TOLD_APART = ["agents", "gaits", "observations", "robots"];
+const TOLD_APART = ["agents", "gaits", "observations", "robots", "worlds"];
+
+/**
+ * The worlds in which agents are compared; none where there is only the first, in which nothing happens.
+ * @param {Run["config"]} config
+ */
+const worldsIn = ({ worlds = [] }) =>
+  worlds.some((/** @type {string} */ one) => one !== options.value?.worlds[0].name) ? worlds.map(worldTitle) : [];
 
 /**
  * What a sweep varies: "α 0.1, 0.3".
@@ -164,8 +175,8 @@ export const describeRun = ({ config }) => {
   const robots = (config.robots ?? []).map((one) => customRobotInWords(one) ?? presetOf(one) ?? "own robot");
   const observations = (config.observations ?? []).map(observationTitle);
   return [
-    ...(config.experiment === "sweep" ? sweptIn(config) : []),
+    ...(config.experiment === "sweep" ? sweptIn(config) : []), worldsIn(config).join(", "),
     count(config.seeds, "seed"), `from seed ${config.seed}`, observations.join(" and "), robots.join(" and "),
-    simulatorTitle(config.simulator),
+    config.tolerance ? `${settingTitle("tolerance")} ${config.tolerance}` : "", simulatorTitle(config.simulator),
   ].filter(Boolean).join(" · ");
 };

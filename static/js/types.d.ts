@@ -104,6 +104,10 @@ export interface ExperimentKind extends Described {
   /** Of those, the ones that take several values, each combination being one setting. */
   grid: string[];
   defaults: ExperimentValues;
+  /** Simulator → the defaults that are others there. */
+  simulator_defaults: Record<string, Partial<ExperimentValues>>;
+  /** Those that it can compare; none where it has its own. */
+  agents: string[];
 }
 
 export interface Options {

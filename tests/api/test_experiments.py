@@ -192,6 +192,12 @@ def test_options_describe_every_experiment(api: Api) -> None:
     assert shown["sweep"]["grid"][:3] == ["steps", "alpha", "gamma"]
     assert "agents" not in shown["table1"]["fields"]
     assert options["limits"]["seeds"] == [1, 10_000]
+    ideal = shown["recovery"]["simulator_defaults"]["kinematic"]
+    assert ideal == {"worlds": ["noise"], "tolerance": 0.0}
+    assert not any(shown["league"]["simulator_defaults"]["mujoco"].values())
+    assert {"greedy", "q-learning"} & {*shown["recovery"]["agents"]} == {"q-learning"}
+    assert {"greedy", "q-learning"} < {*shown["league"]["agents"]}
+    assert shown["table1"]["agents"] == []
     for one in shown.values():
         assert one["title"]
         assert one["description"].endswith(".")

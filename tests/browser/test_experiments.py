@@ -147,11 +147,50 @@ def test_links_carry_the_form_and_mistakes_hold_it_back(
     expect(alpha).to_have_value("0.1, 0.3, 0.6")
 
 
+def test_a_league_takes_worlds_by_their_pictures_and_as_a_text(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    page = dashboard.page
+    visit(dashboard, shared_server, agents="dyna-q", seeds=2)
+    page.get_by_role("radio", name="League").check(force=True)
+    for picture in ("Slope", "Ice"):
+        page.get_by_role("checkbox", name=picture, exact=True).uncheck(force=True)
+    button = page.get_by_role("button", name=re.compile("^Run League"))
+    # In two worlds and two gaits greedy, greedy with the nominal model, and the learner.
+    expect(button).to_have_text(f"Run League: {2 * 2 * 3 * 2} trials")
+    others = page.get_by_label("Others")
+    others.press_sequentially("limp:legs=2,5+slope:degrees=40")
+    expect(page.get_by_role("alert").filter(has_text="Must be from 0 to 30")).to_be_visible()
+    expect(button).to_have_attribute("aria-disabled", "true")
+    others.press("Backspace")
+    expect(button).to_have_text("Run League: 36 trials")
+    page.get_by_label("Build tolerance").fill("0.05")
+    assert dashboard.violations() == []
+    link = page.url
+    page.goto("about:blank")
+
+    page.goto(link)
+    expect(button).to_have_text("Run League: 36 trials")
+    expect(others).to_have_value("limp:legs=2,5+slope:degrees=4")
+    expect(page.get_by_role("checkbox", name="Two limp legs")).to_be_checked()
+    page.get_by_role("radio", name="Recovery").check(force=True)
+    page.get_by_label("Seeds", exact=True).fill("1")
+    page.get_by_role("checkbox", name="Greedy", exact=True).wait_for(state="detached")
+    with page.expect_response("**/api/v1/experiments") as answer:
+        page.get_by_role("button", name=re.compile("^Run Recovery")).click()
+    config = answer.value.json()["config"]
+    assert config["worlds"] == ["flat", "limp-pair", "limp:legs=2,5+slope:degrees=4"]
+    assert (config["experiment"], config["tolerance"]) == ("recovery", 0.05)
+    dashboard.button("Stop").click()
+    expect(head(dashboard).locator(".state")).to_have_text("stopped")
+
+
 def test_reports_fit_a_phone(browser: Browser, small_runs: list[str]) -> None:
     with browser.new_context(viewport=PHONE, color_scheme="light") as context:
         dashboard = Dashboard(context.new_page(), has_3d=False)
         page = dashboard.page
         for address in small_runs:
+            page.set_viewport_size(PHONE)
             page.goto(address)
             expect(page.get_by_role("heading", name="How it was made")).to_be_visible()
             if address == small_runs[0]:
@@ -164,8 +203,10 @@ def test_reports_fit_a_phone(browser: Browser, small_runs: list[str]) -> None:
                 page.emulate_media(color_scheme=theme)
                 assert dashboard.scroll_width() == PHONE["width"]
                 assert dashboard.violations() == []
-            if address == small_runs[-1]:
+            if address == small_runs[1]:
                 tells_of_its_sweep(dashboard)
+            if address == small_runs[-1]:
+                tells_who_recovers(dashboard)
             page.goto("about:blank")
         assert dashboard.complaints == []
 
@@ -188,13 +229,29 @@ def tells_of_its_sweep(dashboard: Dashboard) -> None:
         )
 
 
+def tells_who_recovers(dashboard: Dashboard) -> None:
+    """The curves after it happened, with the walks of greedy, and a table of what is left."""
+    page = dashboard.page
+    chart = page.get_by_role("img", name=re.compile("^Left-right, opposite: Q-learning .* greedy"))
+    expect(chart).to_be_visible()
+    table = page.get_by_role("table", name="Agents in Left-right, opposite")
+    row = table.get_by_role("row", name=re.compile("^Linear model"))
+    expect(row).to_contain_text(re.compile(r"\d\.\d\d\sm"))
+    expect(table.get_by_role("row", name=re.compile("^Greedy, nominal model"))).to_have_count(1)
+    for title in ("At once", "Of greedy", "Steps to 90 % of greedy"):
+        expect(table.get_by_role("columnheader", name=title, exact=True)).to_have_count(1)
+    dashboard.button("relative to greedy").click()
+    expect(table.get_by_role("row", name=re.compile("^Greedy")).first).to_contain_text("100")
+
+
 @pytest.fixture(scope="module")
 def small_runs(shared_server: Serving) -> list[str]:
-    """The views of a finished Figure 4 and a finished sweep."""
+    """The views of a finished Figure 4, a finished sweep and a finished recovery."""
     corner = {**CORNER, "robots": "stiff", "seeds": 3, "workers": 1}
     asked = [
         {"experiment": "figure4", **corner},
         {"experiment": "sweep", **corner, "alpha": [0.1, 0.3], "steps": 100},
+        {"experiment": "recovery", **corner, "agents": ["q-learning", "linear-model"], "steps": 20},
     ]
     ids = [call(shared_server, body)["id"] for body in asked]
     deadline = time.monotonic() + 100

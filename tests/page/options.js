@@ -82,6 +82,9 @@ const EXPERIMENT = {
 };
 const COMMON = ["seeds", "seed", "gaits", "observations", "robots", "simulator"];
 
+const IN_WORLDS = [...COMMON, "agents", "worlds", "tolerance", "steps"];
+const EVERY_AGENT = ["learner", "tracer", "greedy", "planner"];
+
 const SEARCH = {
   learns: false, searches: true, needs_practice: false, keeps_learning: false, settings: {}, live_settings: {},
 };
@@ -117,8 +120,24 @@ export const OPTIONS = {
   observations: [{ name: "measured", description: "" }, { name: "commanded", description: "" }],
   clocks: [{ name: "paper", description: "" }, { name: "wall", description: "" }, { name: "free", description: "" }],
   experiments: [
-    { ...described("table1", "Table 1"), fields: COMMON, grid: [], defaults: { ...EXPERIMENT, steps: [500, 1000] } },
-    { ...described("sweep", "Sweep"), fields: [...COMMON, "agents", ...GRID], grid: GRID, defaults: EXPERIMENT },
+    {
+      ...described("table1", "Table 1"), fields: COMMON, grid: [], defaults: { ...EXPERIMENT, steps: [500, 1000] },
+      simulator_defaults: { mujoco: {}, kinematic: {} }, agents: [],
+    },
+    {
+      ...described("sweep", "Sweep"), fields: [...COMMON, "agents", ...GRID], grid: GRID, defaults: EXPERIMENT,
+      simulator_defaults: { mujoco: {}, kinematic: {} }, agents: EVERY_AGENT,
+    },
+    {
+      ...described("league", "League"), fields: IN_WORLDS, grid: ["steps"], agents: EVERY_AGENT,
+      defaults: { ...EXPERIMENT, agents: ["learner", "planner"], worlds: ["flat", "limp-pair"], tolerance: 0.03 },
+      simulator_defaults: { mujoco: {}, kinematic: { worlds: ["flat"], tolerance: 0 } },
+    },
+    {
+      ...described("recovery", "Recovery"), fields: IN_WORLDS, grid: ["steps"], agents: ["learner", "tracer"],
+      defaults: { ...EXPERIMENT, worlds: ["limp-pair"], tolerance: 0.03 },
+      simulator_defaults: { mujoco: {}, kinematic: { worlds: ["flat"], tolerance: 0 } },
+    },
   ],
   defaults: {
     training: { ...TRAINING, pace: "max" },
@@ -133,6 +152,7 @@ export const OPTIONS = {
       .map((name) => [name, setting(name, { minimum: 0, is_whole: true, default: 50 })])),
     keep_learning: setting("Keeps learning", { is_number: false, is_boolean: true, default: false }),
     plans_with: setting("Plans with", { is_number: false, choices: ["world", "start", "nominal"] }),
+    tolerance: setting("Build tolerance", { minimum: 0, maximum: 0.2, default: 0 }),
     pace: setting("Pace", { choices: ["max"], minimum: 0.01, maximum: 1000, default: "max" }),
     ...TRACER, ...LEARNER,
   },

@@ -132,6 +132,65 @@ test("trials are counted before they are started", () => {
   assert.equal(trials.value, 2 * (1 + 1 + 3 * 3));
 });
 
+test("worlds are chosen by name, or say what happens", () => {
+  chooseExperiment("league");
+  assert.deepEqual(values.value.worlds, ["flat", "limp-pair"]);
+  for (const text of ["limp-pair, limp:legs=2,5+slope:degrees=4", "limp-pair;limp:legs=2,5+slope:degrees=4;"]) {
+    enter("worlds", text);
+    assert.deepEqual(values.value.worlds, ["limp-pair", "limp:legs=2,5+slope:degrees=4"]);
+  }
+  const [sent, link] = [requestBody(), query()];
+  assert.deepEqual(sent.worlds, values.value.worlds);
+  readQuery(new URLSearchParams());
+  readQuery(new URLSearchParams(link));
+  assert.deepEqual(requestBody(), sent);
+
+  for (const [text, why] of /** @type {[string, RegExp][]} */ ([
+    ["", /at least 1/], ["moon", /“moon” is no world/], ["flat,flat", /each world once/],
+    ["slope:degrees=99", /Slope.*from 0 to 30/], ["slope:degrees=4:at=5", /leave out at and until/],
+  ])) {
+    enter("worlds", text);
+    assert.match(mistakes.value.worlds, why, text);
+  }
+  readQuery(new URLSearchParams(query()));
+  assert.equal(wrong.value.worlds.text, "slope:degrees=4:at=5");
+  chooseExperiment("table1");
+  assert.deepEqual(mistakes.value, {});
+});
+
+test("a simulator has its own defaults, and refuses the worlds that it does not know", () => {
+  chooseExperiment("league");
+  setField("simulator", "kinematic");
+  assert.deepEqual([values.value.worlds, values.value.tolerance], [["flat"], 0]);
+  assert.deepEqual(requestBody(), { experiment: "league", simulator: "kinematic" });
+  enter("worlds", "limp-pair");
+  assert.match(mistakes.value.worlds, /kinematic simulator knows no limp: choose mujoco/);
+  setField("simulator", "mujoco");
+  assert.deepEqual([mistakes.value, values.value.worlds], [{}, ["limp-pair"]]);
+});
+
+test("robots that differ by seed are tried by all agents, and greedy twice", () => {
+  chooseExperiment("league");
+  setField("seeds", 4);
+  // Two gaits and two worlds; learner, planner, greedy, and greedy with the nominal model.
+  assert.equal(trials.value, 2 * 2 * 4 * 4);
+  setField("tolerance", 0);
+  // Without a tolerance searchers walk once, and on flat ground the nominal model is the world.
+  assert.equal(trials.value, 2 * ((4 + 2) + (4 + 3)));
+  setField("worlds", ["sensor-noise:sd_m=0.004"]);
+  assert.equal(trials.value, 2 * 4 * 4);
+});
+
+test("what does not learn does not recover", () => {
+  chooseExperiment("league");
+  setField("agents", ["learner", "planner"]);
+  chooseExperiment("recovery");
+  setField("agents", ["tracer", "planner"]);
+  assert.match(mistakes.value.agents, /“planner” is not offered/);
+  enter("agents", "tracer");
+  assert.deepEqual(mistakes.value, {});
+});
+
 test("the grid has the settings of the chosen agents", () => {
   assert.deepEqual(Object.keys(agentSettings.value), []);
   chooseExperiment("sweep");
@@ -216,6 +275,9 @@ test("an experiment is described by its seeds, places and simulator", () => {
     describeRun(makeRun({ config: { ...config, experiment: "sweep", alpha: [0.1, 0.3], gamma: [1] } })),
     /^α 0.1, 0.3 · 30 seeds/,
   );
+  const league = { ...config, experiment: "league", worlds: ["limp-pair", "limp:legs=2"], tolerance: 0.03 };
+  assert.match(describeRun(makeRun({ config: league })),
+    /^Two limp legs, Leg\u00a02 limp · 30 seeds .* build tolerance 0.03/);
 });
 
 test("a custom robot is told by what differs from its preset", () => {

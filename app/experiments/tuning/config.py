@@ -16,7 +16,8 @@ from app.experiments.config import (
     ExperimentName,
 )
 from app.experiments.tuning.ranges import SearchRange, declared_range, parse_range
-from app.runs.config import agent_settings, check_whole, usable_agents
+from app.runs.config import agent_settings, usable_agents
+from app.runs.race_config import check_whole
 
 Objective = Literal["distance", "area"]
 OBJECTIVES: Mapping[Objective, str] = {

@@ -1,4 +1,5 @@
 // The page: header, the three views, the first lesson, keyboard shortcuts, the help dialog and messages.
+import { signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { primaryAction, runPrimaryAction, share, toastMessage, togglePause } from "../actions.js";
 import {
@@ -9,12 +10,13 @@ import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { Controls } from "./controls.js";
 import { html, Icon } from "./elements.js";
-import { Experiments } from "./experiments/experiments.js";
 import { Knowledge, LearningChart } from "./learning.js";
 import { RaceChart, Scoreboard } from "./race.js";
 import { Runs } from "./runs.js";
 import { SharedChoices, Stage } from "./stage.js";
 import { WhatIf } from "./what-if.js";
+
+/** @import { Signal } from "@preact/signals" */
 
 export const App = () => html`
   <a class="skip" href="#main" onClick=${focusMain}>Skip to the page</a>
@@ -30,7 +32,7 @@ function Main() {
   if (options.value === null) return html`<${Loading} />`;
   return html`
     <${RaceView} isHidden=${place.value !== "race"} />
-    ${place.value === "experiments" && html`<${Experiments} />`}
+    ${place.value === "experiments" && html`<${ExperimentsView} />`}
     ${place.value === "runs" && html`<${Runs} />`}
   `;
 }
@@ -77,6 +79,30 @@ const RaceView = ({ isHidden }) => html`
     </div>
   </div>
 `;
+
+// ---- the view of experiments, loaded when it is first opened: most visits do not
+
+/** @type {Signal<any>} */
+const loadedExperiments = signal(null);
+
+function ExperimentsView() {
+  const [hasFailed, setFailed] = useState(false);
+  const state = connection.value;
+  useEffect(() => {
+    if (loadedExperiments.value || state !== "live") return;
+    const take = (loaded) => (loadedExperiments.value = loaded.Experiments);
+    import("./experiments/experiments.js").then(take, () => setFailed(true));
+  }, [state]);
+  const View = loadedExperiments.value;
+  if (View) return html`<${View} />`;
+  return html`
+    <section class="panel locked">
+      ${hasFailed
+        ? html`<p role="alert">The experiments could not be loaded. Load the page again.</p>`
+        : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the experiments…</p>`}
+    </section>
+  `;
+}
 
 // ---- a first lesson: open on the first visit until it is done or skipped, and again from the help
 

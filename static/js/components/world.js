@@ -212,7 +212,7 @@ const GROUND_Y = 15;
 const ROUGH = "M-36 15l5-4 5 5 6-7 6 6 5-4 5 5 6-6 6 5 5-5 6 6 5-4 6 4";
 
 /** A world from the side: the robot on its ground, drawn by what happens there. */
-function WorldPicture({ disturbances }) {
+export function WorldPicture({ disturbances }) {
   const of = (kind) => disturbances.find((one) => one.kind === kind);
   const states = legStates(disturbances);
   const weak = of("weak");

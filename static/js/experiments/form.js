@@ -1,5 +1,7 @@
 // The form of a new experiment. Only values that differ from the experiment's defaults are kept and sent.
 import { computed, signal } from "@preact/signals";
+import { isSimulated, parseWorld, splitWorlds } from "../disturbances.js";
+import { unknownTo } from "../form.js";
 import { parseChoice, parseChoices, parseName, parseNumber, parseValues } from "../parse.js";
 import { presetOf } from "../robots.js";
 import { learns, limitsOf, settingsOf } from "../settings.js";
@@ -26,6 +28,7 @@ export const experimentOf = (name) =>
 // ---- the number of trials, counted before they are started
 
 const PLACE_FIELDS = ["gaits", "observations", "robots", "divisions", "grid_side_m"];
+const NOISE = "sensor-noise";
 const PRACTICE_FIELDS = ["steps", "steps_per_episode"];
 
 /**
@@ -44,11 +47,27 @@ const combinations = (values, fields) =>
 function countTrials(experiment, values) {
   const places = combinations(values, PLACE_FIELDS);
   if (experiment === "table1") return places * (2 + values.steps.length * values.seeds + 1);
-  const perPlace = [...new Set(["greedy", ...values.agents])].map((agent) => {
+  const worlds = /** @type {string[]} */ (values.worlds ?? [""]);
+  return places * worlds.reduce((total, world) => total + countInWorld(values, world), 0);
+}
+
+/**
+ * Where robots or their sensors differ by seed, each agent has a trial per seed; where the world or the robots are
+ * not the nominal ones, greedy plans with the nominal model besides.
+ * @param {ExperimentValues} values
+ * @param {string} world empty where the experiment has none
+ */
+function countInWorld(values, world) {
+  const happenings = world ? parseWorld(world).value ?? [] : [];
+  const varies = Boolean(values.tolerance) || happenings.some(({ kind }) => kind === NOISE);
+  const trialsOf = (/** @type {string} */ agent) => {
     const own = combinations(values, Object.keys(settingsOf([agent])));
-    return learns(agent) ? own * combinations(values, PRACTICE_FIELDS) * values.seeds : own;
-  });
-  return places * perPlace.reduce((total, one) => total + one, 0);
+    if (!learns(agent)) return varies ? own * values.seeds : own;
+    return own * combinations(values, PRACTICE_FIELDS) * values.seeds;
+  };
+  const agents = [...new Set(["greedy", ...values.agents])];
+  const nominal = happenings.length || values.tolerance ? ["greedy"] : [];
+  return [...agents, ...nominal].reduce((total, agent) => total + trialsOf(agent), 0);
 }
 
 // ---- the form
@@ -95,10 +114,12 @@ function defaultOf(name) {
   return found.length === 1 ? found : [];
 }
 
-/** The experiment's defaults, with those of the settings of its agents. */
+/** The experiment's defaults in the chosen simulator, with those of the settings of its agents. */
 export const defaults = computed(() => {
+  const kind = chosenExperiment.value;
   const own = Object.keys(agentSettings.value).map((name) => [name, defaultOf(name)]);
-  return /** @type {ExperimentValues} */ ({ ...chosenExperiment.value.defaults, ...Object.fromEntries(own) });
+  const ofSimulator = kind.simulator_defaults[String(overrides.value.simulator ?? kind.defaults.simulator)];
+  return /** @type {ExperimentValues} */ ({ ...kind.defaults, ...ofSimulator, ...Object.fromEntries(own) });
 });
 
 /** The values that the experiment would be started with. */
@@ -127,8 +148,33 @@ const READERS = /** @type {Record<string, (text: string) => Parsed<ExperimentVal
   gaits: (/** @type {string} */ text) => parseChoices(text, namesOf(served().gaits), SEVERAL),
   robots: (/** @type {string} */ text) => parseChoices(text, namesOf(served().robots), SEVERAL),
   observations: (/** @type {string} */ text) => parseChoices(text, namesOf(served().observations), SEVERAL),
-  agents: (/** @type {string} */ text) => parseChoices(text, namesOf(served().agents), SEVERAL),
+  agents: (/** @type {string} */ text) => parseChoices(text, offeredAgents(), SEVERAL),
+  worlds: (/** @type {string} */ text) => parseWorlds(text),
+  tolerance: (/** @type {string} */ text) => parseNumber(text, limitsOf("tolerance"), false),
 });
+
+/** The agents that the chosen experiment can compare; all of them where it has its own. */
+export const offeredAgents = () => {
+  const { fields, agents } = chosenExperiment.value;
+  return fields.includes("agents") ? agents : namesOf(served().agents);
+};
+
+/** @type {(text: string) => Parsed<string[]>} */
+function parseWorlds(text) {
+  const worlds = splitWorlds(text);
+  const mistake = worlds.map((one) => parseWorld(one).mistake).find(Boolean);
+  if (mistake) return { mistake };
+  if (new Set(worlds).size < worlds.length) return { mistake: "Enter each world once" };
+  return worlds.length ? { value: worlds } : { mistake: "Choose at least 1 of these" };
+}
+
+/** Why a world cannot be had in the chosen simulator. */
+function mistakeInWorlds() {
+  const { worlds, simulator } = values.value;
+  const happenings = /** @type {string[]} */ (worlds ?? []).flatMap((one) => parseWorld(one).value ?? []);
+  const impossible = happenings.find(({ kind }) => !isSimulated(kind, simulator));
+  return impossible ? unknownTo(simulator, impossible.kind) : null;
+}
 
 /** The declaration of a setting: that of the chosen agents, else the first agent's. @type {(field: string) => any} */
 const settingFor = (field) => agentSettings.value[field] ?? everySetting.value[field] ?? served().settings[field];
@@ -160,6 +206,8 @@ export const wrong = computed(() => {
   for (const [field, value] of Object.entries(overrides.value)) {
     if (takesField(field) && !(field in typed.value)) check(field, joined(value, ", "));
   }
+  const mistake = takesField("worlds") ? mistakeInWorlds() : null;
+  if (mistake) found.worlds ??= { text: joined(values.value.worlds, ","), mistake };
   return found;
 });
 

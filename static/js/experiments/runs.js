@@ -97,7 +97,7 @@ export const summary = computed(() => summaries.value[chosenRun.value?.id ?? ""]
 export const summaryError = computed(() => errors.value[chosenRun.value?.id ?? ""] ?? null);
 
 /** Lists of a config that are no parameters of a setting. */
-const PLACES = ["agents", "gaits", "observations", "robots"];
+const PLACES = ["agents", "gaits", "observations", "robots", "worlds"];
 
 /**
  * A summary with the names of its parameters, which earlier versions left out.

@@ -1,20 +1,22 @@
 // The form of a new experiment.
 import { useState } from "preact/hooks";
 import { pending, refusedFields } from "../../actions.js";
+import { splitWorlds } from "../../disturbances.js";
 import {
-  agentSettings, chooseExperiment, chosenExperiment, defaults, enter, experiments, mistakes, parse, setField,
-  takesField, unknownParts, values, wrong,
+  agentSettings, chooseExperiment, chosenExperiment, defaults, enter, experiments, mistakes, offeredAgents, parse,
+  setField, takesField, unknownParts, values, wrong,
 } from "../../experiments/form.js";
 import { canStart, start, startLabel } from "../../experiments/runs.js";
 import { listed, sentence, whole } from "../../format.js";
 import { isNarrow } from "../../page.js";
-import { settingOf, shortTitle } from "../../settings.js";
-import { options } from "../../store.js";
+import { fullTitle, settingOf, shortTitle } from "../../settings.js";
+import { options, served } from "../../store.js";
 import {
   agentTitle, choicesOf, fieldTitle, gaitTitle, observationTitle, robotTitle, simulatorTitle,
 } from "../../titles.js";
 import { goToField, Held, html, Icon, Mistake, Problem, UnknownParts } from "../elements.js";
 import { helpFor } from "../fields.js";
+import { WorldPicture } from "../world.js";
 
 /** @import { SettingValue } from "../../types.js" */
 
@@ -51,15 +53,19 @@ const Fields = () => html`
       <${CountField} field="seed" label=${FIRST_SEED} />
     </div>
     ${takesField("agents") && html`
-      <${CheckList} field="agents" label="Agents" choices=${choicesOf(options.value?.agents, agentTitle)} />
+      <${CheckList} field="agents" label="Agents" choices=${agentChoices()} />
     `}
-    <${Grid} fields=${gridOf(true)} />
+    ${takesField("worlds") && html`<${Worlds} />`}
+    <${Grid} fields=${gridOf(true)}>${takesField("tolerance") && html`<${ToleranceField} />`}<//>
     <${More} />
     <${StartButton} />
     <${UnknownParts} parts=${unknownParts} />
     <${Problem} at="experiment" />
   </div>
 `;
+
+const agentChoices = () =>
+  choicesOf(served().agents.filter(({ name }) => offeredAgents().includes(name)), agentTitle);
 
 /** Start, and show the report, which a long form has scrolled away. */
 async function startAndShow() {
@@ -103,13 +109,14 @@ const Cards = () => html`
   </fieldset>
 `;
 
-/** Fields that a sweep combines: one value each, or several. */
-const Grid = ({ fields }) => fields.length > 0 && html`
+/** Fields that are combined: one value each, or several. */
+const Grid = ({ fields, children }) => fields.length > 0 && html`
   <fieldset class="grid-fields">
-    <legend>Every combination of</legend>
+    <legend class=${fields.length > 1 ? "" : "sr-only"}>Every combination of</legend>
     ${fields.map((field) => html`
       <${ValuesField} key=${field} field=${field} setting=${agentSettings.value[field] ?? settingOf(field)} />
     `)}
+    ${children}
   </fieldset>
 `;
 
@@ -209,6 +216,63 @@ function CheckList({ field, label, choices }) {
     </fieldset>
   `;
 }
+
+// ---- worlds: those with a name by their pictures, others as a text
+
+/** Names that are chosen, and what else the text of the field has. */
+function worldsChosen() {
+  const all = splitWorlds(wrong.value.worlds?.text ?? joined(values.value.worlds));
+  const names = served().worlds.map(({ name }) => name);
+  return { named: names.filter((name) => all.includes(name)), others: all.filter((one) => !names.includes(one)) };
+}
+
+function Worlds() {
+  const { named, others } = worldsChosen();
+  const toggle = (name) => {
+    const isChosen = (one) => (one === name ? !named.includes(one) : named.includes(one));
+    enter("worlds", [...served().worlds.map((one) => one.name).filter(isChosen), ...others].join(","));
+  };
+  return html`
+    <fieldset class="field" aria-describedby="about-worlds">
+      <legend>Worlds</legend>
+      <div class="gait-row">
+        ${served().worlds.map(({ name, title, disturbances, description }, number) => html`
+          <label class="gait" key=${name} title=${description}>
+            <input class="sr-only" type="checkbox" checked=${named.includes(name)} onChange=${() => toggle(name)}
+              ...${attributesOf("worlds")} id=${number ? undefined : "experiment-worlds"} />
+            <${WorldPicture} disturbances=${disturbances} />
+            <span>${title}</span>
+          </label>
+        `)}
+      </div>
+      <${OtherWorlds} named=${named} others=${others.join("; ")} />
+      <${MistakeOf} field="worlds" />
+      <${Help} field="worlds" />
+    </fieldset>
+  `;
+}
+
+/** Worlds without a name, as on the command line. What is typed stays while it means the same. */
+function OtherWorlds({ named, others }) {
+  const [draft, setDraft] = useState("");
+  const isKept = splitWorlds(draft).join("; ") === others;
+  const onInput = ({ target }) => {
+    setDraft(target.value);
+    enter("worlds", [...named, target.value].join(","));
+  };
+  return html`
+    <label class="other-worlds">Others
+      <input type="text" autocomplete="off" spellcheck=${false} value=${isKept ? draft : others} onInput=${onInput}
+        placeholder="limp:legs=2,5+slope:degrees=4"
+        aria-invalid=${wrong.value.worlds && others ? "true" : undefined} aria-describedby="about-worlds" />
+    </label>
+  `;
+}
+
+const ToleranceField = () => html`
+  <${TypedField} field="tolerance" label=${fullTitle(settingOf("tolerance"))} text=${String(values.value.tolerance)}
+    inputmode="decimal" />
+`;
 
 // ---- text fields: a whole number, or a list of values; what is typed stays as it is
 

@@ -1,6 +1,7 @@
 // What stands over a report's figures: the choice of place and unit, and the legend of dot strips.
 import { unit, UNITS } from "../../experiments/distances.js";
 import { sentence } from "../../format.js";
+import { agentOf } from "../../settings.js";
 import { options } from "../../store.js";
 import { observationTitle, robotTitle } from "../../titles.js";
 import { html, Segments } from "../elements.js";
@@ -54,4 +55,13 @@ const Sign = ({ name }) => html`
 /** The legend of a dot strip. */
 export const StripKey = ({ signs = Object.keys(SIGNS), color }) => html`
   <p class="strip-key" style=${color && { "--agent": color }}>${signs.map((name) => html`<${Sign} name=${name} />`)}</p>
+`;
+
+/** The colours of agents, and what else a chart has. */
+export const AgentKey = ({ agents, children }) => html`
+  <p class="strip-key">
+    ${agents.map(agentOf).map(({ color, title }) => html`
+      <span style=${{ "--agent": color }}><i class="swatch"></i>${title}</span>
+    `)}${children}
+  </p>
 `;

@@ -11,10 +11,11 @@ import { FigureFour } from "./figure-four.js";
 import { AtAGlance, Claims, FairClocks, Story, Versus } from "./findings.js";
 import { SweepTable } from "./sweep-table.js";
 import { TableOne } from "./table-one.js";
+import { Worlds } from "./worlds.js";
 
 /** @import { Summary } from "../../types.js" */
 
-const FIGURES = { table1: TableOne, figure4: FigureFour, sweep: SweepTable };
+const FIGURES = { table1: TableOne, figure4: FigureFour, sweep: SweepTable, league: Worlds, recovery: Worlds };
 
 export function Report({ run }) {
   const known = summary.value;
@@ -33,7 +34,7 @@ function Findings({ known }) {
   return html`
     <${LeftOut} trials=${known.trials} />
     ${Figure && html`<${Figure} known=${known} />`}
-    <${AtAGlance} known=${known} />
+    ${!known.worlds?.length && html`<${AtAGlance} known=${known} />`}
     <${Versus} known=${known} />
     <${Claims} claims=${known.claims ?? []} isComplete=${known.trials.done >= known.trials.total} />
     <${Story} parts=${known.story ?? []} />

@@ -1,0 +1,236 @@
+// A league or a recovery: in each world the learners' curves with the walks of their references, and a table.
+import { useState } from "preact/hooks";
+import { worldTitle } from "../../disturbances.js";
+import { bare, factorOf, inUnit, placeOf, placesOf, shown, unit, UNIT_NAMES } from "../../experiments/distances.js";
+import { count, percentage, whole } from "../../format.js";
+import { largest } from "../../scale.js";
+import { agentOf } from "../../settings.js";
+import { agentTitle, gaitTitle } from "../../titles.js";
+import { html, Segments } from "../elements.js";
+import { BandChart, CurveTable } from "./band-chart.js";
+import { AgentKey, PlaceSwitch, UnitSwitch } from "./report-tools.js";
+
+const HEADROOM = 1.06;
+const NOMINAL = "nominal";
+
+/** What each experiment is about. */
+const TITLES = { league: "Who walks, in which world", recovery: "Who recovers, from what" };
+const STEPS_OF = { league: "steps of practice", recovery: "steps after it happened" };
+
+export function Worlds({ known }) {
+  const entries = known.worlds ?? [];
+  const worlds = [...new Set(entries.map(({ world }) => world))];
+  const [wantedWorld, setWorld] = useState(null);
+  const [wantedPlace, setPlace] = useState(null);
+  if (!entries.length) return null;
+  const world = worlds.includes(wantedWorld) ? wantedWorld : worlds[0];
+  const inWorld = entries.filter((one) => one.world === world);
+  const places = placesOf(inWorld);
+  const place = places.find(({ key }) => key === wantedPlace) ?? places[0];
+  const here = inWorld.filter((one) => placeOf(one) === place.key);
+  const learners = [...new Set(here.filter(({ curve }) => curve).map(({ agent }) => agent))];
+  const gaits = [...new Set(here.map(({ gait }) => gait))];
+  return html`
+    <section class="panel worlds" aria-labelledby="worlds">
+      <div class="report-tools">
+        <h2 id="worlds">${TITLES[known.experiment]}</h2>
+        ${worlds.length > 1 && html`
+          <${Segments} label="World" choices=${worlds.map((one) => [one, worldTitle(one)])} value=${world}
+            onValue=${setWorld} />
+        `}
+        <${PlaceSwitch} places=${places} value=${place.key} onValue=${setPlace} />
+        <${UnitSwitch} />
+      </div>
+      <p class="dim">
+        ${worldTitle(world)}: ${UNIT_NAMES[unit.value]}, against ${STEPS_OF[known.experiment]}.
+        Curve: interquartile mean; band: its 95 % interval.
+      </p>
+      <${AgentKey} agents=${learners}><${LevelKey} known=${here[0]} /><//>
+      <div class=${`gait-panels ${gaits.length > 1 ? "" : "alone"}`}>
+        ${gaits.map((gait) => html`
+          <${Gait} key=${gait} gait=${gait} entries=${here.filter((one) => one.gait === gait)} known=${known} />
+        `)}
+      </div>
+      ${gaits.map((gait) => html`
+        <${Table} key=${gait} gait=${gait} entries=${here.filter((one) => one.gait === gait)} known=${known} />
+      `)}
+    </section>
+  `;
+}
+
+// ---- the lines of references
+
+/** [field of an entry, kind of line, name] */
+const LEVELS = [
+  ["greedy_m", "greedy", "Greedy"],
+  ["greedy_nominal_m", "nominal", "Greedy, nominal model"],
+  ["best_known_m", "best-known", "Best known"],
+];
+
+/** The references that are known, in the unit that is shown. */
+const levelsOf = (entry) =>
+  LEVELS.map(([field, kind, name]) => ({ kind, name, value: inUnit(entry[field], factorOf(entry)) }))
+    .filter(({ value }) => value !== null);
+
+const LevelKey = ({ known }) => levelsOf(known).map(({ kind, name }) => html`
+  <span>
+    <svg class="dots" width="24" height="8" aria-hidden="true">
+      <line class=${`mark ${kind}`} x1="0" x2="24" y1="4" y2="4" />
+    </svg>${name.toLowerCase()}
+  </span>
+`);
+
+// ---- one chart per gait
+
+/** Names of entries: of one agent several, if the experiment practises for several numbers of steps. */
+const nameOf = ({ agent, plans_with, steps, role }, { config }) => [
+  agentTitle(agent), plans_with === NOMINAL && "nominal model",
+  role === "learner" && config.steps.length > 1 && count(steps, "step"),
+].filter(Boolean).join(", ");
+
+function Gait({ gait, entries, known }) {
+  const curves = entries.filter(({ curve }) => curve).map((one) => toUnit(one, known));
+  const levels = levelsOf(entries[0]);
+  const high = HEADROOM * largest([
+    ...levels.map(({ value }) => value), ...curves.flatMap(({ iqm, high: ends }) => [...iqm, ...ends]),
+  ].filter((one) => one !== null), 1e-9);
+  const ends = curves.map(({ name, iqm, steps }) =>
+    `${name} ${shown(iqm.at(-1))} after ${count(steps.at(-1), "step")}`);
+  const lines = levels.map(({ name, value }) => `${name.toLowerCase()} ${shown(value)}`);
+  const label = `${gaitTitle(gait)}: ${[...ends, ...lines].join(", ")}`;
+  return html`
+    <figure>
+      <figcaption><b>${gaitTitle(gait)}</b><span class="dim num">${seedsOf(entries)}</span></figcaption>
+      ${curves.length > 0 && html`
+        <${BandChart} label=${label} curves=${curves} levels=${levels} high=${high}
+          unit=${STEPS_OF[known.experiment]} />
+        <${CurveTable} label=${label} curves=${curves} />
+      `}
+    </figure>
+  `;
+}
+
+function seedsOf(entries) {
+  const numbers = entries.filter(({ role }) => role === "learner").map(({ n }) => n);
+  if (!numbers.length) return "no learner yet";
+  const [least, most] = [Math.min(...numbers), Math.max(...numbers)];
+  return least === most ? count(most, "seed") : `${whole(least)} to ${count(most, "seed")}`;
+}
+
+function toUnit(one, known) {
+  const factor = factorOf(one);
+  const all = (list) => list.map((value) => inUnit(value, factor));
+  const { steps, iqm_m, low_m, high_m } = one.curve;
+  return {
+    key: one.key, agent: one.agent, name: nameOf(one, known), steps, points: [],
+    iqm: all(iqm_m), low: all(low_m), high: all(high_m),
+  };
+}
+
+// ---- one table per gait, the furthest first
+
+/** A value with its interval below it; a dash without one. */
+const valueOf = (one, words, bareWords) => one && one.iqm !== null && html`
+  <b>${words(one.iqm)}</b>${one.low !== null && html`
+    <br /><span class="dim">${bareWords(one.low)} – ${bareWords(one.high)}</span>
+  `}
+`;
+
+function distanceOf(interval, entry) {
+  const factor = factorOf(entry);
+  const own = (value) => inUnit(value, factor);
+  return interval && valueOf({ iqm: own(interval.iqm), low: own(interval.low), high: own(interval.high) }, shown, bare);
+}
+
+const shareOf = (interval) => valueOf(interval, percentage, (share) => percentage(share).replace(/[^\d\u2212]/g, ""));
+
+const untilOf = (until) => until && html`
+  <b>${until.median_steps === null ? "not reached" : whole(until.median_steps)}</b>
+  <br /><span class="dim">by ${percentage(until.reached)}</span>
+`;
+
+/** The value of a curve at one of its places, as an interval. */
+const atPlace = (curve, place) =>
+  curve && { iqm: curve.iqm_m.at(place), low: curve.low_m.at(place), high: curve.high_m.at(place) };
+
+const SHARES = [
+  { title: "Of greedy", cell: ({ of_greedy }) => shareOf(of_greedy) },
+  { title: "Of best known", cell: ({ of_best_known }) => shareOf(of_best_known) },
+];
+
+/** Columns: title, explanation, and the cell of an entry. */
+function columnsOf({ experiment }, entries) {
+  const learner = entries.find(({ curve }) => curve);
+  const share = (learner?.until_greedy ?? learner?.until_best_known)?.of;
+  const until = share ? [
+    { title: `Steps to ${percentage(share)} of greedy`, words: UNTIL, cell: (one) => untilOf(one.until_greedy) },
+    { title: `To ${percentage(share)} of best known`, words: UNTIL, cell: (one) => untilOf(one.until_best_known) },
+  ] : [];
+  const mean = {
+    title: "Mean", words: "Over the practice: the area under the curve divided by its steps",
+    cell: (one) => distanceOf(one.mean_m, one),
+  };
+  const last = whole(learner?.curve.steps.at(-1) ?? 0);
+  const distance = {
+    title: experiment === "recovery" ? `After ${last}` : "Distance", words: "In 50 steps, at the last evaluation",
+    cell: (one) => distanceOf(one.distance, one),
+  };
+  if (experiment === "league") return [distance, ...SHARES, mean, ...until];
+  return [
+    { title: "At once", words: "As soon as it has happened", cell: (one) => distanceOf(atPlace(one.curve, 0), one) },
+    distance, ...SHARES, mean,
+    {
+      title: "Earned", words: "In the first 50 steps of practice after it happened",
+      cell: (one) => distanceOf(atPlace(one.earned, 0), one),
+    },
+    ...until,
+  ];
+}
+
+const UNTIL = "Median over the seeds of the steps until an evaluation reaches it; below, the share of seeds that do";
+
+const Cell = ({ title, value }) => html`
+  <td role="cell" data-label=${title} class=${`num ${value ? "" : "no-value"}`}>${value || "–"}</td>
+`;
+
+/** The best known walk as the first row: what is possible. */
+function BestKnown({ entry, columns }) {
+  const { best_known_m, greedy_m } = entry;
+  const only = { iqm: best_known_m, low: null, high: null };
+  const cells = { Distance: distanceOf(only, entry), "Of greedy": greedy_m && percentage(best_known_m / greedy_m) };
+  return html`
+    <tr role="row" class="best-known">
+      <th role="rowheader" scope="row">Best known</th>
+      ${columns.map(({ title }) => html`
+        <${Cell} title=${title} value=${cells[title.startsWith("After") ? "Distance" : title]} />
+      `)}
+    </tr>
+  `;
+}
+
+function Table({ gait, entries, known }) {
+  const columns = columnsOf(known, entries);
+  const sorted = [...entries].sort((a, b) => b.distance.iqm - a.distance.iqm);
+  const title = `Agents in ${gaitTitle(gait)}`;
+  return html`
+    <h3>${gaitTitle(gait)}</h3>
+    <div class="scroller" tabindex="0" role="region" aria-label=${title}>
+      <table class="facts-table world-table stacking" role="table">
+        <caption class="sr-only">${title}</caption>
+        <thead role="rowgroup"><tr role="row">
+          <th role="columnheader" scope="col">Agent</th>
+          ${columns.map((one) => html`<th role="columnheader" scope="col" title=${one.words}>${one.title}</th>`)}
+        </tr></thead>
+        <tbody role="rowgroup">
+          ${entries[0].best_known_m !== null && html`<${BestKnown} entry=${entries[0]} columns=${columns} />`}
+          ${sorted.map((one) => html`
+            <tr role="row" key=${one.key} style=${{ "--agent": agentOf(one.agent).color }}>
+              <th role="rowheader" scope="row"><i class="swatch"></i> ${nameOf(one, known)}</th>
+              ${columns.map(({ title: column, cell }) => html`<${Cell} title=${column} value=${cell(one)} />`)}
+            </tr>
+          `)}
+        </tbody>
+      </table>
+    </div>
+  `;
+}
