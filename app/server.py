@@ -28,7 +28,6 @@ from app.api import (
     trainings,
     transfer,
 )
-from app.api.agent_bodies import AgentBodies
 from app.api.auth import TokenGuard
 from app.api.concurrency_limit import ConcurrencyLimit
 from app.api.deps import Services
@@ -140,7 +139,7 @@ def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) ->
     # First, so that no other route matches `import` as a run's id.
     for module in (transfer, trainings, races, experiments, runs, stage, events, options):
         versioned.include_router(module.router)
-    versioned.include_router(start_routes(AgentBodies(agents)))
+    versioned.include_router(start_routes(agents))
     app.include_router(versioned)
     app.include_router(health.router)
     app.include_router(metrics.router)

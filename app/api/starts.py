@@ -1,5 +1,6 @@
 """Routes whose bodies depend on the registered agents: starts, live changes, what-ifs."""
 
+from functools import cache
 from typing import Annotated
 
 from fastapi import APIRouter, Request
@@ -15,9 +16,14 @@ from app.api.schemas import BranchBody, ChangeBody, RaceBody, TrainingBody
 from app.domain.errors import InvalidInput
 
 
-def start_routes(bodies: AgentBodies) -> APIRouter:
-    """Create the routes, with the request bodies of a server's agents."""
-    router = APIRouter()
+@cache
+def start_routes(agents: tuple[str, ...]) -> APIRouter:
+    """Return the routes, with the request bodies of the registered agents.
+
+    Args:
+        agents: names of the registered agents.
+    """
+    router, bodies = APIRouter(), AgentBodies(agents)
 
     @router.post(
         "/trainings",
