@@ -217,7 +217,7 @@ def finish_training(
     conditions = learner.conditions(config.steps)
     is_measured = learner.greedy_distance_m is not None and learner.measured_in == conditions
     if measure_reference and not is_measured:
-        measure_baseline(learner, conditions)
+        measure_baseline(learner, config, conditions)
     agent, is_known = learner.walker.agent, is_measured or measure_reference
     return {
         "distance_m": distance,

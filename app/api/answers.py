@@ -258,11 +258,12 @@ class RaceResult(Answer):
 
 
 class RaceView(RunView):
-    """A race."""
+    """A race. `best_known_m` is null where it was not computed, or something happens in between."""
 
     kind: Literal["race"]
     config: RaceConfigView
     result: RaceResult | None
+    best_known_m: float | None
     waiting_for: list[str]
 
 

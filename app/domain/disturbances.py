@@ -361,6 +361,14 @@ KINDS: Mapping[str, type[Disturbance]] = {
 }  # fmt: skip
 
 
+def is_nothing(one: Disturbance) -> bool:
+    """Whether it only ends an earlier one of its kind: a slope of 0°, a payload of 0 kg."""
+    declared = declared_fields(type(one)).values()  # type: ignore[arg-type]  # mypy: no hash
+    own = [each for each in declared if each.name not in ("at_step", "until_step")]
+    is_size = bool(own) and own[0].low == 0 and not own[0].excludes_low
+    return is_size and getattr(one, own[0].name) == 0
+
+
 def disturbance(data: Mapping[str, Any]) -> Disturbance:
     """Build a disturbance from user input: its kind and its fields by name.
 

@@ -4,6 +4,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from app.events.damage import as_shown
+from app.runs.best_known import best_known_in_race_m
 from app.runs.config import TrainingConfig
 from app.runs.lane import plans_with
 from app.runs.race_config import RaceConfig
@@ -55,12 +56,17 @@ def _whole_view(run: Run, queue_position: int | None) -> dict[str, Any]:
     }
     if run.kind == "race":
         view["waiting_for"] = list(run.waiting_for)
+        view["best_known_m"] = _best_known_m(run)
     elif run.kind == "experiment":
         view["workers"] = run.workers
     else:
         view["greedy_distance_m"] = run.greedy_distance_m
         view["changes"] = [dict(change) for change in run.changes]
     return view
+
+
+def _best_known_m(race: Run) -> float | None:
+    return best_known_in_race_m(race.config) if isinstance(race.config, RaceConfig) else None
 
 
 def _config(run: Run) -> dict[str, Any]:

@@ -313,7 +313,11 @@ class Job:
                 greedy_distance_m = record.greedy_distance_m
                 self._store.update(self.run_id, greedy_distance_m=greedy_distance_m)
                 self.publish(greedy_distance_m=greedy_distance_m)
-                self._publish_event("reference", greedy_distance_m=greedy_distance_m)
+                self._publish_event(
+                    "reference",
+                    greedy_distance_m=greedy_distance_m,
+                    best_known_m=record.best_known_m,
+                )
         for row in rows:
             self._publish_event("evaluation", **row)
         self._handle_progress(batch.done)

@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from app.domain.disturbances import SensorNoise
+from app.domain.disturbances import Push, SensorNoise, is_nothing
 from app.domain.grid import FootGrid
 from app.domain.observation import legal_actions, observe, planned_offsets
 from app.domain.robot import PRESETS
 from app.domain.simulator import Simulator
 from app.domain.types import Cells
 from app.domain.world import WORLDS, World
-from app.runs.config import RACE_STEPS, WalkingProblem
+from app.runs.config import RACE_STEPS, RaceConfig, WalkingProblem
 
 WIDTH = 48
 SAME_CELLS = 2
@@ -89,15 +89,30 @@ def best_known_m(walk: WalkingProblem, conditions: World | None = None) -> float
         return None
     robot = next((name for name, one in PRESETS.items() if one == walk.robot), None)
     holds = walk.world.as_of(0) if conditions is None else conditions
-    physical = _without_noise(holds)
+    physical = _physical(holds)
     world = next((name for name, one in WORLDS.items() if one.world.as_of(0) == physical), None)
     if robot is None or world is None:
         return None
     return kept().get((robot, world, walk.resolved_gait.name))
 
 
-def _without_noise(conditions: World) -> World:
-    kept_on = (one for one in conditions.disturbances if not isinstance(one, SensorNoise))
+def best_known_in_race_m(race: RaceConfig) -> float | None:
+    """Return the best known distance of a race [m].
+
+    None where it was not computed: also if something happens in the middle of the race, or if it
+    has another number of steps than the kept walks.
+    """
+    changes = race.world.change_steps or race.world.all_of(Push)
+    return None if changes or race.steps != RACE_STEPS else best_known_m(race)
+
+
+def _physical(conditions: World) -> World:
+    """Return the conditions without sensor noise, and without ends of earlier ones."""
+    kept_on = (
+        one
+        for one in conditions.disturbances
+        if not isinstance(one, SensorNoise) and not is_nothing(one)
+    )
     return World(tuple(kept_on))
 
 

@@ -49,9 +49,15 @@ class EpisodeEnded:
 
 @dataclass(frozen=True)
 class Reference:
-    """Distance of the one-step look-ahead agent in 50 steps on the same robot: the line to beat."""
+    """Distance of the one-step look-ahead agent in 50 steps on the same robot: the line to beat.
+
+    Attributes:
+        greedy_distance_m: of the one-step look-ahead agent.
+        best_known_m: of the best known walk in this world; None where it was not computed.
+    """
 
     greedy_distance_m: float
+    best_known_m: float | None = None
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from app.domain.posture import has_fallen
 from app.domain.simulator import Motion
 from app.domain.types import Action
 from app.domain.world import UNDISTURBED, World
+from app.runs.best_known import best_known_m
 from app.runs.config import RACE_STEPS, TrainingConfig
 from app.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
 from app.runs.seeding import EVALUATION, generator
@@ -132,7 +133,7 @@ def _evaluate_if_due(
     while learner.due_epsilon is not None:
         conditions = learner.conditions(config.steps)
         if learner.greedy_distance_m is None or learner.measured_in != conditions:
-            yield measure_baseline(learner, conditions)
+            yield measure_baseline(learner, config, conditions)
         evaluated = evaluate(learner, config, learner.due_epsilon, record)
         if learner.conditions(config.steps) == conditions:  # nothing happened meanwhile
             learner.due_epsilon = None
@@ -168,11 +169,11 @@ def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> S
     )
 
 
-def measure_baseline(learner: Learner, conditions: World) -> Reference:
+def measure_baseline(learner: Learner, config: TrainingConfig, conditions: World) -> Reference:
     """Run the baseline (one-step look-ahead) in a world, and store its distance in the learner."""
     distance, _ = walk(learner.baseline(conditions), record=False)
     learner.greedy_distance_m, learner.measured_in = distance, conditions
-    return Reference(distance)
+    return Reference(distance, best_known_m(config, conditions))
 
 
 def evaluate(

@@ -6,6 +6,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from app.domain.disturbances import Lost
 from app.domain.types import FloatArray, IntArray
 from app.stage.stage_frame import ActionValuesView, LaneView, SceneSpec, yaw_rad
 from app.viewer.colormap import Rgb, rgb, value_colors
@@ -28,7 +29,7 @@ class FootGridDrawing:
     A cell is drawn as its Voronoi region, as observations assign a foot to the nearest cell. Rims
     are red at home and blue elsewhere, as in the paper; the fill is the value of moving the pair
     there now, or grey if it was never moved there from here. The cell where a pair is has a white
-    rim and no value, since it is no legal action.
+    rim and no value, since it is no legal action. A leg that is lost has no cells.
 
     Args:
         server: where to draw.
@@ -61,6 +62,7 @@ class FootGridDrawing:
             ),
         ]
         self._drawn: ActionValuesView | None = None
+        self._lost: set[int] = set()
         self._pose: tuple[float, float, float, float] | None = None
 
     def draw(self, lane: LaneView) -> None:
@@ -72,6 +74,12 @@ class FootGridDrawing:
             self._frame.position = pose[:3]
             self._frame.wxyz = (math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2))
             self._pose = pose
+        lost = {leg for one in lane.conditions.all_of(Lost) for leg in one.legs}
+        if lost != self._lost:
+            self._lost = lost
+            legs = range(1, len(self._pair_of_leg) + 1)
+            for tiles in self._tiles:
+                tiles.show(np.array([leg not in lost for leg in legs]))
         action_values = lane.knowledge
         if action_values is None or _is_unchanged(action_values, self._drawn):
             return
@@ -129,6 +137,12 @@ class _Tiles:
             np.where(tile_is_current, _CURRENT_RIM, self._rim).astype(np.uint8)
         )
         self._fills.batched_colors = _flat_colors(fills[:, self._cells].reshape(-1, 3))
+
+    def show(self, is_shown: NDArray[np.bool_]) -> None:
+        """Show the cells of some legs, (legs,), and hide the others."""
+        scales = np.repeat(is_shown, len(self._cells)).astype(np.float32)
+        self._rims.batched_scales = scales
+        self._fills.batched_scales = scales
 
 
 def _square(side: float) -> FloatArray:

@@ -31,6 +31,11 @@ export const evaluations = signal({});
 /** Run id → greedy's distance on the same robot [m]. @type {Signal<Record<string, number>>} */
 export const references = signal({});
 /**
+ * Run id → the best known distance in the same world [m], null where there is none.
+ * @type {Signal<Record<string, number | null>>}
+ */
+export const bestKnown = signal({});
+/**
  * Run id → the pace and the live settings that were changed since the snapshot; earlier changes are in the run.
  * @type {Signal<Record<string, Rates>>}
  */
@@ -88,7 +93,10 @@ const handlers = {
   evaluation({ run_id, ...evaluation }) {
     setEntry(evaluations, run_id, [...(evaluations.value[run_id] ?? []), evaluation]);
   },
-  reference: ({ run_id, greedy_distance_m }) => setEntry(references, run_id, greedy_distance_m),
+  reference({ run_id, greedy_distance_m, best_known_m }) {
+    setEntry(references, run_id, greedy_distance_m);
+    setEntry(bestKnown, run_id, best_known_m);
+  },
   rates: ({ run_id, step: _, ...changed }) => setEntry(rates, run_id, { ...rates.value[run_id], ...changed }),
   stage(data) {
     newestEvents.set("stage", eventCount);

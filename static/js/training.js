@@ -4,7 +4,7 @@ import { getCurve, getRun } from "./api.js";
 import { rateChanges } from "./changes.js";
 import { happeningsOf, joinedBySteps } from "./disturbances.js";
 import { trainingInView } from "./selectors.js";
-import { connection, evaluations, references, requestRun, runs, scene, setEntry } from "./store.js";
+import { bestKnown, connection, evaluations, references, requestRun, runs, scene, setEntry } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RateChange } from "./changes.js" */
@@ -16,6 +16,8 @@ const LONGEST_CHAIN = 20;
 
 /** Run id → evaluations that were requested. @type {Signal<Record<string, Evaluation[]>>} */
 const requested = signal({});
+/** Run id → the best known distance as the curve's answer has it [m]. @type {Signal<Record<string, number | null>>} */
+const requestedBest = signal({});
 /** Run id → greedy's distance as the curve's answer has it [m]. @type {Signal<Record<string, number>>} */
 const requestedReferences = signal({});
 
@@ -74,7 +76,8 @@ export const curve = computed(() => {
   }
   const greedy_m = [run, ...trainings].map(greedyOf).find(Number.isFinite) ?? null;
   const to = from + run.config.steps;
-  return { run, points, from, to, greedy_m, blocks, changes, happenings: joinedBySteps(happenings) };
+  const best_known_m = bestKnownOf(run);
+  return { run, points, from, to, greedy_m, best_known_m, blocks, changes, happenings: joinedBySteps(happenings) };
 });
 
 /** A disturbance in the steps of all practice. @type {(one: Disturbance, from: number) => Disturbance} */
@@ -95,6 +98,10 @@ const shownUpTo = ({ id }) => {
 const greedyOf = ({ id, result, greedy_distance_m }) =>
   greedy_distance_m ?? references.value[id] ?? requestedReferences.value[id] ?? result?.greedy_distance_m;
 
+/** Of the world as it is now: the end's, the newest that was announced, or that of the request. @param {Run} run */
+const bestKnownOf = ({ id, result }) =>
+  [result?.best_known_m, bestKnown.value[id], requestedBest.value[id]].find((one) => one !== undefined) ?? null;
+
 /**
  * All steps of practice behind a training's table.
  * @param {Run} training
@@ -107,6 +114,7 @@ async function load(id) {
   const answer = await getCurve(id).catch(() => null);
   if (!answer) return;
   setEntry(requested, id, answer.evaluations);
+  setEntry(requestedBest, id, answer.best_known_m);
   if (answer.greedy_distance_m !== null) setEntry(requestedReferences, id, answer.greedy_distance_m);
 }
 

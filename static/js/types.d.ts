@@ -251,6 +251,7 @@ export interface LaneResult {
 export interface RunResult {
   distance_m: number;
   greedy_distance_m: number;
+  best_known_m?: number | null;
   lanes: LaneResult[];
   files?: string[];
 }
@@ -271,6 +272,8 @@ export interface Run {
   /** The trainings that a race waits for. */
   waiting_for?: string[];
   greedy_distance_m?: number | null;
+  /** Of a race. */
+  best_known_m?: number | null;
   /** Of a training: what was changed while it ran. */
   changes?: Change[];
 }
@@ -309,6 +312,7 @@ export interface Page<Item> {
 export interface Curve {
   evaluations: Evaluation[];
   greedy_distance_m: number | null;
+  best_known_m: number | null;
 }
 
 /** A point of a lane's path: race time [s], distance [m]. */

@@ -27,6 +27,22 @@ test("the learning curve joins the trainings that continue each other, up to the
   assert.equal(practisedSteps(second), 140);
 });
 
+test("the best known distance is that of the world as it is now, and in the end that of the result", () => {
+  const running = makeRun({ state: "running" });
+  const show = (/** @type {object} */ run) =>
+    applyEvent("snapshot", { runs: [run], stage: { ...STAGE, run_id: running.id }, scene: null });
+  const announce = (/** @type {number | null} */ best_known_m) =>
+    applyEvent("reference", { run_id: running.id, greedy_distance_m: 0.5, best_known_m });
+  show(running);
+  assert.equal(curve.value?.best_known_m, null);
+  announce(0.51);
+  assert.equal(curve.value?.best_known_m, 0.51);
+  announce(null);
+  assert.equal(curve.value?.best_known_m, null);
+  show({ ...running, state: "finished", result: { distance_m: 0.4, greedy_distance_m: 0.5, best_known_m: 0.53 } });
+  assert.equal(curve.value?.best_known_m, 0.53);
+});
+
 test("the best move is the one of the highest value", () => {
   assert.deepEqual(bestMove({ values_m: [[null, 0.1], [-0.2, 0.3]] }), { pair: 1, cell: 1, value: 0.3 });
   assert.equal(bestMove({ values_m: [[null, null]] }).pair, -1);

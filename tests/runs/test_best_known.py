@@ -6,12 +6,13 @@ from itertools import pairwise
 import pytest
 
 from app.assembly import build_simulator
+from app.domain.disturbances import Payload, Push, Slope
 from app.domain.gait import NAMED_GAITS
 from app.domain.observation import legal_actions, observe
 from app.domain.robot import PRESETS, Robot, robot
 from app.domain.world import WORLDS, World, named_world
-from app.runs.best_known import PATH, best_known_m, kept, read, search
-from app.runs.config import WalkingProblem
+from app.runs.best_known import PATH, best_known_in_race_m, best_known_m, kept, read, search
+from app.runs.config import LaneConfig, RaceConfig, WalkingProblem
 
 WALK = WalkingProblem(gait="left-right-origin")
 IDEAL = WalkingProblem(gait="left-right-origin", simulator="kinematic")
@@ -66,6 +67,8 @@ def test_distance_is_known_of_preset_robots_in_named_worlds() -> None:
     assert best_known_m(limp) == kept()["stiff", "limp-pair", "left-right-origin"]
     assert best_known_m(flat, limp.world.as_of(0)) == best_known_m(limp)
     assert best_known_m(replace(WALK, world=named_world("noise"))) == best_known_m(flat)
+    flat_again = World((Slope(degrees=0.0, direction_deg=90.0), Payload(kg=0.0, x_m=0.1)))
+    assert best_known_m(replace(WALK, world=flat_again)) == best_known_m(flat)
     assert best_known_m(replace(WALK, robot=robot("stiff"), tolerance=0.03)) == best_known_m(flat)
 
 
@@ -86,3 +89,15 @@ def test_distance_is_known_of_preset_robots_in_named_worlds() -> None:
 )
 def test_distance_of_any_other_walk_is_not_known(walk: WalkingProblem) -> None:
     assert best_known_m(walk) is None
+
+
+def test_distance_of_a_race_is_known_unless_something_happens_in_between() -> None:
+    race = RaceConfig(gait="left-right-origin", lanes=(LaneConfig(agent="greedy"),))
+    limp = named_world("limp-pair")
+
+    assert best_known_in_race_m(race) == best_known_m(WALK)
+    in_damage = replace(race, world=limp)
+    assert best_known_in_race_m(in_damage) == best_known_m(replace(WALK, world=limp))
+    assert best_known_in_race_m(replace(race, world=limp.later(25))) is None
+    assert best_known_in_race_m(replace(race, world=World((Push(impulse_ns=2.0),)))) is None
+    assert best_known_in_race_m(replace(race, steps=60)) is None

@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.domain.disturbances import Lost
 from app.domain.grid import FootGrid
 from app.domain.robot import Robot, ring
+from app.domain.world import UNDISTURBED, World
 from app.runs.clocks import FINISH_LINE_M
 from app.runs.config import training_config
 from app.stage.scene_spec import idle_scene, rest_pose, training_scene
@@ -160,6 +162,23 @@ def test_a_cell_that_was_never_tried_is_grey_whatever_its_value(server: InProces
     leader = spec.gait.pairs[2][0] - 1
     is_grey = np.ptp(colors[leader], axis=1) < 20
     assert is_grey.tolist() == [False, True, True, True], "the present cell, and two of three"
+
+
+def test_a_lost_leg_has_no_cells_until_it_is_repaired(server: InProcessViser) -> None:
+    spec, scene = race_of(1), StageScene(server)
+
+    def sizes(world: World) -> list[bool]:
+        lane = replace(
+            frame_at_rest(spec).lanes[0], knowledge=action_values(spec), conditions=world
+        )
+        scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
+        scales = scene_nodes(server)["/world/cast/lane0/grid/others/fills"]["batched_scales"]
+        shown = np.ones(24) if scales is None else np.asarray(scales)
+        return [bool(leg.all()) for leg in np.split(shown, 6)]
+
+    assert sizes(UNDISTURBED) == [True] * 6
+    assert sizes(World((Lost(legs=(2, 5)),))) == [True, False, True, True, False, True]
+    assert sizes(UNDISTURBED) == [True] * 6
 
 
 @pytest.mark.parametrize("divisions", [2, 3, 8])

@@ -2,7 +2,7 @@
 // without data.
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
-import { whole } from "../format.js";
+import { metres, whole } from "../format.js";
 import { shownTheme } from "../page.js";
 import { largest, percent, shareOf, swarm, thinned, ticks } from "../scale.js";
 import { html } from "./elements.js";
@@ -119,6 +119,19 @@ function coloursOf(host) {
     return found;
   };
 }
+
+/** The line of the best known walk, thin; its caption stands where those of other lines do not begin. */
+export const bestKnownMark = (y) => ({
+  y, color: "--ink", ink: "--dim", width: 0.75, share: 0.62, text: `best known: ${metres(y)}`,
+});
+
+/** What the thin line is, where its caption has no room. */
+export const BestKnownKey = ({ distance }) => html`
+  <p class="changes dim">
+    <i class="thin-line" aria-hidden="true"></i>
+    ${" "}Best known: ${metres(distance)}, found by a wide search
+  </p>
+`;
 
 // ---- the values at a crosshair, which follows the pointer, a finger, or the arrow keys
 

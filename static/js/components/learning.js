@@ -8,7 +8,7 @@ import { shownRun } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { options, scene, served } from "../store.js";
 import { bestMove, curve, placeName } from "../training.js";
-import { AsTable, Empty, Plot } from "./charts.js";
+import { AsTable, BestKnownKey, bestKnownMark, Empty, Plot } from "./charts.js";
 import { HexapodGlyph, html } from "./elements.js";
 
 // ---- the learning curve: distance in an evaluation against steps of practice, with greedy's distance
@@ -32,8 +32,9 @@ export function LearningChart() {
   `;
 }
 
-/** Lines: greedy's distance, where one training continued another, where live settings changed, what happened. */
-const marksOf = ({ greedy_m, blocks, changes, happenings, run }) => [
+/** Lines: greedy's and the best known distance, where one training continued another, what changed, what happened. */
+const marksOf = ({ greedy_m, best_known_m, blocks, changes, happenings, run }) => [
+  ...(best_known_m === null ? [] : [bestKnownMark(best_known_m)]),
   ...(greedy_m ? [greedyMark(greedy_m)] : []),
   ...blocks.map((x) => ({ x, color: "--line" })),
   ...changes.map((change) => ({
@@ -50,20 +51,22 @@ const greedyMark = (y) => ({
   y, color: agentOf("greedy").color, ink: "--dim", dash: [5, 5], text: `greedy, the line to beat: ${metres(y)}`,
 });
 
-function captionOf({ points, greedy_m }) {
+function captionOf({ points, greedy_m, best_known_m }) {
   if (points.length < 2) return "Learning curve, without points so far.";
   const last = points.at(-1);
   const greedy = greedy_m ? `; greedy gets ${metres(greedy_m)}` : "";
-  return `Learning curve: ${metres(last.distance_m)} after ${whole(last.step)} steps${greedy}.`;
+  const best = best_known_m === null ? "" : `; best known ${metres(best_known_m)}`;
+  return `Learning curve: ${metres(last.distance_m)} after ${whole(last.step)} steps${greedy}${best}.`;
 }
 
 function Curve({ known }) {
-  const { points, to, greedy_m, run } = known;
+  const { points, to, greedy_m, best_known_m, run } = known;
   const { color } = agentOf(run.config.agent ?? served().defaults.training.agent);
   const last = points.at(-1);
   const data = useMemo(() => [points.map((p) => p.step), points.map((p) => p.distance_m)], [points]);
   const end = { text: metres(last.distance_m), color, x: last.step, y: last.distance_m };
   const distances = points.map((p) => p.distance_m);
+  const levels = [greedy_m ?? 0, best_known_m ?? 0];
   const caption = captionOf(known);
   const changed = changesInWords(run.config.agent, known.changes);
   const greedy = agentOf("greedy");
@@ -72,6 +75,7 @@ function Curve({ known }) {
     values: [
       { name: agentOf(run.config.agent).title, color, value: metres(points[index].distance_m) },
       ...(greedy_m ? [{ name: greedy.title, color: greedy.color, value: metres(greedy_m) }] : []),
+      ...(best_known_m === null ? [] : [{ name: "Best known", value: metres(best_known_m) }]),
     ],
   });
   return html`
@@ -79,7 +83,8 @@ function Curve({ known }) {
       values=${{ label: "Values of the learning curve", xs: points.map((p) => p.step), read }}
       series=${[{ color, points: points.length < MOST_MARKED_POINTS }]}
       x=${{ min: 0, max: to, unit: "steps of practice" }}
-      y=${{ min: Math.min(0, ...distances), max: HEADROOM * Math.max(LEAST_TOP_M, greedy_m ?? 0, ...distances) }} />
+      y=${{ min: Math.min(0, ...distances), max: HEADROOM * Math.max(LEAST_TOP_M, ...levels, ...distances) }} />
+    ${best_known_m !== null && html`<${BestKnownKey} distance=${best_known_m} />`}
     ${known.happenings.length > 0 && html`
       <p class="changes happened">Happened: ${known.happenings.map(inTime).join("; ")}</p>
     `}

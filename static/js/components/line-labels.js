@@ -18,6 +18,7 @@ import { placeCaptions, placeLabels } from "../labels.js";
  * @property {string} [text]
  * @property {number} [share]
  * @property {number[]} [dash]
+ * @property {number} [width] of the line [px]
  */
 
 /** Of all texts of a chart. */
@@ -83,10 +84,10 @@ export function lineLabels(labels, marks, resolve) {
 }
 
 /** @param {any} pen @param {Mark} mark */
-function drawMark({ u, ctx, px, colourOf }, { x, y, color, dash = [] }) {
+function drawMark({ u, ctx, px, colourOf }, { x, y, color, dash = [], width: line = 1.5 }) {
   const { left, top, width, height } = u.bbox;
   ctx.strokeStyle = colourOf(color);
-  ctx.lineWidth = 1.5 * px;
+  ctx.lineWidth = line * px;
   ctx.setLineDash(dash.map((d) => d * px));
   ctx.beginPath();
   if (x === undefined) {

@@ -11,7 +11,7 @@ import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs } from "../store.js";
 import { clockTitle, flatParts } from "../titles.js";
 import { practisedSteps } from "../training.js";
-import { AsTable, Empty, Plot } from "./charts.js";
+import { AsTable, BestKnownKey, bestKnownMark, Empty, Plot } from "./charts.js";
 import { html, Icon } from "./elements.js";
 
 // ---- the scoreboard: ranks, distances, decision times and simulated transitions
@@ -71,7 +71,21 @@ function Board({ rows }) {
         </tr>
       </thead>
       ${rows.map((row) => html`<${Lane} key=${row.lane} row=${row} longest=${longest} />`)}
+      <${BestKnown} />
     </table>
+  `;
+}
+
+/** What a wide search over the whole walk found: how far a robot can come in all its steps. */
+function BestKnown() {
+  const best_m = raceInView.value?.best_known_m ?? null;
+  return best_m !== null && html`
+    <tfoot>
+      <tr title="The furthest walk that a wide search over all steps has found">
+        <td></td><th scope="row" class="agent">Best known</th><td></td><td>${metres(best_m)}</td>
+        <td class="aside"></td><td class="aside"></td>
+      </tr>
+    </tfoot>
   `;
 }
 
@@ -238,21 +252,27 @@ function Lines({ known, time }) {
     () => uPlot.join(lanes.map(({ shown }) => [shown.map(([t]) => t), shown.map(([, d]) => d)])),
     [known, until],
   );
-  const far = Math.max(known.finish_line_m, ...lanes.map(({ end }) => end[1]));
+  const best_m = raceInView.value?.best_known_m ?? null;
+  const far = Math.max(known.finish_line_m, best_m ?? 0, ...lanes.map(({ end }) => end[1]));
   const ends = lanes.map(({ title, end }) => `${title} ${metres(end[1])}`).join(", ");
-  const caption = `The race after ${Math.round(until)} seconds: ${ends}.`;
+  const best = best_m === null ? "" : `; best known ${metres(best_m)}`;
+  const caption = `The race after ${Math.round(until)} seconds: ${ends}${best}.`;
   const moments = momentsUntil(until);
   const read = (index) => ({
     at: `${moments[index].toFixed(1)}\u00a0s`,
-    values: lanes.map(({ title, color, points }) =>
-      ({ name: title, color, value: metres(distanceAt(points, moments[index])) })),
+    values: [
+      ...lanes.map(({ title, color, points }) =>
+        ({ name: title, color, value: metres(distanceAt(points, moments[index])) })),
+      ...(best_m === null ? [] : [{ name: "Best known", value: metres(best_m) }]),
+    ],
   });
   return html`
-    <${Plot} label=${caption} data=${data} marks=${marksOf(known, until)}
+    <${Plot} label=${caption} data=${data} marks=${marksOf(known, until, best_m)}
       series=${lanes.map(({ color }) => ({ color }))}
       labels=${lanes.map(({ title, color, end }) => ({ text: title, color, x: end[0], y: end[1] }))}
       x=${{ min: 0, max: lastMoment(known, until, longest), unit: "race time, s" }}
       y=${{ min: 0, max: HEADROOM * far }} values=${{ label: "Values of the race", xs: moments, read }} />
+    ${best_m !== null && html`<${BestKnownKey} distance=${best_m} />`}
     <${AsTable} caption=${caption} columns=${["Race time", ...lanes.map(({ title }) => title)]}
       rows=${rowsOf(lanes, until)} />
   `;
@@ -270,12 +290,13 @@ function lastMoment({ first_finish_s }, until, longest) {
   return Math.max(until, planned, 1);
 }
 
-/** The finish line, and time-out once it is past. */
-function marksOf({ finish_line_m, first_finish_s }, until) {
+/** The finish line, the best known walk, and time-out once it is past. */
+function marksOf({ finish_line_m, first_finish_s }, until, best_m) {
   // Its caption stands where no line passes: first on the left, later behind the lanes that have arrived.
   const share = first_finish_s && until > 1.5 * first_finish_s ? 0.55 : 0;
   /** @type {object[]} */
   const marks = [{ y: finish_line_m, color: "--finish", text: "finish line", share }];
+  if (best_m !== null) marks.unshift({ ...bestKnownMark(best_m), share });
   if (first_finish_s && until >= first_finish_s) {
     marks.push({ x: first_finish_s, color: "--dim", dash: [2, 3], text: "time-out" });
   }

@@ -146,7 +146,8 @@ function Outcome({ run: { kind, result } }) {
   if (!result) return null;
   if (kind === "training") {
     const greedy = metres(result.greedy_distance_m);
-    return html`<b>${metres(result.distance_m)}</b> <span class="dim">of greedy’s ${greedy}</span>`;
+    const best = typeof result.best_known_m === "number" ? `, best known ${metres(result.best_known_m)}` : "";
+    return html`<b>${metres(result.distance_m)}</b> <span class="dim">of greedy’s ${greedy}${best}</span>`;
   }
   const lanes = result.lanes.map((lane) => ({ ...lane, ...lane.clocks.paper }));
   const first = lanes.find(({ rank }) => rank === 1);
