@@ -126,13 +126,16 @@ class World:
     def then(self, one: Disturbance) -> "World":
         """Return the world in which something else happens, after what begins in the same step.
 
+        What is of the same thing replaces that; of several pushes in a step each acts.
+
         Raises:
             InvalidInput: if it contradicts the others.
         """
         kept: list[Disturbance] = []
         for other in self.disturbances:
-            parts, begins_too = other.parts(), other.at_step == one.at_step
-            rest = [p for k, p in parts.items() if not (begins_too and _covers(one, k))]
+            parts = other.parts()
+            is_undone = other.at_step == one.at_step and not isinstance(one, Push)
+            rest = [p for k, p in parts.items() if not (is_undone and _covers(one, k))]
             kept += [other] if len(rest) == len(parts) else rest
         return World((*kept, one))
 

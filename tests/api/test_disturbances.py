@@ -139,11 +139,15 @@ def test_a_branch_is_the_same_race_to_the_last_bit_until_its_step(
     ("branch", "happens", "refusal"),
     [
         ({"step": 16}, [LIMP], (422, "can branch at step 0 to 15, not 16")),
-        ({"step": -1}, [LIMP], (422, "step")),
+        *(
+            ({"step": step}, [LIMP], (422, "branch_from.step must be a whole number from 0 to"))
+            for step in (-1, True, "5", 1.5, None, 1e9)
+        ),
+        ({"step": 299_999}, [LIMP], (422, "can branch at step 0 to 15, not 299,999")),
         ({"step": 8}, [{**LIMP, "at_step": 7}], (422, "at_step must be at least 8")),
         ({"step": 8}, [{**LIMP, "at_step": 16}], (422, "at_step must be from 0 to 15")),
         ({"step": 8, "race_id": "nope"}, [LIMP], (404, "nope")),
-        ({}, [LIMP], (422, "step")),
+        ({}, [LIMP], (422, "branch_from.step is missing; it must be a whole number from 0")),
     ],
 )
 def test_a_branch_where_there_is_none_is_refused(

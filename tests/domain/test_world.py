@@ -100,6 +100,10 @@ def test_a_repaired_leg_has_no_stuck_joint() -> None:
 
 def test_a_push_is_in_one_step_and_not_among_the_conditions() -> None:
     made = World((Push(impulse_ns=1, at_step=3), Push(impulse_ns=2, at_step=3)))
+    one_by_one = UNDISTURBED
+    for push in made.disturbances:
+        one_by_one = one_by_one.then(push)
+    assert one_by_one == made
 
     assert made.as_of(3) == UNDISTURBED
     assert [push.impulse_ns for push in made.pushes_at(3)] == [1, 2]
