@@ -92,6 +92,11 @@ class World:
                     f"{one.kind}: at_step must be from 0 to {steps - 1:,}, the last step of this "
                     f"run, not {one.at_step:,}"
                 )
+            if steps is not None and one.until_step is not None and one.until_step > steps:
+                raise InvalidInput(
+                    f"{one.kind}: until_step must be at most {steps:,}, the end of this run, not "
+                    f"{one.until_step:,}; leave it out for what lasts"
+                )
 
     @cached_property
     def change_steps(self) -> tuple[int, ...]:

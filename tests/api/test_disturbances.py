@@ -73,6 +73,7 @@ def test_what_cannot_happen_to_a_running_training_changes_nothing(api: Api) -> N
         ({**noise, "sd_m": -1}, "from 0 to 0.05 m"),
         ({**noise, "at_step": 5}, "leave out at_step"),
         ({**noise, "until_step": 1}, "until_step must be over"),
+        ({**noise, "until_step": 10_000_000_000}, "until_step must be a whole number from 1"),
         ({"kind": "limp", "legs": [9]}, "there is no leg 9"),
         ({"kind": "fire"}, "choose one of: limp, stuck"),
         ({"legs": [1]}, "kind"),
@@ -86,6 +87,9 @@ def test_what_cannot_happen_to_a_running_training_changes_nothing(api: Api) -> N
     ("given", "words"),
     [
         ({"disturbances": [{**LIMP, "at_step": 50}]}, "at_step must be from 0 to 49"),
+        ({"disturbances": [{**LIMP, "at_step": 9, "until_step": 9}]}, "must be over at_step, 9"),
+        ({"disturbances": [{**LIMP, "at_step": 9, "until_step": 3}]}, "must be over at_step, 9"),
+        ({"disturbances": [{**LIMP, "until_step": 51}]}, "until_step must be at most 50"),
         ({"disturbances": [LIMP, {"kind": "lost", "legs": [4]}]}, "contradict each other"),
         ({"disturbances": [{"kind": "limp", "legs": [7]}]}, "there is no leg 7"),
         ({"disturbances": [{"kind": "slope", "degrees": 80}]}, "from 0 to 30"),
