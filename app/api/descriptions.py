@@ -50,6 +50,9 @@ VALID: Mapping[str, str] = {
     "lanes": (
         f"a list of 1 to {MAX_LANES} lanes, each {{agent, and training_id, training or settings}}"
     ),
+    "branch_from": "an object: race_id, and step, how many steps of that race are repeated",
+    "race_id": "the id of a race",
+    "step": "a whole number from 0 to the steps that the race has taken",
     "world": f"the name of a world: {_one_of(WORLDS)}",
     "disturbances": (
         f"a list of at most {MAX_DISTURBANCES}, each {{kind, at_step, until_step}} and the fields "

@@ -42,7 +42,7 @@ from app.runs.config import (
     WalkingProblem,
     training_config,
 )
-from app.runs.race_config import Branch
+from app.runs.race_config import MAX_RACE_STEPS, Branch
 
 WorldName = Annotated[
     str,
@@ -214,8 +214,12 @@ class BranchFrom(Body):
     """A moment of a race."""
 
     race_id: RunId
-    # The limits depend on the race, so the domain validates it.
-    step: Annotated[int, Field(strict=True, json_schema_extra={"minimum": 0}), INTEGRAL]
+    # How many steps the race has taken, the domain checks.
+    step: Annotated[
+        int,
+        Field(strict=True, ge=0, lt=MAX_RACE_STEPS, description=VALID["step"]),
+        INTEGRAL,
+    ]
 
     def branch(self) -> Branch:
         """Convert to the value of the domain."""

@@ -92,6 +92,11 @@ class World:
                     f"{one.kind}: at_step must be from 0 to {steps - 1:,}, the last step of this "
                     f"run, not {one.at_step:,}"
                 )
+            if steps is not None and one.until_step is not None and one.until_step > steps:
+                raise InvalidInput(
+                    f"{one.kind}: until_step must be at most {steps:,}, the end of this run, not "
+                    f"{one.until_step:,}; leave it out for what lasts"
+                )
 
     @cached_property
     def change_steps(self) -> tuple[int, ...]:
@@ -126,13 +131,16 @@ class World:
     def then(self, one: Disturbance) -> "World":
         """Return the world in which something else happens, after what begins in the same step.
 
+        What is of the same thing replaces that; of several pushes in a step each acts.
+
         Raises:
             InvalidInput: if it contradicts the others.
         """
         kept: list[Disturbance] = []
         for other in self.disturbances:
-            parts, begins_too = other.parts(), other.at_step == one.at_step
-            rest = [p for k, p in parts.items() if not (begins_too and _covers(one, k))]
+            parts = other.parts()
+            is_undone = other.at_step == one.at_step and not isinstance(one, Push)
+            rest = [p for k, p in parts.items() if not (is_undone and _covers(one, k))]
             kept += [other] if len(rest) == len(parts) else rest
         return World((*kept, one))
 

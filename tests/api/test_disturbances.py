@@ -73,6 +73,7 @@ def test_what_cannot_happen_to_a_running_training_changes_nothing(api: Api) -> N
         ({**noise, "sd_m": -1}, "from 0 to 0.05 m"),
         ({**noise, "at_step": 5}, "leave out at_step"),
         ({**noise, "until_step": 1}, "until_step must be over"),
+        ({**noise, "until_step": 10_000_000_000}, "until_step must be a whole number from 1"),
         ({"kind": "limp", "legs": [9]}, "there is no leg 9"),
         ({"kind": "fire"}, "choose one of: limp, stuck"),
         ({"legs": [1]}, "kind"),
@@ -86,6 +87,9 @@ def test_what_cannot_happen_to_a_running_training_changes_nothing(api: Api) -> N
     ("given", "words"),
     [
         ({"disturbances": [{**LIMP, "at_step": 50}]}, "at_step must be from 0 to 49"),
+        ({"disturbances": [{**LIMP, "at_step": 9, "until_step": 9}]}, "must be over at_step, 9"),
+        ({"disturbances": [{**LIMP, "at_step": 9, "until_step": 3}]}, "must be over at_step, 9"),
+        ({"disturbances": [{**LIMP, "until_step": 51}]}, "until_step must be at most 50"),
         ({"disturbances": [LIMP, {"kind": "lost", "legs": [4]}]}, "contradict each other"),
         ({"disturbances": [{"kind": "limp", "legs": [7]}]}, "there is no leg 7"),
         ({"disturbances": [{"kind": "slope", "degrees": 80}]}, "from 0 to 30"),
@@ -139,11 +143,15 @@ def test_a_branch_is_the_same_race_to_the_last_bit_until_its_step(
     ("branch", "happens", "refusal"),
     [
         ({"step": 16}, [LIMP], (422, "can branch at step 0 to 15, not 16")),
-        ({"step": -1}, [LIMP], (422, "step")),
+        *(
+            ({"step": step}, [LIMP], (422, "branch_from.step must be a whole number from 0 to"))
+            for step in (-1, True, "5", 1.5, None, 1e9)
+        ),
+        ({"step": 299_999}, [LIMP], (422, "can branch at step 0 to 15, not 299,999")),
         ({"step": 8}, [{**LIMP, "at_step": 7}], (422, "at_step must be at least 8")),
         ({"step": 8}, [{**LIMP, "at_step": 16}], (422, "at_step must be from 0 to 15")),
         ({"step": 8, "race_id": "nope"}, [LIMP], (404, "nope")),
-        ({}, [LIMP], (422, "step")),
+        ({}, [LIMP], (422, "branch_from.step is missing; it must be a whole number from 0")),
     ],
 )
 def test_a_branch_where_there_is_none_is_refused(

@@ -117,6 +117,10 @@ def test_lane_may_learn_in_the_race_without_practice(api: Api) -> None:
     [
         ({"agent": "look-ahead", "depth": 0}, "lanes.0.depth must be a whole number from 1 to 50"),
         ({"agent": "look-ahead", "depth": 5}, "Lane 1: depth 5 would simulate more than 40,000"),
+        *(
+            ({"agent": agent, "budget": 0}, "lanes.0.budget must be a whole number from 1 to 40")
+            for agent in ("informed", "mcts")
+        ),
         ({"agent": "look-ahead", "width": 5}, "unknown field 'width'"),
         ({"agent": "greedy", "keep_learning": True}, "Lane 1: greedy does not learn, so it cannot"),
         ({"agent": "greedy", "keep_learning": 1}, "keep_learning must be true or false"),

@@ -139,6 +139,14 @@ def test_training_can_be_paused_resumed_and_stopped(api: Api) -> None:
     refused(api.call("GET", f"/trainings/{run['id']}"), 404, run["id"])
 
 
+def test_learner_without_values_has_no_table_to_show(api: Api) -> None:
+    run = api.finished(api.train(agent="linear-model", steps=5, evaluate_every=0))
+    assert run["result"]["q_table_sha256"] is None
+    for how in ("json", "csv"):
+        response = api.call("GET", f"/trainings/{run['id']}/q-table", params={"format": how})
+        refused(response, 409, "agent linear-model keeps no Q-table; take it as ?format=npz")
+
+
 def test_live_changes_are_applied_and_recorded(api: Api) -> None:
     run = api.slow_training()
     path = f"/trainings/{run['id']}"

@@ -14,10 +14,12 @@ import pytest
 from app.agents.registry import OURS
 from app.archive import archive
 from app.archive.transfer import RUN, export_run, import_run
+from app.domain.disturbances import SensorNoise
 from app.domain.errors import InvalidInput
 from app.domain.settings import SettingValues
+from app.domain.world import World
 from app.runs.lane import lane_config
-from app.runs.race_config import RaceConfig
+from app.runs.race_config import Branch, RaceConfig
 from app.runs.recording import race_arrays
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
@@ -166,6 +168,57 @@ def test_lanes_with_settings_are_imported(store: RunStore) -> None:
     )
     store.create(replace(race, id=OTHER, config=too_deep))
     assert "depth must be a whole number from 1 to 50" in refusal(export_run(store, OTHER))
+
+
+def test_branch_of_a_race_is_exported_and_imported(source: RunStore, store: RunStore) -> None:
+    original = source.get(RACED)
+    assert isinstance(original.config, RaceConfig)
+    branched = replace(
+        original.config,
+        world=World((SensorNoise(sd_m=0.004, at_step=3),)),
+        branch_from=Branch(RACED, 3),
+    )
+    assert original.result is not None
+    lanes = [
+        {**lane, "plans_with": known, "fell_at_step": None, "heading_deg": 1.5}
+        for lane, known in zip(original.result["lanes"], (None, "nominal"), strict=True)
+    ]
+    result = {**original.result, "lanes": lanes}
+    branch = replace(
+        original, id=ONE, config=branched, result=result, lane_training_ids=(None, None)
+    )
+    learns = replace(branched.lanes[0], keep_learning=True)
+    branch = replace(branch, config=replace(branched, lanes=(learns, branched.lanes[1])))
+    store.create(branch)
+    data = export_run(store, ONE)
+
+    assert imported(data) == branch
+    for name, value, path, names in (
+        ("step", 8, ("branch_from",), "branch_from.step must be from 0 to 7, not 8"),
+        ("race_id", "../x", ("branch_from",), "branch_from.race_id must be the id of a race"),
+        ("plans_with", "hope", ("lanes", 1), "plans_with must be world, or start, or nominal"),
+    ):
+        assert names in refusal(rewritten(data, _set(name, value, "run", "config", *path)))
+
+
+def test_training_that_was_disturbed_while_it_ran_is_exported_and_imported(
+    source: RunStore, store: RunStore
+) -> None:
+    noise = {"kind": "sensor-noise", "at_step": 51, "until_step": 90, "sd_m": 0.004}
+    changes = ({"step": 50, "disturbance": noise}, {"step": 60, "alpha": 0.1})
+    run = replace(source.get(TRAINING), id=ONE, changes=changes)
+    store.create(run)
+    data = export_run(store, ONE)
+
+    assert imported(data) == run
+    for name, value, names in (
+        ("sd_m", -1, "sd_m must be a number from 0 to 0.05 m"),
+        ("at_step", 90, "until_step must be over at_step, 90"),
+        ("until_step", 121, "until_step must be at most 120"),
+        ("kind", "fire", "choose one of: limp"),
+    ):
+        change = _set(name, value, "run", "changes", 0, "disturbance")
+        assert names in refusal(rewritten(data, change))
 
 
 def _set(name: str, value: Any, *path: str | int) -> Change:

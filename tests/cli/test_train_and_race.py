@@ -152,6 +152,13 @@ def test_invalid_input_to_train_is_refused_in_one_sentence(
         ((*QUICK, *(["--lane", "greedy"] * 7)), "1 to 6 lanes"),
         ((*QUICK, "--lane", "greedy", "--clock", "cuckoo"), "paper, wall, free"),
         ((*QUICK, "--lane", "look-ahead,depth=0"), "depth must be a whole number from 1 to 50"),
+        *(
+            (
+                (*QUICK, "--lane", f"{agent},budget=0"),
+                "budget must be a whole number from 1 to 40,000, not 0",
+            )
+            for agent in ("informed", "mcts")
+        ),
         ((*QUICK, "--lane", "look-ahead,depth=deep"), "depth must be a whole number from 1 to 50"),
         ((*QUICK, "--lane", "look-ahead,depth=5"), "choose depth 4 or less"),
         (
@@ -208,6 +215,8 @@ def test_worlds_and_disturbances_are_options(tmp_path: Path) -> None:
         (("--world", "moon"), "choose one of: flat, slope"),
         (("--disturb", "limp:legs=7"), "there is no leg 7"),
         (("--disturb", "limp:legs=1:at=500"), "at_step must be from 0 to 499"),
+        (("--disturb", "limp:legs=1:until=501"), "until_step must be at most 500, the end"),
+        (("--disturb", "limp:legs=1:at=9:until=3"), "until_step must be over at_step, 9"),
         (("--disturb", "limp"), "limp needs legs"),
         (("--world", "slope", "--disturb", "slope:degrees=3"), "contradict each other"),
         (("--world", "slope", "--simulator", "kinematic"), "knows no slope"),

@@ -100,6 +100,10 @@ def test_a_repaired_leg_has_no_stuck_joint() -> None:
 
 def test_a_push_is_in_one_step_and_not_among_the_conditions() -> None:
     made = World((Push(impulse_ns=1, at_step=3), Push(impulse_ns=2, at_step=3)))
+    one_by_one = UNDISTURBED
+    for push in made.disturbances:
+        one_by_one = one_by_one.then(push)
+    assert one_by_one == made
 
     assert made.as_of(3) == UNDISTURBED
     assert [push.impulse_ns for push in made.pushes_at(3)] == [1, 2]
@@ -164,6 +168,10 @@ def test_a_run_refuses_what_it_cannot_show() -> None:
     with pytest.raises(InvalidInput, match="at_step must be from 0 to 49, the last step"):
         late.check(Robot(), "mujoco", steps=50)
     late.check(Robot(), "mujoco", steps=51)
+    lasting = World((Slope(degrees=1, until_step=50),))
+    lasting.check(Robot(), "mujoco", 50)
+    with pytest.raises(InvalidInput, match="until_step must be at most 49, the end of this run"):
+        lasting.check(Robot(), "mujoco", 49)
     many = World(tuple(SensorNoise(sd_m=0.001, at_step=i) for i in range(MAX_IN_A_RUN + 1)))
     with pytest.raises(InvalidInput, match="at most 200 disturbances, not 201"):
         many.check(Robot(), "mujoco")

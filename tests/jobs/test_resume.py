@@ -1,25 +1,30 @@
 """Resuming unfinished runs: trainings from their checkpoint, races from their start."""
 
+import os
+import signal
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from dataclasses import replace
 
 import pytest
 
-from app.assembly import build_learner
+from app.assembly import build_learner, finish_training
+from app.domain.disturbances import Limp, SensorNoise, disturbance
 from app.domain.errors import DamagedFile, InvalidInput
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
-from app.runs.config import TrainingConfig, training_config
+from app.runs.config import TrainingConfig, WalkingProblem, training_config
 from app.runs.lane import LaneConfig
 from app.runs.race_config import RaceConfig
+from app.runs.records import StepTaken
 from app.runs.tables import snapshot, to_bytes
+from app.runs.training import train
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict
 from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run
-from tests.jobs.test_jobs import WALK
+from tests.jobs.test_jobs import WALK, pid_of
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 from tests.storage.ended import ended_training
 from tests.storage.stores import training
@@ -79,6 +84,37 @@ def test_training_resumes_from_its_checkpoint(
     assert stopped.state == "stopped"
     with pytest.raises(Conflict, match="failed or interrupted or paused"):
         second.resume(run.id)
+
+
+def test_disturbed_training_that_was_killed_equals_the_unbroken_one(
+    store: RunStore, open_jobs: Callable[[], Jobs]
+) -> None:
+    """It is killed after a checkpoint that has the first disturbance, and before the second's."""
+    walk = WalkingProblem(gait="left-right-origin")
+    config = training_config(**vars(walk), steps=200, pace=10, evaluate_every=0)
+    jobs = open_jobs()
+    run = jobs.train(TrainingStart(config))
+    wait_for_progress(store, run)
+    happened = [jobs.disturb(run.id, Limp(legs=(1, 4)))]
+    wait_until(lambda: store.artifact(run.id, CHECKPOINT))
+    happened.append(jobs.disturb(run.id, SensorNoise(sd_m=0.004)))
+    os.kill(pid_of(jobs, run), signal.SIGKILL)
+    assert wait_until_ended(store, run).state == "failed"
+    resumed = jobs.resume(run.id)
+    wait_until(lambda: store.get(run.id).state == "running")
+    jobs.change(run.id, {"pace": "max"})
+    ended = wait_until_ended(store, resumed)
+
+    unbroken = build_learner(config)
+    for record in train(unbroken, config):
+        if isinstance(record, StepTaken):
+            for change in ended.changes:
+                if change["step"] == record.step and "disturbance" in change:
+                    unbroken.disturb(disturbance(change["disturbance"]), config)
+    made = [disturbance(one["disturbance"]) for one in ended.changes if "disturbance" in one]
+    assert made == happened == list(unbroken.world.disturbances)
+    assert 0 < happened[0].at_step < happened[1].at_step < 200
+    assert ended.result == finish_training(unbroken, config)
 
 
 def test_training_without_a_checkpoint_restarts_from_its_table(

@@ -10,11 +10,13 @@ import pytest
 
 from app.agents.protocol import Transition
 from app.assembly import build_learner, build_walkers
+from app.domain.disturbances import Limp, SensorNoise
 from app.domain.simulator import WalkState
+from app.domain.world import World
 from app.physics.mujoco_simulator import MujocoState
 from app.runs.config import training_config
 from app.runs.lane import LaneConfig, lane_config
-from app.runs.race_config import RaceConfig
+from app.runs.race_config import Branch, RaceConfig
 from app.runs.racing import race, record_race
 from app.runs.records import LaneFailed, LaneStep, RaceRecord, StepTaken
 from app.runs.results import race_result
@@ -245,6 +247,40 @@ def test_decision_may_be_interrupted_and_is_no_failure() -> None:
         walker.interrupt_by(interrupt)
     with pytest.raises(Interrupted):
         next(records)
+
+
+@pytest.mark.parametrize("threads", [1, 2, 4])
+def test_branch_takes_the_same_steps_to_the_last_bit_until_something_happens(threads: int) -> None:
+    """The original is on one thread; the robot draws its noise, its build and its learner anew."""
+    lanes = (
+        lane_config("greedy"),
+        lane_config("mcts", budget=20),
+        lane_config("q-learning", keep_learning=True),
+        lane_config("informed", budget=3, plans_with="world"),
+    )
+    original = RaceConfig(
+        gait="left-right-vertical",
+        lanes=lanes,
+        steps=6,
+        seed=2,
+        tolerance=0.03,
+        world=World((SensorNoise(sd_m=0.004),)),
+    )
+    world = original.world.then(Limp(legs=(1, 4), at_step=4))
+    branch = replace(original, world=world, branch_from=Branch("abc", 4))
+
+    def walks(asked: RaceConfig, threads: int) -> list[list[tuple[Any, ...]]]:
+        walkers = build_walkers(asked, [None] * len(lanes), threads=threads)
+        *_, recorded = record_race(walkers, asked, ticking())
+        return [
+            [(s.action, s.reward_m, s.motion.qpos.tobytes()) for s in lane.steps]
+            for lane in recorded
+        ]
+
+    before, after = walks(original, 1), walks(branch, threads)
+    for was, now in zip(before, after, strict=True):
+        assert now[:4] == was[:4]
+        assert now[4:] != was[4:]
 
 
 class Unteachable(Restless):
