@@ -29,12 +29,13 @@ from app.domain.robot import PRESETS
 from app.domain.settings import declared_fields
 from app.domain.world import WORLDS
 from app.experiments.cluster import ClusterSpec, connect
+from app.experiments.config import MAX_SEEDS
 from app.experiments.engine import Outcome
 from app.experiments.folder import ResultsFolder, open_results
 from app.experiments.own_cluster import cores
 from app.experiments.plan import Trial
 from app.experiments.tuning.config import Objective, TuningConfig, tuning_config
-from app.runs.config import SIMULATORS, TrainingConfig, WalkingProblem
+from app.runs.config import SIMULATORS, TrainingConfig, WalkingProblem, check_whole
 
 if TYPE_CHECKING:
     from app.experiments.tuning.tuning import Tuning
@@ -157,6 +158,9 @@ def config_from(options: argparse.Namespace) -> TuningConfig:
     Raises:
         HexapodError: if the options are not valid.
     """
+    # By their options, which have other names than the fields of the config.
+    check_whole("seeds", options.seeds, 1, MAX_SEEDS)
+    check_whole("held-out", options.held_out, 1, MAX_SEEDS)
     return tuning_config(
         options.agent,
         settings=None if options.settings is None else split(options.settings),

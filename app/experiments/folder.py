@@ -77,9 +77,9 @@ class ResultsFolder(Progress):
         self._end = sum(map(len, lines))
         file.truncate(self._end)
         if not lines:
-            self._write(
-                {"format": FORMAT, "versions": versions(), "config": as_json(self.plan.config)}
-            )
+            config = as_json(self.plan.config)
+            head = {"format": FORMAT, "kind": self._kind, "versions": versions(), "config": config}
+            self._write(head)
             return
         self._check(self._head(lines[0]))
         for number, line in enumerate(lines[1:], start=2):
@@ -90,6 +90,11 @@ class ResultsFolder(Progress):
         with suppress(OSError):
             os.fsync(self._file.fileno())
         self._synced_s = time.monotonic()
+
+    @property
+    def _kind(self) -> str:
+        """Class of the config: another one has other fields."""
+        return type(self.plan.config).__name__
 
     def _write(self, line: Mapping[str, Any]) -> None:
         data = json.dumps(line, allow_nan=False).encode() + b"\n"
@@ -127,6 +132,8 @@ class ResultsFolder(Progress):
                 f"{self.path} has results in format {head['format']}, and this version writes "
                 f"format {FORMAT}; {_CHOOSE}"
             )
+        if head.get("kind", ExperimentConfig.__name__) != self._kind:  # earlier versions had one
+            raise InvalidInput(f"{self.path} has results of another experiment; {_CHOOSE}")
         differs = difference(versions(), head["versions"])
         if differs is not None:
             raise InvalidInput(f"{self.path} has results of {differs}; {_CHOOSE}")

@@ -90,8 +90,8 @@ def test_stopped_and_killed_it_goes_on_and_gives_what_an_unbroken_one_gives(tmp_
         (("q-learning", *PLACE, "--world", "limp:legs=1:at=4"), "leave out at and until"),
         (("q-learning", *PLACE, "--trials", "0"), "trials must be from 1 to 10,000, not 0"),
         (("q-learning", *PLACE, "--trials", "many"), "must be a whole number"),
-        (("q-learning", *PLACE, "--seeds", "0"), "search_seeds must be from 1"),
-        (("q-learning", *PLACE, "--held-out", "0"), "seeds must be from 1"),
+        (("q-learning", *PLACE, "--seeds", "0"), "seeds must be from 1 to 10,000"),
+        (("q-learning", *PLACE, "--held-out", "0"), "held-out must be from 1"),
         (("q-learning", *PLACE, "--settings", "alpha,beta"), "alpha, gamma"),
         (("q-learning", *PLACE, "--range", "alpha=0.1:2"), "over 0 and at most 1"),
         (("q-learning", *PLACE, "--range", "alpha"), "NAME=LOW:HIGH"),
@@ -115,7 +115,7 @@ def test_results_of_another_experiment_are_refused(tmp_path: Path) -> None:
     assert in_process(*league, folder=tmp_path).returncode == 0
 
     sentence = refusal(*TUNE, "--out", "mine", folder=tmp_path, run=in_process)
-    assert "mine has results of another experiment" in sentence
+    assert sentence.endswith("mine has results of another experiment; choose another folder")
 
 
 def test_nothing_but_a_tuning_imports_optuna(tmp_path: Path) -> None:

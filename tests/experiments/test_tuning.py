@@ -22,6 +22,7 @@ from app.experiments.trial import TrialResult, run_trial
 from app.experiments.tuning.config import TuningConfig, tuning_config
 from app.experiments.tuning.ranges import SearchRange, declared_range, parse_range
 from app.experiments.tuning.report import command, tuning_files
+from app.experiments.tuning.study import Study
 from app.experiments.tuning.summary import summarise_tuning
 from app.experiments.tuning.tuning import BATCH, NothingTried, Run, Tuning, search_seeds
 from app.runs.config import agent_settings
@@ -184,6 +185,14 @@ def test_defaults_are_first_and_the_same_seed_gives_the_same_study() -> None:
     assert first[0].candidates == others[0].candidates
     assert first[1].results == others[1].results
     assert first[0].candidates[1].values != of_another_seed.candidates[1].values
+
+
+def test_default_is_tried_as_it_is_and_what_follows_is_rounded() -> None:
+    study = Study([SearchRange(name="rate", low=0.0, high=1.0)], {"rate": 0.123456}, seed=0)
+
+    assert study.ask() == (0, {"rate": 0.123456})
+    number, values = study.ask()
+    assert (number, values["rate"]) == (1, float(f"{values['rate']:.4g}"))
 
 
 def test_order_in_which_trials_end_does_not_change_the_study() -> None:

@@ -34,6 +34,8 @@ from app.runs.config import agent_settings
 PAGE = "report.html"
 BEST = 10
 """Number of the best candidates in the page's table; the summary has all."""
+_PAST_END = 1.1
+"""Factor by which an axis goes past the range that was searched."""
 _COLUMNS = ("Distance", "Mean over practice", "Of greedy", "Of best known", "Seeds")
 _TRIAL_FIELDS = ("seed_number", "seed", "practised_steps", "distance_m", "mean_m", "failure")
 _OPTIONS: Mapping[str, str] = {
@@ -139,11 +141,11 @@ def _as_word(value: Any) -> str:
 def _lead(config: Mapping[str, Any]) -> str:
     (gait,), (world,) = config["gaits"], config["worlds"]
     simulator = "MuJoCo" if config["simulator"] == "mujoco" else "the kinematic simulator"
+    place = gait_name(gait) if isinstance(gait, str) else "own gait"
     return (
-        f"{config['trials']:,} settings on {config['search_seeds']:,} seeds each, then the best "
-        f"and the defaults on {config['seeds']:,} held-out seeds; {config['steps'][0]:,} steps of "
-        f"practice, {gait_name(gait) if isinstance(gait, str) else 'own gait'}, "
-        f"{world_name(world)}, in {simulator}."
+        f"{config['trials']:,} combinations of settings on {config['search_seeds']:,} seeds each, "
+        f"then the best and the defaults on {config['seeds']:,} held-out seeds; "
+        f"{config['steps'][0]:,} steps of practice, {place}, {world_name(world)}, in {simulator}."
     )
 
 
@@ -220,6 +222,10 @@ def _scatter(one: Mapping[str, Any], summary: Mapping[str, Any]) -> Picture:
         ax.set_xscale("log")
         ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
         ax.xaxis.set_minor_formatter(lambda *_: "")
+        ax.set_xlim(one["low"] / _PAST_END, one["high"] * _PAST_END)
+    else:
+        margin = (_PAST_END - 1) / 2 * (one["high"] - one["low"])
+        ax.set_xlim(one["low"] - margin, one["high"] + margin)
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
     ax.set_xlabel(one["symbol"] or one["title"])
     ax.set_ylabel("distance [m]")

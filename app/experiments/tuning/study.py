@@ -39,13 +39,17 @@ class Study:
         self._study = optuna.create_study(
             direction="maximize", sampler=optuna.samplers.TPESampler(seed=seed % 2**32)
         )
-        self._study.enqueue_trial(dict(first))
+        self._first = dict(first)
+        self._study.enqueue_trial(self._first)
 
     def ask(self) -> tuple[int, dict[str, Any]]:
         """Return the next number, counted from 0, and values to try."""
         trial = self._study.ask(self._distributions)
-        values = {name: self._ranges[name].rounded(trial.params[name]) for name in self._ranges}
-        return trial.number, values
+        if trial.number == 0:
+            return 0, self._first
+        return trial.number, {
+            name: one.rounded(trial.params[name]) for name, one in self._ranges.items()
+        }
 
     def tell(self, number: int, value: float | None) -> None:
         """Tell how good the values of a number were; None if they could not be tried."""

@@ -60,7 +60,6 @@ class Tuning:
         defaults: setting of the agent with its defaults, on the held-out seeds.
         candidates: the candidates that were tried so far, by number.
         plan: the plan of the held-out seeds; with the tuned settings once they are found.
-        search_total: number of the search's trials.
         total: number of all trials, if no candidate is asked for twice and the best is not the
             defaults.
         is_complete: whether all trials have an outcome.
@@ -81,8 +80,7 @@ class Tuning:
             if one.role == "learner" and one.training.agent == config.agent
         )
         self.candidates: list[Candidate] = []
-        self.search_total = config.trials * config.search_seeds
-        self.total = self.search_total + self.plan.total + config.seeds
+        self.total = config.trials * config.search_seeds + self.plan.total + config.seeds
         self.is_complete = False
 
     @property
