@@ -35,7 +35,8 @@ from app.experiments.folder import ResultsFolder, open_results
 from app.experiments.own_cluster import cores
 from app.experiments.plan import Trial
 from app.experiments.tuning.config import Objective, TuningConfig, tuning_config
-from app.runs.config import SIMULATORS, TrainingConfig, WalkingProblem, check_whole
+from app.runs.config import SIMULATORS, TrainingConfig, WalkingProblem
+from app.runs.race_config import check_whole
 
 if TYPE_CHECKING:
     from app.experiments.tuning.tuning import Tuning

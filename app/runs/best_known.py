@@ -19,7 +19,8 @@ from app.domain.robot import PRESETS
 from app.domain.simulator import Simulator
 from app.domain.types import Cells
 from app.domain.world import WORLDS, World
-from app.runs.config import RACE_STEPS, RaceConfig, WalkingProblem
+from app.runs.config import RACE_STEPS, WalkingProblem
+from app.runs.race_config import RaceConfig
 
 WIDTH = 48
 SAME_CELLS = 2

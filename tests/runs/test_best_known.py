@@ -12,7 +12,9 @@ from app.domain.observation import legal_actions, observe
 from app.domain.robot import PRESETS, Robot, robot
 from app.domain.world import WORLDS, World, named_world
 from app.runs.best_known import PATH, best_known_in_race_m, best_known_m, kept, read, search
-from app.runs.config import LaneConfig, RaceConfig, WalkingProblem
+from app.runs.config import WalkingProblem
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
 
 WALK = WalkingProblem(gait="left-right-origin")
 IDEAL = WalkingProblem(gait="left-right-origin", simulator="kinematic")
