@@ -48,7 +48,8 @@ class WhatIf:
         """Compute distances after this training, and after the same one with default settings.
 
         Args:
-            training: the training; its simulator, seed, evaluations and pace are ignored.
+            training: the training; its simulator, build tolerance, seed, evaluations and pace are
+                ignored.
 
         Returns:
             `seeds`, `greedy_m`, `chosen` and `default` with `distances_m`, `walkers` (the share
@@ -61,7 +62,9 @@ class WhatIf:
         """
         _check_limits(training)
         began_s = time.perf_counter()
-        chosen = replace(training, simulator="kinematic", seed=0, evaluate_every=0, pace="max")
+        chosen = replace(
+            training, simulator="kinematic", tolerance=0.0, seed=0, evaluate_every=0, pace="max"
+        )
         default = replace(
             chosen,
             settings=training_config(gait=chosen.gait, agent=chosen.agent).settings,

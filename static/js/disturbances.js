@@ -9,6 +9,9 @@ import { options } from "./store.js";
 /** It lasts no longer than the beginning of its step. */
 export const PUSH = "push";
 const REPAIR = "repair";
+const LOST = "lost";
+/** What happens to the servos of a leg, of which a joint may be stuck besides. */
+const POWER_KINDS = ["limp", "weak"];
 const STEPS = ["at_step", "until_step"];
 /** Of the fields in a text. @type {Record<string, string>} */
 const SHORT = { at_step: "at", until_step: "until" };
@@ -41,7 +44,8 @@ const holdsAt = ({ at_step, until_step }, step) =>
  * @returns {[string, Disturbance][]}
  */
 function partsOf(one) {
-  if (one.legs) return one.legs.map((leg) => [`leg ${leg}`, { ...one, legs: [leg] }]);
+  const part = POWER_KINDS.includes(one.kind) ? " power" : "";
+  if (one.legs) return one.legs.map((leg) => [`leg ${leg}${part}`, { ...one, legs: [leg] }]);
   if (one.leg) return [[`leg ${one.leg} ${one.joint}`, one]];
   return [[one.from_m === undefined ? one.kind : `${one.kind} ${one.from_m} ${one.to_m}`, one]];
 }
@@ -174,24 +178,34 @@ export function joinedBySteps(happenings) {
     joined(happenings.filter(({ at_step, until_step }) => `${at_step} ${until_step ?? ""}` === moment)));
 }
 
-/** What happened to each leg: "limp", "femur stuck". @param {Disturbance[]} conditions */
+/** @param {Disturbance} one */
+export const legsOf = ({ leg, legs }) => legs ?? (leg ? [leg] : []);
+
+/** What happened to each leg: "limp", "femur stuck, weak". @param {Disturbance[]} conditions */
 export function legStates(conditions) {
   /** @type {Map<number, string>} */
   const states = new Map();
   for (const one of conditions) {
-    if (one.legs) for (const leg of one.legs) states.set(leg, LEG_WORDS[one.kind] ?? one.kind);
-    else if (one.leg) states.set(one.leg, `${one.joint} ${one.kind}`);
+    const word = one.leg ? `${one.joint} ${one.kind}` : LEG_WORDS[one.kind] ?? one.kind;
+    for (const leg of legsOf(one)) states.set(leg, [states.get(leg), word].filter(Boolean).join(", "));
   }
   return states;
 }
 
 /**
- * Legs that change from working to limp, or back: what a click on a leg means.
+ * What pressing a leg means: that this happens to it, or, if it has already, that it is repaired. Nothing else can
+ * happen to a leg that is gone.
  * @param {Disturbance[]} conditions
  * @param {number} leg
+ * @param {{ kind: string, [field: string]: any }} wanted without the leg
  */
-export const toggled = (conditions, leg) =>
-  ({ kind: legStates(conditions).has(leg) ? REPAIR : "limp", legs: [leg] });
+export function pressed(conditions, leg, wanted) {
+  const own = conditions.filter((one) => legsOf(one).includes(leg));
+  const isSame = (/** @type {Disturbance} */ one) =>
+    one.kind === LOST || Object.entries(wanted).every(([name, value]) => one[name] === value);
+  if (wanted.kind === REPAIR || own.some(isSame)) return { kind: REPAIR, legs: [leg] };
+  return { ...wanted, ...(kindNamed(wanted.kind)?.fields.legs ? { legs: [leg] } : { leg }) };
+}
 
 // ---- the text of a disturbance, as the command line has it: limp:legs=1,4:at=25
 

@@ -343,11 +343,11 @@ export const trainingBody = (continueFrom = null) => {
   return { agent, ...walkFields(), ...nameField(), ...practiceFields(agent), ...beginning(continueFrom) };
 };
 
-/** Request body of a what-if, which has ideal robots: the settings of the practice, without seed, pace and world. */
+/** Request body of a what-if, which has ideal robots: the practice, without seed, pace, world and build tolerance. */
 export function whatIfBody() {
   const { agent } = form.value;
   const body = { agent, ...walkFields(), ...practiceFields(agent) };
-  const others = ["simulator", "world", "disturbances", ...SHOW_FIELDS];
+  const others = ["simulator", "world", "disturbances", "tolerance", ...SHOW_FIELDS];
   return select(body, (field) => !others.includes(field));
 }
 

@@ -1,6 +1,7 @@
 """What happens to robots: a leg is broken in practice, and a race goes on from its middle."""
 
 import re
+from collections import Counter
 from typing import Any
 from urllib.parse import urlencode
 
@@ -12,7 +13,9 @@ from tests.browser.serving import Serving
 
 pytestmark = pytest.mark.timeout(300)
 
-LONG = urlencode({"steps": 100_000, "pace": 8})
+BENDS = {"agent": "linear-model", "gait": "left-right-vertical", "evaluate_every": 20}
+"""In this gait the learner walks well after 40 steps, and badly without legs 3 and 6."""
+LONG = urlencode({"steps": 100_000, "pace": 8, **BENDS})
 IDEAL = urlencode({"steps": 100_000, "pace": 8, "simulator": "kinematic"})
 
 
@@ -29,43 +32,69 @@ def test_a_leg_is_broken_while_a_robot_practises(
     dashboard.open(f"{shared_server.address}?{LONG}")
     expect(page.get_by_role("group", name="Legs, seen from above")).to_have_count(0)
     dashboard.button("Train, don’t race").click()
-    leg = page.get_by_role("button", name=re.compile("^Leg 1"))
+    curve = page.get_by_role("img", name=re.compile("^Learning curve"))
+    walks = re.compile(r"^Learning curve: 0\.[45]\d\sm after.*; best known 0\.5\d\sm\.$")
+    expect(curve).to_have_accessible_name(walks)
+    leg = page.get_by_role("button", name=re.compile("^Leg 3"))
     expect(leg).to_have_attribute("aria-pressed", "false")
     leg.press("Space")
-    dashboard.button("Leg 4").click()  # before the first is answered
-    expect(leg).to_have_accessible_name("Leg 1, limp")
+    dashboard.button("Leg 6").click()  # before the first is answered
+    expect(leg).to_have_accessible_name("Leg 3, limp")
     expect(leg).to_have_attribute("aria-pressed", "true")
-    expect(page.locator(".world-now")).to_contain_text(re.compile(r"Now: legs\s1, 4 limp"))
-
+    now = page.locator(".world-now")
+    expect(now).to_contain_text(re.compile(r"Now: legs\s3, 6 limp"))
     happened = page.locator(".chart .happened")
-    expect(happened).to_contain_text(re.compile(r"^Happened: legs?\s1.* limp from step \d+"))
-    page.get_by_text("Ground, load and servos").click()
-    slope = page.get_by_role("slider", name="Slope")
-    slope.fill("8")
-    expect(page.locator(".world-now")).to_contain_text("slope 8°")
-    dashboard.button("Leg 1, limp").click()
-    expect(dashboard.button("Leg 1")).to_have_attribute("aria-pressed", "false")
-    kinds = [one["kind"] for one in changes(dashboard)]
-    assert kinds == ["limp", "limp", "slope", "repair"]
-    assert dashboard.violations() == []
+    expect(happened).to_contain_text(re.compile(r"^Happened: legs?\s3.* limp from step \d+"))
+    expect(curve).to_have_accessible_name(re.compile(r": −?0\.[012]\d\sm after"))
 
-    with browser.new_context(viewport={"width": 390, "height": 844}) as context:
-        other = Dashboard(context.new_page(), has_3d=False)
-        other.open(shared_server.address)
-        expect(other.page.locator(".chip.happening")).to_contain_text(re.compile(r"^Leg\s4 limp"))
-        assert other.scroll_width() == 390
-        assert other.complaints == []
+    tells_others(browser, shared_server)
+    kind = page.get_by_label("A press on a leg")
+    kind.select_option("Stuck joint")
+    page.get_by_label("Joint").select_option("tibia")
+    page.get_by_label("Angle, as a number").fill("-1.5")
+    dashboard.button("Leg 1").click()
+    expect(now).to_contain_text("tibia stuck at −1.5\u00a0rad")
+    page.get_by_text("Ground, load and servos").click()
+    page.get_by_role("slider", name="Slope", exact=True).fill("8")
+    expect(now).to_contain_text("slope 8°")
+    page.get_by_role("slider", name="Slope: Direction").fill("90")
+    expect(now).to_contain_text("slope 8°, direction 90°")
+    assert dashboard.violations() == []
+    page.get_by_role("slider", name="Slope", exact=True).fill("0")
+    dashboard.button("Leg 1, tibia stuck").click()
+    kind.select_option("Repaired legs")
+    for number in (3, 6):
+        dashboard.button(f"Leg {number}, limp").click()
+    expect(now).to_contain_text("Nothing has happened")
+    expect(curve).to_have_accessible_name(walks)
+    kinds = Counter(one["kind"] for one in changes(dashboard))
+    assert kinds == {"limp": 2, "stuck": 1, "slope": 3, "repair": 3}
     dashboard.button("Stop").click()
     page.get_by_role("link", name="Runs").click()
-    expect(page.locator(".run").first).to_contain_text(re.compile(r"slope 8° from step \d+"))
+    expect(page.locator(".run").first).to_contain_text(re.compile(r"slope 8°.* from step \d+"))
+    only_sensors_of_an_ideal_robot(dashboard, shared_server)
 
-    # An ideal robot has no servos.
-    dashboard.open(f"{shared_server.address}?{IDEAL}")
+
+def tells_others(browser: Browser, server: Serving) -> None:
+    """What happened is said over the picture, on a phone too."""
+    with browser.new_context(viewport={"width": 390, "height": 844}) as context:
+        other = Dashboard(context.new_page(), has_3d=False)
+        other.open(server.address)
+        chip = other.page.locator(".chip.happening")
+        expect(chip).to_contain_text(re.compile(r"^Legs\s3, 6 limp"))
+        assert other.scroll_width() == 390
+        assert other.complaints == []
+
+
+def only_sensors_of_an_ideal_robot(dashboard: Dashboard, server: Serving) -> None:
+    """It has no ground and no servos."""
+    page = dashboard.page
+    dashboard.open(f"{server.address}?{IDEAL}")
     dashboard.button("Train, don’t race").click()
     expect(page.locator(".world-now")).to_contain_text("only sensor noise can happen there")
     expect(dashboard.button("Leg 1")).to_have_attribute("aria-disabled", "true")
     page.get_by_text("Ground, load and servos").click()
-    expect(page.get_by_role("slider", name="Slope")).to_be_disabled()
+    expect(page.get_by_role("slider", name="Slope", exact=True)).to_be_disabled()
     page.get_by_role("slider", name="Sensor noise").fill("0.004")
     expect(page.locator(".world-now")).to_contain_text(re.compile(r"sensor noise 4\smm"))
     dashboard.button("Stop").click()

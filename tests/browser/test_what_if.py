@@ -30,6 +30,11 @@ def test_a_slider_is_tried_out_and_gone_on_with(dashboard: Dashboard, server: Se
     assert dashboard.primary.bounding_box() == before
     assert dashboard.violations() == []
 
+    page.get_by_label("Learner", exact=True).select_option("Linear model")
+    expect(panel).to_contain_text("Ideal (no slip)")
+    expect(chosen).to_have_accessible_name(re.compile(r" 30 of 30 walk\."))
+    page.get_by_label("Learner", exact=True).select_option("Q-learning")
+
     practice = page.get_by_role("spinbutton", name="Practice, as a number")
     practice.fill("5000")
     expect(panel).to_contain_text("2000 steps at most")

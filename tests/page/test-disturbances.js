@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
   conditionsAt, conditionsInWords, conditionsNow, happeningsOf, inTime, inWords, isSimulated, legStates, mainField,
-  parseText, textOf, toggled, withField,
+  parseText, parseWorld, pressed, splitWorlds, textOf, withField, worldTitle,
 } from "../../static/js/disturbances.js";
 import { azimuthsOf } from "../../static/js/robots.js";
 import { options } from "../../static/js/store.js";
@@ -59,10 +59,37 @@ test("a training that runs has what its config says, and what was done to it", (
   assert.deepEqual(happeningsOf(makeRun({})), []);
 });
 
-test("a click breaks a leg that works and repairs one that does not", () => {
-  const conditions = conditionsAt([LIMP], 25);
-  assert.deepEqual(toggled(conditions, 2), { kind: "limp", legs: [2] });
-  assert.deepEqual(toggled(conditions, 4), { kind: "repair", legs: [4] });
+test("pressing a leg lets something happen to it, or repairs it where that has happened", () => {
+  const conditions = conditionsAt([LIMP, { kind: "lost", at_step: 0, legs: [6] }], 25);
+  const [limp, weak] = [{ kind: "limp" }, { kind: "weak", torque_share: 0.3 }];
+  const stuck = { kind: "stuck", joint: "femur", angle_rad: -0.9 };
+  assert.deepEqual(pressed(conditions, 2, limp), { kind: "limp", legs: [2] });
+  assert.deepEqual(pressed(conditions, 4, limp), { kind: "repair", legs: [4] });
+  assert.deepEqual(pressed(conditions, 4, weak), { ...weak, legs: [4] });
+  assert.deepEqual(pressed(conditions, 4, stuck), { ...stuck, leg: 4 });
+  assert.deepEqual(pressed(conditions, 6, limp), { kind: "repair", legs: [6] });
+  assert.deepEqual(pressed(conditions, 2, { kind: "repair" }), { kind: "repair", legs: [2] });
+  const isStuck = conditionsAt([{ ...stuck, at_step: 0, leg: 2 }], 0);
+  assert.deepEqual(pressed(isStuck, 2, stuck), { kind: "repair", legs: [2] });
+  assert.deepEqual(pressed(isStuck, 2, { ...stuck, angle_rad: 0.5 }), { ...stuck, angle_rad: 0.5, leg: 2 });
+});
+
+test("a leg without power may have a stuck joint besides; one that is lost has neither", () => {
+  const stuck = { kind: "stuck", at_step: 1, leg: 1, joint: "femur", angle_rad: -0.9 };
+  const both = [stuck, { kind: "limp", at_step: 2, legs: [1] }];
+  assert.deepEqual([...legStates(conditionsAt(both, 2))], [[1, "femur stuck, limp"]]);
+  const weak = { kind: "weak", at_step: 3, legs: [1], torque_share: 0.3 };
+  assert.deepEqual([...legStates(conditionsAt([...both, weak], 3))], [[1, "femur stuck, weak"]]);
+  const lost = { kind: "lost", at_step: 4, legs: [1] };
+  assert.deepEqual([...legStates(conditionsAt([...both, weak, lost], 4))], [[1, "lost"]]);
+});
+
+test("a text has several worlds, each with a title", () => {
+  assert.deepEqual(splitWorlds("flat, limp:legs=1,4+slope:degrees=4 ; limp-pair,"),
+    ["flat", "limp:legs=1,4+slope:degrees=4", "limp-pair"]);
+  assert.deepEqual(parseWorld("limp-pair").value, [{ kind: "limp", at_step: 0, legs: [1, 4] }]);
+  assert.deepEqual(["flat", "limp:legs=1,4+slope:degrees=4", "moon"].map(worldTitle),
+    ["Flat ground", "Legs\u00a01, 4 limp, slope 4°", "moon"]);
 });
 
 test("declarations tell which simulator knows a kind, and which kinds have one number", () => {

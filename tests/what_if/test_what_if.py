@@ -13,6 +13,7 @@ import psutil
 import pytest
 from scipy import stats
 
+from app.agents.registry import OURS, learns
 from app.domain.errors import InvalidInput
 from app.experiments.plan import trial_seed
 from app.experiments.trial import TrialConfig, run_trial
@@ -68,6 +69,15 @@ def test_variants_differ_in_settings_only(what_if: WhatIf) -> None:
     commanded = replace(SHORT, observation="commanded")
     assert answer["default"]["distances_m"] == distances(commanded)
     assert answer["chosen"] == answer["default"]
+
+
+@pytest.mark.parametrize("agent", [name for name in OURS if learns(name)])
+def test_any_learner_can_be_asked_about(agent: str, what_if: WhatIf) -> None:
+    training = training_config(gait="left-right-origin", agent=agent, steps=3, tolerance=0.03)
+    answer = what_if.ask(training)
+    assert len(answer["chosen"]["distances_m"]) == 30
+    assert answer["chosen"] == answer["default"]
+    assert training.settings.keys() <= answer["chosen"].keys()
 
 
 def test_cached_trials_are_not_run_again(what_if: WhatIf, pool: TrialPool) -> None:

@@ -13,7 +13,7 @@ import { scene } from "../store.js";
 import { gaitTitle, inFormWords, labelOf } from "../titles.js";
 import { goToField, Held, html, Icon, Problem, ProgressBar, UnknownParts } from "./elements.js";
 import { Settings } from "./settings.js";
-import { Branch, LiveWorld } from "./world.js";
+import { Branch, LiveWorld } from "./what-happens.js";
 
 export function Controls() {
   if (!isOperator.value) return html`<${Spectator} />`;

@@ -215,13 +215,14 @@ const MoreSettings = () => html`
 
 // ---- in what: gait, robot, world and damage
 
-const PLACE_FIELDS = ["gait", "robot", "simulator", "divisions", "grid_side_m", "world", "disturb"];
+const PLACE_FIELDS = ["gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance", "world", "disturb"];
 
 function placeChosen() {
-  const { gait, robot, simulator, world, disturb } = form.value;
+  const { gait, robot, simulator, tolerance, world, disturb } = form.value;
   const happens = disturb.flatMap((text) => parseText(text).value ?? []).map(inTime);
   return [
-    gaitTitle(gait), robotTitle(robot), simulator !== served().defaults.training.simulator && simulatorTitle(simulator),
+    gaitTitle(gait), robotTitle(robot), tolerance && `${settingOf("tolerance").title.toLowerCase()} ${tolerance}`,
+    simulator !== served().defaults.training.simulator && simulatorTitle(simulator),
     served().worlds.find(({ name }) => name === world)?.title, ...happens,
   ];
 }
@@ -236,6 +237,7 @@ const InWhat = () => html`
       choices=${choicesOf(options.value?.simulators, simulatorTitle)} />
     <${Figure} field="divisions" />
     <${Figure} field="grid_side_m" step=${0.005} />
+    <${Figure} field="tolerance" step=${0.01} />
   </div>
 `;
 

@@ -1,0 +1,299 @@
+// What happens to a robot and its ground: a drawn hexapod whose legs are pressed, and sliders; for the training that
+// runs, and for a race that is held, which is raced on from there.
+import { signal } from "@preact/signals";
+import { useRef, useState } from "preact/hooks";
+import { branchRace, disturb, pending } from "../actions.js";
+import {
+  conditionsAt, conditionsInWords, conditionsNow, happeningsOf, isSimulated, kindNamed, legsOf, legStates, mainField,
+  pressed, PUSH, withUnit,
+} from "../disturbances.js";
+import { listed } from "../format.js";
+import { azimuthsOf } from "../robots.js";
+import { heldRace, liveTraining, stepShown } from "../selectors.js";
+import { kindOf, sliderOf } from "../settings.js";
+import { served } from "../store.js";
+import { html, pointAt, Problem } from "./elements.js";
+import { SettingRow, Slider } from "./fields.js";
+
+// ---- the drawn hexapod, forward up; each leg is a button
+
+const FOOT = 37;
+const HIP = 13;
+const KNEE = 24;
+
+/**
+ * @param {object} props
+ * @param {number[]} props.azimuths of the legs from forward [°]
+ * @param {Map<number, string>} props.states what happened to legs, by their numbers
+ * @param {(leg: number) => void} props.onLeg
+ * @param {boolean} [props.isDisabled]
+ * @param {string} [props.describedBy]
+ * @param {(leg: number) => string} props.verbOf what a press does to a leg: "Repair"
+ */
+export function LegPicker({ azimuths, states, onLeg, isDisabled = false, describedBy, verbOf }) {
+  const legs = azimuths.map((azimuth, n) => ({ azimuth, leg: n + 1, state: states.get(n + 1) }));
+  return html`
+    <div class="leg-picker" role="group" aria-label="Legs, seen from above"
+      aria-describedby=${describedBy}>
+      <svg viewBox="-50 -50 100 100" aria-hidden="true">
+        ${legs.map(({ azimuth, leg, state }) => html`
+          <path key=${leg} class=${`drawn-leg ${classOf(state)}`}
+            d=${`M${pointAt(azimuth, HIP)} L${pointAt(azimuth, KNEE)} L${pointAt(azimuth, FOOT)}`} />
+        `)}
+        <circle class="body" r=${HIP} /><path class="forward" d="M0-8 6 2H-6z" />
+      </svg>
+      ${legs.map(({ azimuth, leg, state }) => {
+        const [x, y] = pointAt(azimuth, FOOT).map((part) => `${50 + Number(part)}%`);
+        return html`
+          <button key=${leg} type="button" style=${{ left: x, top: y }} aria-pressed=${state ? "true" : "false"}
+            aria-disabled=${isDisabled ? "true" : undefined} title=${`${verbOf(leg)} leg ${leg}`}
+            aria-label=${`Leg ${leg}${state ? `, ${state}` : ""}`} onClick=${() => !isDisabled && onLeg(leg)}>
+            ${leg}
+          </button>
+        `;
+      })}
+    </div>
+  `;
+}
+
+/** A leg is drawn by the last thing that happened to it. */
+export const classOf = (state) => (state ? state.split(" ").at(-1) : "");
+
+// ---- what a press on a leg does
+
+/** What can happen to legs, as the server lists it. */
+const legKinds = () => served().disturbances.filter(({ fields }) => fields.legs || fields.leg);
+
+const NO_OWN_FIELDS = ["leg", "at_step", "until_step"];
+
+/** The fields of a kind beside the leg and the steps. */
+const ownFieldsOf = (kind) =>
+  Object.entries(kind?.fields ?? {}).filter(([name, field]) => !field.is_list && !NO_OWN_FIELDS.includes(name));
+
+/** A kind with the first values of its own fields. */
+function firstWish(name) {
+  const first = firstFields(name);
+  return { kind: name, ...Object.fromEntries(ownFieldsOf(kindNamed(name)).map(([field]) => [field, first[field]])) };
+}
+
+const LegWish = ({ id, wish, onWish }) => html`
+  <div class="leg-wish">
+    <label for=${`${id}-leg-kind`}>A press on a leg</label>
+    <select id=${`${id}-leg-kind`} aria-describedby=${`${id}-leg-help`}
+      onChange=${({ target }) => onWish(firstWish(target.value))}>
+      ${legKinds().map(({ name, title }) => html`
+        <option value=${name} selected=${name === wish.kind}>${title}</option>
+      `)}
+    </select>
+    <p class="sentence" id=${`${id}-leg-help`}>${kindNamed(wish.kind)?.description}</p>
+  </div>
+`;
+
+/** The joint and its angle, the share of the torque. */
+const WishFields = ({ id, wish, onWish }) => ownFieldsOf(kindNamed(wish.kind)).map(([name, setting]) => html`
+  <${OwnField} key=${`${wish.kind} ${name}`} name=${`${id}-${name}`} setting=${setting} value=${wish[name]}
+    onValue=${(value) => onWish({ ...wish, [name]: value })} />
+`);
+
+function OwnField({ name, setting, ...rest }) {
+  const ends = kindOf(setting) === "number" ? sliderOf(setting) : null;
+  return ends
+    ? html`<${Slider} field=${name} setting=${setting} ...${ends} ...${rest} isOfForm=${false} />`
+    : html`<${SettingRow} name=${name} setting=${setting} ...${rest} isOfForm=${false} />`;
+}
+
+/** Values for what must be given: those of a named world, else the first valid ones. */
+export function firstFields(kind) {
+  const example = served().worlds.flatMap(({ disturbances }) => disturbances).find((one) => one.kind === kind);
+  if (example) return example;
+  const needed = Object.entries(kindNamed(kind)?.fields ?? {}).filter(([, field]) => field.is_required);
+  return Object.fromEntries(needed.map(([name, field]) => [name, firstValue(field)]));
+}
+
+function firstValue(field) {
+  if (field.is_list) return [1];
+  if (field.choices.length) return field.choices[0];
+  const { min, max, step } = sliderOf(field) ?? { min: 0, max: 1, step: 0.1 };
+  return Math.max(min, Number((Math.round((min + (max - min) / 10) / step) * step).toPrecision(4)));
+}
+
+// ---- sliders for what has one number: slope, friction, payload, a push; below it, where to
+
+/** What happens with one number, as the server lists it, with its other numbers. */
+const slidable = () => served().disturbances.flatMap((kind) => {
+  const main = mainField(kind.name);
+  const others = ownFieldsOf(kind).filter(([name, field]) => name !== main?.[0] && sliderOf(field) && !field.is_whole);
+  return main ? [{ kind, name: main[0], field: main[1], others }] : [];
+});
+
+const PAUSE_MS = 500;
+
+const shareIn = (value, { min, max }) => ({ "--share": `${(100 * (value - min)) / (max - min)}%` });
+
+/** It takes effect when the slider, or its key, has been let go: a run has only so many disturbances. */
+function KindSlider({ one: { kind, name, field, others }, conditions, simulator, onHappen }) {
+  const [draft, setDraft] = useState(/** @type {Record<string, number>} */ ({}));
+  const timer = useRef(/** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined));
+  const ends = sliderOf(field) ?? { min: 0, max: 1, step: 0.01 };
+  const present = conditions.find((other) => other.kind === kind.name);
+  const values = { ...present, ...draft };
+  const value = values[name] ?? null;
+  const isKnown = isSimulated(kind.name, simulator);
+  const isPush = kind.name === PUSH;
+  const id = `happen-${kind.name}`;
+  const send = async (chosen) => {
+    const more = others.map(([other]) => [other, chosen[other]]).filter(([, given]) => given !== undefined);
+    await onHappen({ kind: kind.name, [name]: chosen[name], ...Object.fromEntries(more) });
+    if (!isPush) setDraft({});
+  };
+  /** A direction alone is nothing that happens. */
+  const sendSoon = (chosen) => {
+    clearTimeout(timer.current);
+    if (!isPush && (chosen[name] ?? null) !== null) timer.current = setTimeout(() => send(chosen), PAUSE_MS);
+  };
+  // Friction has no value at which nothing happens: it is the robot's own until it is set.
+  const at = value ?? (field.minimum === 0 ? 0 : 1);
+  const neutral = field.minimum === 0 ? withUnit(0, field.unit) : "as built";
+  const words = value === null ? neutral : withUnit(value, field.unit);
+  const handlers = (field_name) => ({
+    onInput: ({ target }) => setDraft({ ...draft, [field_name]: Number(target.value) }),
+    onChange: ({ target }) => sendSoon({ ...values, [field_name]: Number(target.value) }),
+  });
+  return html`
+    <div class="slider happen">
+      <label for=${id}>${kind.title}</label>
+      <input type="range" id=${id} min=${ends.min} max=${ends.max} step=${ends.step} value=${at} disabled=${!isKnown}
+        style=${shareIn(at, ends)} aria-valuetext=${words} aria-describedby=${`${id}-help`} ...${handlers(name)} />
+      <output class="num" for=${id}>${words}</output>
+      ${isPush && html`
+        <button type="button" class="secondary compact" disabled=${!isKnown || !value} onClick=${() => send(values)}>
+          Push it
+        </button>
+      `}
+      <p class="sentence" id=${`${id}-help`}>${kind.description}</p>
+    </div>
+    ${others.map(([other, setting]) => html`
+      <${OtherSlider} key=${other} id=${`${id}-${other}`} of=${kind.title} setting=${setting}
+        value=${values[other] ?? setting.default ?? 0} isDisabled=${!isKnown} handlers=${handlers(other)} />
+    `)}
+  `;
+}
+
+function OtherSlider({ id, of, setting, value, isDisabled, handlers }) {
+  const ends = sliderOf(setting) ?? { min: 0, max: 1, step: 0.01 };
+  const words = withUnit(value, setting.unit);
+  const step = setting.unit === "°" ? DIRECTION_STEP : ends.step;
+  return html`
+    <div class="slider happen other">
+      <label for=${id}><span class="sr-only">${of}: </span>${setting.title}</label>
+      <input type="range" id=${id} min=${ends.min} max=${ends.max} step=${step} value=${value} disabled=${isDisabled}
+        style=${shareIn(value, ends)} aria-valuetext=${words} aria-describedby=${`${id}-help`} ...${handlers} />
+      <output class="num" for=${id}>${words}</output>
+      <p class="sentence" id=${`${id}-help`}>${setting.help}</p>
+    </div>
+  `;
+}
+
+const DIRECTION_STEP = 5;
+
+// ---- both together
+
+/** Why legs of a simulator's robot cannot be broken; empty if they can. */
+function reasonAgainst(simulator) {
+  if (isSimulated("limp", simulator)) return "";
+  const known = served().disturbances.filter(({ simulators }) => simulators.includes(simulator));
+  const titles = listed(known.map(({ title }) => title.toLowerCase()));
+  return `The ideal simulator has no ground and no servos: only ${titles} can happen there.`;
+}
+
+/** `conditions`: what holds; `onHappen` takes what is to happen, without its step. */
+function WorldControls({ id, config, conditions, onHappen, sentenceOf, children }) {
+  const { robot, gait, simulator } = config;
+  const [wish, setWish] = useState(() => firstWish(legKinds()[0].name));
+  const reason = reasonAgainst(simulator);
+  const meant = (leg) => pressed(conditions, leg, wish);
+  const now = conditionsInWords(conditions);
+  return html`
+    <div class="break">
+      <${LegPicker} azimuths=${azimuthsOf(robot, gait, served().gaits)} states=${legStates(conditions)}
+        isDisabled=${Boolean(reason)} describedBy=${`${id}-words`} onLeg=${(leg) => onHappen(meant(leg))}
+        verbOf=${(leg) => (meant(leg).kind === "repair" ? "Repair" : "Break")} />
+      <div class="break-words">
+        <p id=${`${id}-words`} role="status">${sentenceOf(now)}</p>
+        ${reason
+          ? html`<p class="sentence">${reason}</p>`
+          : html`<${LegWish} id=${id} wish=${wish} onWish=${setWish} />`}
+        ${children}
+      </div>
+    </div>
+    ${!reason && html`<${WishFields} id=${id} wish=${wish} onWish=${setWish} />`}
+    <details class="more">
+      <summary>Ground, load and servos</summary>
+      <div class="sliders">
+        ${slidable().map((one) => html`
+          <${KindSlider} key=${one.kind.name} one=${one} conditions=${conditions} simulator=${simulator}
+            onHappen=${onHappen} />
+        `)}
+      </div>
+    </details>
+  `;
+}
+
+/** What can happen to the training that runs. */
+export function LiveWorld() {
+  const run = liveTraining.value;
+  if (!run) return null;
+  const words = (now) => (now.length ? html`<b>Now:</b> ${now.join(", ")}` : "Nothing has happened to this robot.");
+  return html`
+    <section class="world-now" aria-label="What happens now">
+      <${WorldControls} id="live" config=${run.config} conditions=${conditionsNow(run)} sentenceOf=${words}
+        onHappen=${(one) => disturb(run, one)} />
+      <${Problem} at="disturb" />
+    </section>
+  `;
+}
+
+// ---- a race that is held: something happens, and it is raced on from there
+
+/** Shown while the replay of a race is held. */
+export const Branch = () => heldRace.value && html`<${BranchOf} key=${heldRace.value.id} race=${heldRace.value} />`;
+
+/** Kept while the replay goes on to another moment. */
+const isBranchOpen = signal(false);
+
+function BranchOf({ race }) {
+  const [chosen, setChosen] = useState(/** @type {any[]} */ ([]));
+  const { config } = race;
+  // At the end nothing is left to walk: the middle is offered.
+  const from = stepShown.value ?? Math.floor(config.steps / 2) + 1;
+  const before = conditionsAt(happeningsOf(race), from - 1);
+  const conditions = conditionsAt([...before, ...chosen].map((one) => ({ ...one, at_step: 0 })), 0);
+  /** A leg that works without what is chosen here needs no repair. */
+  const needed = (one) => (one.kind === "repair" && !legStates(before).has(one.legs[0]) ? [] : [one]);
+  const words = (now) => {
+    const pushes = chosen.filter(({ kind }) => kind === PUSH).length ? ["a push"] : [];
+    return html`<b>From step ${from}:</b> ${[...now, ...pushes].join(", ") || "as it was"}`;
+  };
+  const start = () => {
+    isBranchOpen.value = false;
+    branchRace(race, from - 1, chosen);
+  };
+  return html`
+    <details class="more branch" open=${isBranchOpen.value}
+      onToggle=${({ target, currentTarget }) => target === currentTarget && (isBranchOpen.value = target.open)}>
+      <summary>What if something had happened in this race?</summary>
+      <${WorldControls} id="branch" config=${config} conditions=${conditions} sentenceOf=${words}
+        onHappen=${(one) => setChosen((all) => [...all.filter((other) => !replaces(one, other)), ...needed(one)])}>
+        <button type="button" class="secondary" disabled=${!chosen.length || pending.value.branch} onClick=${start}>
+          Race on from ${stepShown.value === null ? `step ${from}` : "here"}
+        </button>
+      <//>
+      <p class="sentence">Until then both races are the same. Hold the replay elsewhere for another step.</p>
+      <${Problem} at="branch" />
+    </details>
+  `;
+}
+
+/** Whether one that is chosen takes the place of another. */
+const replaces = (one, other) =>
+  legsOf(one).length ? legsOf(other)[0] === legsOf(one)[0] : one.kind === other.kind;
