@@ -79,7 +79,8 @@ def check_crosshairs(page: Page) -> None:
     )
     curve.press("Home")
     expect(curve).to_have_attribute(
-        "aria-valuetext", re.compile(r"^0 steps: Q-learning 0\.00\sm, Greedy \d\.\d\d\sm$")
+        "aria-valuetext",
+        re.compile(r"^0 steps: Q-learning 0\.00\sm, Greedy \d\.\d\d\sm, Best known 0\.51\sm$"),
     )
     curve.press("ArrowRight")
     expect(curve).to_have_attribute("aria-valuetext", re.compile("^10 steps: "))
@@ -96,9 +97,11 @@ def check_widths_of_the_scoreboard(dashboard: Dashboard) -> None:
     """Check that its columns stay in its panel; the viewport has another size then."""
     for width in (390, 1100, 1280, 1440):
         dashboard.page.set_viewport_size({"width": width, "height": 900})
-        # As wide as they get: backwards, after slow decisions with many simulated transitions.
-        dashboard.page.locator(".board tr:not(.under)").evaluate_all(
+        # As wide as they get: backwards, after slow decisions with many simulated transitions, of
+        # an agent whose settings are told.
+        dashboard.page.locator(".board tbody tr:not(.under)").evaluate_all(
             """rows => rows.forEach(({cells}) => {
+                cells[1].lastChild.data = "Informed search, budget 300";
                 const widest = ["−0.36 m", "−0.36 m", "120 ms", "46 800"];
                 [...cells].slice(2).forEach((cell, n) => {
                     if (cell.localName === "td") cell.firstChild.data = widest[n];

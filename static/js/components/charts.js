@@ -127,7 +127,7 @@ export const bestKnownMark = (y) => ({
 
 /** What the thin line is, where its caption has no room. */
 export const BestKnownKey = ({ distance }) => html`
-  <p class="changes dim">
+  <p class="line-key dim">
     <i class="thin-line" aria-hidden="true"></i>
     ${" "}Best known: ${metres(distance)}, found by a wide search
   </p>

@@ -55,6 +55,9 @@ export function Worlds({ known }) {
         <${Table} key=${gait} gait=${gait} entries=${here.filter((one) => one.gait === gait)} known=${known} />
       `)}
     </section>
+    ${worlds.length > 1 && html`
+      <${Overview} entries=${entries.filter((one) => placeOf(one) === place.key)} worlds=${worlds} known=${known} />
+    `}
   `;
 }
 
@@ -125,6 +128,56 @@ function toUnit(one, known) {
     key: one.key, agent: one.agent, name: nameOf(one, known), steps, points: [],
     iqm: all(iqm_m), low: all(low_m), high: all(high_m),
   };
+}
+
+// ---- all worlds beside each other: the share of the best known walk, in the end
+
+/** Of the best known walk; of greedy's where none is known. */
+const shareIn = ({ of_best_known, of_greedy, best_known_m }) =>
+  (best_known_m === null ? of_greedy : of_best_known)?.iqm ?? null;
+
+const meanOf = (values) => (values.length ? values.reduce((sum, one) => sum + one, 0) / values.length : null);
+
+function Overview({ entries, worlds, known }) {
+  const names = [...new Set(entries.map((one) => nameOf(one, known)))];
+  const meanIn = (name, world) => meanOf(
+    entries.filter((one) => one.world === world && nameOf(one, known) === name).map(shareIn)
+      .filter((share) => share !== null),
+  );
+  const rows = names.map((name) => ({ name, shares: worlds.map((world) => meanIn(name, world)) }));
+  const best = worlds.map((_, n) => largest(rows.map(({ shares }) => shares[n] ?? -Infinity), -Infinity));
+  const ofGreedy = (world) => entries.some((one) => one.world === world && one.best_known_m === null);
+  const title = "All worlds: share of the best known distance";
+  const overall = ({ shares }) => meanOf(shares.filter(Number.isFinite)) ?? 0;
+  rows.sort((a, b) => overall(b) - overall(a));
+  return html`
+    <section class="panel worlds" aria-labelledby="all-worlds">
+      <h2 id="all-worlds">${title}</h2>
+      <p class="dim overview-words">In the end, as a mean over the gaits; the furthest of each world is bold.</p>
+      <div class="scroller" tabindex="0" role="region" aria-label=${title}>
+        <table class="facts-table world-table">
+          <caption class="sr-only">${title}</caption>
+          <thead><tr>
+            <th scope="col">Agent</th>
+            ${worlds.map((world) => html`
+              <th scope="col">${worldTitle(world)}${ofGreedy(world) ? ", of greedy" : ""}</th>
+            `)}
+          </tr></thead>
+          <tbody>
+            ${rows.map(({ name, shares }) => html`
+              <tr key=${name}>
+                <th scope="row">${name}</th>
+                ${shares.map((share, n) => html`
+                  <td class="num">${share === null ? "–" : share === best[n] ? html`<b>${percentage(share)}</b>`
+                    : percentage(share)}</td>
+                `)}
+              </tr>
+            `)}
+          </tbody>
+        </table>
+      </div>
+    </section>
+  `;
 }
 
 // ---- one table per gait, the furthest first
@@ -209,7 +262,7 @@ function BestKnown({ entry, columns }) {
 }
 
 function Table({ gait, entries, known }) {
-  const columns = columnsOf(known, entries);
+  const columns = columnsOf(known, entries).filter(({ cell }) => entries.some(cell));
   const sorted = [...entries].sort((a, b) => b.distance.iqm - a.distance.iqm);
   const title = `Agents in ${gaitTitle(gait)}`;
   return html`
