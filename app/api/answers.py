@@ -111,6 +111,7 @@ class LaneView(Answer):
     plans_with: Annotated[
         Knowledge | None, Field(description="what its search knows; null if it does not search")
     ]
+    plans_with_by_default: Annotated[bool, Field(description="whether `plans_with` was left out")]
     observation: Observation
     training_id: str | None
 

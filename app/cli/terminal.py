@@ -18,6 +18,7 @@ from rich.table import Table
 from rich.text import Text
 
 from app.agents.appearance import name_of
+from app.runs.lane import plans_with
 from app.runs.race_config import RaceConfig
 
 
@@ -81,7 +82,8 @@ def show_lanes(config: RaceConfig, result: dict[str, Any], clock: str) -> None:
     lanes = zip(config.lanes, result["lanes"], strict=True)
     for own, lane in sorted(lanes, key=lambda both: both[1]["clocks"][clock]["rank"]):
         name = name_of(own.agent, own.settings, own.keep_learning, title=own.agent)
-        name += f"\n   plans with {lane['plans_with']}" if lane["plans_with"] else ""
+        known = plans_with(own, config)
+        name += f"\n   plans with {known}" if known else ""
         timed, total = lane["clocks"][clock], lane["total_distance_m"]
         rows.append(
             (

@@ -74,7 +74,12 @@ def _config(run: Run) -> dict[str, Any]:
     if isinstance(run.config, RaceConfig):
         lanes = zip(run.config.lanes, config["lanes"], run.lane_training_ids, strict=True)
         config["lanes"] = [
-            {**fields, "plans_with": plans_with(lane, run.config), "training_id": training}
+            {
+                **fields,
+                "plans_with": plans_with(lane, run.config),
+                "plans_with_by_default": lane.plans_with is None,
+                "training_id": training,
+            }
             for lane, fields, training in lanes
         ]
     elif isinstance(run.config, TrainingConfig):

@@ -291,6 +291,12 @@ export function copySettings(run) {
 const settingsOfLane = ({ agent, ...lane }) =>
   ({ agent, ...Object.fromEntries(Object.entries(lane).filter(([name]) => name in agentOf(agent).settings)) });
 
+/**
+ * A lane as it was asked for: what its search knows by default depends on what happens in its race.
+ * @type {(lane: LaneConfig) => LaneConfig}
+ */
+const asAsked = (lane) => lane.plans_with_by_default ? { ...lane, plans_with: null } : lane;
+
 /** @type {(race: Run) => Omit<Partial<RunConfig>, "lanes"> & { lanes: string[] }} */
 function configOfRace({ config: { lanes, steps, ...walk } }) {
   const trainings = lanes.map((lane) => {
@@ -299,7 +305,8 @@ function configOfRace({ config: { lanes, steps, ...walk } }) {
   });
   // Of a setting that several learners have, the value of the first.
   const practice = Object.assign({}, ...trainings.reverse());
-  const own = lanes.flatMap((lane) => Object.entries(lane).map(([name, value]) => [`${lane.agent}.${name}`, value]));
+  const own = lanes.map(asAsked)
+    .flatMap((lane) => Object.entries(lane).map(([name, value]) => [`${lane.agent}.${name}`, value]));
   const agents = lanes.map(({ agent }) => agent);
   return { ...practice, ...walk, ...Object.fromEntries(own), race_steps: steps, lanes: agents };
 }

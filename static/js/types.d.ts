@@ -192,6 +192,8 @@ export interface LaneConfig {
   keep_learning?: boolean;
   /** In a run of a search always one of `world`, `start`, `nominal`. */
   plans_with?: string | null;
+  /** Whether nobody asked for it. */
+  plans_with_by_default?: boolean;
   /** A setting of the agent, if the lane has no training. */
   [setting: string]: any;
 }

@@ -5,7 +5,7 @@ from dataclasses import fields
 
 from pydantic import BaseModel
 
-from app.api.answers import Change, ExperimentConfigView, TrainingConfigView, WhatIfHalf
+from app.api.answers import Change, ExperimentConfigView, LaneView, TrainingConfigView, WhatIfHalf
 from app.api.experiment_answers import CurveOfSetting, PooledView, SettingView, VersusView
 from app.api.experiment_body import ExperimentBody
 from app.api.schemas import ChangeBody, LaneBody, PracticeBody, RaceBody, TrainingBody
@@ -16,6 +16,7 @@ from app.runs.race_config import RaceConfig
 
 BODIES = (PracticeBody, TrainingBody, LaneBody, RaceBody, ExperimentBody, ChangeBody)
 ANSWERS = (
+    LaneView,
     SettingView,
     PooledView,
     CurveOfSetting,

@@ -129,6 +129,8 @@ def test_a_branch_is_the_same_race_to_the_last_bit_until_its_step(
     assert race["config"]["branch_from"] == branch
     for run, said in ((original, ["world", "world"]), (race, ["nominal", "world"])):
         assert [lane["plans_with"] for lane in run["config"]["lanes"]] == said
+        by_default = [lane["plans_with_by_default"] for lane in run["config"]["lanes"]]
+        assert by_default == [True, False]
         assert [lane["plans_with"] for lane in run["result"]["lanes"]] == said
     assert race["config"]["disturbances"] == [{"kind": "limp", "at_step": 8, "legs": [1, 4]}]
     before, after = distances(api, original), distances(api, race)

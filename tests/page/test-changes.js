@@ -81,6 +81,16 @@ test("the settings of lanes are copied", () => {
   assert.deepEqual([depth, keepLearning, gamma], [2, true, 0.5]);
 });
 
+test("what a search knows by default is not copied as if it had been asked for", () => {
+  const knownAfterCopy = (/** @type {object} */ lane) => {
+    const lanes = [{ agent: "greedy", ...lane }];
+    copySettings(makeRun({ kind: "race", config: { steps: 50, lanes } }));
+    return form.value["greedy.plans_with"];
+  };
+  assert.equal(knownAfterCopy({ plans_with: "nominal", plans_with_by_default: false }), "nominal");
+  assert.equal(knownAfterCopy({ plans_with: "world", plans_with_by_default: true }), null);
+});
+
 test("a race without practice is offered if all of its learners keep learning", () => {
   const labels = () => secondaryActions.value.map(({ label }) => label);
   setFields({ lanes: ["tracer", "learner"] });
