@@ -214,7 +214,7 @@ def _scatter(one: Mapping[str, Any], summary: Mapping[str, Any]) -> Picture:
 
     draw(tried, marker="o", ms=5, mew=0, color=colour, alpha=0.7)
     draw(default, marker="D", ms=6, mew=0, color=INK)
-    draw([best], marker="o", ms=11, mew=1.4, mec=INK, mfc="none")
+    draw([best], marker="o", ms=11, mew=1.4, mec=INK, mfc="none", clip_on=False)
     if places:
         ax.set_xticks(list(places.values()), [_value_text(value) for value in places])
         ax.set_xlim(-0.5, len(places) - 0.5)
