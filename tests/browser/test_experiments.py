@@ -164,7 +164,7 @@ def test_a_league_takes_worlds_by_their_pictures_and_as_a_text(
     expect(button).to_have_attribute("aria-disabled", "true")
     others.press("Backspace")
     expect(button).to_have_text("Run League: 36 trials")
-    page.get_by_label("Build tolerance").fill("0.05")
+    page.get_by_role("textbox", name="Build tolerance").fill("0.05")
     assert dashboard.violations() == []
     link = page.url
     page.goto("about:blank")
@@ -242,6 +242,12 @@ def tells_who_recovers(dashboard: Dashboard) -> None:
         expect(table.get_by_role("columnheader", name=title, exact=True)).to_have_count(1)
     dashboard.button("relative to greedy").click()
     expect(table.get_by_role("row", name=re.compile("^Greedy")).first).to_contain_text("100")
+    both = page.get_by_role("table", name="All worlds: share of the best known distance")
+    titles = ["Agent", "Sensor noise, of greedy", "Sensor noise 10\u00a0mm, of greedy"]
+    expect(both.get_by_role("columnheader")).to_have_text(titles)
+    expect(both.get_by_role("row", name="Greedy 100 % 100 %")).to_have_count(1)
+    dashboard.button("Sensor noise 10\u00a0mm").click()
+    expect(page.locator(".worlds").first).to_contain_text("Sensor noise 10\u00a0mm: share of")
 
 
 @pytest.fixture(scope="module")
@@ -251,7 +257,13 @@ def small_runs(shared_server: Serving) -> list[str]:
     asked = [
         {"experiment": "figure4", **corner},
         {"experiment": "sweep", **corner, "alpha": [0.1, 0.3], "steps": 100},
-        {"experiment": "recovery", **corner, "agents": ["q-learning", "linear-model"], "steps": 20},
+        {
+            "experiment": "recovery",
+            **corner,
+            "agents": ["q-learning", "linear-model"],
+            "steps": 20,
+            "worlds": ["noise", "sensor-noise:sd_m=0.01"],
+        },
     ]
     ids = [call(shared_server, body)["id"] for body in asked]
     deadline = time.monotonic() + 100

@@ -191,6 +191,19 @@ test("what does not learn does not recover", () => {
   assert.deepEqual(mistakes.value, {});
 });
 
+test("a text that was not valid is taken once another choice makes it valid", () => {
+  readQuery(new URLSearchParams("experiment=recovery&agents=planner"));
+  assert.match(mistakes.value.agents, /not offered/);
+  chooseExperiment("league");
+  assert.deepEqual([mistakes.value, values.value.agents], [{}, ["planner"]]);
+  chooseExperiment("sweep");
+  enter("agents", "learner");
+  enter("gamma", "2");
+  assert.match(mistakes.value.gamma, /under 1/);
+  enter("agents", "tracer");
+  assert.ok(!("gamma" in mistakes.value));
+});
+
 test("the grid has the settings of the chosen agents", () => {
   assert.deepEqual(Object.keys(agentSettings.value), []);
   chooseExperiment("sweep");

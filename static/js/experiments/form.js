@@ -220,6 +220,13 @@ export const mistakes = computed(() =>
 export function chooseExperiment(name) {
   chosenName.value = name;
   typed.value = without(typed.value, "experiment");
+  takeTyped();
+}
+
+/** Take the texts that have become valid, because another experiment or other agents were chosen. */
+function takeTyped() {
+  const own = Object.entries(typed.value).filter(([field]) => field !== "experiment" && takesField(field));
+  for (const [field, text] of own) enter(field, text);
 }
 
 /**
@@ -241,6 +248,7 @@ export function setField(field, value) {
   const isDefault = String(value) === String(defaults.value[field] ?? "");
   typed.value = without(typed.value, field);
   overrides.value = isDefault ? others : { ...others, [field]: value };
+  if (field === "agents") takeTyped();
 }
 
 /**

@@ -154,7 +154,7 @@ function Overview({ entries, worlds, known }) {
     <section class="panel worlds" aria-labelledby="all-worlds">
       <h2 id="all-worlds">${title}</h2>
       <p class="dim overview-words">In the end, as a mean over the gaits; the furthest of each world is bold.</p>
-      <div class="scroller" tabindex="0" role="region" aria-label=${title}>
+      <div class="scroller" tabindex="0" role="region" aria-label="Table of all worlds">
         <table class="facts-table world-table">
           <caption class="sr-only">${title}</caption>
           <thead><tr>
