@@ -126,7 +126,7 @@ def wait_for_node(frame: Frame | Page, name: str) -> None:
 def wait_until_centred_on(frame: Frame, x: float, y: float) -> None:
     frame.wait_for_function(
         """([x, y]) => {
-            const [a, b] = __viserMutable.nodePoseData["/world"].position;
+            const [a, b] = __viserMutable.nodePoseData["/world"]?.position ?? [];
             return a === -x && b === -y;
         }""",
         arg=[x, y],
