@@ -23,6 +23,7 @@ from app.cli.options import (
 from app.cli.terminal import progress, show_table
 from app.cli.trial_options import add_machine_options, cluster_from
 from app.cli.trials import INTERRUPTED, RATE_WINDOW_S, discard, stop_signals, workers_text
+from app.domain.checks import check_whole
 from app.domain.errors import InvalidInput
 from app.domain.gait import NAMED_GAITS
 from app.domain.robot import PRESETS
@@ -36,7 +37,6 @@ from app.experiments.own_cluster import cores
 from app.experiments.plan import Trial
 from app.experiments.tuning.config import Objective, TuningConfig, tuning_config
 from app.runs.config import SIMULATORS, TrainingConfig, WalkingProblem
-from app.runs.race_config import check_whole
 
 if TYPE_CHECKING:
     from app.experiments.tuning.tuning import Tuning

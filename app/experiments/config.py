@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Literal, get_args
 
 from app.agents.registry import learns
+from app.domain.checks import check_whole
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import PAPER_OBSERVATIONS, Observation
@@ -20,7 +21,6 @@ from app.domain.settings import (
 from app.domain.world import parse_world
 from app.runs.config import SimulatorName, TrainingConfig, agent_settings
 from app.runs.config_json import gait_from_json
-from app.runs.race_config import check_whole
 
 ExperimentName = Literal["table1", "figure4", "sweep", "league", "recovery"]
 EXPERIMENTS: tuple[ExperimentName, ...] = get_args(ExperimentName)

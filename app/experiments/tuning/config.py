@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 from app.agents.registry import learns
+from app.domain.checks import check_whole
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import GaitSpec
 from app.domain.observation import Observation
@@ -17,7 +18,6 @@ from app.experiments.config import (
 )
 from app.experiments.tuning.ranges import SearchRange, declared_range, parse_range
 from app.runs.config import agent_settings, usable_agents
-from app.runs.race_config import check_whole
 
 Objective = Literal["distance", "area"]
 OBJECTIVES: Mapping[Objective, str] = {
