@@ -148,10 +148,15 @@ class ResultsFolder(Progress):
         names = [
             name for name in every if name not in _GROWING and here.get(name) != there.get(name)
         ]
-        if names:
+        if "experiment" in names:
             raise InvalidInput(
-                f"{self.path} has results of another experiment, which differs in "
-                f"{', '.join(names)}; {_CHOOSE}"
+                f"{self.path} has results of another experiment, {there['experiment']}; {_CHOOSE}"
+            )
+        if names:
+            options = ", ".join(map(self.plan.config.option_of, names))
+            raise InvalidInput(
+                f"{self.path} has results of another experiment, which differs in {options}; "
+                f"{_CHOOSE}"
             )
 
     def _read(self, number: int, line: bytes) -> None:

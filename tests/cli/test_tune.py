@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from app.experiments.folder import TRIALS
+from app.experiments.folder import TRIALS, open_results
 from app.experiments.trial import TrialResult
 from app.experiments.tuning.summary import summarise_tuning
 from tests.cli.running import ROOT, hexapods, in_process, output, refusal
@@ -96,7 +96,9 @@ def test_stopped_and_killed_it_goes_on_and_gives_what_an_unbroken_one_gives(tmp_
         (("q-learning", *PLACE, "--range", "alpha=0.1:2"), "over 0 and at most 1"),
         (("q-learning", *PLACE, "--range", "alpha"), "NAME=LOW:HIGH"),
         (("q-learning", *PLACE, "--objective", "speed"), "distance"),
+        (("q-learning", *PLACE, "--range", "alpha=1:0.5"), "LOW must be below HIGH"),
         (("q-learning", *PLACE, "--beside", "skynet"), "linear-model, greedy"),
+        (("q-learning", *PLACE, "--beside", "q-learning"), "leave it out of --beside"),
         (("q-learning", *PLACE, "--workers", "0"), "workers must be from 1 to 512"),
         (("q-learning", *PLACE, "--scheduler", "127.0.0.1"), "tcp://HOST:PORT"),
         (("q-learning", *PLACE, "--out", "/proc/nowhere"), "cannot keep results in"),
@@ -107,6 +109,27 @@ def test_invalid_input_is_refused_in_one_sentence(
 ) -> None:
     assert names in refusal("tune", *arguments, folder=tmp_path, run=in_process)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("changed", "option"),
+    [
+        (("--seeds", "4"), "--seeds"),
+        (("--objective", "distance"), "--objective"),
+        (("--settings", "alpha"), "--settings or --range"),
+        (("--beside", "r-max"), "the agent or --beside"),
+        (("--gait", "front-back-origin", "--seed", "1"), "--seed, --gait"),
+    ],
+)
+def test_resumed_with_other_options_it_names_those_that_differ(
+    changed: tuple[str, ...], option: str, tmp_path: Path
+) -> None:
+    begun = config(steps=(50,), trials=12, search_seeds=3, objective="area")
+    with open_results(tmp_path / "mine", begun):
+        pass
+
+    sentence = refusal(*TUNE, *changed, "--out", "mine", folder=tmp_path, run=in_process)
+    assert sentence.endswith(f"which differs in {option}; choose another folder")
 
 
 def test_results_of_another_experiment_are_refused(tmp_path: Path) -> None:

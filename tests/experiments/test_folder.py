@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from app.domain.errors import DamagedFile, HexapodError, InvalidInput
+from app.domain.robot import robot
 from app.experiments.config import ExperimentConfig, experiment_config
 from app.experiments.engine import Outcome
 from app.experiments.folder import TRIALS, NotKept, open_results
@@ -118,7 +119,7 @@ def test_a_partial_header_is_written_again(folder: Path) -> None:
     (folder / TRIALS).write_bytes(b'{"format": 1, "ver')
     with open_results(folder, CONFIG) as opened:
         assert opened.results == {}
-    assert refusal(folder, small(steps=31)).endswith("differs in steps; choose another folder")
+    assert refusal(folder, small(steps=31)).endswith("differs in --steps; choose another folder")
 
 
 @pytest.mark.parametrize(
@@ -155,10 +156,12 @@ def test_results_of_another_version_are_refused(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("other", "name"),
     [
-        (replace(CONFIG, seed=1), "seed"),
-        (replace(CONFIG, simulator="mujoco"), "simulator"),
-        (replace(CONFIG, settings=CONFIG.settings | {"gamma": (0.5, 0.9)}), "gamma"),
-        (experiment_config("figure4", {"seeds": 3, "simulator": "kinematic"}), "experiment"),
+        (replace(CONFIG, seed=1), "which differs in --seed;"),
+        (replace(CONFIG, simulator="mujoco"), "which differs in --simulator;"),
+        (replace(CONFIG, robots=(robot("compliant"),)), "which differs in --robot;"),
+        (replace(CONFIG, steps_per_episode=(5,)), "which differs in --steps-per-episode;"),
+        (replace(CONFIG, settings=CONFIG.settings | {"gamma": (0.5, 0.9)}), "differs in --gamma;"),
+        (experiment_config("figure4", {"simulator": "kinematic"}), "another experiment, sweep;"),
     ],
 )
 def test_results_of_another_experiment_are_refused(

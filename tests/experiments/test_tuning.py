@@ -126,8 +126,9 @@ def test_numbers_are_rounded_within_their_range() -> None:
         ("alpah=0.1:1", "alpha, gamma"),
         ("alpha=0:1", "alpha must be a number over 0 and at most 1"),
         ("alpha=0.1:2", "at most 1"),
-        ("alpha=1:0.1", "must be LOW:HIGH"),
-        ("alpha=0.1:0.3:1", "must be LOW:HIGH"),
+        ("alpha=1:0.1", "alpha=1:0.1: LOW must be below HIGH"),
+        ("alpha=0.3:0.3", "LOW must be below HIGH"),
+        ("alpha=0.1:0.3:1", "the range of alpha must be LOW:HIGH, not '0.1:0.3:1'"),
         ("alpha=0.5:1", "must contain its default, 0.3"),
         ("alpha=0.3", "two or more different values"),
         ("alpha=0.3,0.3", "two or more different values"),
@@ -161,13 +162,26 @@ def test_choices_have_no_ends() -> None:
         ({"objective": "speed"}, "distance, area"),
         ({"gaits": (LRO, "front-back-origin")}, "gaits must name one"),
         ({"worlds": ("moon",)}, "limp-pair"),
-        ({"beside": ("q-learning",)}, "agents names something twice"),
+        (
+            {"beside": ("q-learning",)},
+            "q-learning is tuned, and walks with its defaults anyway; le",
+        ),
+        ({"beside": ("r-max", "r-max")}, "--beside names r-max twice"),
     ],
 )
 def test_invalid_tuning_is_refused_in_a_sentence(given: dict[str, Any], names: str) -> None:
     with pytest.raises(HexapodError) as refused:
         config(**given)
     assert names in str(refused.value)
+
+
+def test_settings_are_named_as_their_options_too() -> None:
+    by_option = config("dyna-q", settings=("planning-steps",), ranges=("planning-steps=1:100",))
+
+    assert by_option == config(
+        "dyna-q", settings=("planning_steps",), ranges=("planning_steps=1:100",)
+    )
+    assert by_option.ranges == ("planning_steps=1:100",)
 
 
 def test_config_is_read_back_from_plain_types() -> None:

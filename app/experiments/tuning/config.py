@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any, ClassVar, Literal, get_args
 
 from app.agents.registry import learns
 from app.domain.checks import check_whole
@@ -16,7 +16,7 @@ from app.experiments.config import (
     ExperimentConfig,
     ExperimentName,
 )
-from app.experiments.tuning.ranges import SearchRange, declared_range, parse_range
+from app.experiments.tuning.ranges import SearchRange, declared_range, parse_range, setting_name
 from app.runs.config import agent_settings, usable_agents
 
 Objective = Literal["distance", "area"]
@@ -45,6 +45,14 @@ class TuningConfig(ExperimentConfig):
     Raises:
         UnknownName, InvalidInput: if a value is invalid, empty or repeated.
     """
+
+    options: ClassVar[Mapping[str, str]] = {
+        **ExperimentConfig.options,
+        "agents": "the agent or --beside",
+        "ranges": "--settings or --range",
+        "search_seeds": "--seeds",
+        "seeds": "--held-out",
+    }
 
     experiment: ExperimentName = "league"
     gaits: tuple[str | GaitSpec, ...]
@@ -93,8 +101,8 @@ def tuning_config(
 
     Args:
         agent: the learner.
-        settings: names of the settings to search; by default those that declare their values and
-            those of `ranges`.
+        settings: names of the settings to search, or of their options; by default those that
+            declare their values and those of `ranges`.
         ranges: `NAME=LOW:HIGH` or `NAME=VALUE,VALUE` in place of what is declared.
         beside: agents that walk on the held-out seeds too.
         given: other attributes of `TuningConfig`.
@@ -111,14 +119,16 @@ def tuning_config(
     declared = agent_settings(agent)
     if not declared:
         raise InvalidInput(f"{agent} has no settings, so there is nothing to tune")
-    found = _given_ranges(ranges, declared, settings)
-    for name in declared if settings is None else settings:
+    _check_beside(agent, beside)
+    chosen = None if settings is None else [setting_name(text) for text in settings]
+    found = _given_ranges(ranges, declared, chosen)
+    for name in declared if chosen is None else chosen:
         if name not in declared:
             raise UnknownName(f"setting of {agent}", name, declared)
         range_ = found.get(name) or declared_range(declared[name])
         if range_ is not None:
             found[name] = range_
-        elif settings is not None:
+        elif chosen is not None:
             raise InvalidInput(
                 f"{name} has no limits between which to search; name them with --range"
             )
@@ -128,6 +138,16 @@ def tuning_config(
         )
     ordered = tuple(str(found[name]) for name in declared if name in found)
     return TuningConfig(agents=(agent, *beside), ranges=ordered, **given)
+
+
+def _check_beside(agent: str, beside: Sequence[str]) -> None:
+    if agent in beside:
+        raise InvalidInput(
+            f"{agent} is tuned, and walks with its defaults anyway; leave it out of --beside"
+        )
+    for place, name in enumerate(beside):
+        if name in beside[:place]:
+            raise InvalidInput(f"--beside names {name} twice")
 
 
 def _given_ranges(
