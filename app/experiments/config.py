@@ -61,6 +61,8 @@ class ExperimentConfig:
         UnknownName, InvalidInput: if a value is invalid, empty or repeated.
     """
 
+    kind: ClassVar[str] = "experiment"
+    """What a results folder says that it holds."""
     options: ClassVar[Mapping[str, str]] = {
         "agents": "--agent",
         "gaits": "--gait",

@@ -28,6 +28,8 @@ SUMMARY = "summary.json"
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _SYNC_S = 0.5
 _GROWING = ("seeds", "trials")
+_EARLIER_KINDS = {"ExperimentConfig": "experiment", "TuningConfig": "tuning"}
+"""Kinds by what earlier versions wrote; the first of them wrote none."""
 _CHOOSE = "choose another folder"
 
 
@@ -78,8 +80,8 @@ class ResultsFolder(Progress):
         file.truncate(self._end)
         if not lines:
             config = as_json(self.plan.config)
-            head = {"format": FORMAT, "kind": self._kind, "versions": versions(), "config": config}
-            self._write(head)
+            kind = self.plan.config.kind
+            self._write({"format": FORMAT, "kind": kind, "versions": versions(), "config": config})
             return
         self._check(self._head(lines[0]))
         for number, line in enumerate(lines[1:], start=2):
@@ -90,11 +92,6 @@ class ResultsFolder(Progress):
         with suppress(OSError):
             os.fsync(self._file.fileno())
         self._synced_s = time.monotonic()
-
-    @property
-    def _kind(self) -> str:
-        """Class of the config: another one has other fields."""
-        return type(self.plan.config).__name__
 
     def _write(self, line: Mapping[str, Any]) -> None:
         data = json.dumps(line, allow_nan=False).encode() + b"\n"
@@ -132,7 +129,7 @@ class ResultsFolder(Progress):
                 f"{self.path} has results in format {head['format']}, and this version writes "
                 f"format {FORMAT}; {_CHOOSE}"
             )
-        if head.get("kind", ExperimentConfig.__name__) != self._kind:  # earlier versions had one
+        if _kind_of(head) != self.plan.config.kind:
             raise InvalidInput(f"{self.path} has results of another experiment; {_CHOOSE}")
         differs = difference(versions(), head["versions"])
         if differs is not None:
@@ -170,6 +167,11 @@ class ResultsFolder(Progress):
                 "trial is run again"
             ) from error
         super().add(outcome)
+
+
+def _kind_of(head: Mapping[str, Any]) -> str:
+    kind = str(head.get("kind", ExperimentConfig.kind))
+    return _EARLIER_KINDS.get(kind, kind)
 
 
 @contextmanager

@@ -153,6 +153,24 @@ def test_results_of_another_version_are_refused(folder: Path) -> None:
     assert "has results in format 2, and this version writes format 1" in refusal(folder)
 
 
+@pytest.mark.parametrize("earlier", [None, "ExperimentConfig"])
+def test_kind_of_results_is_named_and_that_of_earlier_versions_is_read(
+    earlier: str | None, folder: Path, outcomes: list[Outcome]
+) -> None:
+    head = json.loads((folder / TRIALS).read_text("utf-8").splitlines()[0])
+    assert head["kind"] == "experiment"
+
+    def rename(head: dict[str, object]) -> None:
+        head.pop("kind")
+        head.update({} if earlier is None else {"kind": earlier})
+
+    change_head(folder, rename)
+    with open_results(folder, CONFIG) as opened:
+        assert opened.done == len(outcomes)
+    change_head(folder, lambda head: head.update(kind="tuning"))
+    assert refusal(folder).endswith("has results of another experiment; choose another folder")
+
+
 @pytest.mark.parametrize(
     ("other", "name"),
     [

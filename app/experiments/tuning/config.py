@@ -46,6 +46,7 @@ class TuningConfig(ExperimentConfig):
         UnknownName, InvalidInput: if a value is invalid, empty or repeated.
     """
 
+    kind: ClassVar[str] = "tuning"
     options: ClassVar[Mapping[str, str]] = {
         **ExperimentConfig.options,
         "agents": "the agent or --beside",
