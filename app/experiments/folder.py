@@ -27,7 +27,7 @@ SUMMARY = "summary.json"
 
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _SYNC_S = 0.5
-_GROWING = ("seeds", "trials")
+_GROWING = ("seeds", "candidates")
 _EARLIER_KINDS = {"ExperimentConfig": "experiment", "TuningConfig": "tuning"}
 """Kinds by what earlier versions wrote; the first of them wrote none."""
 _CHOOSE = "choose another folder"
@@ -115,9 +115,11 @@ class ResultsFolder(Progress):
     def _head(self, line: bytes) -> dict[str, Any]:
         try:
             head = json.loads(line)
-            if {"format", "versions", "config"} <= set(head):
-                return dict(head)
-        except (ValueError, TypeError):
+            if "format" in head and all(
+                isinstance(head[name], dict) for name in ("versions", "config")
+            ):
+                return _converted(head)
+        except (KeyError, TypeError, ValueError):
             pass
         raise DamagedFile(
             f"{self.path / TRIALS} does not begin as results of an experiment do; {_CHOOSE}"
@@ -129,7 +131,7 @@ class ResultsFolder(Progress):
                 f"{self.path} has results in format {head['format']}, and this version writes "
                 f"format {FORMAT}; {_CHOOSE}"
             )
-        if _kind_of(head) != self.plan.config.kind:
+        if head["kind"] != self.plan.config.kind:
             raise InvalidInput(f"{self.path} has results of another experiment; {_CHOOSE}")
         differs = difference(versions(), head["versions"])
         if differs is not None:
@@ -169,9 +171,13 @@ class ResultsFolder(Progress):
         super().add(outcome)
 
 
-def _kind_of(head: Mapping[str, Any]) -> str:
-    kind = str(head.get("kind", ExperimentConfig.kind))
-    return _EARLIER_KINDS.get(kind, kind)
+def _converted(head: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a header as this version writes it; the classes of configs were kinds before."""
+    kind, config = str(head.get("kind", ExperimentConfig.kind)), head["config"]
+    if kind == "TuningConfig":
+        names = {"trials": "candidates"}
+        config = {names.get(name, name): value for name, value in config.items()}
+    return {**head, "kind": _EARLIER_KINDS.get(kind, kind), "config": config}
 
 
 @contextmanager

@@ -139,7 +139,16 @@ def test_a_damaged_line_is_named(damaged: bytes, folder: Path) -> None:
     assert first in file.read_bytes(), "nothing is lost"
 
 
-@pytest.mark.parametrize("head", [b"milk\n", b"[]\n", b"{}\n"])
+@pytest.mark.parametrize(
+    "head",
+    [
+        b"milk\n",
+        b"[]\n",
+        b"{}\n",
+        b'{"format": 1, "versions": {}, "config": []}\n',
+        b'{"format": 1, "versions": 1, "config": {}}\n',
+    ],
+)
 def test_a_file_in_another_format_is_refused(head: bytes, folder: Path) -> None:
     (folder / TRIALS).write_bytes(head)
     assert "does not begin as results of an experiment do" in refusal(folder)

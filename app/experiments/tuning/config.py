@@ -15,6 +15,7 @@ from app.experiments.config import (
     MAX_TRIALS,
     ExperimentConfig,
     ExperimentName,
+    as_json,
 )
 from app.experiments.tuning.ranges import SearchRange, declared_range, parse_range, setting_name
 from app.runs.config import agent_settings, usable_agents
@@ -37,7 +38,7 @@ class TuningConfig(ExperimentConfig):
     first agent is tuned, the others walk beside it, and `seeds` is the number of held-out seeds.
 
     Attributes:
-        trials: number of settings that are tried, the defaults first.
+        candidates: number of combinations of settings that are tried, the defaults first.
         search_seeds: number of seeds for each of them, other ones than those held out.
         objective: what is searched for.
         ranges: where, as `parse_range` reads it, one for each setting.
@@ -53,29 +54,31 @@ class TuningConfig(ExperimentConfig):
         "ranges": "--settings or --range",
         "search_seeds": "--seeds",
         "seeds": "--held-out",
+        "held_out_seeds": "--held-out",
     }
 
     experiment: ExperimentName = "league"
     gaits: tuple[str | GaitSpec, ...]
     observations: tuple[Observation, ...] = ("measured",)
-    trials: int = 40
+    candidates: int = 40
     search_seeds: int = 8
     objective: Objective = "distance"
     ranges: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_whole("trials", self.trials, 1, MAX_CANDIDATES)
+        check_whole("candidates", self.candidates, 1, MAX_CANDIDATES)
         check_whole("search_seeds", self.search_seeds, 1, MAX_SEEDS)
         for name in ("gaits", "observations", "robots", "worlds", "steps"):
             if len(getattr(self, name)) > 1:
                 raise InvalidInput(f"a tuning is in one place, so {name} must name one")
         if self.objective not in OBJECTIVES:
             raise UnknownName("objective", self.objective, get_args(Objective))
-        if self.trials * self.search_seeds > MAX_TRIALS:
+        trials = self.candidates * self.search_seeds
+        if trials > MAX_TRIALS:
             raise InvalidInput(
-                f"the search has {self.trials * self.search_seeds:,} trials, the most is "
-                f"{MAX_TRIALS:,}; choose fewer trials or fewer seeds"
+                f"the search has {trials:,} trials, the most is {MAX_TRIALS:,}; choose fewer "
+                "candidates or fewer seeds"
             )
 
     @property
@@ -88,6 +91,12 @@ class TuningConfig(ExperimentConfig):
         """Where to search."""
         settings = agent_settings(self.agent)
         return tuple(parse_range(text, settings) for text in self.ranges)
+
+
+def config_json(config: TuningConfig) -> dict[str, Any]:
+    """Convert a config to plain types as a summary has it: `seeds` are called `held_out_seeds`."""
+    names = {"seeds": "held_out_seeds"}
+    return {names.get(name, name): value for name, value in as_json(config).items()}
 
 
 def tuning_config(
