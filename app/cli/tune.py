@@ -22,7 +22,14 @@ from app.cli.options import (
 )
 from app.cli.terminal import progress, show_table
 from app.cli.trial_options import add_machine_options, cluster_from
-from app.cli.trials import INTERRUPTED, RATE_WINDOW_S, discard, stop_signals, workers_text
+from app.cli.trials import (
+    INTERRUPTED,
+    RATE_WINDOW_S,
+    discard,
+    share_text,
+    stop_signals,
+    workers_text,
+)
 from app.domain.checks import check_whole
 from app.domain.errors import InvalidInput
 from app.domain.gait import NAMED_GAITS
@@ -247,11 +254,10 @@ def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
 
 
 def _row(one: Mapping[str, Any]) -> tuple[str, ...]:
-    share = one["of_greedy"]
     return (
         _interval_text(one["distance"]),
         _interval_text(one["mean_m"]),
-        "" if share is None else f"{100 * share['iqm']:.0f} %",
+        share_text(one["of_greedy"]),
         str(one["n"]),
     )
 
