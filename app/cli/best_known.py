@@ -11,6 +11,7 @@ from app.assembly import build_simulator
 from app.cli.files import check_writable, write_whole
 from app.cli.options import CommandParser, integer, split
 from app.cli.terminal import progress
+from app.domain.checks import check_whole
 from app.domain.disturbances import SensorNoise
 from app.domain.errors import UnknownName
 from app.domain.gait import NAMED_GAITS
@@ -18,7 +19,6 @@ from app.domain.robot import robot
 from app.domain.world import WORLDS, named_world
 from app.runs import best_known
 from app.runs.config import WalkingProblem
-from app.runs.race_config import check_whole
 
 MAX_WIDTH = 4096
 _PHYSICAL = [name for name, one in WORLDS.items() if one.world.one_of(SensorNoise) is None]

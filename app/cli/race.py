@@ -20,6 +20,7 @@ from app.cli.options import (
 from app.cli.terminal import progress, show_lanes
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.settings import declared_fields
+from app.runs.best_known import best_known_in_race_m
 from app.runs.clocks import CLOCKS, check_clock
 from app.runs.config import agent_settings
 from app.runs.config_json import as_json
@@ -78,7 +79,9 @@ def run(options: argparse.Namespace) -> int:
     for lane, details in zip(result["lanes"], lane_details(lanes_recorded, config), strict=True):
         lane.update(details)
     if options.json:
-        print(json.dumps({"config": as_json(config), "result": result}))
+        best_m = best_known_in_race_m(config)
+        shown = {"config": as_json(config), "result": result, "best_known_m": best_m}
+        print(json.dumps(shown))
     else:
         show_lanes(config, result, options.clock)
     return 0

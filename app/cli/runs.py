@@ -142,6 +142,8 @@ def _show(options: argparse.Namespace) -> int:
         return 0
     progress, result = view.pop("progress"), view.pop("result")
     counted = "trials" if run.kind == "experiment" else "steps"
+    if result:
+        view.pop("best_known_m", None)  # it stands under the lanes
     view[counted] = f"{progress['done']:,} of {progress['total']:,}"
     view["evaluations"] = len(curve)
     for name, value in view.items():

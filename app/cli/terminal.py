@@ -18,6 +18,7 @@ from rich.table import Table
 from rich.text import Text
 
 from app.agents.appearance import name_of
+from app.runs.best_known import best_known_in_race_m
 from app.runs.lane import plans_with
 from app.runs.race_config import RaceConfig
 
@@ -77,7 +78,7 @@ def show_table(
 
 
 def show_lanes(config: RaceConfig, result: dict[str, Any], clock: str) -> None:
-    """Print the result of a race as a table, ranked under a clock."""
+    """Print the result of a race as a table, ranked under a clock, and the best known distance."""
     rows = []
     lanes = zip(config.lanes, result["lanes"], strict=True)
     for own, lane in sorted(lanes, key=lambda both: both[1]["clocks"][clock]["rank"]):
@@ -97,3 +98,6 @@ def show_lanes(config: RaceConfig, result: dict[str, Any], clock: str) -> None:
         )
     head = ("lane", "at time-out", "in all", "time", "a decision", "simulated transitions")
     show_table(f"Ranked at time-out, {clock} clock", head, rows)
+    best_m = best_known_in_race_m(config)
+    if best_m is not None:
+        print(f"Best known, in all: {best_m:.2f} m")

@@ -105,9 +105,11 @@ def _practise(learner: Learner, config: TrainingConfig) -> list[dict[str, float]
 def _print_result(
     options: argparse.Namespace, config: TrainingConfig, result: dict[str, Any]
 ) -> None:
+    best_m = result["best_known_m"]
     print(
         f"After {config.steps:,} steps of practice it walks {result['distance_m']:.2f} m in 50 "
-        f"steps; one-step look-ahead walks {result['greedy_distance_m']:.2f} m."
+        f"steps; one-step look-ahead walks {result['greedy_distance_m']:.2f} m"
+        f"{'' if best_m is None else f', the best known walk is {best_m:.2f} m'}."
     )
     if options.out:
         print(f"The table is in {options.out}.")

@@ -13,14 +13,14 @@ from typing import Any
 from app.cli.terminal import progress, show_table
 from app.domain.errors import InvalidInput
 from app.experiments.cluster import ClusterSpec
-from app.experiments.config import ExperimentConfig
+from app.experiments.config import DISTURBED, ExperimentConfig
 from app.experiments.folder import ResultsFolder, open_results
 from app.experiments.own_cluster import cores
 from app.experiments.plan import Trial
 
 INTERRUPTED = 130
 RATE_WINDOW_S = 300.0  # trials of one experiment take from a second to half a minute
-_HEAD = ("setting", "seeds", "total m", "95 %", "at time-out m", "of greedy")
+_HEAD = ("setting", "seeds", "total m", "95 %")
 
 
 def run_experiment(
@@ -100,8 +100,7 @@ def _report(cluster: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
 
 
 def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
-    rows = [_row(setting) for setting in summary["settings"]]
-    show_table("Interquartile means over the seeds", _HEAD, rows, long_names=True)
+    show_table("Interquartile means over the seeds", *_table(summary), long_names=True)
     trials, cost = summary["trials"], summary["cost"]
     for one in trials["set_aside"]:
         print(f"Set aside: {one['key']}: {one['reason']}")
@@ -113,17 +112,44 @@ def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
     )
 
 
-def _row(setting: Mapping[str, Any]) -> tuple[str, ...]:
-    total, finished, relative = (setting[name] for name in ("total", "finished", "relative"))
+def _table(summary: Mapping[str, Any]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Return head and rows; a league or recovery has no race, but more to be measured against."""
+    settings = summary["settings"]
+    if summary["experiment"] not in DISTURBED:
+        head = (*_HEAD, "at time-out m", "of greedy")
+        return head, [(*_distances(one), *_in_race(one)) for one in settings]
+    known = {one["key"]: one for one in summary["worlds"]}
+    head = (*_HEAD, "of greedy", "of best known")
+    return head, [(*_distances(one), *_shares(known.get(one["key"]))) for one in settings]
+
+
+def _distances(setting: Mapping[str, Any]) -> tuple[str, ...]:
+    total = setting["total"]
     between = total is not None and total["low_m"] is not None
     return (
         setting["key"].replace("/", " "),
         str(setting["n"]),
         "" if total is None else f"{total['iqm_m']:.3f}",
         f"{total['low_m']:.3f}–{total['high_m']:.3f}" if between else "",
-        "" if finished is None else f"{finished['iqm_m']:.3f}",
-        "" if relative is None else f"{100 * relative['iqm']:.0f} %",
     )
+
+
+def _in_race(setting: Mapping[str, Any]) -> tuple[str, str]:
+    finished = setting["finished"]
+    return "" if finished is None else f"{finished['iqm_m']:.3f}", share_text(setting["relative"])
+
+
+def _shares(one: Mapping[str, Any] | None) -> tuple[str, str]:
+    return (
+        ("", "")
+        if one is None
+        else (share_text(one["of_greedy"]), share_text(one["of_best_known"]))
+    )
+
+
+def share_text(share: Mapping[str, Any] | None) -> str:
+    """Return the interquartile mean of a share as text: `96 %`."""
+    return "" if share is None else f"{100 * share['iqm']:.0f} %"
 
 
 @contextmanager

@@ -22,7 +22,15 @@ from app.cli.options import (
 )
 from app.cli.terminal import progress, show_table
 from app.cli.trial_options import add_machine_options, cluster_from
-from app.cli.trials import INTERRUPTED, RATE_WINDOW_S, discard, stop_signals, workers_text
+from app.cli.trials import (
+    INTERRUPTED,
+    RATE_WINDOW_S,
+    discard,
+    share_text,
+    stop_signals,
+    workers_text,
+)
+from app.domain.checks import check_whole
 from app.domain.errors import InvalidInput
 from app.domain.gait import NAMED_GAITS
 from app.domain.robot import PRESETS
@@ -32,11 +40,11 @@ from app.experiments.cluster import ClusterSpec, connect
 from app.experiments.config import MAX_SEEDS
 from app.experiments.engine import Outcome
 from app.experiments.folder import ResultsFolder, open_results
+from app.experiments.formatting import counted
 from app.experiments.own_cluster import cores
 from app.experiments.plan import Trial
 from app.experiments.tuning.config import Objective, TuningConfig, tuning_config
 from app.runs.config import SIMULATORS, TrainingConfig, WalkingProblem
-from app.runs.race_config import check_whole
 
 if TYPE_CHECKING:
     from app.experiments.tuning.tuning import Tuning
@@ -53,10 +61,10 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     _add_place_options(parser)
     usual = TuningConfig
     parser.add_argument(
-        "--trials",
+        "--candidates",
         type=integer,
-        default=usual.trials,
-        help=f"settings to try, the defaults first (default {usual.trials})",
+        default=usual.candidates,
+        help=f"combinations of settings to try, the defaults first (default {usual.candidates})",
     )
     parser.add_argument(
         "--seeds",
@@ -134,8 +142,9 @@ def run(options: argparse.Namespace) -> int:
     with open_results(path, config) as folder:
         before = f"; {folder.done:,} are there already" if folder.done else ""
         print_line(
-            f"{config.trials:,} settings of {config.agent} on {config.search_seeds:,} seeds, then "
-            f"{config.seeds:,} held-out seeds: about {tuning.total:,} trials "
+            f"{counted(config.candidates, 'candidate')} for the settings of {config.agent} on "
+            f"{counted(config.search_seeds, 'seed')} each, then "
+            f"{counted(config.seeds, 'held-out seed')}: about {tuning.total:,} trials "
             f"{workers_text(cluster)}, kept in {path}{before}"
         )
         _run(tuning, cluster, folder, options.retry)
@@ -176,7 +185,7 @@ def config_from(options: argparse.Namespace) -> TuningConfig:
         grid_side_m=(options.grid_side_m,),
         tolerance=options.tolerance,
         steps=(options.steps,),
-        trials=options.trials,
+        candidates=options.candidates,
         search_seeds=options.seeds,
         seeds=options.held_out,
         seed=options.seed,
@@ -245,11 +254,10 @@ def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
 
 
 def _row(one: Mapping[str, Any]) -> tuple[str, ...]:
-    share = one["of_greedy"]
     return (
         _interval_text(one["distance"]),
         _interval_text(one["mean_m"]),
-        "" if share is None else f"{100 * share['iqm']:.0f} %",
+        share_text(one["of_greedy"]),
         str(one["n"]),
     )
 

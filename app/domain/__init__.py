@@ -1,7 +1,7 @@
 """The walking problem: robots, gaits, kinematics and steps. NumPy only, no input or output.
 
 - `types`: arrays, cells and actions; `errors`: the exception hierarchy; `text`: validation and
-  escaping of names.
+  escaping of names; `checks`: of numbers; `settings`: values that a user may choose.
 - `robot`: morphology, servos and presets; `tolerance`: robots as they are built; `gait`:
   orientation and leg pairs; `grid`: the foot grid; `observation`: how the state is read, and the
   legal actions.

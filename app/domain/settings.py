@@ -15,7 +15,7 @@ import math
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import MISSING, asdict, dataclass, fields, replace
+from dataclasses import MISSING, dataclass, fields, replace
 from functools import cache, cached_property, partial
 from inspect import Parameter
 from types import MappingProxyType, NoneType, UnionType
@@ -23,11 +23,11 @@ from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 from annotated_types import Ge, Gt, Le, Lt
 
+from app.domain.checks import Limit, bound_of, parse_number, satisfies
 from app.domain.errors import InvalidInput, UnknownName
 
 Value = float | int | str | bool | None
 V = TypeVar("V")
-Limit = Ge | Gt | Le | Lt
 REQUIRED = inspect.Parameter.empty
 """Default of a setting without a default."""
 _VARIADIC = (Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD)
@@ -110,12 +110,12 @@ class DeclaredSetting:
     @property
     def low(self) -> float | None:
         """Lower limit, inclusive or exclusive; None without one."""
-        return next((_bound(x) for x in self.limits if isinstance(x, Ge | Gt)), None)
+        return next((bound_of(x) for x in self.limits if isinstance(x, Ge | Gt)), None)
 
     @property
     def high(self) -> float | None:
         """Upper limit, inclusive or exclusive; None without one."""
-        return next((_bound(x) for x in self.limits if isinstance(x, Le | Lt)), None)
+        return next((bound_of(x) for x in self.limits if isinstance(x, Le | Lt)), None)
 
     @property
     def excludes_low(self) -> bool:
@@ -163,7 +163,7 @@ class DeclaredSetting:
             return False
         # No whole number that `float` cannot take either.
         is_of_kind = isinstance(value, int) if self.is_whole else abs(value) <= sys.float_info.max
-        return is_of_kind and all(_satisfies(limit, value) for limit in self.limits)
+        return is_of_kind and all(satisfies(limit, value) for limit in self.limits)
 
     def normalized(self, value: Any) -> Any:
         """Return a value converted to the type of the setting: 2 to 2.0, or 2.0 to 2.
@@ -195,7 +195,7 @@ class DeclaredSetting:
             if bool in self.kinds and text in ("true", "false"):
                 value = text == "true"
             elif self.is_number:
-                value = _parsed_number(text, self.is_whole)
+                value = parse_number(text, self.is_whole)
         self.check(value)
         return value
 
@@ -426,25 +426,3 @@ def _limits(annotation: Any) -> Iterator[Limit]:
             yield one
         elif get_origin(one) is not None:
             yield from _limits(one)
-
-
-def _bound(limit: Limit) -> float:
-    (bound,) = asdict(limit).values()
-    return bound  # type: ignore[no-any-return]
-
-
-def _satisfies(limit: Limit, value: float) -> bool:
-    bound = _bound(limit)
-    if isinstance(limit, Gt):
-        return value > bound
-    if isinstance(limit, Ge):
-        return value >= bound
-    return value < bound if isinstance(limit, Lt) else value <= bound
-
-
-def _parsed_number(text: str, is_whole: bool) -> Value:
-    """Parse a number; return the text itself if it is none."""
-    try:
-        return int(text) if is_whole else float(text)
-    except ValueError:
-        return text

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.domain.checks import check_whole
 from app.domain.errors import HexapodError, InvalidInput
 from app.experiments.own_cluster import cores, own_cluster
 from app.experiments.worker import difference, versions
-from app.runs.race_config import check_whole
 
 if TYPE_CHECKING:
     from distributed import Client

@@ -3,9 +3,10 @@
 import contextlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
-from typing import Any, Literal, get_args
+from typing import Any, ClassVar, Literal, get_args
 
 from app.agents.registry import learns
+from app.domain.checks import check_whole
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import NAMED_GAITS, GaitSpec
 from app.domain.observation import PAPER_OBSERVATIONS, Observation
@@ -20,7 +21,6 @@ from app.domain.settings import (
 from app.domain.world import parse_world
 from app.runs.config import SimulatorName, TrainingConfig, agent_settings
 from app.runs.config_json import gait_from_json
-from app.runs.race_config import check_whole
 
 ExperimentName = Literal["table1", "figure4", "sweep", "league", "recovery"]
 EXPERIMENTS: tuple[ExperimentName, ...] = get_args(ExperimentName)
@@ -61,6 +61,17 @@ class ExperimentConfig:
         UnknownName, InvalidInput: if a value is invalid, empty or repeated.
     """
 
+    kind: ClassVar[str] = "experiment"
+    """What a results folder says that it holds."""
+    options: ClassVar[Mapping[str, str]] = {
+        "agents": "--agent",
+        "gaits": "--gait",
+        "observations": "--observation",
+        "robots": "--robot",
+        "worlds": "--world",
+    }
+    """What a user types on the command line, by field; see `option_of`."""
+
     experiment: ExperimentName
     seeds: int = 30
     seed: int = 0
@@ -96,6 +107,11 @@ class ExperimentConfig:
                 raise InvalidInput(f"{name} must name at least one")
             if any(value in values[:place] for place, value in enumerate(values)):
                 raise InvalidInput(f"{name} names something twice")
+
+    @classmethod
+    def option_of(cls, field: str) -> str:
+        """Return the option of a field, or of a setting of an agent: `--grid-side-m`."""
+        return cls.options.get(field, f"--{field.replace('_', '-')}")
 
 
 _LIST_FIELDS = ("agents", "gaits", "observations", "robots", "worlds")

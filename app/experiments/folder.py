@@ -27,7 +27,9 @@ SUMMARY = "summary.json"
 
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _SYNC_S = 0.5
-_GROWING = ("seeds", "trials")
+_GROWING = ("seeds", "candidates")
+_EARLIER_KINDS = {"ExperimentConfig": "experiment", "TuningConfig": "tuning"}
+"""Kinds by what earlier versions wrote; the first of them wrote none."""
 _CHOOSE = "choose another folder"
 
 
@@ -78,8 +80,8 @@ class ResultsFolder(Progress):
         file.truncate(self._end)
         if not lines:
             config = as_json(self.plan.config)
-            head = {"format": FORMAT, "kind": self._kind, "versions": versions(), "config": config}
-            self._write(head)
+            kind = self.plan.config.kind
+            self._write({"format": FORMAT, "kind": kind, "versions": versions(), "config": config})
             return
         self._check(self._head(lines[0]))
         for number, line in enumerate(lines[1:], start=2):
@@ -90,11 +92,6 @@ class ResultsFolder(Progress):
         with suppress(OSError):
             os.fsync(self._file.fileno())
         self._synced_s = time.monotonic()
-
-    @property
-    def _kind(self) -> str:
-        """Class of the config: another one has other fields."""
-        return type(self.plan.config).__name__
 
     def _write(self, line: Mapping[str, Any]) -> None:
         data = json.dumps(line, allow_nan=False).encode() + b"\n"
@@ -118,9 +115,11 @@ class ResultsFolder(Progress):
     def _head(self, line: bytes) -> dict[str, Any]:
         try:
             head = json.loads(line)
-            if {"format", "versions", "config"} <= set(head):
-                return dict(head)
-        except (ValueError, TypeError):
+            if "format" in head and all(
+                isinstance(head[name], dict) for name in ("versions", "config")
+            ):
+                return _converted(head)
+        except (KeyError, TypeError, ValueError):
             pass
         raise DamagedFile(
             f"{self.path / TRIALS} does not begin as results of an experiment do; {_CHOOSE}"
@@ -132,7 +131,7 @@ class ResultsFolder(Progress):
                 f"{self.path} has results in format {head['format']}, and this version writes "
                 f"format {FORMAT}; {_CHOOSE}"
             )
-        if head.get("kind", ExperimentConfig.__name__) != self._kind:  # earlier versions had one
+        if head["kind"] != self.plan.config.kind:
             raise InvalidInput(f"{self.path} has results of another experiment; {_CHOOSE}")
         differs = difference(versions(), head["versions"])
         if differs is not None:
@@ -148,10 +147,15 @@ class ResultsFolder(Progress):
         names = [
             name for name in every if name not in _GROWING and here.get(name) != there.get(name)
         ]
-        if names:
+        if "experiment" in names:
             raise InvalidInput(
-                f"{self.path} has results of another experiment, which differs in "
-                f"{', '.join(names)}; {_CHOOSE}"
+                f"{self.path} has results of another experiment, {there['experiment']}; {_CHOOSE}"
+            )
+        if names:
+            options = ", ".join(map(self.plan.config.option_of, names))
+            raise InvalidInput(
+                f"{self.path} has results of another experiment, which differs in {options}; "
+                f"{_CHOOSE}"
             )
 
     def _read(self, number: int, line: bytes) -> None:
@@ -165,6 +169,15 @@ class ResultsFolder(Progress):
                 "trial is run again"
             ) from error
         super().add(outcome)
+
+
+def _converted(head: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a header as this version writes it; the classes of configs were kinds before."""
+    kind, config = str(head.get("kind", ExperimentConfig.kind)), head["config"]
+    if kind == "TuningConfig":
+        names = {"trials": "candidates"}
+        config = {names.get(name, name): value for name, value in config.items()}
+    return {**head, "kind": _EARLIER_KINDS.get(kind, kind), "config": config}
 
 
 @contextmanager

@@ -5,6 +5,7 @@ from typing import Annotated, Any, NamedTuple
 
 from annotated_types import Ge, Le
 
+from app.domain.checks import check_whole
 from app.domain.errors import InvalidInput
 from app.domain.settings import Setting
 from app.runs.config import RACE_STEPS, Seed, WalkingProblem
@@ -66,16 +67,3 @@ class RaceConfig(WalkingProblem):
                 f"a race records every step, so steps times lanes must be at most "
                 f"{MAX_RACE_STEPS:,}, not {self.steps * len(self.lanes):,}"
             )
-
-
-def check_whole(name: str, value: int, low: int, high: int | None) -> None:
-    """Check that a value is an integer from `low` to `high`; `high` None is no upper limit.
-
-    Raises:
-        InvalidInput: if it is not.
-    """
-    if isinstance(value, bool) or not isinstance(value, int):
-        raise InvalidInput(f"{name} must be a whole number, not {value!r}")
-    if value < low or (high is not None and value > high):
-        limits = f"at least {low}" if high is None else f"from {low} to {high:,}"
-        raise InvalidInput(f"{name} must be {limits}, not {value:,}")

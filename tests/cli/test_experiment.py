@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -192,6 +193,21 @@ def test_league_compares_agents_in_worlds(tmp_path: Path) -> None:
     folder = tmp_path / "league-results"
     assert len(kept(folder)) == done["trials"]["total"]
     assert (folder / "figures" / "league-2.svg").is_file()
+
+
+def test_table_of_a_league_has_the_shares_of_greedy_and_of_the_best_known(tmp_path: Path) -> None:
+    league = ("experiment", "league", "--gait", "left-right-origin", "--agent", "q-learning")
+    size = ("--world", "flat", "--steps", "5", "--seeds", "1", "--workers", "1", "--tolerance", "0")
+    done = in_process(*league, *size, folder=tmp_path, COLUMNS="120")
+    assert (done.returncode, done.stderr) == (0, "")
+    summary = json.loads((tmp_path / "league-results" / "summary.json").read_text("utf-8"))
+    (greedy,) = (one for one in summary["worlds"] if one["agent"] == "greedy")
+    name, share = greedy["key"].replace("/", " "), 100 * greedy["of_best_known"]["iqm"]
+
+    lines = [re.split("[┃│]", line) for line in done.stdout.splitlines()]
+    rows = {line[1].strip(): [cell.strip() for cell in line[-3:-1]] for line in lines if line[1:]}
+    assert rows["setting"] == ["of greedy", "of best known"]
+    assert rows[name] == ["100 %", f"{share:.0f} %"]
 
 
 @pytest.mark.parametrize(

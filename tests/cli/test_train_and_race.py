@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from app.assembly import build_learner, finish_training
-from app.runs.config import training_config
+from app.runs.best_known import best_known_m
+from app.runs.config import WalkingProblem, training_config
 from app.runs.training import train
 from tests.cli.running import EXAMPLES, hexapods, in_process, output, refusal
 
@@ -38,6 +39,26 @@ def test_train_equals_a_direct_call(tmp_path: Path) -> None:
         pass
     assert printed["result"] == finish_training(learner, config)
     assert [point["step"] for point in printed["curve"]] == [50, 60]
+
+
+def test_train_and_race_print_the_best_known_distance_where_it_is_known(
+    folder: Path, tmp_path: Path
+) -> None:
+    best_m = best_known_m(WalkingProblem(gait="left-right-origin"))
+    assert best_m is not None
+    train = ("train", *GAIT, "--steps", "5", "--evaluate-every", "0")
+    race = ("race", *GAIT, "--lane", "greedy", "--world", "flat")
+
+    assert output(*race, folder=tmp_path, run=in_process)["best_known_m"] == best_m
+    shown = in_process(*race, folder=tmp_path).stdout
+    assert shown.endswith(f"Best known, in all: {best_m:.2f} m\n")
+    shown = in_process(*train, folder=tmp_path).stdout
+    assert shown.endswith(f" m, the best known walk is {best_m:.2f} m.\n")
+
+    assert " best known " not in (folder / "said").read_text(), "it is computed in MuJoCo"
+    unknown = ("race", *QUICK, "--lane", "greedy")
+    assert output(*unknown, folder=tmp_path, run=in_process)["best_known_m"] is None
+    assert "Best known" not in in_process(*unknown, folder=tmp_path).stdout
 
 
 def test_training_continues_from_a_table(folder: Path) -> None:

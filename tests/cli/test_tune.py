@@ -10,14 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from app.experiments.folder import TRIALS
+from app.experiments.folder import TRIALS, open_results
 from app.experiments.trial import TrialResult
 from app.experiments.tuning.summary import summarise_tuning
 from tests.cli.running import ROOT, hexapods, in_process, output, refusal
 from tests.experiments.test_tuning import config, tuned
 
 PLACE = ("--gait", "left-right-origin", "--simulator", "kinematic", "--steps", "50")
-SIZE = ("--trials", "12", "--seeds", "3", "--held-out", "5", "--objective", "area")
+SIZE = ("--candidates", "12", "--seeds", "3", "--held-out", "5", "--objective", "area")
 TUNE = ("tune", "q-learning", *PLACE, *SIZE)
 
 
@@ -58,13 +58,17 @@ def test_stopped_and_killed_it_goes_on_and_gives_what_an_unbroken_one_gives(tmp_
     assert (done.returncode, done.stderr) == (0, ""), "Optuna's log stays silent"
     first, *_ = done.stdout.splitlines()
     # greedy once, and five seeds of the defaults and of the tuned
-    assert "12 settings of q-learning on 3 seeds, then 5 held-out seeds: about 47 trials" in first
+    assert (
+        "12 candidates for the settings of q-learning on 3 seeds each, then 5 held-out seeds"
+        in first
+    )
+    assert ": about 47 trials on 2 workers, kept in" in first
     assert first.endswith(" are there already")
-    for text in ("Q-learning, defaults", "Greedy", "12 combinations of settings of Q-learning"):
+    for text in ("Q-learning, defaults", "Greedy", "12 candidates for the settings of Q-learning"):
         assert text in done.stdout
     assert done.stdout.rstrip().endswith("The report is tuning-results/report.html.")
 
-    tuning, progress = tuned(config(steps=(50,), trials=12, search_seeds=3, objective="area"))
+    tuning, progress = tuned(config(steps=(50,), candidates=12, search_seeds=3, objective="area"))
     assert kept(file) == progress.results
     expected = json.loads(json.dumps(summarise_tuning(tuning, progress, workers=None)))
     again = output(*TUNE, folder=tmp_path, run=in_process)
@@ -88,15 +92,17 @@ def test_stopped_and_killed_it_goes_on_and_gives_what_an_unbroken_one_gives(tmp_
         (("q-learning", *PLACE, "--world", "moon"), "limp-pair"),
         (("q-learning", *PLACE, "--world", "ice"), "the kinematic simulator knows"),
         (("q-learning", *PLACE, "--world", "limp:legs=1:at=4"), "leave out at and until"),
-        (("q-learning", *PLACE, "--trials", "0"), "trials must be from 1 to 10,000, not 0"),
-        (("q-learning", *PLACE, "--trials", "many"), "must be a whole number"),
+        (("q-learning", *PLACE, "--candidates", "0"), "candidates must be from 1 to 10,000, not 0"),
+        (("q-learning", *PLACE, "--candidates", "many"), "must be a whole number"),
         (("q-learning", *PLACE, "--seeds", "0"), "seeds must be from 1 to 10,000"),
         (("q-learning", *PLACE, "--held-out", "0"), "held-out must be from 1"),
         (("q-learning", *PLACE, "--settings", "alpha,beta"), "alpha, gamma"),
         (("q-learning", *PLACE, "--range", "alpha=0.1:2"), "over 0 and at most 1"),
         (("q-learning", *PLACE, "--range", "alpha"), "NAME=LOW:HIGH"),
         (("q-learning", *PLACE, "--objective", "speed"), "distance"),
+        (("q-learning", *PLACE, "--range", "alpha=1:0.5"), "LOW must be below HIGH"),
         (("q-learning", *PLACE, "--beside", "skynet"), "linear-model, greedy"),
+        (("q-learning", *PLACE, "--beside", "q-learning"), "leave it out of --beside"),
         (("q-learning", *PLACE, "--workers", "0"), "workers must be from 1 to 512"),
         (("q-learning", *PLACE, "--scheduler", "127.0.0.1"), "tcp://HOST:PORT"),
         (("q-learning", *PLACE, "--out", "/proc/nowhere"), "cannot keep results in"),
@@ -107,6 +113,43 @@ def test_invalid_input_is_refused_in_one_sentence(
 ) -> None:
     assert names in refusal("tune", *arguments, folder=tmp_path, run=in_process)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("changed", "option"),
+    [
+        (("--seeds", "4"), "--seeds"),
+        (("--objective", "distance"), "--objective"),
+        (("--settings", "alpha"), "--settings or --range"),
+        (("--beside", "r-max"), "the agent or --beside"),
+        (("--gait", "front-back-origin", "--seed", "1"), "--seed, --gait"),
+    ],
+)
+def test_resumed_with_other_options_it_names_those_that_differ(
+    changed: tuple[str, ...], option: str, tmp_path: Path
+) -> None:
+    begun = config(steps=(50,), candidates=12, search_seeds=3, objective="area")
+    with open_results(tmp_path / "mine", begun):
+        pass
+
+    sentence = refusal(*TUNE, *changed, "--out", "mine", folder=tmp_path, run=in_process)
+    assert sentence.endswith(f"which differs in {option}; choose another folder")
+
+
+def test_folder_of_an_earlier_version_is_read(tmp_path: Path) -> None:
+    begun = config(steps=(50,), candidates=12, search_seeds=3, objective="area")
+    with open_results(tmp_path, begun):
+        pass
+    head = json.loads((tmp_path / TRIALS).read_text("utf-8"))
+    assert head["kind"] == "tuning"
+    head["config"]["trials"] = head["config"].pop("candidates")
+    (tmp_path / TRIALS).write_text(json.dumps(head | {"kind": "TuningConfig"}) + "\n", "utf-8")
+
+    with open_results(tmp_path, begun) as folder:
+        assert folder.done == 0
+    league = ("experiment", "league", *PLACE, "--out", str(tmp_path))
+    sentence = refusal(*league, folder=tmp_path, run=in_process)
+    assert sentence.endswith("has results of another experiment; choose another folder")
 
 
 def test_results_of_another_experiment_are_refused(tmp_path: Path) -> None:

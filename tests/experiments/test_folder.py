@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from app.domain.errors import DamagedFile, HexapodError, InvalidInput
+from app.domain.robot import robot
 from app.experiments.config import ExperimentConfig, experiment_config
 from app.experiments.engine import Outcome
 from app.experiments.folder import TRIALS, NotKept, open_results
@@ -118,7 +119,7 @@ def test_a_partial_header_is_written_again(folder: Path) -> None:
     (folder / TRIALS).write_bytes(b'{"format": 1, "ver')
     with open_results(folder, CONFIG) as opened:
         assert opened.results == {}
-    assert refusal(folder, small(steps=31)).endswith("differs in steps; choose another folder")
+    assert refusal(folder, small(steps=31)).endswith("differs in --steps; choose another folder")
 
 
 @pytest.mark.parametrize(
@@ -138,7 +139,16 @@ def test_a_damaged_line_is_named(damaged: bytes, folder: Path) -> None:
     assert first in file.read_bytes(), "nothing is lost"
 
 
-@pytest.mark.parametrize("head", [b"milk\n", b"[]\n", b"{}\n"])
+@pytest.mark.parametrize(
+    "head",
+    [
+        b"milk\n",
+        b"[]\n",
+        b"{}\n",
+        b'{"format": 1, "versions": {}, "config": []}\n',
+        b'{"format": 1, "versions": 1, "config": {}}\n',
+    ],
+)
 def test_a_file_in_another_format_is_refused(head: bytes, folder: Path) -> None:
     (folder / TRIALS).write_bytes(head)
     assert "does not begin as results of an experiment do" in refusal(folder)
@@ -152,13 +162,33 @@ def test_results_of_another_version_are_refused(folder: Path) -> None:
     assert "has results in format 2, and this version writes format 1" in refusal(folder)
 
 
+@pytest.mark.parametrize("earlier", [None, "ExperimentConfig"])
+def test_kind_of_results_is_named_and_that_of_earlier_versions_is_read(
+    earlier: str | None, folder: Path, outcomes: list[Outcome]
+) -> None:
+    head = json.loads((folder / TRIALS).read_text("utf-8").splitlines()[0])
+    assert head["kind"] == "experiment"
+
+    def rename(head: dict[str, object]) -> None:
+        head.pop("kind")
+        head.update({} if earlier is None else {"kind": earlier})
+
+    change_head(folder, rename)
+    with open_results(folder, CONFIG) as opened:
+        assert opened.done == len(outcomes)
+    change_head(folder, lambda head: head.update(kind="tuning"))
+    assert refusal(folder).endswith("has results of another experiment; choose another folder")
+
+
 @pytest.mark.parametrize(
     ("other", "name"),
     [
-        (replace(CONFIG, seed=1), "seed"),
-        (replace(CONFIG, simulator="mujoco"), "simulator"),
-        (replace(CONFIG, settings=CONFIG.settings | {"gamma": (0.5, 0.9)}), "gamma"),
-        (experiment_config("figure4", {"seeds": 3, "simulator": "kinematic"}), "experiment"),
+        (replace(CONFIG, seed=1), "which differs in --seed;"),
+        (replace(CONFIG, simulator="mujoco"), "which differs in --simulator;"),
+        (replace(CONFIG, robots=(robot("compliant"),)), "which differs in --robot;"),
+        (replace(CONFIG, steps_per_episode=(5,)), "which differs in --steps-per-episode;"),
+        (replace(CONFIG, settings=CONFIG.settings | {"gamma": (0.5, 0.9)}), "differs in --gamma;"),
+        (experiment_config("figure4", {"simulator": "kinematic"}), "another experiment, sweep;"),
     ],
 )
 def test_results_of_another_experiment_are_refused(

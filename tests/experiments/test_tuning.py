@@ -19,7 +19,7 @@ from app.experiments.folder import open_results
 from app.experiments.plan import Plan, Trial
 from app.experiments.progress import Progress
 from app.experiments.trial import TrialResult, run_trial
-from app.experiments.tuning.config import TuningConfig, tuning_config
+from app.experiments.tuning.config import TuningConfig, config_json, tuning_config
 from app.experiments.tuning.ranges import SearchRange, declared_range, parse_range
 from app.experiments.tuning.report import command, tuning_files
 from app.experiments.tuning.study import Study
@@ -39,7 +39,7 @@ def config(agent: str = "q-learning", **given: Any) -> TuningConfig:
         "gaits": (LRO,),
         "simulator": "kinematic",
         "steps": (30,),
-        "trials": 2 * BATCH + 1,
+        "candidates": 2 * BATCH + 1,
         "search_seeds": 2,
         "seeds": 5,
     }
@@ -126,8 +126,9 @@ def test_numbers_are_rounded_within_their_range() -> None:
         ("alpah=0.1:1", "alpha, gamma"),
         ("alpha=0:1", "alpha must be a number over 0 and at most 1"),
         ("alpha=0.1:2", "at most 1"),
-        ("alpha=1:0.1", "must be LOW:HIGH"),
-        ("alpha=0.1:0.3:1", "must be LOW:HIGH"),
+        ("alpha=1:0.1", "alpha=1:0.1: LOW must be below HIGH"),
+        ("alpha=0.3:0.3", "LOW must be below HIGH"),
+        ("alpha=0.1:0.3:1", "the range of alpha must be LOW:HIGH, not '0.1:0.3:1'"),
         ("alpha=0.5:1", "must contain its default, 0.3"),
         ("alpha=0.3", "two or more different values"),
         ("alpha=0.3,0.3", "two or more different values"),
@@ -154,20 +155,36 @@ def test_choices_have_no_ends() -> None:
         ({"settings": ("alpha", "beta")}, "alpha, gamma"),
         ({"settings": ("alpha",), "ranges": ("gamma=0.1:0.9",)}, "not one of the settings to tune"),
         ({"ranges": ("alpha=0.1:1", "alpha=0.2:1")}, "given twice"),
-        ({"trials": 0}, "trials must be from 1 to 10,000, not 0"),
+        ({"candidates": 0}, "candidates must be from 1 to 10,000, not 0"),
         ({"search_seeds": 0}, "search_seeds must be from 1"),
         ({"seeds": 0}, "seeds must be from 1"),
-        ({"trials": 10_000, "search_seeds": 100}, "the most is 200,000"),
+        (
+            {"candidates": 10_000, "search_seeds": 100},
+            "the search has 1,000,000 trials, the most is",
+        ),
         ({"objective": "speed"}, "distance, area"),
         ({"gaits": (LRO, "front-back-origin")}, "gaits must name one"),
         ({"worlds": ("moon",)}, "limp-pair"),
-        ({"beside": ("q-learning",)}, "agents names something twice"),
+        (
+            {"beside": ("q-learning",)},
+            "q-learning is tuned, and walks with its defaults anyway; le",
+        ),
+        ({"beside": ("r-max", "r-max")}, "--beside names r-max twice"),
     ],
 )
 def test_invalid_tuning_is_refused_in_a_sentence(given: dict[str, Any], names: str) -> None:
     with pytest.raises(HexapodError) as refused:
         config(**given)
     assert names in str(refused.value)
+
+
+def test_settings_are_named_as_their_options_too() -> None:
+    by_option = config("dyna-q", settings=("planning-steps",), ranges=("planning-steps=1:100",))
+
+    assert by_option == config(
+        "dyna-q", settings=("planning_steps",), ranges=("planning_steps=1:100",)
+    )
+    assert by_option.ranges == ("planning_steps=1:100",)
 
 
 def test_config_is_read_back_from_plain_types() -> None:
@@ -229,8 +246,8 @@ def test_interrupted_tuning_is_not_complete() -> None:
     assert (tuning.is_complete, tuning.candidates, progress.done) == (False, [], 3)
 
 
-def test_more_trials_go_on_from_fewer(tmp_path: Path) -> None:
-    few, more = config(trials=BATCH + 1), config(trials=2 * BATCH)
+def test_more_candidates_go_on_from_fewer(tmp_path: Path) -> None:
+    few, more = config(candidates=BATCH + 1), config(candidates=2 * BATCH)
     with open_results(tmp_path / "kept", few) as folder:
         list(Tuning(few).run(folder, one_by_one(folder)))
     with open_results(tmp_path / "kept", more) as folder:
@@ -254,7 +271,7 @@ def test_held_out_seeds_are_those_of_a_league_and_none_of_the_search() -> None:
 
 
 def test_the_better_of_two_values_is_found_and_confirmed() -> None:
-    given = config(MOODY, settings=("mood",), steps=(5,), trials=BATCH)
+    given = config(MOODY, settings=("mood",), steps=(5,), candidates=BATCH)
     tuning, progress = tuned(given)
     summary = summarise_tuning(tuning, progress, None)
 
@@ -307,8 +324,8 @@ def test_objective_is_the_mean_over_the_seeds_and_a_failed_walk_counts_nothing()
             return TrialResult(failure="it diverged")
         return TrialResult(distances_m=(0.2, 0.4)[-len(trial.config.evaluations or (0,)) :])
 
-    by_distance, _ = tuned(config(trials=1), walk)
-    by_area, _ = tuned(config(trials=1, objective="area"), walk)
+    by_distance, _ = tuned(config(candidates=1), walk)
+    by_area, _ = tuned(config(candidates=1, objective="area"), walk)
 
     assert (by_distance.best.value_m, by_distance.best.failed) == (0.4 / 2, 1)
     # evaluated after 25 and 30 steps: (25 · .1 + 5 · .3) / 30 m
@@ -351,7 +368,7 @@ def test_values_that_do_not_go_together_are_not_tried() -> None:
 
 
 def test_report_is_the_same_for_the_same_results_and_has_every_trial() -> None:
-    given = config(MOODY, settings=("mood", "optimism"), beside=("q-learning",), trials=BATCH)
+    given = config(MOODY, settings=("mood", "optimism"), beside=("q-learning",), candidates=BATCH)
     tuning, progress = tuned(given)
     summary = summarise_tuning(tuning, progress, workers=1)
     files = dict(tuning_files(tuning, progress, summary))
@@ -362,18 +379,31 @@ def test_report_is_the_same_for_the_same_results_and_has_every_trial() -> None:
     # greedy, and the defaults, the tuned and Q-learning on five seeds each
     assert [row["phase"] for row in rows].count("held-out") == 1 + 3 * 5
     assert [row["phase"] for row in rows].count("search") == BATCH * 2
+    tried = {row["candidate"] for row in rows if row["phase"] == "search"}
+    assert tried == {str(number) for number in range(BATCH)}
+    assert summary["config"]["candidates"] == BATCH
+    assert (summary["config"]["search_seeds"], summary["config"]["held_out_seeds"]) == (2, 5)
     assert {row["mood"] for row in rows if row["agent"] == MOODY} == {"dull", "bright"}
     page = files["report.html"].decode()
-    for text in (*summary["said"], "Moody, tuned", "Moody, defaults", "Greedy"):
+    lead = "4 candidates, each a combination of settings, on 2 seeds, then the best and the def"
+    for text in (
+        *summary["said"],
+        lead,
+        "Candidate 1",
+        "Moody, tuned",
+        "Moody, defaults",
+        "Greedy",
+    ):
         assert text in page
     assert page.count("<svg") >= 2, "a scatter for each setting"
 
 
 def test_report_names_the_command_that_made_it() -> None:
-    assert command(as_json(config(settings=("alpha",), ranges=("alpha=0.05:1",)))) == (
+    assert command(config_json(config(settings=("alpha",), ranges=("alpha=0.05:1",)))) == (
         "hexapods tune q-learning --gait left-right-origin --simulator kinematic --steps 30 "
-        "--trials 9 --seeds 2 --held-out 5 --seed 0 --range alpha=0.05:1.0 --settings alpha"
+        "--candidates 9 --seeds 2 --held-out 5 --seed 0 --range alpha=0.05:1.0 --settings alpha"
     )
-    assert command(as_json(config(beside=("linear-model",), divisions=(3,)))).endswith(
-        " --divisions 3 --steps 30 --trials 9 --seeds 2 --held-out 5 --seed 0 --beside linear-model"
+    assert command(config_json(config(beside=("linear-model",), divisions=(3,)))).endswith(
+        " --divisions 3 --steps 30 --candidates 9 --seeds 2 --held-out 5 --seed 0 "
+        "--beside linear-model"
     )

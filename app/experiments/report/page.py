@@ -34,18 +34,18 @@ TITLES: Mapping[str, str] = {
 }
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 """The page's Content-Security-Policy, also set by a `<meta>` element of the page."""
-_OPTIONS = {
-    "agents": "agent",
-    "gaits": "gait",
-    "observations": "observation",
-    "robots": "robot",
-    "seeds": "seeds",
-    "seed": "seed",
-    "simulator": "simulator",
-    "worlds": "world",
-    "tolerance": "tolerance",
-}
-"""Options by field; that of any other has its field's name."""
+_FIRST = (
+    "agents",
+    "gaits",
+    "observations",
+    "robots",
+    "seeds",
+    "seed",
+    "simulator",
+    "worlds",
+    "tolerance",
+)
+"""Fields whose options come first in a command, in order."""
 
 
 def page(summary: Mapping[str, Any]) -> str:
@@ -86,12 +86,10 @@ def command(config: Mapping[str, Any]) -> str:
     usual = {"agents": default_agents(name), "simulator": ExperimentConfig.simulator}
     defaults = as_json(experiment_config(name, given)) | usual
     arguments = ["hexapods", *(["sweep"] if name == "sweep" else ["experiment", name])]
-    for field in dict.fromkeys((*_OPTIONS, *config)):
+    for field in dict.fromkeys((*_FIRST, *config)):
         if field in config and (field in ("seeds", "seed") or config[field] != defaults.get(field)):
-            option = _OPTIONS.get(field, field.replace("_", "-"))
-            arguments += [
-                part for text in _option_values(config[field]) for part in (f"--{option}", text)
-            ]
+            option = ExperimentConfig.option_of(field)
+            arguments += [part for text in _option_values(config[field]) for part in (option, text)]
     return shlex.join(arguments)
 
 

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any, ClassVar, Literal, get_args
 
 from app.agents.registry import learns
+from app.domain.checks import check_whole
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.gait import GaitSpec
 from app.domain.observation import Observation
@@ -14,10 +15,10 @@ from app.experiments.config import (
     MAX_TRIALS,
     ExperimentConfig,
     ExperimentName,
+    as_json,
 )
-from app.experiments.tuning.ranges import SearchRange, declared_range, parse_range
+from app.experiments.tuning.ranges import SearchRange, declared_range, parse_range, setting_name
 from app.runs.config import agent_settings, usable_agents
-from app.runs.race_config import check_whole
 
 Objective = Literal["distance", "area"]
 OBJECTIVES: Mapping[Objective, str] = {
@@ -37,7 +38,7 @@ class TuningConfig(ExperimentConfig):
     first agent is tuned, the others walk beside it, and `seeds` is the number of held-out seeds.
 
     Attributes:
-        trials: number of settings that are tried, the defaults first.
+        candidates: number of combinations of settings that are tried, the defaults first.
         search_seeds: number of seeds for each of them, other ones than those held out.
         objective: what is searched for.
         ranges: where, as `parse_range` reads it, one for each setting.
@@ -46,27 +47,38 @@ class TuningConfig(ExperimentConfig):
         UnknownName, InvalidInput: if a value is invalid, empty or repeated.
     """
 
+    kind: ClassVar[str] = "tuning"
+    options: ClassVar[Mapping[str, str]] = {
+        **ExperimentConfig.options,
+        "agents": "the agent or --beside",
+        "ranges": "--settings or --range",
+        "search_seeds": "--seeds",
+        "seeds": "--held-out",
+        "held_out_seeds": "--held-out",
+    }
+
     experiment: ExperimentName = "league"
     gaits: tuple[str | GaitSpec, ...]
     observations: tuple[Observation, ...] = ("measured",)
-    trials: int = 40
+    candidates: int = 40
     search_seeds: int = 8
     objective: Objective = "distance"
     ranges: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_whole("trials", self.trials, 1, MAX_CANDIDATES)
+        check_whole("candidates", self.candidates, 1, MAX_CANDIDATES)
         check_whole("search_seeds", self.search_seeds, 1, MAX_SEEDS)
         for name in ("gaits", "observations", "robots", "worlds", "steps"):
             if len(getattr(self, name)) > 1:
                 raise InvalidInput(f"a tuning is in one place, so {name} must name one")
         if self.objective not in OBJECTIVES:
             raise UnknownName("objective", self.objective, get_args(Objective))
-        if self.trials * self.search_seeds > MAX_TRIALS:
+        trials = self.candidates * self.search_seeds
+        if trials > MAX_TRIALS:
             raise InvalidInput(
-                f"the search has {self.trials * self.search_seeds:,} trials, the most is "
-                f"{MAX_TRIALS:,}; choose fewer trials or fewer seeds"
+                f"the search has {trials:,} trials, the most is {MAX_TRIALS:,}; choose fewer "
+                "candidates or fewer seeds"
             )
 
     @property
@@ -81,6 +93,12 @@ class TuningConfig(ExperimentConfig):
         return tuple(parse_range(text, settings) for text in self.ranges)
 
 
+def config_json(config: TuningConfig) -> dict[str, Any]:
+    """Convert a config to plain types as a summary has it: `seeds` are called `held_out_seeds`."""
+    names = {"seeds": "held_out_seeds"}
+    return {names.get(name, name): value for name, value in as_json(config).items()}
+
+
 def tuning_config(
     agent: str,
     *,
@@ -93,8 +111,8 @@ def tuning_config(
 
     Args:
         agent: the learner.
-        settings: names of the settings to search; by default those that declare their values and
-            those of `ranges`.
+        settings: names of the settings to search, or of their options; by default those that
+            declare their values and those of `ranges`.
         ranges: `NAME=LOW:HIGH` or `NAME=VALUE,VALUE` in place of what is declared.
         beside: agents that walk on the held-out seeds too.
         given: other attributes of `TuningConfig`.
@@ -111,14 +129,16 @@ def tuning_config(
     declared = agent_settings(agent)
     if not declared:
         raise InvalidInput(f"{agent} has no settings, so there is nothing to tune")
-    found = _given_ranges(ranges, declared, settings)
-    for name in declared if settings is None else settings:
+    _check_beside(agent, beside)
+    chosen = None if settings is None else [setting_name(text) for text in settings]
+    found = _given_ranges(ranges, declared, chosen)
+    for name in declared if chosen is None else chosen:
         if name not in declared:
             raise UnknownName(f"setting of {agent}", name, declared)
         range_ = found.get(name) or declared_range(declared[name])
         if range_ is not None:
             found[name] = range_
-        elif settings is not None:
+        elif chosen is not None:
             raise InvalidInput(
                 f"{name} has no limits between which to search; name them with --range"
             )
@@ -128,6 +148,16 @@ def tuning_config(
         )
     ordered = tuple(str(found[name]) for name in declared if name in found)
     return TuningConfig(agents=(agent, *beside), ranges=ordered, **given)
+
+
+def _check_beside(agent: str, beside: Sequence[str]) -> None:
+    if agent in beside:
+        raise InvalidInput(
+            f"{agent} is tuned, and walks with its defaults anyway; leave it out of --beside"
+        )
+    for place, name in enumerate(beside):
+        if name in beside[:place]:
+            raise InvalidInput(f"--beside names {name} twice")
 
 
 def _given_ranges(

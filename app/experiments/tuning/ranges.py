@@ -60,6 +60,11 @@ class SearchRange:
         return f"{self.name}={_text(self.low)}:{_text(self.high)}"
 
 
+def setting_name(text: str) -> str:
+    """Return the name of a setting that may be written as its option is: `planning-steps`."""
+    return text.replace("-", "_")
+
+
 def declared_range(setting: DeclaredSetting) -> SearchRange | None:
     """Return where to search a setting if nothing else is said; None if that is not declared.
 
@@ -90,7 +95,7 @@ def parse_range(text: str, settings: Mapping[str, DeclaredSetting]) -> SearchRan
             tried first.
     """
     name, equals, values = (part.strip() for part in text.partition("="))
-    name = name.replace("-", "_")
+    name = setting_name(name)
     if not equals or not values:
         raise InvalidInput(f"a range is NAME=LOW:HIGH or NAME=VALUE,VALUE, not {text!r}")
     if name not in settings:
@@ -110,9 +115,11 @@ def _parse_numbers(setting: DeclaredSetting, values: str) -> SearchRange:
         raise InvalidInput(f"{setting.name} is no number; list its values: {setting.valid}")
     ends = [setting.normalized(setting.parse(part.strip())) for part in values.split(":")]
     numbers = [end for end in ends if isinstance(end, int | float)]
-    if len(ends) != 2 or len(numbers) != 2 or numbers[0] >= numbers[1]:
+    if len(ends) != 2 or len(numbers) != 2:
         raise InvalidInput(f"the range of {setting.name} must be LOW:HIGH, not {values!r}")
     low, high = numbers
+    if low >= high:
+        raise InvalidInput(f"{setting.name}={values}: LOW must be below HIGH")
     return SearchRange(name=setting.name, low=low, high=high, is_whole=setting.is_whole)
 
 

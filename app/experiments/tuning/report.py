@@ -10,8 +10,7 @@ from typing import Any
 
 from app.agents.appearance import title_of
 from app.domain.text import metres, text_cell
-from app.experiments.config import as_json
-from app.experiments.formatting import gait_name, number, world_name
+from app.experiments.formatting import counted, gait_name, number, world_name
 from app.experiments.plan import Trial
 from app.experiments.progress import Progress
 from app.experiments.report.drawing import (
@@ -24,7 +23,7 @@ from app.experiments.report.drawing import (
 )
 from app.experiments.report.page import POLICY, environment, inlined_figures
 from app.experiments.report.tables import agent_name, interval_cell, share_cell
-from app.experiments.tuning.config import OBJECTIVES, TuningConfig
+from app.experiments.tuning.config import OBJECTIVES, TuningConfig, config_json
 from app.experiments.tuning.ranges import declared_range
 from app.experiments.tuning.summary import gains
 from app.experiments.tuning.tuning import Tuning, objective_m
@@ -38,24 +37,24 @@ _PAST_END = 1.1
 """Factor by which an axis goes past the range that was searched."""
 _COLUMNS = ("Distance", "Mean over practice", "Of greedy", "Of best known", "Seeds")
 _TRIAL_FIELDS = ("seed_number", "seed", "practised_steps", "distance_m", "mean_m", "failure")
-_OPTIONS: Mapping[str, str] = {
-    "gaits": "gait",
-    "observations": "observation",
-    "robots": "robot",
-    "worlds": "world",
-    "simulator": "simulator",
-    "divisions": "divisions",
-    "grid_side_m": "grid-side-m",
-    "tolerance": "tolerance",
-    "steps": "steps",
-    "trials": "trials",
-    "search_seeds": "seeds",
-    "seeds": "held-out",
-    "seed": "seed",
-    "objective": "objective",
-}
-"""Options by field of the config."""
-_ALWAYS = ("steps", "trials", "search_seeds", "seeds", "seed")
+_FIELDS = (
+    "gaits",
+    "observations",
+    "robots",
+    "worlds",
+    "simulator",
+    "divisions",
+    "grid_side_m",
+    "tolerance",
+    "steps",
+    "candidates",
+    "search_seeds",
+    "held_out_seeds",
+    "seed",
+    "objective",
+)
+"""Fields whose options a command has, in order."""
+_ALWAYS = ("steps", "candidates", "search_seeds", "held_out_seeds", "seed")
 
 
 def tuning_files(
@@ -110,12 +109,13 @@ def tuning_page(summary: Mapping[str, Any]) -> str:
 def command(config: Mapping[str, Any]) -> str:
     """Return the shell command of a tuning, with all options other than defaults."""
     agent, *beside = config["agents"]
-    defaults = as_json(TuningConfig(gaits=("",), agents=(agent,)))
+    defaults = config_json(TuningConfig(gaits=("",), agents=(agent,)))
     arguments = ["hexapods", "tune", agent]
-    for field, option in _OPTIONS.items():
+    for field in _FIELDS:
         value = config[field]
         if field in _ALWAYS or value != defaults[field]:
-            arguments += [f"--{option}", _as_word(value[0] if isinstance(value, list) else value)]
+            option = TuningConfig.option_of(field)
+            arguments += [option, _as_word(value[0] if isinstance(value, list) else value)]
     usual = [str(one) for one in map(declared_range, agent_settings(agent).values()) if one]
     for text in config["ranges"]:
         if text not in usual:
@@ -143,8 +143,9 @@ def _lead(config: Mapping[str, Any]) -> str:
     simulator = "MuJoCo" if config["simulator"] == "mujoco" else "the kinematic simulator"
     place = gait_name(gait) if isinstance(gait, str) else "own gait"
     return (
-        f"{config['trials']:,} combinations of settings on {config['search_seeds']:,} seeds each, "
-        f"then the best and the defaults on {config['seeds']:,} held-out seeds; "
+        f"{counted(config['candidates'], 'candidate')}, each a combination of settings, on "
+        f"{counted(config['search_seeds'], 'seed')}, then the best and the defaults on "
+        f"{counted(config['held_out_seeds'], 'held-out seed')}; "
         f"{config['steps'][0]:,} steps of practice, {place}, {world_name(world)}, in {simulator}."
     )
 
@@ -177,11 +178,11 @@ def _candidate_table(summary: Mapping[str, Any]) -> dict[str, Any]:
     best = sorted(tried, key=lambda one: (-one["value_m"], one["number"]))[:BEST]
     shown = best + [one for one in tried if one["number"] == 0 and one not in best]
     return {
-        "label": "the best of the search, and the defaults",
+        "label": "the best candidates of the search, and the defaults",
         "columns": [*(one["title"] for one in ranges), "In the search"],
         "rows": [
             {
-                "name": "Defaults" if one["number"] == 0 else f"Number {one['number']}",
+                "name": "Defaults" if one["number"] == 0 else f"Candidate {one['number']}",
                 "cells": [
                     *((_value_text(one["values"][own["name"]]), "") for own in ranges),
                     (f"{number(one['value_m'], 3)}", ""),
@@ -231,7 +232,7 @@ def _scatter(one: Mapping[str, Any], summary: Mapping[str, Any]) -> Picture:
     ax.set_ylabel("distance [m]")
     style_axes(ax, "y")
     alt = (
-        f"{one['title']} of {len(tried)} settings that were tried; the default is "
+        f"{one['title']} of {counted(len(tried), 'candidate')}; the default is "
         f"{_value_text(one['default'])}, of the best {_value_text(best['values'][name])}."
     )
     return Picture(f"tuning-{name}", one["title"], alt, fig)
@@ -250,7 +251,7 @@ def _trials_csv(tuning: Tuning, progress: Progress) -> bytes:
     names = [one.name for one in tuning.config.search_ranges]
     out = StringIO()
     writer = csv.writer(out)
-    writer.writerow(("trial", "phase", "number", "agent", *names, *_TRIAL_FIELDS))
+    writer.writerow(("trial", "phase", "candidate", "agent", *names, *_TRIAL_FIELDS))
     for candidate in tuning.candidates:
         if candidate.value_m is not None:
             for trial in tuning.search_trials(candidate.values):
@@ -261,7 +262,7 @@ def _trials_csv(tuning: Tuning, progress: Progress) -> bytes:
 
 
 def _row(
-    trial: Trial, phase: str, place: int | str, names: Sequence[str], progress: Progress
+    trial: Trial, phase: str, candidate: int | str, names: Sequence[str], progress: Progress
 ) -> list[Any]:
     training, result = trial.config.training, progress.results.get(trial.key)
     values = [training.settings.get(name) for name in names]
@@ -271,7 +272,7 @@ def _row(
     return [
         text_cell(trial.key),
         phase,
-        place,
+        candidate,
         text_cell(training.agent),
         *(text_cell(value) if isinstance(value, str) else value for value in values),
         trial.seed_number,

@@ -10,12 +10,11 @@ import numpy as np
 
 from app.agents.appearance import title_of
 from app.domain.settings import Value
-from app.experiments.config import as_json
 from app.experiments.formatting import counted, distance, number
 from app.experiments.progress import Progress
 from app.experiments.setting_results import SettingResults, group_by_setting
 from app.experiments.statistics import Interval, bootstrap_exceeds, paired_interval
-from app.experiments.tuning.config import OBJECTIVES, Objective
+from app.experiments.tuning.config import OBJECTIVES, Objective, config_json
 from app.experiments.tuning.ranges import SearchRange
 from app.experiments.tuning.tuning import Candidate, Tuning, objective_m
 from app.experiments.worker import versions
@@ -48,7 +47,7 @@ def summarise_tuning(tuning: Tuning, progress: Progress, workers: int | None) ->
     summary: dict[str, Any] = {
         "format": FORMAT,
         "agent": config.agent,
-        "config": as_json(config),
+        "config": config_json(config),
         "versions": {**versions(), "optuna": version("optuna")},
         "machine": {"platform": platform.platform(), "cores": os.cpu_count()},
         "cost": dict(progress.cost(workers)),
@@ -135,7 +134,9 @@ def _said(summary: Mapping[str, Any]) -> list[str]:
     first, best = (search["candidates"][place] for place in (0, search["best"]))
     agent, what = title_of(summary["agent"]), OBJECTIVES[objective]
     seeds = counted(config["search_seeds"], "seed")
-    tried = f"{counted(config['trials'], 'combination')} of settings of {agent} on {seeds} each:"
+    tried = (
+        f"{counted(config['candidates'], 'candidate')} for the settings of {agent} on {seeds} each:"
+    )
     if search["is_default"]:
         return [f"{tried} none had a greater mean {what} than the defaults. Nothing is tuned."]
     found = values_text(best["values"], summary["agent"])

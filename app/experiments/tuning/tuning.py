@@ -80,7 +80,7 @@ class Tuning:
             if one.role == "learner" and one.training.agent == config.agent
         )
         self.candidates: list[Candidate] = []
-        self.total = config.trials * config.search_seeds + self.plan.total + config.seeds
+        self.total = config.candidates * config.search_seeds + self.plan.total + config.seeds
         self.is_complete = False
 
     @property
@@ -147,8 +147,8 @@ class Tuning:
             self.default_values,
             trial_seed(self.config.seed, _SAMPLER_SEED, 0),
         )
-        while len(self.candidates) < self.config.trials:
-            count = min(BATCH, self.config.trials - len(self.candidates))
+        while len(self.candidates) < self.config.candidates:
+            count = min(BATCH, self.config.candidates - len(self.candidates))
             asked = [self._candidate(*study.ask()) for _ in range(count)]
             trials = [trial for _, own in asked for trial in own]
             yield from run(_remaining(trials, progress, retry))

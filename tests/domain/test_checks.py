@@ -1,0 +1,32 @@
+"""A whole number that is none, or out of its range, is refused with what is valid."""
+
+from typing import Any
+
+import pytest
+
+from app.domain.checks import check_whole
+from app.domain.errors import InvalidInput
+
+
+@pytest.mark.parametrize("value", [1, 5, 10_000])
+def test_whole_number_in_its_range_is_accepted(value: int) -> None:
+    check_whole("seeds", value, 1, 10_000)
+
+
+@pytest.mark.parametrize(
+    ("value", "high", "sentence"),
+    [
+        (0, 10_000, "seeds must be from 1 to 10,000, not 0"),
+        (20_000, 10_000, "seeds must be from 1 to 10,000, not 20,000"),
+        (0, None, "seeds must be at least 1, not 0"),
+        (2.0, 10_000, "seeds must be a whole number, not 2.0"),
+        (True, 10_000, "seeds must be a whole number, not True"),
+        ("2", 10_000, "seeds must be a whole number, not '2'"),
+    ],
+)
+def test_anything_else_is_refused_in_a_sentence(
+    value: Any, high: int | None, sentence: str
+) -> None:
+    with pytest.raises(InvalidInput) as refused:
+        check_whole("seeds", value, 1, high)
+    assert str(refused.value) == sentence
