@@ -166,7 +166,10 @@ def new_branch(start: BranchStart, store: RunStore, new_id: Callable[[], str]) -
     taken = config.steps if original.state == "finished" else original.done // len(config.lanes)
     if not 0 <= step < config.steps or step > taken:
         last = min(taken, config.steps - 1)
-        raise InvalidInput(f"race {race_id} can branch at step 0 to {last:,}, not {step:,}")
+        raise InvalidInput(
+            f"branch_from.step must be from 0 to {last:,}, not {step:,}: race {race_id} has taken "
+            f"{taken:,} of {config.steps:,} steps, and at least one must be left"
+        )
     for one in start.disturbances:
         if one.at_step < step:
             raise InvalidInput(
