@@ -83,6 +83,22 @@ def test_what_cannot_happen_to_a_running_training_changes_nothing(api: Api) -> N
     api.stop(run)
 
 
+def test_an_end_after_the_run_is_refused_wherever_one_is_asked_for(api: Api) -> None:
+    """In stored runs it means the same as no end."""
+    noise = {"kind": "sensor-noise", "sd_m": 0.01, "until_step": 61}
+    walk = {**WALK, "steps": 60}
+    for path, body in (
+        ("/trainings", {**walk, "disturbances": [noise]}),
+        ("/races", {**walk, "disturbances": [noise], "lanes": [GREEDY]}),
+        ("/what-if", {**walk, "disturbances": [noise]}),
+    ):
+        words = "until_step must be at most 60, the end of this run, not 61"
+        refused(api.call("POST", path, json=body), 422, words)
+    run = api.train(steps=60, pace=0.1)
+    refused(disturb(api, run, noise), 422, "until_step must be at most 60")
+    api.stop(run)
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [
