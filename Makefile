@@ -21,9 +21,10 @@ TEST_PROCESSES := 3
 # that triples the time in which a server starts.
 unexport PYTHONDONTWRITEBYTECODE
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
-# uv takes a fifth of pip's time, but reads none of pip's configuration, such as an index of one's
-# own: where it fails, pip tries, and says what is wrong.
-install = $(BIN)/uv pip install --quiet --python $(BIN)/python $(1) 2>/dev/null || $(PIP) $(1)
+# uv takes a fifth of pip's time, but reads none of pip's configuration: where that names an index of
+# one's own, or none, pip installs. Where uv fails, pip tries, and says what is wrong.
+install = ! $(BIN)/python -m pip config list | grep -Eq '\.(index-url|no-index)=' && \
+	$(BIN)/uv pip install --quiet --python $(BIN)/python $(1) 2>/dev/null || $(PIP) $(1)
 # One version of each package for every platform and Python, with the hashes of all its files,
 # and not a word on where they came from.
 COMPILE := $(BIN)/uv pip compile --quiet --universal --fork-strategy fewest --python-version 3.11 \

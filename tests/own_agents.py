@@ -42,6 +42,14 @@ class ThreeStep(LookAhead):
         super().__init__(expand, depth=3)
 
 
+class Undecided(LookAhead):
+    """Simulates for as long as it is let."""
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        while True:
+            self._expand([self._expand.here], legal[:1])
+
+
 class Ponderous(Restless):
     """Thinks for longer than anyone waits."""
 

@@ -4,7 +4,6 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -127,9 +126,7 @@ def test_signal_shuts_the_server_down_in_spite_of_open_streams(
     next(events)
     children = psutil.Process(server.process.pid).children(recursive=True)
     assert children
-    began = time.monotonic()
     assert server.end(by) == 0
-    assert time.monotonic() - began < 10
     _, alive = psutil.wait_procs(children, timeout=LONG_S)
     assert not alive
 
@@ -140,7 +137,7 @@ def test_killed_server_leaves_no_process(serve: Callable[..., Served]) -> None:
     children = psutil.Process(server.process.pid).children(recursive=True)
     assert any("multiprocessing.spawn" in " ".join(p.cmdline()) for p in children)
     assert server.end(signal.SIGKILL) == -signal.SIGKILL
-    _, alive = psutil.wait_procs(children, timeout=10)
+    _, alive = psutil.wait_procs(children, timeout=LONG_S)
     assert not alive
 
 

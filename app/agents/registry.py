@@ -4,6 +4,7 @@ import importlib
 import inspect
 import logging
 import re
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
@@ -113,6 +114,13 @@ def find(name: str) -> AgentClass:
     if missing:
         raise InvalidInput(f"agent {name!r} lacks {', '.join(missing)} of the agent protocol")
     return agent  # type: ignore[no-any-return]
+
+
+def is_loaded(name: str) -> bool:
+    """Whether an agent is registered, or in a module that was imported already."""
+    module_name, _, class_name = name.partition(":")
+    module = sys.modules.get(module_name)
+    return name in registered() or (module is not None and class_name in vars(module))
 
 
 def learns(name: str) -> bool:

@@ -52,7 +52,7 @@ VALID: Mapping[str, str] = {
     ),
     "branch_from": "an object: race_id, and step, how many steps of that race are repeated",
     "race_id": "the id of a race",
-    "step": "a whole number from 0 to the steps that the race has taken",
+    "step": "a whole number from 0 to the steps that the race has taken; at least one must be left",
     "world": f"the name of a world: {_one_of(WORLDS)}",
     "disturbances": (
         f"a list of at most {MAX_DISTURBANCES}, each {{kind, at_step, until_step}} and the fields "

@@ -20,6 +20,7 @@ from app.cli.options import (
 from app.cli.terminal import progress, show_lanes
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.settings import declared_fields
+from app.domain.world import check_ends
 from app.runs.best_known import best_known_in_race_m
 from app.runs.clocks import CLOCKS, check_clock
 from app.runs.config import agent_settings
@@ -73,6 +74,7 @@ def run(options: argparse.Namespace) -> int:
         steps=options.steps,
         seed=options.seed,
     )
+    check_ends(config.world.disturbances, config.steps)
     walkers = build_walkers(config, [table for _, table in lanes])
     lanes_recorded = _race(walkers, config)
     result = race_result(lanes_recorded, config.steps)

@@ -17,6 +17,7 @@ from app.cli.options import (
 from app.cli.terminal import progress
 from app.domain.errors import InvalidInput
 from app.domain.settings import declared_fields
+from app.domain.world import check_ends
 from app.runs.config import TrainingConfig, WalkingProblem, training_config
 from app.runs.config_json import as_json
 from app.runs.records import Evaluated, StepTaken
@@ -77,9 +78,11 @@ def _config(options: argparse.Namespace, table: Checkpoint | None) -> TrainingCo
         seed = table.meta["config"]["seed"]
     given = {name: getattr(options, name) for name in _SETTINGS} | settings_from(options)
     given["seed"] = TrainingConfig.seed if seed is None else seed
-    return training_config(
+    config = training_config(
         options.agent, **walk_from(options), observation=options.observation, **given
     )
+    check_ends(config.world.disturbances, config.steps)
+    return config
 
 
 def _practise(learner: Learner, config: TrainingConfig) -> list[dict[str, float]]:

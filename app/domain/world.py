@@ -92,11 +92,6 @@ class World:
                     f"{one.kind}: at_step must be from 0 to {steps - 1:,}, the last step of this "
                     f"run, not {one.at_step:,}"
                 )
-            if steps is not None and one.until_step is not None and one.until_step > steps:
-                raise InvalidInput(
-                    f"{one.kind}: until_step must be at most {steps:,}, the end of this run, not "
-                    f"{one.until_step:,}; leave it out for what lasts"
-                )
 
     @cached_property
     def change_steps(self) -> tuple[int, ...]:
@@ -183,6 +178,22 @@ class World:
 
 
 UNDISTURBED = World()
+
+
+def check_ends(disturbances: Iterable[Disturbance], steps: int) -> None:
+    """Check what a user asks for: that what ends does so in the run, of so many steps.
+
+    Only of new requests: earlier versions stored later ends, which mean the same as none.
+
+    Raises:
+        InvalidInput: if not.
+    """
+    for one in disturbances:
+        if one.until_step is not None and one.until_step > steps:
+            raise InvalidInput(
+                f"{one.kind}: until_step must be at most {steps:,}, the end of this run, not "
+                f"{one.until_step:,}; leave it out for what lasts"
+            )
 
 
 def world(data: Iterable[Mapping[str, Any]]) -> World:

@@ -8,6 +8,7 @@ from typing import Any
 
 from app.domain.disturbances import Disturbance, as_mapping, disturbance
 from app.domain.errors import HexapodError, InvalidInput, UnknownName
+from app.domain.world import check_ends
 from app.events.bus import EventBus
 from app.events.run_view import run_view
 from app.jobs.job import Job
@@ -298,6 +299,7 @@ class Jobs:
             config = run.config
             if isinstance(config, TrainingConfig):
                 soon = replace(given, at_step=min(run.done, config.steps - 1))
+                check_ends([soon], config.steps)
                 world_of(run).then(soon).check(config.robot, config.simulator, config.steps)
             return {"disturbance": as_mapping(given)}
 

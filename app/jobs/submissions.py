@@ -13,6 +13,7 @@ from app.domain.errors import InvalidInput, TableMismatch
 from app.domain.kinematics import check_reach
 from app.domain.observation import Observation
 from app.domain.text import MAX_NAME, whole
+from app.domain.world import check_ends
 from app.experiments.config import GRID, ExperimentConfig
 from app.experiments.plan import Plan
 from app.runs.config import TrainingConfig, WalkingProblem, problem_of
@@ -85,6 +86,7 @@ def new_training(start: TrainingStart, store: RunStore, new_id: Callable[[], str
     if not learns(config.agent):
         raise InvalidInput(f"{config.agent} does not learn, so it cannot be trained")
     check_training(config)
+    check_ends(config.world.disturbances, config.steps)
     if start.continue_from is not None:
         table = load_table(store, start.continue_from)
         check_fits(table, config, config.observation)
@@ -108,6 +110,7 @@ def new_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> li
         InvalidInput, TableMismatch, NotFound, Conflict: if it cannot be.
     """
     check_walk(start.walk)
+    check_ends(start.walk.world.disturbances, start.steps)
     trainings: dict[int, Run] = {}
     lanes: list[LaneConfig] = []
     for number, lane in enumerate(start.lanes):
@@ -166,13 +169,17 @@ def new_branch(start: BranchStart, store: RunStore, new_id: Callable[[], str]) -
     taken = config.steps if original.state == "finished" else original.done // len(config.lanes)
     if not 0 <= step < config.steps or step > taken:
         last = min(taken, config.steps - 1)
-        raise InvalidInput(f"race {race_id} can branch at step 0 to {last:,}, not {step:,}")
+        raise InvalidInput(
+            f"branch_from.step must be from 0 to {last:,}, not {step:,}: race {race_id} has taken "
+            f"{taken:,} of {config.steps:,} steps, and at least one must be left"
+        )
     for one in start.disturbances:
         if one.at_step < step:
             raise InvalidInput(
                 f"{one.kind}: at_step must be at least {step:,}, where the race branches, not "
                 f"{one.at_step:,}"
             )
+    check_ends(start.disturbances, config.steps)
     world = config.world
     for one in sorted(start.disturbances, key=lambda one: one.at_step):
         world = world.then(one)

@@ -100,10 +100,13 @@ def best_known_m(walk: WalkingProblem, conditions: World | None = None) -> float
 def best_known_in_race_m(race: RaceConfig) -> float | None:
     """Return the best known distance of a race [m].
 
-    None where it was not computed: also if something happens in the middle of the race, or if it
+    None where it was not computed: also if the physics changes in the middle of the race, or if it
     has another number of steps than the kept walks.
     """
-    changes = race.world.change_steps or race.world.all_of(Push)
+    world = race.world
+    physics = _physical(world.as_of(0))
+    later = (world.as_of(step) for step in world.change_steps if step < race.steps)
+    changes = world.all_of(Push) or any(_physical(holds) != physics for holds in later)
     return None if changes or race.steps != RACE_STEPS else best_known_m(race)
 
 

@@ -132,14 +132,16 @@ def plans_with(lane: LaneConfig, walk: WalkingProblem) -> Knowledge | None:
     """Return what a lane's search knows in a race; None if its agent does not search.
 
     What is left out in the lane, the start, is called `world` where nothing changes after it, and
-    `nominal` where nothing held at it.
+    `nominal` where nothing held at it. No agent is imported: of one that is not loaded, as when its
+    package was removed, it is what the lane says.
     """
-    try:
-        searches = registry.searches(lane.agent)
-    except InvalidInput:
-        return lane.plans_with  # its package has been removed since
-    if lane.plans_with is not None or not searches:
+    if lane.plans_with is not None or not registry.is_loaded(lane.agent):
         return lane.plans_with
+    try:
+        if not registry.searches(lane.agent):
+            return None
+    except InvalidInput:
+        return None  # what has this name now is no agent
     if not walk.world.change_steps:
         return "world"
     return "start" if walk.world.at_start or walk.tolerance else "nominal"

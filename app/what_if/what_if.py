@@ -13,6 +13,7 @@ from app.agents.q_table import table_size
 from app.agents.registry import learns
 from app.domain.errors import InvalidInput
 from app.domain.settings import SettingValues
+from app.domain.world import check_ends
 from app.experiments.plan import trial_seed
 from app.experiments.trial import TrialConfig, TrialResult
 from app.jobs.submissions import check_training
@@ -137,6 +138,7 @@ def _check_limits(training: TrainingConfig) -> None:
             f"a what-if practises at most {MAX_STEPS:,} steps, not {training.steps:,}"
         )
     check_training(training)
+    check_ends(training.world.disturbances, training.steps)
     values = table_size(len(training.resolved_gait.pairs), len(training.grid))
     if values > MAX_VALUES:
         raise InvalidInput(

@@ -83,6 +83,22 @@ def test_what_cannot_happen_to_a_running_training_changes_nothing(api: Api) -> N
     api.stop(run)
 
 
+def test_an_end_after_the_run_is_refused_wherever_one_is_asked_for(api: Api) -> None:
+    """In stored runs it means the same as no end."""
+    noise = {"kind": "sensor-noise", "sd_m": 0.01, "until_step": 61}
+    walk = {**WALK, "steps": 60}
+    for path, body in (
+        ("/trainings", {**walk, "disturbances": [noise]}),
+        ("/races", {**walk, "disturbances": [noise], "lanes": [GREEDY]}),
+        ("/what-if", {**walk, "disturbances": [noise]}),
+    ):
+        words = "until_step must be at most 60, the end of this run, not 61"
+        refused(api.call("POST", path, json=body), 422, words)
+    run = api.train(steps=60, pace=0.1)
+    refused(disturb(api, run, noise), 422, "until_step must be at most 60")
+    api.stop(run)
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [
@@ -144,12 +160,14 @@ def test_a_branch_is_the_same_race_to_the_last_bit_until_its_step(
 @pytest.mark.parametrize(
     ("branch", "happens", "refusal"),
     [
-        ({"step": 16}, [LIMP], (422, "can branch at step 0 to 15, not 16")),
+        ({"step": 16}, [LIMP], (422, "must be from 0 to 15, not 16: race")),
         *(
             ({"step": step}, [LIMP], (422, "branch_from.step must be a whole number from 0 to"))
             for step in (-1, True, "5", 1.5, None, 1e9)
         ),
-        ({"step": 299_999}, [LIMP], (422, "can branch at step 0 to 15, not 299,999")),
+        ({"step": -1}, [LIMP], (422, "steps that the race has taken; at least one must be left")),
+        ({"step": 16}, [LIMP], (422, "has taken 16 of 16 steps, and at least one must be left")),
+        ({"step": 299_999}, [LIMP], (422, "must be from 0 to 15, not 299,999")),
         ({"step": 8}, [{**LIMP, "at_step": 7}], (422, "at_step must be at least 8")),
         ({"step": 8}, [{**LIMP, "at_step": 16}], (422, "at_step must be from 0 to 15")),
         ({"step": 8, "race_id": "nope"}, [LIMP], (404, "nope")),
@@ -175,7 +193,7 @@ def test_a_race_that_has_not_come_so_far_cannot_branch_there(api: Api) -> None:
     now = api.until(race, lambda now: now["progress"]["done"] > 3)
     api.tell(race, "stop")
     body = {"branch_from": {"race_id": race["id"], "step": 299_999}}
-    refused(api.call("POST", "/races", json=body), 422, "can branch at step 0 to")
+    refused(api.call("POST", "/races", json=body), 422, "steps, and at least one must be left")
     assert now["progress"]["done"] < 299_999
 
 

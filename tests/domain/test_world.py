@@ -27,6 +27,7 @@ from app.domain.world import (
     UNDISTURBED,
     WORLDS,
     World,
+    check_ends,
     named_world,
     parse_world,
     world,
@@ -168,13 +169,18 @@ def test_a_run_refuses_what_it_cannot_show() -> None:
     with pytest.raises(InvalidInput, match="at_step must be from 0 to 49, the last step"):
         late.check(Robot(), "mujoco", steps=50)
     late.check(Robot(), "mujoco", steps=51)
-    lasting = World((Slope(degrees=1, until_step=50),))
-    lasting.check(Robot(), "mujoco", 50)
-    with pytest.raises(InvalidInput, match="until_step must be at most 49, the end of this run"):
-        lasting.check(Robot(), "mujoco", 49)
     many = World(tuple(SensorNoise(sd_m=0.001, at_step=i) for i in range(MAX_IN_A_RUN + 1)))
     with pytest.raises(InvalidInput, match="at most 200 disturbances, not 201"):
         many.check(Robot(), "mujoco")
+
+
+def test_a_request_refuses_what_would_end_after_the_run() -> None:
+    """Stored runs may have it: it was accepted once, and means the same as no end."""
+    lasting = (Limp(legs=(1,)), Slope(degrees=1, until_step=50))
+    check_ends(lasting, 50)
+    with pytest.raises(InvalidInput, match="slope: until_step must be at most 49, the end of this"):
+        check_ends(lasting, 49)
+    World(lasting).check(Robot(), "mujoco", 49)
 
 
 def test_named_worlds_suit_the_robot() -> None:

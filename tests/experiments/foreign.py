@@ -14,6 +14,7 @@ import psutil
 from distributed.security import Security
 
 from app.experiments.cluster import ClusterSpec
+from tests.patience import LONG_S
 
 _START_S = 30.0
 _OPTIONS = {"tls_ca": "--tls-ca-file", "tls_cert": "--tls-cert", "tls_key": "--tls-key"}
@@ -93,6 +94,6 @@ def _end(process: subprocess.Popen[bytes]) -> None:
     )
     process.kill()
     process.wait()
-    _, left = psutil.wait_procs(children, timeout=10)
+    _, left = psutil.wait_procs(children, timeout=LONG_S)
     for child in left:
         child.kill()

@@ -20,6 +20,7 @@ from app.experiments.engine import run_trials
 from app.experiments.own_cluster import cores
 from tests.experiments.clusters import one_by_one, results, small, trials_of, workers_of
 from tests.experiments.foreign import scheduler
+from tests.patience import LONG_S
 
 
 @pytest.mark.parametrize(
@@ -91,7 +92,7 @@ def test_workers_end_when_the_process_that_started_them_is_killed(tmp_path: Path
     assert len(workers_of(psutil.Process(process.pid))) == 2
     process.send_signal(signal.SIGKILL)
     process.communicate()
-    _, left = psutil.wait_procs(children, timeout=10)
+    _, left = psutil.wait_procs(children, timeout=LONG_S)
     assert not left
 
 

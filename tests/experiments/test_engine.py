@@ -111,11 +111,10 @@ def test_trials_that_measure_time_come_last(trials: list[Trial]) -> None:
 
 def test_it_stops_soon_when_may_continue_returns_false(trials: list[Trial]) -> None:
     slow = trials_of(small(seeds=4, steps=10_000_000))[-4:]
-    began_s = time.monotonic()
     asked = iter(range(1_000_000))
-    assert list(run_trials(slow, ONE, lambda: next(asked) < 10)) == []
+    ended = list(run_trials(slow, ONE, lambda: next(asked) < 10))
+    assert ended == [], "trials in progress take minutes, and must be cancelled"
     assert next(asked) > 10
-    assert time.monotonic() - began_s < 60, "trials in progress take minutes, and must be cancelled"
     assert not workers_of(psutil.Process())
 
 

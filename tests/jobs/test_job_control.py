@@ -75,12 +75,11 @@ def test_pace_is_kept_and_a_new_pace_ends_the_wait(pipe: FakePipe) -> None:
     for number in range(5):
         assert pipe.control.wait_for_turn(number)
     assert time.monotonic() - began >= 4 * 0.05 - 0.01
-    pipe.control.keep_pace(0.01, step_s=0.3)
+    pipe.control.keep_pace(0.01, step_s=100.0)
     assert pipe.control.wait_for_turn(5)
     run_later(lambda: pipe.commands.put(Command("tune", 7, {"pace": "max"})))
-    assert pipe.control.wait_for_turn(6), "half a minute, were it not for the new pace"
+    assert pipe.control.wait_for_turn(6), "three hours, were it not for the new pace"
     assert pipe.sent == [Changed(7, 6, {"pace": "max"})]
-    assert time.monotonic() - began < 20
 
 
 def test_tune_changes_rates_and_records_the_change(pipe: FakePipe) -> None:

@@ -22,6 +22,7 @@ from app.storage.errors import Busy, Conflict, StorageFailed
 from app.storage.recordings import Recordings
 from app.storage.run import QUEUED, Run
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
+from tests.patience import LONG_S
 from tests.storage.stores import of_type
 
 WALK = WalkingProblem(gait="left-right-origin", simulator="kinematic")
@@ -93,14 +94,12 @@ def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: RunSto
     start = TrainingStart(training_config(**vars(mujoco), steps=1_000_000, evaluate_every=0))
     run = jobs.train(start)
     wait_for_progress(store, run)
-    began = time.monotonic()
     changed = jobs.change(run.id, {"alpha": 0.2})
     assert changed.changes[0]["alpha"] == 0.2
     stopped = jobs.stop(run.id)
-    assert stopped.state == "stopped"
+    assert (stopped.state, stopped.error) == ("stopped", None)
     assert stopped.result is not None
-    # The requirement is 1 s and a step takes 2 ms; 10 s allows for a busy machine.
-    assert time.monotonic() - began < 10
+    assert changed.changes[0]["step"] <= stopped.done < 1_000_000
 
 
 def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: RunStore) -> None:
@@ -120,15 +119,12 @@ def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: RunSto
 
 
 def test_stop_interrupts_a_long_decision(jobs: Jobs, store: RunStore) -> None:
-    """The beam simulates some 25,000 transitions, for 10 s or so; greedy's step is kept."""
-    beam = LaneStart("beam", settings={"width": 1000, "depth": 5})
-    walk = WalkingProblem(gait="left-right-origin")
-    race = jobs.race(RaceStart(walk, [LaneStart("greedy"), beam], 50, 0))
+    """The second lane would search for ever; greedy's step is kept."""
+    lanes = [LaneStart("greedy"), LaneStart("tests.own_agents:Undecided")]
+    race = jobs.race(RaceStart(WALK, lanes, 50, 0))
     wait_for_progress(store, race)
-    began_s = time.monotonic()
     stopped = jobs.stop(race.id)
 
-    assert time.monotonic() - began_s < 5
     assert (stopped.state, stopped.error) == ("stopped", None)
     assert stopped.result is not None
     assert [lane["steps"] for lane in stopped.result["lanes"]] == [1, 0]
@@ -162,10 +158,8 @@ def test_starting_run_stops_at_once(jobs: Jobs, store: RunStore) -> None:
 def test_killed_process_fails_its_run_and_names_the_signal(jobs: Jobs, store: RunStore) -> None:
     run = jobs.train(endless())
     wait_for_progress(store, run)
-    began = time.monotonic()
     os.kill(pid_of(jobs, run), signal.SIGKILL)
     now = wait_until_ended(store, run)
-    assert time.monotonic() - began < 5
     assert now.state == "failed"
     assert "SIGKILL" in (now.error or "")
     assert wait_until_ended(store, jobs.train(training())).state == "finished", "others go on"
@@ -226,6 +220,18 @@ def test_close_leaves_no_process(store: RunStore) -> None:
     jobs.close()
     assert not any(child.is_running() for child in children)
     assert [store.get(run.id).state for run in runs] == ["interrupted"] * 3
+
+
+def test_close_waits_for_no_decision(store: RunStore, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A race has no checkpoint to write, so that its process is ended at once."""
+    monkeypatch.setattr("app.jobs.supervisor._CHECKPOINT_S", 10 * LONG_S)
+    jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
+    jobs.open()
+    lanes = [LaneStart("greedy"), LaneStart("tests.own_agents:Undecided")]
+    race = jobs.race(RaceStart(WALK, lanes, 50, 0))
+    wait_for_progress(store, race)
+    jobs.close()
+    assert store.get(race.id).state == "interrupted"
 
 
 def test_worker_process_has_lower_priority_than_the_server(store: RunStore) -> None:

@@ -1,8 +1,8 @@
 """Promise 7: many viewers: 200 for 10 minutes: in the median 20 frames/s or more each, and 95 % of
 commands, and of the API's other answers, in under 250 ms.
 
-In full by `make soak`. The gate's shorter form has 30 viewers for 5 s; since the machine may be
-busy otherwise, it requires 8 frames/s, and 1 s.
+In full by `make soak`. The gate's shorter form has 30 viewers for 5 s; since it shares the machine
+with other tests, it requires that every viewer stays and gets frames, and every command an answer.
 """
 
 import argparse
@@ -19,12 +19,13 @@ import pytest
 
 from benchmarks.viewers import measure
 from tests.browser.serving import Serving
+from tests.patience import LONG_S
 from tests.promises.length import at_length
 
 VIEWERS = at_length(30, 200)
 SECONDS = at_length(5.0, 600.0)
-LEAST_FRAMES_PER_S = at_length(8.0, 20.0)
-MOST_P95_MS = at_length(1000.0, 250.0)
+LEAST_FRAMES_PER_S = at_length(0.0, 20.0)
+MOST_P95_MS = at_length(LONG_S * 1e3, 250.0)
 
 
 def watch(server: Serving, viewers: int, seconds: float, stalled: int = 0) -> dict[str, float]:
@@ -56,10 +57,10 @@ def controlling_stage(server: Serving) -> Iterator[list[float]]:
     finished = threading.Event()
 
     def command() -> None:
-        with httpx2.Client(base_url=server.address, timeout=60) as client:
+        with httpx2.Client(base_url=server.address, timeout=LONG_S) as client:
             while not finished.wait(0.05):
                 began_s = time.perf_counter()
-                client.put("api/v1/stage", json={"playing": True})
+                client.put("api/v1/stage", json={"playing": True}).raise_for_status()
                 latencies_s.append(time.perf_counter() - began_s)
 
     commander = threading.Thread(target=command, daemon=True)
@@ -77,8 +78,8 @@ def test_frame_rate_and_latencies_with_many_viewers(server: Serving) -> None:
     with controlling_stage(server) as latencies_s:
         figures = watch(server, VIEWERS, SECONDS)
 
-    assert len(latencies_s) > 10
+    assert len(latencies_s) > at_length(1, 10)
     assert statistics.quantiles(latencies_s, n=20)[-1] * 1e3 < MOST_P95_MS
     assert figures["viewers_lost"] == 0
-    assert figures["frames_per_s_median"] >= LEAST_FRAMES_PER_S
+    assert figures["frames_per_s_median"] > LEAST_FRAMES_PER_S
     assert figures["healthz_p95_ms"] < MOST_P95_MS

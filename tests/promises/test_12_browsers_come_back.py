@@ -1,7 +1,7 @@
 """Promise 12: browsers reconnect: 100 dropped connections: full state in 2 s, no gap in a curve.
 
-In full, with one exception: in the gate the limit of 2 s applies to the median, since the machine
-may be busy otherwise; under `make soak` to all hundred.
+In full, with one exception: the limit of 2 s applies under `make soak`, since the gate runs other
+tests beside this one.
 """
 
 import contextlib
@@ -17,13 +17,12 @@ import pytest
 
 from app.viewer.viser_internals import stream
 from tests.browser.serving import Serving
+from tests.patience import LONG_S
 from tests.promises.length import at_length
 from tests.viewer.serving import PATIENCE_S, Viewer
 
 DROPS = 100
-FULL_STATE_S = 2.0
-DECISIVE = at_length(DROPS // 2, -1)
-"""Index of the sorted times to which the limit applies: the median or the maximum."""
+FULL_STATE_S = at_length(LONG_S, 2.0)
 EVERY = 5
 """Steps between two evaluations."""
 BODY = {
@@ -107,7 +106,7 @@ def test_a_reconnecting_event_stream_misses_no_evaluation(
     curve = httpx2.get(f"{server.address}api/v1/trainings/{training['id']}/curve").json()
     kept = [row["step"] for row in curve["evaluations"]]
     assert kept[: len(steps)] == steps
-    assert sorted(took_s)[DECISIVE] <= FULL_STATE_S
+    assert max(took_s) <= FULL_STATE_S
 
 
 def test_reconnecting_viewers_get_the_whole_scene(
@@ -127,7 +126,7 @@ def test_reconnecting_viewers_get_the_whole_scene(
 
     # The number of nodes varies, since the training is put on stage meanwhile.
     assert min(map(len, scenes)) > 5
-    assert sorted(took_s)[DECISIVE] <= FULL_STATE_S
+    assert max(took_s) <= FULL_STATE_S
     metrics = f"{server.address}metrics"
     deadline = time.monotonic() + PATIENCE_S
     while "hexapods_viewers 0.0" not in httpx2.get(metrics).text:

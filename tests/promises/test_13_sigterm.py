@@ -1,6 +1,6 @@
 """Promise 13: SIGTERM drains: a checkpoint is written, exit 0 within 10 s, no child left.
 
-SIGINT does the same. In full, since there is nothing to shorten.
+SIGINT does the same. In full but for the 10 s, which apply under `make soak`.
 """
 
 import signal
@@ -12,9 +12,12 @@ from typing import Any
 import psutil
 
 from app.events.run_view import run_view
+from tests.promises.length import at_length
 from tests.promises.trainings import checkpoint_step
-from tests.served import ENDLESS, Served
+from tests.served import ENDLESS, LONG_S, Served
 from tests.storage.stores import opened
+
+ENDED_S = at_length(LONG_S, 10.0)
 
 
 def end_and_check(server: Served, by: int) -> None:
@@ -22,8 +25,8 @@ def end_and_check(server: Served, by: int) -> None:
     children = psutil.Process(server.process.pid).children(recursive=True)
     began = time.monotonic()
     assert server.end(by) == 0
-    assert time.monotonic() - began < 10
-    _, left = psutil.wait_procs(children, timeout=5)
+    assert time.monotonic() - began < ENDED_S
+    _, left = psutil.wait_procs(children, timeout=LONG_S)
     assert not left
 
 

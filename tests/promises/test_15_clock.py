@@ -19,6 +19,7 @@ from app.runs.config import training_config
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import Run
+from tests.patience import LONG_S
 from tests.storage.stores import opened, training
 
 DAY = timedelta(days=1)
@@ -70,7 +71,7 @@ def practice(jobs: Jobs, steps: int = 40) -> Run:
 
 
 def until(is_so: Callable[[], bool]) -> None:
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + LONG_S
     while not is_so():
         assert time.monotonic() < deadline
         time.sleep(0.005)

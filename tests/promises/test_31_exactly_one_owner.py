@@ -60,7 +60,7 @@ def test_the_first_of_two_servers_is_fenced(
             second = launch(**variables)
             first.process.send_signal(signal.SIGCONT)
             assert first.process.wait(LONG_S) == 2, "a fenced server exits with an error"
-            _, left = psutil.wait_procs(children, timeout=10)
+            _, left = psutil.wait_procs(children, timeout=LONG_S)
             assert not left
             assert second.look(run)["state"] == "interrupted"
             assert second.tell(run, "resume").status_code == 202

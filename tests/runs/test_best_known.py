@@ -101,5 +101,14 @@ def test_distance_of_a_race_is_known_unless_something_happens_in_between() -> No
     in_damage = replace(race, world=limp)
     assert best_known_in_race_m(in_damage) == best_known_m(replace(WALK, world=limp))
     assert best_known_in_race_m(replace(race, world=limp.later(25))) is None
+    for unphysical in (named_world("noise").later(25), World((Payload(kg=0.0, at_step=9),))):
+        in_both = replace(race, world=limp + unphysical.disturbances)
+        assert best_known_in_race_m(in_both) == best_known_in_race_m(in_damage)
+    ends = World((Slope(degrees=8.0, until_step=49),))
+    assert best_known_in_race_m(replace(race, world=ends)) is None
+    at_the_end = World((Slope(degrees=8.0, until_step=50),))
+    assert best_known_in_race_m(replace(race, world=at_the_end)) == best_known_m(
+        replace(WALK, world=named_world("slope"))
+    )
     assert best_known_in_race_m(replace(race, world=World((Push(impulse_ns=2.0),)))) is None
     assert best_known_in_race_m(replace(race, steps=60)) is None

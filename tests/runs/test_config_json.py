@@ -1,12 +1,14 @@
 """Configs as JSON: what is written is read again, and what earlier versions wrote."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
 from app.domain.gait import GaitSpec
 from app.domain.robot import robot
 from app.domain.settings import SettingValues
+from app.domain.world import world
 from app.runs.config import TrainingConfig, training_config
 from app.runs.config_json import as_json, config_from_json, gait_from_json
 from app.runs.lane import LaneConfig, lane_config
@@ -78,3 +80,11 @@ def test_race_of_an_earlier_version_has_lanes_that_do_not_keep_learning() -> Non
     stored = {**as_json(RaceConfig(gait=GAIT, lanes=LANES))}
     stored["lanes"] = [{"agent": "greedy", "observation": "measured"}]
     assert config_from_json(stored) == RaceConfig(gait=GAIT, lanes=LANES)
+
+
+def test_a_stored_end_after_the_run_is_read_as_it_was_accepted() -> None:
+    """Requests are refused one since; listings and archives of earlier runs must go on."""
+    long = {"kind": "slope", "degrees": 8.0, "at_step": 0, "until_step": 900}
+    for config in (training_config(gait=GAIT), RaceConfig(gait=GAIT, lanes=LANES)):
+        stored = {**as_json(config), "disturbances": [long]}
+        assert config_from_json(stored) == replace(config, world=world([long]))

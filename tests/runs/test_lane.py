@@ -1,5 +1,7 @@
 """Lanes of races: their agents' settings and defaults, refusals, and what a search knows."""
 
+import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -95,6 +97,19 @@ def test_a_search_knows_what_its_lane_says_and_other_agents_plan_with_nothing() 
     for known in ("world", "start", "nominal"):
         assert plans_with(lane_config("beam", plans_with=known), walk) == known
     assert plans_with(lane_config("linear-model"), walk) is None
-    assert plans_with(LaneConfig(agent="removed"), walk) is None
+    assert plans_with(LaneConfig(agent="tests.own_agents:ThreeStep"), walk) == "world"
+    for agent in ("removed", "no_such_module:Agent", "tests.own_agents:Removed", "os:path"):
+        assert plans_with(LaneConfig(agent=agent), walk) is None
     with pytest.raises(InvalidInput, match="must be world, or start, or nominal, not 'hope'"):
         lane_config("beam", plans_with="hope")
+
+
+def test_naming_what_a_search_knows_imports_no_module(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "agent_of_a_stored_race.py").write_text("from app.agents.beam import Beam\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    lane = LaneConfig(agent="agent_of_a_stored_race:Beam")
+
+    assert plans_with(lane, WalkingProblem(gait="left-right-origin")) is None
+    assert "agent_of_a_stored_race" not in sys.modules

@@ -10,6 +10,8 @@ from typing import Any
 
 import pytest
 
+from app.domain.disturbances import Slope
+from app.domain.world import World
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
 from app.storage.run import LIVE, NOT_ENDED, QUEUED, RUNNING, AnyRun, Run, State
@@ -17,6 +19,7 @@ from app.storage.run_ids import RunIds
 from tests.storage.stores import (
     BACKENDS,
     ODD,
+    RACE,
     TRIALS,
     database_url,
     experiment,
@@ -50,6 +53,7 @@ def test_stored_runs_are_returned_unchanged(store: RunStore) -> None:
         training("d", name="ü 🕷 <b>'--", created_at=now, started_at=now, ended_at=now),
         experiment("d2", workers=2, done=7),
         training("e", greedy_distance_m=-0.1, state="failed", config=replace(ODD, pace="max")),
+        race("f", config=replace(RACE, world=World((Slope(degrees=8.0, until_step=900),)))),
     ]
     store.create(*runs)
     store.create()
