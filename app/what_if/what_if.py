@@ -71,7 +71,11 @@ class WhatIf:
             settings=training_config(gait=chosen.gait, agent=chosen.agent).settings,
             steps_per_episode=TrainingConfig.steps_per_episode,
         )
-        greedy_training = replace(default, agent="greedy", settings=SettingValues(), steps=1)
+        # It walks in the world as it is in the end, in which the learners are evaluated.
+        world = chosen.world.as_of(chosen.steps)
+        greedy_training = replace(
+            default, agent="greedy", settings=SettingValues(), steps=1, world=world
+        )
         greedy = TrialConfig(training=greedy_training, blocks=0)
         trials = [TrialConfig(training=variant) for variant in (chosen, default)]
         distances = self._distances([greedy, *trials])

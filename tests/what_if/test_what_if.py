@@ -14,7 +14,9 @@ import pytest
 from scipy import stats
 
 from app.agents.registry import OURS, learns
+from app.domain.disturbances import SensorNoise
 from app.domain.errors import InvalidInput
+from app.domain.world import World
 from app.experiments.plan import trial_seed
 from app.experiments.trial import TrialConfig, run_trial
 from app.runs.config import TrainingConfig, training_config
@@ -69,6 +71,16 @@ def test_variants_differ_in_settings_only(what_if: WhatIf) -> None:
     commanded = replace(SHORT, observation="commanded")
     assert answer["default"]["distances_m"] == distances(commanded)
     assert answer["chosen"] == answer["default"]
+
+
+def test_all_walk_in_the_world_as_it_is_in_the_end(what_if: WhatIf) -> None:
+    noise = SensorNoise(sd_m=0.02)
+    later = replace(SHORT, world=World((replace(noise, at_step=30),)))
+    assert (
+        what_if.ask(later)["greedy_m"]
+        == what_if.ask(replace(SHORT, world=World((noise,))))["greedy_m"]
+    )
+    assert what_if.ask(later)["chosen"]["distances_m"] == distances(later)
 
 
 @pytest.mark.parametrize("agent", [name for name in OURS if learns(name)])
