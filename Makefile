@@ -43,15 +43,25 @@ venv: $(DQN_STAMP) $(PAGE_STAMP) ## Make or update .venv with everything a devel
 
 .PHONY: test
 test: ## Run every check; this is the gate
-	@$(MAKE) --no-print-directory --jobs=3 check test-page browser
-	$(BIN)/python -m pytest --numprocesses $(TEST_PROCESSES)
+	@$(MAKE) --no-print-directory --jobs=4 lint test-page browser $(DQN_STAMP)
+	@$(MAKE) --no-print-directory --jobs=2 types pytest
 
 .PHONY: check
-check: $(DQN_STAMP) ## Check the Python code: format, linter, types, import contracts
+check: lint types ## Check the Python code: format, linter, types, import contracts
+
+.PHONY: lint
+lint: $(DEV_STAMP)
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
-	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
+
+.PHONY: types
+types: $(DQN_STAMP)
+	$(BIN)/mypy
+
+.PHONY: pytest
+pytest: $(DQN_STAMP)
+	$(BIN)/python -m pytest --numprocesses $(TEST_PROCESSES)
 
 # Beside the other checks: it mostly waits for the network.
 .PHONY: browser

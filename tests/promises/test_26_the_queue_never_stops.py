@@ -36,7 +36,7 @@ from tests.promises.length import at_length
 from tests.served import BODY, ENDLESS, LONG_S, Served
 from tests.storage.stores import opened
 
-VERBS = at_length(400, 100_000)
+VERBS = at_length(250, 100_000)
 RUNS = 10
 STARTS = at_length(0.02, 0.2)
 """Share of starts, each of which takes a process."""

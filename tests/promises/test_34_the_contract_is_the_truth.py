@@ -53,7 +53,7 @@ expected-statuses = ["2xx", "3xx", "4xx", "503"]
 """
 FEWER = """
 [[operations]]
-include-name = ["POST /api/v1/what-if", "POST /api/v1/races"]
+include-name = ["POST /api/v1/what-if", "POST /api/v1/races", "POST /api/v1/experiments"]
 phases.coverage.enabled = false
 """
 
