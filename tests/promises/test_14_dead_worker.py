@@ -18,7 +18,7 @@ from tests.jobs.experiments import sweep, tried
 from tests.promises.length import at_length
 from tests.served import BODY, ENDLESS, LONG_S, Served
 
-SEEDS = 10
+SEEDS = at_length(10, 16)
 NOTICED_S = at_length(LONG_S, 5.0)
 
 
