@@ -287,9 +287,11 @@ export function copySettings(run) {
   setFields({ ...Object.fromEntries(taken), robot: robot ? formRobot(robot) : form.value.robot, ...happens });
 }
 
-/** The agent of a lane without training, and its settings. @param {LaneConfig} lane */
-const settingsOfLane = ({ agent, ...lane }) =>
-  ({ agent, ...Object.fromEntries(Object.entries(lane).filter(([name]) => name in agentOf(agent).settings)) });
+/** The agent of a lane without training, its settings, and how it reads its state. @param {LaneConfig} lane */
+const settingsOfLane = ({ agent, ...lane }) => {
+  const own = ["observation", ...Object.keys(agentOf(agent).settings)];
+  return { agent, ...Object.fromEntries(Object.entries(lane).filter(([name]) => own.includes(name))) };
+};
 
 /**
  * A lane as it was asked for: what its search knows by default depends on what happens in its race.

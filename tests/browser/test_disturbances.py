@@ -137,7 +137,7 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     original, branch = (dashboard.get("/api/v1/races")["items"][n] for n in (1, 0))
     assert branch["config"]["branch_from"]["race_id"] == original["id"]
     expect(board.get_by_text(re.compile(r"Original: 0\.\d\d\sm at time-out"))).to_have_count(2)
-    expect(board.get_by_text("plans with the robot as designed, on flat ground")).to_have_count(2)
+    expect(board.get_by_text("plans with the nominal model")).to_have_count(2)
     assert dashboard.violations() == []
     page.get_by_role("link", name=original["name"]).click()
     expect(page.locator(".run")).to_have_count(1)
