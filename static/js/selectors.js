@@ -240,7 +240,7 @@ export const conditionsShown = computed(() => {
   const run = shownRun.value;
   if (!run || run.kind === "experiment" || scene.value?.run_id !== run.id) return [];
   const step = Math.max(1, ...scene.value.lanes.map((lane) => lane.step));
-  return conditionsInWords(conditionsAt(happeningsOf(run), step - 1));
+  return conditionsInWords(conditionsAt(happeningsOf(run), step - 1, run.config.robot));
 });
 
 /** The race whose replay is held: paused, or at its end. */
