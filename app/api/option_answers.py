@@ -28,6 +28,9 @@ class RobotOption(Described):
     """A robot preset."""
 
     robot: RobotView
+    built: dict[str, float] = Field(
+        description="parts in whose place a disturbance puts another value, as they were built"
+    )
 
 
 class ExperimentOption(Described):
@@ -68,6 +71,7 @@ class SettingOption(Answer):
     is_boolean: bool
     is_whole: bool
     choices: list[str] = Field(description="the valid words, if only certain words are valid")
+    choice_titles: list[str] = Field(description="the titles of these words, in their order")
     default: Value
     is_live: bool = Field(description="whether it may change while a training runs")
 
@@ -79,11 +83,19 @@ class WorldOption(Described):
     disturbances: list[DisturbanceView]
 
 
+class RangesView(Answer):
+    """Limits of a field by what is chosen in another: (low, high) of each choice."""
+
+    field: str
+    ranges: dict[str, tuple[float, float]]
+
+
 class FieldOption(SettingOption):
     """Declaration of a field of a disturbance; of a list, that of each of its values."""
 
     is_list: bool
     is_required: bool
+    ranges: RangesView | None = Field(description="narrower limits by the choice of another field")
 
 
 class DisturbanceOption(Described):
@@ -91,6 +103,10 @@ class DisturbanceOption(Described):
 
     title: str
     fields: dict[str, FieldOption]
+    size: str | None = Field(description="the field that says how much happens")
+    nothing: float | str | None = Field(
+        description="the size at which nothing happens: a number, or the robot's part that has it"
+    )
     simulators: list[str]
 
 

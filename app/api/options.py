@@ -152,6 +152,7 @@ _SETTINGS = {
     "race_steps": declare("race_steps", _LANE_STEPS, RACE_STEPS),
     "keep_learning": declared_fields(LaneConfig)["keep_learning"],
     "plans_with": declared_fields(LaneConfig)["plans_with"],
+    "observation": declared_fields(LaneConfig)["observation"],
 }
 """Declared settings that belong to no agent, by form field."""
 _LEGS = declare("legs", Annotated[int, Ge(1), Le(MAX_LEGS), disturbances.LEGS], REQUIRED)
@@ -169,7 +170,12 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
         "version": __version__,
         "gaits": [_gait(name) for name in NAMED_GAITS],
         "robots": [
-            {"name": name, "description": _ROBOTS.get(name, ""), "robot": as_mapping(robot)}
+            {
+                "name": name,
+                "description": _ROBOTS.get(name, ""),
+                "robot": as_mapping(robot),
+                "built": {part: getattr(robot, part) for part in _replaced_parts()},
+            }
             for name, robot in PRESETS.items()
         ],
         "agents": _agents(agents),
@@ -254,10 +260,18 @@ def _disturbances() -> list[dict[str, Any]]:
             "title": kind.title,
             "description": kind.help,
             "fields": _fields_of(kind),
+            "size": kind.size,
+            "nothing": kind.nothing,
             "simulators": [one for one in _SIMULATORS if is_simulated(name, one)],
         }
         for name, kind in disturbances.KINDS.items()
     ]
+
+
+def _replaced_parts() -> list[str]:
+    """Return the fields of a robot in whose place disturbances put another value."""
+    values = (kind.nothing for kind in disturbances.KINDS.values())
+    return [value for value in values if isinstance(value, str)]
 
 
 def _fields_of(kind: type[disturbances.Disturbance]) -> dict[str, dict[str, Any]]:
@@ -267,7 +281,13 @@ def _fields_of(kind: type[disturbances.Disturbance]) -> dict[str, dict[str, Any]
     for one in sorted(fields(kind), key=lambda field: field.name in ("at_step", "until_step")):
         setting = declared.get(one.name, _LEGS)
         is_list, is_required = setting is _LEGS, one.default is MISSING
-        options[one.name] = {**_setting(setting), "is_list": is_list, "is_required": is_required}
+        ranges = kind.ranges.get(one.name)
+        options[one.name] = {
+            **_setting(setting),
+            "is_list": is_list,
+            "is_required": is_required,
+            "ranges": None if ranges is None else ranges._asdict(),
+        }
     return options
 
 
@@ -355,6 +375,7 @@ def _setting(setting: DeclaredSetting) -> dict[str, Any]:
         "is_boolean": bool in setting.kinds,
         "is_whole": setting.is_whole,
         "choices": setting.choices,
+        "choice_titles": about.choice_titles or setting.choices,
         "default": None if setting.default is REQUIRED else setting.default,
         "is_live": about.live,
     }

@@ -6,7 +6,8 @@ from the start. Each field is declared once, as `app.domain.settings` describes.
 
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields, replace
-from typing import Annotated, Any, ClassVar, Literal
+from types import MappingProxyType
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 from annotated_types import Ge, Gt, Le
 
@@ -40,6 +41,18 @@ Key = tuple[Any, ...]
 """What a disturbance changes; that of a leg is the beginning of those of its joints."""
 
 
+class RangesByChoice(NamedTuple):
+    """Limits of a field that depend on what is chosen in another.
+
+    Attributes:
+        field: the other field.
+        ranges: (low, high) of each of its choices.
+    """
+
+    field: str
+    ranges: Mapping[str, tuple[float, float]]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Disturbance:
     """Something that happens to a robot or to the ground; subclasses are the kinds.
@@ -56,6 +69,13 @@ class Disturbance:
     title: ClassVar[str]
     help: ClassVar[str]
     """One sentence for users."""
+    size: ClassVar[str | None] = None
+    """The field that says how much happens; None if there is no less of it."""
+    nothing: ClassVar[float | str | None] = 0.0
+    """The size at which nothing happens: a number, or the field of the robot that has it; None if
+    something always happens."""
+    ranges: ClassVar[Mapping[str, RangesByChoice]] = MappingProxyType({})
+    """Narrower limits of fields, by the choice of another field."""
 
     at_step: Annotated[
         int,
@@ -155,6 +175,7 @@ class Stuck(Disturbance):
     kind = "stuck"
     title = "Stuck joint"
     help = "One joint holds this angle, whatever it is told."
+    ranges = MappingProxyType({"angle_rad": RangesByChoice("joint", JOINT_LIMITS_RAD)})
     leg: Annotated[
         int, Ge(1), Le(MAX_LEGS), Setting(title="Leg", help="The number of the leg, from 1.")
     ]
@@ -203,6 +224,7 @@ class Weak(_OfLegs):
     title = "Weak servos"
     help = "The servos of these legs have only a share of their torque."
     part = ("power",)
+    size, nothing = "torque_share", 1.0
     torque_share: Annotated[
         float, Gt(0), Le(1), Setting(title="Share of torque", help="1 is all of it.")
     ]
@@ -229,6 +251,7 @@ class Slope(Disturbance):
     kind = "slope"
     title = "Slope"
     help = "The ground rises in this direction."
+    size = "degrees"
     degrees: Annotated[float, Ge(0), Le(30), Setting(title="Slope", unit="°", help="0 is flat.")]
     direction_deg: Direction = 0.0
 
@@ -240,6 +263,7 @@ class Rough(Disturbance):
     kind = "rough"
     title = "Rough ground"
     help = "Bumps up to this height; the seed decides where they are."
+    size = "amplitude_m"
     amplitude_m: Annotated[
         float, Ge(0), Le(0.04), Setting(title="Height of bumps", unit="m", help="0 is flat.")
     ]
@@ -255,6 +279,7 @@ class Friction(Disturbance):
     kind = "friction"
     title = "Friction"
     help = "How much the ground grips: 1 is rubber on wood, 0.1 is ice."
+    size, nothing = "value", "friction"
     value: _Friction
 
 
@@ -265,6 +290,8 @@ class Patch(Disturbance):
     kind = "patch"
     title = "Patch"
     help = "A strip across the track with another friction."
+    # On other ground, such as ice, a strip with the robot's own friction is something.
+    size, nothing = "friction", None
     from_m: Annotated[
         float, Ge(-10), Le(1000), Setting(title="From", unit="m", help="Where the strip begins.")
     ]
@@ -290,6 +317,7 @@ class Payload(Disturbance):
     kind = "payload"
     title = "Payload"
     help = "A mass on top of the robot, in its middle or beside it."
+    size = "kg"
     kg: Annotated[float, Ge(0), Le(20), Setting(title="Mass", unit="kg", help="0 is none.")]
     x_m: Annotated[
         float, Ge(-1), Le(1), Setting(title="To the right", unit="m", help="From the middle.")
@@ -306,6 +334,7 @@ class Push(Disturbance):
     kind = "push"
     title = "Push"
     help = "A blow at the beginning of the step; it lasts no longer."
+    size = "impulse_ns"
     impulse_ns: Annotated[float, Ge(0), Le(20), Setting(title="Impulse", unit="N·s", help="Of it.")]
     direction_deg: Direction = 0.0
 
@@ -322,6 +351,7 @@ class SensorNoise(Disturbance):
     kind = "sensor-noise"
     title = "Sensor noise"
     help = "Where the feet are is measured with this error."
+    size = "sd_m"
     sd_m: Annotated[
         float,
         Ge(0),
@@ -337,6 +367,7 @@ class Delay(Disturbance):
     kind = "delay"
     title = "Servo delay"
     help = "Servos do what they are told this much later."
+    size = "seconds"
     seconds: Annotated[float, Ge(0), Le(0.1), Setting(title="Delay", unit="s", help="0 is none.")]
 
 
@@ -347,6 +378,7 @@ class DeadBand(Disturbance):
     kind = "dead-band"
     title = "Servo dead band"
     help = "Servos ignore changes of their command that are smaller than this."
+    size = "radians"
     radians: Annotated[
         float, Ge(0), Le(0.2), Setting(title="Dead band", unit="rad", help="0 is none.")
     ]
@@ -361,12 +393,12 @@ KINDS: Mapping[str, type[Disturbance]] = {
 }  # fmt: skip
 
 
-def is_nothing(one: Disturbance) -> bool:
-    """Whether it only ends an earlier one of its kind: a slope of 0°, a payload of 0 kg."""
-    declared = declared_fields(type(one)).values()  # type: ignore[arg-type]  # mypy: no hash
-    own = [each for each in declared if each.name not in ("at_step", "until_step")]
-    is_size = bool(own) and own[0].low == 0 and not own[0].excludes_low
-    return is_size and getattr(one, own[0].name) == 0
+def is_nothing(one: Disturbance, robot: Robot) -> bool:
+    """Whether it only ends an earlier one: a slope of 0°, the friction with which it was built."""
+    if one.size is None:
+        return False
+    nothing = getattr(robot, one.nothing) if isinstance(one.nothing, str) else one.nothing
+    return bool(getattr(one, one.size) == nothing)
 
 
 def disturbance(data: Mapping[str, Any]) -> Disturbance:

@@ -51,6 +51,7 @@ class Setting:
         unit: unit of a number, such as m.
         live: whether it may change while a run is active; the agent's `tune` receives changes.
         examples: example values for a sweep.
+        choice_titles: titles of the words of a `Literal`, in their order; by default the words.
     """
 
     title: str
@@ -61,6 +62,7 @@ class Setting:
     unit: str | None = None
     live: bool = False
     examples: tuple[float, ...] = ()
+    choice_titles: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "examples", tuple(self.examples))

@@ -15,7 +15,7 @@ import numpy as np
 from app.domain.disturbances import Push, SensorNoise, is_nothing
 from app.domain.grid import FootGrid
 from app.domain.observation import legal_actions, observe, planned_offsets
-from app.domain.robot import PRESETS
+from app.domain.robot import PRESETS, Robot
 from app.domain.simulator import Simulator
 from app.domain.types import Cells
 from app.domain.world import WORLDS, World
@@ -90,7 +90,7 @@ def best_known_m(walk: WalkingProblem, conditions: World | None = None) -> float
         return None
     robot = next((name for name, one in PRESETS.items() if one == walk.robot), None)
     holds = walk.world.as_of(0) if conditions is None else conditions
-    physical = _physical(holds)
+    physical = _physical(holds, walk.robot)
     world = next((name for name, one in WORLDS.items() if one.world.as_of(0) == physical), None)
     if robot is None or world is None:
         return None
@@ -110,12 +110,12 @@ def best_known_in_race_m(race: RaceConfig) -> float | None:
     return None if changes or race.steps != RACE_STEPS else best_known_m(race)
 
 
-def _physical(conditions: World) -> World:
+def _physical(conditions: World, robot: Robot) -> World:
     """Return the conditions without sensor noise, and without ends of earlier ones."""
     kept_on = (
         one
         for one in conditions.disturbances
-        if not isinstance(one, SensorNoise) and not is_nothing(one)
+        if not isinstance(one, SensorNoise) and not is_nothing(one, robot)
     )
     return World(tuple(kept_on))
 

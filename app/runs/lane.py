@@ -13,12 +13,19 @@ from app.runs.config import WalkingProblem, agent_settings
 Knowledge = Literal["world", "start", "nominal"]
 """What a search knows: `world` is the world as it is in each step, `start` as it was at the start,
 `nominal` the robot as it was designed, on flat ground."""
+KNOWLEDGE_TITLES: Mapping[Knowledge, str] = {
+    "world": "true model",
+    "start": "model of the start",
+    "nominal": "nominal model",
+}
 PlansWith = Annotated[
     Knowledge,
     Setting(
         title="Plans with",
-        help="What a search knows: the world as it is in each step, the world as it was at the "
-        "start, or the nominal robot, as it was designed, on flat ground. By default the start.",
+        help="What a search knows: the true model is the world as it is in each step, the model of "
+        "the start the world as it was then, the nominal model the robot as it was designed, on "
+        "flat ground. By default the start.",
+        choice_titles=tuple(KNOWLEDGE_TITLES.values()),
     ),
 ]
 LaneObservation = Annotated[
@@ -26,6 +33,7 @@ LaneObservation = Annotated[
     Setting(
         title="Observation",
         help="How the agent reads its state; with a training as in the training.",
+        choice_titles=("feet measured", "commands remembered", "feet as planned"),
     ),
 ]
 KeepLearning = Annotated[

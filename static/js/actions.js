@@ -2,7 +2,7 @@
 import { computed, signal } from "@preact/signals";
 import * as api from "./api.js";
 import { configAtEnd } from "./changes.js";
-import { textOf } from "./disturbances.js";
+import { changesSomething, conditionsNow, textOf } from "./disturbances.js";
 import {
   chooseLearner, form, link, mistakes, raceBody, setField, setFields, trainingBody, validSteps,
 } from "./form.js";
@@ -18,7 +18,7 @@ import {
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { DamagedRun, LaneConfig, Rates, Run, RunConfig, Stage, Verb } from "./types.js" */
+/** @import { Change, DamagedRun, Disturbance, LaneConfig, Rates, Run, RunConfig, Stage, Verb } from "./types.js" */
 
 /** A button of the page. @typedef {{ label: string, run: () => unknown }} Action */
 
@@ -210,17 +210,24 @@ function refuseTuning(run, sent, error) {
 
 // ---- what happens to robots
 
-/** The last of what was to happen: an answer waits for the end of a step, in which the next leg may be clicked. */
-let lastDisturbed = Promise.resolve(/** @type {unknown} */ (null));
+/** What happened last: an answer waits for the end of a step, in which the next leg may be clicked. */
+let lastChange = Promise.resolve(/** @type {{ id: string, changes: Change[] } | null} */ (null));
 
 /**
- * Let something happen to a training from its next step on, after what was to happen before.
+ * Let something happen to a training from its next step on, after what was to happen before, if it changes anything.
  * @param {Run} run
- * @param {object} disturbance without its step
+ * @param {Disturbance} disturbance without its step
  */
 export function disturb(run, disturbance) {
-  lastDisturbed = lastDisturbed.then(() => attempt("disturb", () => api.disturbTraining(run.id, disturbance)));
-  return lastDisturbed;
+  lastChange = lastChange.then(async (last) => {
+    const known = runs.value.get(run.id) ?? run;
+    // The event that tells of the last one may come after its answer.
+    const changes = [...known.changes ?? [], ...(last?.id === run.id ? last.changes : [])];
+    if (!changesSomething(disturbance, conditionsNow({ ...known, changes }), known.config.robot)) return last;
+    const happened = await attempt("disturb", () => api.disturbTraining(run.id, disturbance));
+    return happened && { id: run.id, changes: [{ step: happened.at_step, disturbance: happened }] };
+  });
+  return lastChange;
 }
 
 /**
@@ -287,9 +294,11 @@ export function copySettings(run) {
   setFields({ ...Object.fromEntries(taken), robot: robot ? formRobot(robot) : form.value.robot, ...happens });
 }
 
-/** The agent of a lane without training, and its settings. @param {LaneConfig} lane */
-const settingsOfLane = ({ agent, ...lane }) =>
-  ({ agent, ...Object.fromEntries(Object.entries(lane).filter(([name]) => name in agentOf(agent).settings)) });
+/** The agent of a lane without training, its settings, and how it reads its state. @param {LaneConfig} lane */
+const settingsOfLane = ({ agent, ...lane }) => {
+  const own = ["observation", ...Object.keys(agentOf(agent).settings)];
+  return { agent, ...Object.fromEntries(Object.entries(lane).filter(([name]) => own.includes(name))) };
+};
 
 /**
  * A lane as it was asked for: what its search knows by default depends on what happens in its race.

@@ -1,10 +1,12 @@
 // What happens to robots and to the ground: what holds in a step, its words, and its text in links and commands.
 import { listed, sentence, whole } from "./format.js";
 import { parseSetting, quoted } from "./parse.js";
+import { builtPart } from "./robots.js";
+import { fieldBeside, mistakeIn } from "./settings.js";
 import { options } from "./store.js";
 
 /** @import { Parsed } from "./parse.js" */
-/** @import { Disturbance, DisturbanceKind, FieldOption, Run } from "./types.js" */
+/** @import { Disturbance, DisturbanceKind, FieldOption, RobotConfig, Run } from "./types.js" */
 
 /** It lasts no longer than the beginning of its step. */
 export const PUSH = "push";
@@ -50,30 +52,72 @@ function partsOf(one) {
   return [[one.from_m === undefined ? one.kind : `${one.kind} ${one.from_m} ${one.to_m}`, one]];
 }
 
+/** Whether what changes one thing replaces what changes another: of a leg that of its joints. */
+const covers = (/** @type {string} */ key, /** @type {string} */ other) => other === key || other.startsWith(`${key} `);
+
+/** @param {Disturbance} one */
+const keysOf = (one) => partsOf(one).map(([key]) => key);
+
 /**
  * The disturbances that hold in a step, leg by leg: a later one of the same thing replaces an earlier one.
  * @param {Disturbance[]} happenings
  * @param {number} step counted from 0
+ * @param {RobotConfig} [robot] to which they happen
  */
-export function conditionsAt(happenings, step) {
+export function conditionsAt(happenings, step, robot) {
   /** @type {Map<string, Disturbance>} */
   const newest = new Map();
   const lasting = happenings.filter((one) => one.kind !== PUSH && holdsAt(one, step));
   for (const one of lasting.sort((a, b) => a.at_step - b.at_step)) {
     for (const [key, part] of partsOf(one)) {
-      const replaced = [...newest.keys()].filter((old) => old === key || old.startsWith(`${key} `));
-      replaced.forEach((old) => newest.delete(old));
+      [...newest.keys()].filter((old) => covers(key, old)).forEach((old) => newest.delete(old));
       newest.set(key, part);
     }
   }
-  return [...newest.values()].filter((one) => one.kind !== REPAIR && !isNone(one));
+  return [...newest.values()].filter((one) => one.kind !== REPAIR && !isNothing(one, robot));
 }
 
-/** Whether it ends an earlier one of its kind: a slope of 0°. @param {Disturbance} one */
-const isNone = (one) => {
-  const own = mainField(one.kind);
-  return own !== null && own[1].minimum === 0 && one[own[0]] === 0;
-};
+/**
+ * The size at which nothing happens: a slope of 0°, the friction with which the robot was built; null without one.
+ * @param {string} name of the kind
+ * @param {RobotConfig} [robot]
+ */
+export function nothingOf(name, robot) {
+  const { nothing = null } = kindNamed(name) ?? {};
+  return typeof nothing === "string" ? builtPart(robot, nothing, options.value?.robots ?? []) : nothing;
+}
+
+/** Whether it only ends an earlier one. @param {Disturbance} one @param {RobotConfig} [robot] */
+function isNothing(one, robot) {
+  const { size = null } = kindNamed(one.kind) ?? {};
+  return size !== null && one[size] === nothingOf(one.kind, robot);
+}
+
+/**
+ * Whether something would change: a repair, or a slope of 0°, has to end something that holds.
+ * @param {Disturbance} one
+ * @param {Disturbance[]} conditions
+ * @param {RobotConfig} [robot]
+ */
+export function changesSomething(one, conditions, robot) {
+  if (one.kind !== REPAIR && !isNothing(one, robot)) return true;
+  const own = keysOf(one);
+  return conditions.some((other) => keysOf(other).some((key) => own.some((mine) => covers(mine, key))));
+}
+
+/**
+ * What is chosen to happen in one step, with something more, which takes the place of what it contradicts.
+ * @param {Disturbance[]} chosen
+ * @param {Disturbance} one
+ * @param {Disturbance[]} before what holds without them
+ * @param {RobotConfig} [robot]
+ */
+export function chosenWith(chosen, one, before, robot) {
+  const own = keysOf(one);
+  const isKept = (/** @type {string} */ key) => !own.some((mine) => covers(mine, key) || covers(key, mine));
+  const kept = chosen.flatMap(partsOf).flatMap(([key, part]) => (isKept(key) ? [part] : []));
+  return [...kept, ...(changesSomething(one, before, robot) ? [one] : [])];
+}
 
 /**
  * What holds in a training that runs, with what has just been sent to it.
@@ -82,17 +126,7 @@ const isNone = (one) => {
 export function conditionsNow(run) {
   const happenings = happeningsOf(run);
   const changed = (run.changes ?? []).map(({ step }) => step);
-  return conditionsAt(happenings, Math.max(run.progress.done, ...changed));
-}
-
-/**
- * The number of a kind that has only one that must be given: the degrees of a slope; null for others.
- * @param {string} kind
- * @returns {[string, FieldOption] | null}
- */
-export function mainField(kind) {
-  const needed = Object.entries(kindNamed(kind)?.fields ?? {}).filter(([, field]) => field.is_required);
-  return needed.length === 1 && needed[0][1].is_number && !needed[0][1].is_list ? needed[0] : null;
+  return conditionsAt(happenings, Math.max(run.progress.done, ...changed), run.config.robot);
 }
 
 // ---- words
@@ -109,14 +143,18 @@ export function withUnit(value, unit) {
   return unit === "°" ? `${text}°` : `${text}${unit ? JOIN + unit : ""}`;
 }
 
-/** The fields of a disturbance that are not its kind's defaults, in words. @type {(one: Disturbance) => string[]} */
-const fieldsInWords = (one) =>
-  Object.entries(kindNamed(one.kind)?.fields ?? {})
+/** The fields of a disturbance that are not its kind's defaults, in words. @param {Disturbance} one */
+function fieldsInWords(one) {
+  const fields = Object.entries(kindNamed(one.kind)?.fields ?? {});
+  // Beside the title of its kind, the only one that must be given needs no title.
+  const isOnlyOne = fields.filter(([, { is_required }]) => is_required).length === 1;
+  return fields
     .filter(([name, field]) => !STEPS.includes(name) && !field.is_list && name in one && one[name] !== field.default)
     .map(([name, field]) => {
-      const title = mainField(one.kind)?.[0] === name ? "" : `${field.title.toLowerCase()} `;
+      const title = field.is_required && isOnlyOne ? "" : `${field.title.toLowerCase()} `;
       return `${title}${withUnit(one[name], field.unit)}`;
     });
+}
 
 /** What a kind makes of legs. @type {Record<string, string>} */
 export const LEG_WORDS = { limp: "limp", lost: "lost", weak: "weak", repair: "repaired" };
@@ -295,6 +333,10 @@ export function parseText(text) {
   const missing = Object.entries(kind.fields).filter(([field, { is_required }]) => is_required && !seen.has(field));
   if (missing.length) {
     return { mistake: `${kind.title}: give ${listed(missing.map(([, { title }]) => title.toLowerCase()))}` };
+  }
+  for (const [own, field] of Object.entries(kind.fields).filter(([, { ranges }]) => ranges)) {
+    const mistake = mistakeIn(found[own], fieldBeside(field, found), field.is_whole);
+    if (mistake) return { mistake: `${kind.title}, ${field.title.toLowerCase()}: ${mistake}` };
   }
   return { value: found };
 }

@@ -352,15 +352,16 @@ export function whatIfBody() {
 }
 
 /**
- * The settings of an agent's lane: all of a searcher's, and `keep_learning` if that is not the learner's default.
+ * The settings of an agent's lane: all that are the agent's own, and those of any lane that are not the default.
  * @param {string} agent
  */
 function laneFields(agent) {
-  const values = Object.keys(laneSettings([agent])).map((field) => [field.slice(agent.length + 1), form.value[field]]);
-  const { keeps_learning } = agentOf(agent);
-  const isGiven = (/** @type {any[]} */ [name, value]) =>
-    value !== null && (name !== "keep_learning" || value !== keeps_learning);
-  return Object.fromEntries(values.filter(isGiven));
+  const { settings } = agentOf(agent);
+  const given = Object.entries(laneSettings([agent])).flatMap(([field, setting]) => {
+    const [name, value] = [field.slice(agent.length + 1), form.value[field]];
+    return value !== null && (name in settings || value !== setting.default) ? [[name, value]] : [];
+  });
+  return Object.fromEntries(given);
 }
 
 /** Agent → id of a training. @typedef {Record<string, string | undefined>} TrainingIds */
@@ -378,7 +379,7 @@ export const raceBody = ({ continued = {}, tables = {}, isUnpractised = false } 
   lanes: form.value.lanes.map((agent) => {
     const own = laneFields(agent);
     if (!learns(agent)) return { agent, ...own };
-    if (isUnpractised) return { agent, ...own, ...ownFields(agent) };
+    if (isUnpractised) return { agent, ...own, observation: form.value.observation, ...ownFields(agent) };
     if (tables[agent]) return { agent, ...own, training_id: tables[agent] };
     return { agent, ...own, training: { ...practiceFields(agent), ...beginning(continued[agent]) } };
   }),

@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getTimeline } from "./api.js";
 import { count, listed, metres } from "./format.js";
-import { clock, isActive, isToCome, originalRace, raceInView, raceScene, shownRun } from "./selectors.js";
+import { clock, isActive, isToCome, knowledgeIn, originalRace, raceInView, raceScene, shownRun } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { connection, scene, stage } from "./store.js";
 
@@ -173,14 +173,15 @@ const ranked = (rows) =>
  * @param {number} number of the lane, from 0
  * @param {number} time race time that is shown [s]; Infinity after the race
  */
-function rowOf(race, { agent, training_id, plans_with }, number, time) {
+function rowOf(race, config, number, time) {
+  const { agent, training_id } = config;
   const lane = laneOf(race, number, time);
   const { seen, result } = lane;
   return {
     lane: number,
     agent,
     training_id,
-    plans_with,
+    plans_with: knowledgeIn(race, config),
     steps: seen?.steps ?? race.config.steps,
     decision_s: result?.steps ? result.decision_s / result.steps : null,
     ...placeOf(agent, seen, result),

@@ -1,6 +1,6 @@
 // Robots as forms and runs have them: the name of a preset, or an object with a preset and what differs from it.
 
-/** @import { Gait, GaitConfig, RobotConfig } from "./types.js" */
+/** @import { Gait, GaitConfig, Robot, RobotConfig } from "./types.js" */
 
 /**
  * The preset of a robot, or the one that it is made from.
@@ -21,6 +21,18 @@ const differences = (robot) =>
  * @param {Robot} robot
  */
 export const formRobot = (robot) => (differences(robot).length ? robot : presetOf(robot) ?? robot);
+
+/**
+ * A part of a robot as it was built; null where that is not known.
+ * @param {RobotConfig | undefined} robot
+ * @param {string} part
+ * @param {Robot[]} presets
+ */
+export function builtPart(robot, part, presets) {
+  const [, own = null] = differences(robot).find(([field]) => field === part) ?? [];
+  const preset = presets.find(({ name }) => name === presetOf(robot));
+  return typeof own === "number" ? own : preset?.built[part] ?? null;
+}
 
 /** JSON in which the order of an object's fields plays no part. @type {(value: unknown) => string} */
 const canonical = (value) =>

@@ -8,7 +8,7 @@ import { learns } from "./settings.js";
 import { options, role, runs, scene, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { FormValues, GaitConfig, Run, Scene, State } from "./types.js" */
+/** @import { FormValues, GaitConfig, LaneConfig, Run, Scene, State } from "./types.js" */
 
 /** @type {Set<State>} */
 const ACTIVE = new Set(["queued", "running", "paused"]);
@@ -76,6 +76,14 @@ export const trainingIds = (race) => [
 
 /** @type {(id: string | null | undefined) => Run | null} */
 const get = (id) => (isKnown(id) ? runs.value.get(id) ?? null : null);
+
+/**
+ * What a lane's search knows, where that is no matter of course: something happens, or somebody asked for it.
+ * @param {Run} race
+ * @param {LaneConfig} lane
+ */
+export const knowledgeIn = (race, { plans_with = null, plans_with_by_default }) =>
+  happeningsOf(race).length || plans_with_by_default === false ? plans_with : null;
 
 /** The run on stage. */
 export const shownRun = computed(() => get(stage.value?.run_id));
@@ -232,7 +240,7 @@ export const conditionsShown = computed(() => {
   const run = shownRun.value;
   if (!run || run.kind === "experiment" || scene.value?.run_id !== run.id) return [];
   const step = Math.max(1, ...scene.value.lanes.map((lane) => lane.step));
-  return conditionsInWords(conditionsAt(happeningsOf(run), step - 1));
+  return conditionsInWords(conditionsAt(happeningsOf(run), step - 1, run.config.robot));
 });
 
 /** The race whose replay is held: paused, or at its end. */

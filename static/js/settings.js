@@ -3,7 +3,7 @@ import { computed } from "@preact/signals";
 import { sentence, whole } from "./format.js";
 import { options, served } from "./store.js";
 
-/** @import { Agent, Limits, SettingOption, SettingValue } from "./types.js" */
+/** @import { Agent, FieldOption, Limits, SettingOption, SettingValue } from "./types.js" */
 
 /**
  * The kind of control that a setting needs.
@@ -58,6 +58,13 @@ export const fullTitle = (setting) => withUnit(titleOf(setting), setting.unit);
 
 /** @type {(title: string, unit: string | null) => string} */
 const withUnit = (title, unit) => (unit ? `${title} (${unit})` : title);
+
+/**
+ * The title of a setting's choice: "true model".
+ * @param {SettingOption} setting
+ * @param {string} choice
+ */
+export const choiceTitle = ({ choices, choice_titles }, choice) => choice_titles[choices.indexOf(choice)] ?? choice;
 
 // ---- limits
 
@@ -115,6 +122,33 @@ export function mistakeIn(value, limits, isInteger) {
   return isWithin(value, limits) ? null : `Must be ${range}`;
 }
 
+/**
+ * The declaration of a field whose limits depend on another one, beside its values: of an angle, on the joint.
+ * @param {FieldOption} field
+ * @param {{ [field: string]: any }} values
+ * @returns {FieldOption}
+ */
+export function fieldBeside(field, values) {
+  const range = field.ranges?.ranges[values[field.ranges.field]];
+  return range ? { ...field, minimum: range[0], maximum: range[1] } : field;
+}
+
+/**
+ * Values of fields; those whose limits depend on another are at the nearest end where they are out of them.
+ * @template {{ [field: string]: any }} Values
+ * @param {Record<string, FieldOption>} fields
+ * @param {Values} values
+ * @returns {Values}
+ */
+export function withinRanges(fields, values) {
+  const narrowed = Object.entries(fields).filter(([name, { ranges }]) => ranges && name in values);
+  const nearest = narrowed.map(([name, field]) => {
+    const { minimum, maximum } = fieldBeside(field, values);
+    return [name, Math.max(minimum ?? -Infinity, Math.min(values[name], maximum ?? Infinity))];
+  });
+  return { ...values, ...Object.fromEntries(nearest) };
+}
+
 // ---- agents, with the settings that each declares
 
 /** For an agent that a run names and the server no longer has. */
@@ -145,8 +179,8 @@ export function settingsOf(names) {
 }
 
 /**
- * The settings of lanes, by form field such as `beam.width`: the own ones of a searcher and what it knows, and
- * whether a learner keeps learning; a learner's other settings are those of its practice.
+ * The settings of lanes, by form field such as `beam.width`: the own ones of a searcher, what it knows and how it
+ * reads its state, and whether a learner keeps learning; a learner's other settings are those of its practice.
  * @param {string[]} names of the lanes' agents
  * @returns {Record<string, SettingOption>}
  */
@@ -155,7 +189,8 @@ export function laneSettings(names) {
     const { settings, searches, keeps_learning } = agentOf(name);
     const keepLearning = { ...settingOf("keep_learning"), default: keeps_learning };
     const ofSearch = searches ? { plans_with: settingOf("plans_with") } : {};
-    return Object.entries(learns(name) ? { keep_learning: keepLearning } : { ...settings, ...ofSearch });
+    const observation = settingOf("observation");
+    return Object.entries(learns(name) ? { keep_learning: keepLearning } : { ...settings, ...ofSearch, observation });
   };
   return Object.fromEntries(names.flatMap((name) => ofLane(name).map(([own, setting]) => [`${name}.${own}`, setting])));
 }

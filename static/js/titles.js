@@ -3,15 +3,11 @@ import { worldTitle } from "./disturbances.js";
 import { experimentOf } from "./experiments/form.js";
 import { count, sentence } from "./format.js";
 import { customRobotInWords, partInWords, presetOf } from "./robots.js";
-import { agentOf, shortTitle, titleOf } from "./settings.js";
+import { agentOf, choiceTitle, shortTitle, titleOf } from "./settings.js";
 import { options } from "./store.js";
 
 /** @import { Described, GaitConfig, RobotConfig, Run } from "./types.js" */
 
-/** @type {Record<string, string>} */
-const OBSERVATIONS = {
-  measured: "feet measured", commanded: "commands remembered", planned: "feet as planned",
-};
 /** @type {Record<string, string>} */
 const SIMULATORS = { mujoco: "MuJoCo physics", kinematic: "ideal (no slip)" };
 /** @type {Record<string, string>} */
@@ -29,9 +25,15 @@ export function robotTitle(robot) {
   const name = presetOf(robot) ?? "own robot";
   return sentence(custom ?? find(options.value?.robots, name)?.title ?? name);
 }
+/** @type {(field: string, choice: string) => string} */
+const titleOfChoice = (field, choice) => {
+  const setting = options.value?.settings[field];
+  return setting ? choiceTitle(setting, choice) : choice;
+};
 /** @param {string} name */
-export const observationTitle = (name) =>
-  find(options.value?.observations, name)?.title ?? OBSERVATIONS[name] ?? name;
+export const observationTitle = (name) => titleOfChoice("observation", name);
+/** What a search knows: "nominal model". @param {string} name */
+export const knowledgeTitle = (name) => titleOfChoice("plans_with", name);
 /** @param {string} name */
 export const simulatorTitle = (name) => find(options.value?.simulators, name)?.title ?? SIMULATORS[name] ?? name;
 /** @param {string} name */

@@ -30,6 +30,8 @@ export interface SettingOption extends Limits {
   is_whole: boolean;
   /** The valid words, if only certain words are valid. */
   choices: string[];
+  /** Their titles, in their order. */
+  choice_titles: string[];
   default: SettingValue;
   /** Whether it may change while a training runs. */
   is_live: boolean;
@@ -69,11 +71,17 @@ export interface Agent extends Described {
 export interface FieldOption extends SettingOption {
   is_list: boolean;
   is_required: boolean;
+  /** Narrower limits, [low, high], by what is chosen in another field. */
+  ranges: { field: string; ranges: Record<string, [number, number]> } | null;
 }
 
 export interface DisturbanceKind extends Described {
   title: string;
   fields: Record<string, FieldOption>;
+  /** The field that says how much happens. */
+  size: string | null;
+  /** The size at which nothing happens, or the part of the robot that has it; null if something always happens. */
+  nothing: number | string | null;
   /** The simulators that know it. */
   simulators: string[];
 }
@@ -95,6 +103,8 @@ export interface World extends Described {
 
 export interface Robot extends Described {
   robot: RobotConfig;
+  /** Parts in whose place a disturbance puts another value. */
+  built: Record<string, number>;
 }
 
 export interface ExperimentKind extends Described {

@@ -238,12 +238,27 @@ def test_options_tell_what_can_happen(api: Api) -> None:
     assert list(slope) == ["degrees", "direction_deg", "at_step", "until_step"]
     assert [one["is_required"] for one in slope.values()] == [True, False, False, False]
     assert (slope["degrees"]["maximum"], slope["degrees"]["unit"]) == (30, "°")
-    assert kinds["stuck"]["fields"]["joint"]["choices"] == ["coxa", "femur", "tibia"]
+    assert (kinds["slope"]["size"], kinds["slope"]["nothing"]) == ("degrees", 0)
+    assert (kinds["weak"]["size"], kinds["weak"]["nothing"]) == ("torque_share", 1)
+    assert (kinds["friction"]["size"], kinds["friction"]["nothing"]) == ("value", "friction")
+    assert (kinds["limp"]["size"], kinds["patch"]["nothing"]) == (None, None)
+    built = {one["name"]: one["built"] for one in options["robots"]}
+    assert (built["stiff"], built["slippery"]) == ({"friction": 1}, {"friction": 0.1})
+    stuck = kinds["stuck"]["fields"]
+    assert stuck["joint"]["choices"] == ["coxa", "femur", "tibia"]
+    assert (stuck["angle_rad"]["minimum"], stuck["angle_rad"]["maximum"]) == (-2.8, 1.9)
+    assert stuck["angle_rad"]["ranges"]["field"] == "joint"
+    assert stuck["angle_rad"]["ranges"]["ranges"]["tibia"] == [-2.8, 0]
+    assert slope["degrees"]["ranges"] is None
 
     searching = {one["name"] for one in options["agents"] if one["searches"]}
     assert {"greedy", "beam", "mcts"} <= searching
     assert not searching & {"q-learning", "linear-model"}
-    assert options["settings"]["plans_with"]["choices"] == ["world", "start", "nominal"]
+    knows = options["settings"]["plans_with"]
+    assert knows["choices"] == ["world", "start", "nominal"]
+    assert knows["choice_titles"] == ["true model", "model of the start", "nominal model"]
+    assert options["settings"]["observation"]["choices"] == ["measured", "commanded", "planned"]
+    assert stuck["joint"]["choice_titles"] == stuck["joint"]["choices"]
 
 
 def test_options_are_compressed_once_and_revalidated(api: Api) -> None:

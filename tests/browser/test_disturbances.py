@@ -51,28 +51,42 @@ def test_a_leg_is_broken_while_a_robot_practises(
     kind = page.get_by_label("A press on a leg")
     kind.select_option("Stuck joint")
     page.get_by_label("Joint").select_option("tibia")
+    # It reaches no further than the tibia.
+    expect(page.get_by_role("slider", name="Angle")).to_have_attribute("max", "0")
     page.get_by_label("Angle, as a number").fill("-1.5")
     dashboard.button("Leg 1").click()
     expect(now).to_contain_text("tibia stuck at −1.5\u00a0rad")
-    page.get_by_text("Ground, load and servos").click()
-    page.get_by_role("slider", name="Slope", exact=True).fill("8")
-    expect(now).to_contain_text("slope 8°")
-    page.get_by_role("slider", name="Slope: Direction").fill("90")
-    expect(now).to_contain_text("slope 8°, direction 90°")
-    assert dashboard.violations() == []
-    page.get_by_role("slider", name="Slope", exact=True).fill("0")
+    changes_its_ground(dashboard)
     dashboard.button("Leg 1, tibia stuck").click()
     kind.select_option("Repaired legs")
+    dashboard.button("Leg 1").click()  # it works already
     for number in (3, 6):
         dashboard.button(f"Leg {number}, limp").click()
     expect(now).to_contain_text("Nothing has happened")
     expect(curve).to_have_accessible_name(walks)
     kinds = Counter(one["kind"] for one in changes(dashboard))
-    assert kinds == {"limp": 2, "stuck": 1, "slope": 3, "repair": 3}
+    assert kinds == {"limp": 2, "stuck": 1, "slope": 3, "friction": 2, "repair": 3}
     dashboard.button("Stop").click()
     page.get_by_role("link", name="Runs").click()
     expect(page.locator(".run").first).to_contain_text(re.compile(r"slope 8°.* from step \d+"))
     only_sensors_of_an_ideal_robot(dashboard, shared_server)
+
+
+def changes_its_ground(dashboard: Dashboard) -> None:
+    """A slope and another friction begin, and end."""
+    page, now = dashboard.page, dashboard.page.locator(".world-now")
+    page.get_by_text("Ground, load and servos").click()
+    page.get_by_role("slider", name="Slope", exact=True).fill("8")
+    expect(now).to_contain_text("slope 8°")
+    page.get_by_role("slider", name="Slope: Direction").fill("90")
+    expect(now).to_contain_text("slope 8°, direction 90°")
+    page.get_by_role("slider", name="Friction").fill("0.5")
+    words = page.locator("#live-words")
+    expect(words).to_contain_text("friction 0.5")
+    assert dashboard.violations() == []
+    page.get_by_role("slider", name="Slope", exact=True).fill("0")
+    dashboard.button("Friction as built").click()
+    expect(words).not_to_contain_text("friction")
 
 
 def tells_others(browser: Browser, server: Serving) -> None:
@@ -119,6 +133,13 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     expect(page.locator(".branch")).to_contain_text(re.compile(r"From step [2-6]: as it was"))
     start = dashboard.button("Race on from here")
     expect(start).to_be_disabled()
+    page.get_by_text("Ground, load and servos").click()
+    page.get_by_role("spinbutton", name="Patch: To").fill("0.3")
+    dashboard.button("Lay it").click()
+    patch = re.compile(r"From step \d: patch .* to 0\.3\sm, friction 0\.05")
+    expect(page.locator(".branch")).to_contain_text(patch)
+    dashboard.button("Undo all").click()
+    expect(start).to_be_disabled()
     for leg in (1, 4):
         dashboard.button(f"Leg {leg}").click()
     expect(page.locator(".branch")).to_contain_text(re.compile(r"From step \d: legs\s1, 4 limp"))
@@ -137,7 +158,7 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     original, branch = (dashboard.get("/api/v1/races")["items"][n] for n in (1, 0))
     assert branch["config"]["branch_from"]["race_id"] == original["id"]
     expect(board.get_by_text(re.compile(r"Original: 0\.\d\d\sm at time-out"))).to_have_count(2)
-    expect(board.get_by_text("plans with the robot as designed, on flat ground")).to_have_count(2)
+    expect(board.get_by_text("plans with the nominal model")).to_have_count(2)
     assert dashboard.violations() == []
     page.get_by_role("link", name=original["name"]).click()
     expect(page.locator(".run")).to_have_count(1)

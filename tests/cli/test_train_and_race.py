@@ -97,7 +97,7 @@ def test_lanes_take_settings_and_keep_learning(folder: Path) -> None:
     assert printed["result"]["lanes"][0]["simulated_transitions"] == 5 * 156
     shown = hexapods(*race, folder=folder).stdout.replace("\u00a0", " ")
     assert "look-ahead, depth 2" in shown
-    assert "plans with" in shown
+    assert "plans with the true model" in shown
     assert "q-learning, α 0.5, keeps learning" in shown
 
 

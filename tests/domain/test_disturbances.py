@@ -1,5 +1,7 @@
 """Kinds of disturbances: their limits, their text on a command line, and their JSON."""
 
+from dataclasses import fields
+
 import pytest
 
 from app.domain.disturbances import (
@@ -10,10 +12,11 @@ from app.domain.disturbances import (
     Stuck,
     as_mapping,
     disturbance,
+    is_nothing,
     parse_disturbance,
 )
 from app.domain.errors import InvalidInput, UnknownName
-from app.domain.robot import Robot
+from app.domain.robot import PRESETS, Robot
 
 ONE_OF_EACH = (
     "limp:legs=1,4:at=25",
@@ -51,6 +54,32 @@ def test_fields_are_numbers_of_their_types() -> None:
     assert parse_disturbance("limp:legs=4,1:at=25") == Limp(legs=(1, 4), at_step=25)
     slope = disturbance({"kind": "slope", "degrees": 8})
     assert repr(slope) == repr(Slope(degrees=8.0, at_step=0, until_step=None))
+
+
+@pytest.mark.parametrize(
+    ("text", "robot", "expected"),
+    [
+        ("slope:degrees=0:direction_deg=90", "stiff", True),
+        ("slope:degrees=1", "stiff", False),
+        ("payload:kg=0:x_m=0.1", "stiff", True),
+        ("weak:legs=1:torque_share=1", "stiff", True),
+        ("friction:value=1", "stiff", True),
+        ("friction:value=1", "slippery", False),
+        ("friction:value=0.1", "slippery", True),
+        ("patch:from_m=0:to_m=1:friction=1", "stiff", False),  # on ice it is something
+        ("stuck:leg=1:joint=coxa:angle_rad=0", "stiff", False),
+        ("repair:legs=1", "stiff", False),
+    ],
+)
+def test_of_some_sizes_nothing_happens(text: str, robot: str, expected: bool) -> None:
+    assert is_nothing(parse_disturbance(text), PRESETS[robot]) is expected
+
+
+def test_every_declared_size_is_a_field() -> None:
+    for kind in KINDS.values():
+        names = {one.name for one in fields(kind)}
+        assert kind.size is None or kind.size in names
+        assert {*kind.ranges, *(one.field for one in kind.ranges.values())} <= names
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ const described = (name, title = name) => ({ name, title, description: `About ${
 const SETTING = {
   title: "", symbol: null, quantity: null, unit: null, help: "", valid: "a number", minimum: null, maximum: null,
   excludes_minimum: false, excludes_maximum: false, is_number: true, is_boolean: false,
-  is_whole: false, choices: [], default: null, is_live: false,
+  is_whole: false, choices: [], choice_titles: [], default: null, is_live: false,
 };
 /** @type {(title: string, changes: object) => SettingOption} */
 export const setting = (title, changes) => ({ ...SETTING, title, ...changes });
@@ -31,7 +31,8 @@ const TRACER = {
 };
 
 /** @type {(title: string, changes: object) => import("../../static/js/types.js").FieldOption} */
-const field = (title, changes) => ({ ...setting(title, changes), is_list: false, is_required: false, ...changes });
+const field = (title, changes) =>
+  ({ ...setting(title, changes), is_list: false, is_required: false, ranges: null, ...changes });
 const STEP_FIELDS = {
   at_step: field("Begins at step", { minimum: 0, is_whole: true, default: 0 }),
   until_step: field("Ends at step", { minimum: 1, is_whole: true }),
@@ -39,29 +40,36 @@ const STEP_FIELDS = {
 const LEGS = field("Legs", { minimum: 1, maximum: 12, is_whole: true, is_list: true, is_required: true });
 const DIRECTION = field("Direction", { minimum: -180, maximum: 180, unit: "°", default: 0 });
 const NUMBER = { minimum: 0, is_required: true };
-/** @type {(name: string, title: string, fields: object, simulators?: string[]) => any} */
-const kind = (name, title, fields, simulators = ["mujoco"]) =>
-  ({ ...described(name, title), fields: { ...fields, ...STEP_FIELDS }, simulators });
+/** @type {(name: string, title: string, fields: object, more?: object) => any} */
+const kind = (name, title, fields, more = {}) =>
+  ({ ...described(name, title), fields: { ...fields, ...STEP_FIELDS }, size: null, nothing: 0, simulators: ["mujoco"],
+    ...more });
 const KINDS = [
   kind("limp", "Limp legs", { legs: LEGS }),
   kind("stuck", "Stuck joint", {
     leg: field("Leg", { minimum: 1, maximum: 12, is_whole: true, is_required: true }),
     joint: field("Joint", { is_number: false, choices: ["coxa", "femur"], is_required: true }),
-    angle_rad: field("Angle", { minimum: -1.5, maximum: 1.5, unit: "rad", is_required: true }),
+    angle_rad: field("Angle", {
+      minimum: -1.5, maximum: 1.5, unit: "rad", is_required: true,
+      ranges: { field: "joint", ranges: { coxa: [-1.2, 1.2], femur: [-1.5, 1.5] } },
+    }),
   }),
+  kind("lost", "Lost legs", { legs: LEGS }),
   kind("weak", "Weak servos", {
     legs: LEGS, torque_share: field("Share of torque", { ...NUMBER, maximum: 1 }),
-  }),
+  }, { size: "torque_share", nothing: 1 }),
   kind("repair", "Repaired legs", { legs: LEGS }),
   kind("slope", "Slope", {
     degrees: field("Slope", { ...NUMBER, maximum: 30, unit: "°" }), direction_deg: DIRECTION,
-  }),
+  }, { size: "degrees" }),
+  kind("friction", "Friction", { value: field("Friction", { minimum: 0.01, maximum: 5, is_required: true }) },
+    { size: "value", nothing: "friction" }),
   kind("push", "Push", {
     impulse_ns: field("Impulse", { ...NUMBER, maximum: 20, unit: "N·s" }), direction_deg: DIRECTION,
-  }),
+  }, { size: "impulse_ns" }),
   kind("sensor-noise", "Sensor noise", {
     sd_m: field("Standard deviation", { ...NUMBER, maximum: 0.05, unit: "m" }),
-  }, ["mujoco", "kinematic"]),
+  }, { size: "sd_m", simulators: ["mujoco", "kinematic"] }),
 ];
 const WORLDS = [
   { ...described("flat", "Flat ground"), disturbances: [] },
@@ -96,7 +104,7 @@ export const OPTIONS = {
     ...described(name, `The ${name}`), forward_deg: 0, azimuths_deg: [0, 60, 120, 180, 240, 300],
     pairs: [[1, 4], [2, 5], [3, 6]],
   })),
-  robots: [{ ...described("stiff", "Stiff"), robot: { preset: "stiff" } }],
+  robots: [{ ...described("stiff", "Stiff"), robot: { preset: "stiff" }, built: { friction: 1 } }],
   agents: [
     {
       ...described("learner", "Learner"), color: "#111111", learns: true, searches: false, needs_practice: true,
@@ -151,7 +159,15 @@ export const OPTIONS = {
     ...Object.fromEntries(["steps_per_episode", "evaluate_every", "divisions", "race_steps"]
       .map((name) => [name, setting(name, { minimum: 0, is_whole: true, default: 50 })])),
     keep_learning: setting("Keeps learning", { is_number: false, is_boolean: true, default: false }),
-    plans_with: setting("Plans with", { is_number: false, choices: ["world", "start", "nominal"] }),
+    plans_with: setting("Plans with", {
+      is_number: false, choices: ["world", "start", "nominal"],
+      choice_titles: ["true model", "model of the start", "nominal model"],
+    }),
+    observation: setting("Observation", {
+      is_number: false, choices: ["measured", "commanded", "planned"],
+      choice_titles: ["feet measured", "commands remembered", "feet as planned"],
+      default: "measured",
+    }),
     tolerance: setting("Build tolerance", { minimum: 0, maximum: 0.2, default: 0 }),
     pace: setting("Pace", { choices: ["max"], minimum: 0.01, maximum: 1000, default: "max" }),
     ...TRACER, ...LEARNER,

@@ -81,6 +81,15 @@ test("the settings of lanes are copied", () => {
   assert.deepEqual([depth, keepLearning, gamma], [2, true, 0.5]);
 });
 
+test("how the lanes of a race read their state is copied", () => {
+  const lanes = [
+    { agent: "greedy", observation: "commanded" },
+    { agent: "tracer", training_id: null, keep_learning: true, observation: "commanded" },
+  ];
+  copySettings(makeRun({ kind: "race", config: { steps: 50, lanes } }));
+  assert.deepEqual([form.value["greedy.observation"], form.value.observation], ["commanded", "commanded"]);
+});
+
 test("what a search knows by default is not copied as if it had been asked for", () => {
   const knownAfterCopy = (/** @type {object} */ lane) => {
     const lanes = [{ agent: "greedy", ...lane }];

@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  conditionsAt, conditionsInWords, conditionsNow, happeningsOf, inTime, inWords, isSimulated, legStates, mainField,
-  parseText, parseWorld, pressed, splitWorlds, textOf, withField, worldTitle,
+  changesSomething, chosenWith, conditionsAt, conditionsInWords, conditionsNow, happeningsOf, inTime, inWords,
+  isSimulated, legStates, nothingOf, parseText, parseWorld, pressed, splitWorlds, textOf, withField, worldTitle,
 } from "../../static/js/disturbances.js";
 import { azimuthsOf } from "../../static/js/robots.js";
 import { options } from "../../static/js/store.js";
@@ -92,11 +92,44 @@ test("a text has several worlds, each with a title", () => {
     ["Flat ground", "Legs\u00a01, 4 limp, slope 4°", "moon"]);
 });
 
-test("declarations tell which simulator knows a kind, and which kinds have one number", () => {
+test("declarations tell which simulator knows a kind", () => {
   const isKnown = (/** @type {string} */ kind) => isSimulated(kind, "kinematic");
   assert.deepEqual(["limp", "sensor-noise", "fire"].map(isKnown), [false, true, false]);
-  assert.deepEqual(["slope", "limp", "stuck", "weak"].map((kind) => mainField(kind)?.[0]),
-    ["degrees", undefined, undefined, undefined]);
+});
+
+test("the friction with which a robot was built is nothing that has happened to it", () => {
+  const happenings = [0.1, 1].map((value, at_step) => ({ kind: "friction", at_step, value }));
+  const stateOf = (/** @type {any} */ robot) => conditionsInWords(conditionsAt(happenings, 1, robot));
+  assert.deepEqual(stateOf("stiff"), []);
+  assert.deepEqual(stateOf({ preset: "stiff", friction: 0.5 }), ["friction 1"]);
+  assert.deepEqual([nothingOf("friction", { preset: "stiff", friction: 0.5 }), nothingOf("slope"), nothingOf("weak")],
+    [0.5, 0, 1]);
+});
+
+test("what ends nothing changes nothing", () => {
+  const [repair, flat] = [{ kind: "repair", at_step: 0, legs: [4] }, { ...SLOPE, degrees: 0 }];
+  const asBuilt = { kind: "friction", at_step: 0, value: 1 };
+  const changed = (/** @type {any[]} */ conditions) =>
+    [repair, flat, asBuilt, LIMP].map((one) => changesSomething(one, conditions, "stiff"));
+  assert.deepEqual(changed([]), [false, false, false, true]);
+  assert.deepEqual(changed([{ ...LIMP, legs: [1] }]), [false, false, false, true]);
+  assert.deepEqual(changed([LIMP, SLOPE, { ...asBuilt, value: 0.1 }]), [true, true, true, true]);
+});
+
+test("of what is chosen to happen, each takes the place of what it contradicts and of nothing else", () => {
+  const stuck = { kind: "stuck", at_step: 0, leg: 2, joint: "femur", angle_rad: -0.9 };
+  const [weak, limp] = [{ kind: "weak", torque_share: 0.3 }, { kind: "limp" }]
+    .map((one) => ({ ...one, at_step: 0, legs: [2] }));
+  const repair = { kind: "repair", at_step: 0, legs: [2] };
+  const choose = (/** @type {any[]} */ ones, /** @type {any[]} */ before = []) =>
+    ones.reduce((chosen, one) => chosenWith(chosen, one, before, "stiff"), []);
+  assert.deepEqual(choose([stuck, weak]), [stuck, weak]);
+  assert.deepEqual(choose([stuck, weak, limp]), [stuck, limp]);
+  assert.deepEqual(choose([stuck, { ...stuck, joint: "coxa" }, weak]), [stuck, { ...stuck, joint: "coxa" }, weak]);
+  assert.deepEqual(choose([stuck, weak, repair]), []);
+  assert.deepEqual(choose([stuck, repair], [weak]), [repair]);
+  assert.deepEqual(choose([repair, limp], [weak]), [limp]);
+  assert.deepEqual(choose([SLOPE, { ...SLOPE, degrees: 0 }, stuck]), [stuck]);
 });
 
 test("a text is read as on the command line, and written so", () => {
@@ -119,6 +152,8 @@ test("a text that is not valid is explained", () => {
   assert.match(mistakeOf("limp:legs="), /Enter a whole number/);
   assert.match(mistakeOf("slope:degrees=80"), /Slope, slope: Must be from 0 to 30/);
   assert.match(mistakeOf("slope:degrees=8:degrees=9"), /once/);
+  assert.match(mistakeOf("stuck:leg=1:joint=coxa:angle_rad=1.5"), /Stuck joint, angle: Must be from -1.2 to 1.2/);
+  assert.equal(mistakeOf("stuck:leg=1:joint=femur:angle_rad=1.5"), "");
 });
 
 test("a field of a text is changed in its place", () => {

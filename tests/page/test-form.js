@@ -25,8 +25,10 @@ beforeEach(() => {
 
 test("the form begins with the server's defaults and nothing else", () => {
   const { disturbances: _, ...training } = OPTIONS.defaults.training;
-  const lanes = { lanes: ["learner", "greedy"], "learner.keep_learning": false, "greedy.plans_with": null };
-  assert.deepEqual(form.value, { ...training, world: "flat", disturb: [], race_steps: 50, ...lanes, name: "" });
+  const lanes = { lanes: ["learner", "greedy"], "learner.keep_learning": false };
+  const greedy = { "greedy.plans_with": null, "greedy.observation": "measured" };
+  assert.deepEqual(form.value,
+    { ...training, world: "flat", disturb: [], race_steps: 50, ...lanes, ...greedy, name: "" });
 });
 
 test("the address follows the form, and is clean again when the form is", () => {
@@ -244,7 +246,28 @@ test("a lane's setting that is not valid is kept as it is, and holds the start",
 test("a learner that keeps learning may begin in the race, with its settings in the lane", () => {
   setFields({ lanes: ["learner"], "learner.keep_learning": true, gamma: 0.5 });
   const settings = { alpha: 0.3, gamma: 0.5, epsilon_start: 1, epsilon_end: 0 };
-  assert.deepEqual(raceBody({ isUnpractised: true }).lanes, [{ agent: "learner", keep_learning: true, ...settings }]);
+  assert.deepEqual(raceBody({ isUnpractised: true }).lanes,
+    [{ agent: "learner", keep_learning: true, observation: "measured", ...settings }]);
+});
+
+test("a learner that begins in the race reads its state as it would in its practice", () => {
+  setFields({ lanes: ["tracer", "greedy"], observation: "commanded" });
+  const [tracer, greedy] = /** @type {any[]} */ (raceBody({ isUnpractised: true }).lanes);
+  assert.equal(tracer.observation, "commanded");
+  assert.deepEqual(greedy, { agent: "greedy" });
+  const [practised] = /** @type {any[]} */ (raceBody().lanes);
+  assert.deepEqual([practised.observation, practised.training.observation], [undefined, "commanded"]);
+});
+
+test("a search reads its state as its lane says, in the link and in the request", () => {
+  enter("greedy.observation", "commanded");
+  const lane = { agent: "greedy", observation: "commanded" };
+  assert.deepEqual(raceBody().lanes[1], lane);
+  readQuery(toQuery());
+  assert.deepEqual([raceBody().lanes[1], form.value.observation], [lane, "measured"]);
+  assert.deepEqual(unknownParts.value, []);
+  enter("greedy.observation", "felt");
+  assert.match(mistakes.value["greedy.observation"], /“felt” is not valid/);
 });
 
 test("a world and what happens are in the link, one by one, and in the requests", () => {

@@ -7,7 +7,7 @@ import {
 import { stageIds } from "../../static/js/runs.js";
 import { heldRace, stepShown } from "../../static/js/selectors.js";
 import { applyEvent, options } from "../../static/js/store.js";
-import { flatParts } from "../../static/js/titles.js";
+import { flatParts, knowledgeTitle } from "../../static/js/titles.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 /** @import { TimelinePoint } from "../../static/js/types.js" */
@@ -57,6 +57,21 @@ test("distances are interpolated between the points of a path", () => {
   assert.equal(distanceAt(PATH, 99), 0.4);
   assert.equal(distanceAt([], 1), 0);
   assert.equal(distanceAt([[0, 0], [1, 0.1], [1, 0.2]], 1), 0.1);
+});
+
+test("what a search knows is told if something happens in the race, or if it was asked for", () => {
+  const knownIn = (/** @type {object} */ config, /** @type {object} */ lane) => {
+    const lanes = [{ agent: "greedy", plans_with: "world", plans_with_by_default: true, ...lane }];
+    const race = makeRun({ ...RACE, id: "other", config: { steps: 50, lanes, ...config } });
+    applyEvent("snapshot", { runs: [race], stage: STAGE, scene: null });
+    return standings.value?.[0].plans_with;
+  };
+  assert.equal(knownIn({}, {}), null);
+  assert.equal(knownIn({}, { plans_with: "nominal", plans_with_by_default: false }), "nominal");
+  const limp = { kind: "limp", at_step: 25, legs: [1] };
+  assert.equal(knownIn({ disturbances: [limp] }, { plans_with: "nominal" }), "nominal");
+  assert.deepEqual(["world", "start", "nominal"].map(knowledgeTitle),
+    ["true model", "model of the start", "nominal model"]);
 });
 
 test("a path is cut at the moment that is shown", () => {

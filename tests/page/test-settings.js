@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  agentOf, beginningOf, fullTitle, furtherSettings, kindOf, laneTitle, limitsOf, mainSettings, mistakeIn, quantityOf,
-  rangeOf, ratesInWords, settingOf, settingsOf, shortTitle, sliderOf,
+  agentOf, beginningOf, fieldBeside, fullTitle, furtherSettings, kindOf, laneTitle, limitsOf, mainSettings, mistakeIn,
+  quantityOf, rangeOf, ratesInWords, settingOf, settingsOf, shortTitle, sliderOf, withinRanges,
 } from "../../static/js/settings.js";
 import { options } from "../../static/js/store.js";
 import { OPTIONS, setting } from "./options.js";
@@ -124,4 +124,13 @@ test("a lane is named by its agent and its settings", () => {
   assert.equal(laneTitle({ agent: "learner", alpha: 0.3, gamma: 0.5 }), "Learner, γ\u00a00.5");
   assert.equal(laneTitle({ agent: "learner", keep_learning: true }), "Learner, keeps learning");
   assert.equal(laneTitle({ agent: "tracer", keep_learning: false }), "Tracer, frozen");
+});
+
+test("an angle is within the reach of its joint", () => {
+  const fields = OPTIONS.disturbances.find(({ name }) => name === "stuck")?.fields ?? {};
+  const values = { joint: "coxa", angle_rad: 1.5 };
+  const { minimum, maximum } = fieldBeside(fields.angle_rad, values);
+  assert.deepEqual([minimum, maximum], [-1.2, 1.2]);
+  assert.deepEqual(withinRanges(fields, values), { joint: "coxa", angle_rad: 1.2 });
+  assert.deepEqual(withinRanges(fields, { joint: "femur", angle_rad: 1.5 }), { joint: "femur", angle_rad: 1.5 });
 });

@@ -6,7 +6,7 @@ from itertools import pairwise
 import pytest
 
 from app.assembly import build_simulator
-from app.domain.disturbances import Payload, Push, Slope
+from app.domain.disturbances import Friction, Payload, Push, Slope
 from app.domain.gait import NAMED_GAITS
 from app.domain.observation import legal_actions, observe
 from app.domain.robot import PRESETS, Robot, robot
@@ -69,7 +69,9 @@ def test_distance_is_known_of_preset_robots_in_named_worlds() -> None:
     assert best_known_m(limp) == kept()["stiff", "limp-pair", "left-right-origin"]
     assert best_known_m(flat, limp.world.as_of(0)) == best_known_m(limp)
     assert best_known_m(replace(WALK, world=named_world("noise"))) == best_known_m(flat)
-    flat_again = World((Slope(degrees=0.0, direction_deg=90.0), Payload(kg=0.0, x_m=0.1)))
+    flat_again = World(
+        (Slope(degrees=0.0, direction_deg=90.0), Payload(kg=0.0, x_m=0.1), Friction(value=1.0))
+    )
     assert best_known_m(replace(WALK, world=flat_again)) == best_known_m(flat)
     assert best_known_m(replace(WALK, robot=robot("stiff"), tolerance=0.03)) == best_known_m(flat)
 

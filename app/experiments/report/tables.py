@@ -19,6 +19,7 @@ from app.experiments.plan import EARNING_STEPS
 from app.experiments.published import COLUMNS, DISTANCES, published
 from app.experiments.statistics import CONFIDENCE
 from app.experiments.worlds import LEAGUE_SHARE, RECOVERY_SHARE
+from app.runs.lane import KNOWLEDGE_TITLES, Knowledge
 
 UNITS: Mapping[str, str] = {
     "m": "metres",
@@ -190,17 +191,10 @@ def place_name(place: tuple[str, ...], summary: Mapping[str, Any]) -> str:
     return ", ".join(names)
 
 
-_MODELS = {
-    None: "",
-    "world": ", true model",
-    "start": ", model of the start",
-    "nominal": ", nominal model",
-}
-
-
 def agent_name(one: Mapping[str, Any]) -> str:
     """Return an agent's title, and of a searcher the model that it plans with."""
-    return title_of(one["agent"]) + _MODELS[one["plans_with"]]
+    known: Knowledge | None = one["plans_with"]
+    return title_of(one["agent"]) + ("" if known is None else f", {KNOWLEDGE_TITLES[known]}")
 
 
 def _world_table(

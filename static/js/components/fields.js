@@ -5,7 +5,7 @@ import { refusedFields } from "../actions.js";
 import { enter, form, setField, wrong } from "../form.js";
 import { parseSetting } from "../parse.js";
 import { shareOf } from "../scale.js";
-import { fullTitle, kindOf, settingOf, sliderOf } from "../settings.js";
+import { choiceTitle, fullTitle, kindOf, settingOf, sliderOf } from "../settings.js";
 import { options } from "../store.js";
 import { html, Mistake } from "./elements.js";
 
@@ -56,7 +56,9 @@ function shownIn(field, setting, { value, draft, isOfForm }) {
  * declaration; `label` is for screen readers where no <label> names the field. One that is not `isOfForm` keeps to
  * itself what is typed, until it is valid.
  */
-export function NumberField({ field, setting = settingOf(field), value, onValue, step = 1, label, isOfForm = true }) {
+export function NumberField({
+  field, setting = settingOf(field), value, onValue, step = 1, label, isOfForm = true, isDisabled = false,
+}) {
   const [draft, setDraft] = useState(/** @type {string | null} */ (null));
   const { text, mistake } = shownIn(field, setting, { value, draft, isOfForm });
   const take = (typed) => {
@@ -76,7 +78,8 @@ export function NumberField({ field, setting = settingOf(field), value, onValue,
   return html`
     <span class="number">
       <input type="text" role="spinbutton" inputmode=${setting.is_whole ? "numeric" : "decimal"} autocomplete="off"
-        ...${attributesOf(field, mistake)} value=${text} aria-label=${label} aria-valuetext=${text || "empty"}
+        ...${attributesOf(field, mistake)} value=${text} disabled=${isDisabled} aria-label=${label}
+        aria-valuetext=${text || "empty"}
         aria-valuenow=${value} aria-valuemin=${setting.minimum} aria-valuemax=${setting.maximum}
         onInput=${({ target }) => take(target.value)} onKeyDown=${onKeyDown} />
     </span>
@@ -174,7 +177,8 @@ function NumberControl({ name, setting, ...rest }) {
   return html`<${NumberField} field=${name} setting=${setting} step=${step} ...${rest} />`;
 }
 
-function Choice({ name, setting: { choices, default: first }, value, onValue }) {
+function Choice({ name, setting, value, onValue }) {
+  const { choices, default: first } = setting;
   const kept = wrong.value[name];
   return html`
     <select ...${attributesOf(name)} onChange=${({ target }) => onValue(target.value || null)}>
@@ -183,7 +187,9 @@ function Choice({ name, setting: { choices, default: first }, value, onValue }) 
       ${first !== null && !kept && !choices.includes(value) && html`
         <option value="" selected disabled>choose</option>
       `}
-      ${choices.map((one) => html`<option value=${one} selected=${!kept && one === value}>${one}</option>`)}
+      ${choices.map((one) => html`
+        <option value=${one} selected=${!kept && one === value}>${choiceTitle(setting, one)}</option>
+      `)}
     </select>
     <${MistakeOf} field=${name} />
   `;

@@ -9,7 +9,7 @@ import { filters } from "../runs.js";
 import { clock, isActive, originalRace, raceInView, raceScene, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs } from "../store.js";
-import { clockTitle, flatParts } from "../titles.js";
+import { clockTitle, flatParts, knowledgeTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
 import { AsTable, BestKnownKey, bestKnownMark, Empty, Plot } from "./charts.js";
 import { html, Icon } from "./elements.js";
@@ -149,14 +149,8 @@ function postureOf({ fell_at_step, heading_deg }) {
   return sentence([fell, turned].filter(Boolean).join(", "));
 }
 
-const KNOWLEDGE = {
-  world: "plans with the world as it is",
-  start: "plans with the world as it was at the start",
-  nominal: "plans with the robot as designed, on flat ground",
-};
-
-/** What a search knows; empty if the agent does not search. */
-const knowledgeOf = ({ plans_with }) => KNOWLEDGE[plans_with] ?? "";
+/** What a search knows; empty if the agent does not search, or if nothing happens. */
+const knowledgeOf = ({ plans_with }) => (plans_with ? `plans with the ${knowledgeTitle(plans_with)}` : "");
 
 function activityOf(row) {
   if (row.failure) return `Stopped: ${row.failure}`;

@@ -4,16 +4,16 @@ import { signal } from "@preact/signals";
 import { useRef, useState } from "preact/hooks";
 import { branchRace, disturb, pending } from "../actions.js";
 import {
-  conditionsAt, conditionsInWords, conditionsNow, happeningsOf, isSimulated, kindNamed, legsOf, legStates, mainField,
-  pressed, PUSH, withUnit,
+  chosenWith, conditionsAt, conditionsInWords, conditionsNow, happeningsOf, isSimulated,
+  kindNamed, legStates, nothingOf, pressed, PUSH, withUnit,
 } from "../disturbances.js";
 import { listed } from "../format.js";
 import { azimuthsOf } from "../robots.js";
 import { heldRace, liveTraining, stepShown } from "../selectors.js";
-import { kindOf, sliderOf } from "../settings.js";
+import { fieldBeside, kindOf, sliderOf, withinRanges } from "../settings.js";
 import { served } from "../store.js";
 import { html, pointAt, Problem } from "./elements.js";
-import { SettingRow, Slider } from "./fields.js";
+import { Description, NumberField, SettingRow, Slider } from "./fields.js";
 
 // ---- the drawn hexapod, forward up; each leg is a button
 
@@ -90,10 +90,14 @@ const LegWish = ({ id, wish, onWish }) => html`
 `;
 
 /** The joint and its angle, the share of the torque. */
-const WishFields = ({ id, wish, onWish }) => ownFieldsOf(kindNamed(wish.kind)).map(([name, setting]) => html`
-  <${OwnField} key=${`${wish.kind} ${name}`} name=${`${id}-${name}`} setting=${setting} value=${wish[name]}
-    onValue=${(value) => onWish({ ...wish, [name]: value })} />
-`);
+function WishFields({ id, wish, onWish }) {
+  const kind = kindNamed(wish.kind);
+  const take = (name, value) => onWish(withinRanges(kind?.fields ?? {}, { ...wish, [name]: value }));
+  return ownFieldsOf(kind).map(([name, setting]) => html`
+    <${OwnField} key=${`${wish.kind} ${name}`} name=${`${id}-${name}`} setting=${fieldBeside(setting, wish)}
+      value=${wish[name]} onValue=${(value) => take(name, value)} />
+  `);
+}
 
 function OwnField({ name, setting, ...rest }) {
   const ends = kindOf(setting) === "number" ? sliderOf(setting) : null;
@@ -117,69 +121,115 @@ function firstValue(field) {
   return Math.max(min, Number((Math.round((min + (max - min) / 10) / step) * step).toPrecision(4)));
 }
 
-// ---- sliders for what has one number: slope, friction, payload, a push; below it, where to
+// ---- sliders for how much happens: slope, friction, payload, a push; below it, its other numbers
 
-/** What happens with one number, as the server lists it, with its other numbers. */
-const slidable = () => served().disturbances.flatMap((kind) => {
-  const main = mainField(kind.name);
-  const others = ownFieldsOf(kind).filter(([name, field]) => name !== main?.[0] && sliderOf(field) && !field.is_whole);
-  return main ? [{ kind, name: main[0], field: main[1], others }] : [];
-});
+/** What happens to more than a leg, as the server lists it. */
+const kindsWithSize = () => served().disturbances.filter(({ size, fields }) => size && !fields.legs);
+
+/** A place is exact, and no seed is near another: such numbers are typed. */
+const isTyped = (field) => field.is_required || field.is_whole;
 
 const PAUSE_MS = 500;
 
 const shareIn = (value, { min, max }) => ({ "--share": `${(100 * (value - min)) / (max - min)}%` });
 
-/** It takes effect when the slider, or its key, has been let go: a run has only so many disturbances. */
-function KindSlider({ one: { kind, name, field, others }, conditions, simulator, onHappen }) {
+/** What a press on its button does. */
+const PRESS_WORDS = { [PUSH]: "Push it", patch: "Lay it" };
+
+/** Whether it waits for its button: a push, and what has no size at which nothing happens. */
+const isPressed = ({ name, nothing }) => name === PUSH || nothing === null;
+
+/**
+ * The values of a kind as they hold, with what is being changed. A change takes effect when the slider, or its key,
+ * has been let go: a run has only so many disturbances.
+ */
+function useValues(kind, others, conditions, onHappen) {
   const [draft, setDraft] = useState(/** @type {Record<string, number>} */ ({}));
   const timer = useRef(/** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined));
-  const ends = sliderOf(field) ?? { min: 0, max: 1, step: 0.01 };
-  const present = conditions.find((other) => other.kind === kind.name);
-  const values = { ...present, ...draft };
-  const value = values[name] ?? null;
-  const isKnown = isSimulated(kind.name, simulator);
-  const isPush = kind.name === PUSH;
-  const id = `happen-${kind.name}`;
+  const held = conditions.find((other) => other.kind === kind.name);
+  const begin = kind.nothing === null ? firstFields(kind.name) : held;
+  const values = { ...begin, ...draft };
   const send = async (chosen) => {
-    const more = others.map(([other]) => [other, chosen[other]]).filter(([, given]) => given !== undefined);
-    await onHappen({ kind: kind.name, [name]: chosen[name], ...Object.fromEntries(more) });
-    if (!isPush) setDraft({});
-  };
-  /** A direction alone is nothing that happens. */
-  const sendSoon = (chosen) => {
     clearTimeout(timer.current);
-    if (!isPush && (chosen[name] ?? null) !== null) timer.current = setTimeout(() => send(chosen), PAUSE_MS);
+    const given = [kind.size, ...others.map(([other]) => other)].filter((one) => chosen[one] !== undefined);
+    await onHappen({ kind: kind.name, ...Object.fromEntries(given.map((one) => [one, chosen[one]])) });
+    if (!isPressed(kind)) setDraft({});
   };
-  // Friction has no value at which nothing happens: it is the robot's own until it is set.
-  const at = value ?? (field.minimum === 0 ? 0 : 1);
-  const neutral = field.minimum === 0 ? withUnit(0, field.unit) : "as built";
-  const words = value === null ? neutral : withUnit(value, field.unit);
-  const handlers = (field_name) => ({
-    onInput: ({ target }) => setDraft({ ...draft, [field_name]: Number(target.value) }),
-    onChange: ({ target }) => sendSoon({ ...values, [field_name]: Number(target.value) }),
+  const change = (name, value) => setDraft({ ...draft, [name]: value });
+  /** A direction alone is nothing that happens. */
+  const finish = (name, value) => {
+    const chosen = { ...values, [name]: value };
+    clearTimeout(timer.current);
+    if (!isPressed(kind) && (chosen[kind.size] ?? null) !== null) {
+      timer.current = setTimeout(() => send(chosen), PAUSE_MS);
+    }
+  };
+  return { values, change, finish, send };
+}
+
+function KindSlider({ kind, conditions, config: { robot, simulator }, onHappen }) {
+  const field = kind.fields[kind.size];
+  const others = ownFieldsOf(kind).filter(([other]) => other !== kind.size);
+  const { values, change, finish, send } = useValues(kind, others, conditions, onHappen);
+  const ends = sliderOf(field) ?? { min: 0, max: 1, step: 0.01 };
+  const isDisabled = !isSimulated(kind.name, simulator);
+  const id = `happen-${kind.name}`;
+  const value = values[kind.size] ?? null;
+  const nothing = nothingOf(kind.name, robot);
+  const at = value ?? nothing ?? ends.min;
+  const isBuilt = typeof kind.nothing === "string";
+  const words = value === null && isBuilt ? "as built" : withUnit(at, field.unit);
+  const handlers = (name) => ({
+    onInput: ({ target }) => change(name, Number(target.value)),
+    onChange: ({ target }) => finish(name, Number(target.value)),
   });
   return html`
     <div class="slider happen">
       <label for=${id}>${kind.title}</label>
-      <input type="range" id=${id} min=${ends.min} max=${ends.max} step=${ends.step} value=${at} disabled=${!isKnown}
-        style=${shareIn(at, ends)} aria-valuetext=${words} aria-describedby=${`${id}-help`} ...${handlers(name)} />
+      <input type="range" id=${id} min=${ends.min} max=${ends.max} step=${ends.step} value=${at} disabled=${isDisabled}
+        style=${shareIn(at, ends)} aria-valuetext=${words} aria-describedby=${`${id}-help`} ...${handlers(kind.size)} />
       <output class="num" for=${id}>${words}</output>
-      ${isPush && html`
-        <button type="button" class="secondary compact" disabled=${!isKnown || !value} onClick=${() => send(values)}>
-          Push it
+      ${isPressed(kind) && html`
+        <button type="button" class="secondary compact" disabled=${isDisabled || !value} onClick=${() => send(values)}>
+          ${PRESS_WORDS[kind.name] ?? "Let it happen"}
+        </button>
+      `}
+      ${isBuilt && html`
+        <button type="button" class="secondary compact" aria-label=${`${kind.title} as built`}
+          disabled=${isDisabled || nothing === null || value === null} onClick=${() => send({ [kind.size]: nothing })}>
+          As built
         </button>
       `}
       <p class="sentence" id=${`${id}-help`}>${kind.description}</p>
     </div>
-    ${others.map(([other, setting]) => html`
-      <${OtherSlider} key=${other} id=${`${id}-${other}`} of=${kind.title} setting=${setting}
-        value=${values[other] ?? setting.default ?? 0} isDisabled=${!isKnown} handlers=${handlers(other)} />
-    `)}
+    ${others.map(([name, setting]) => {
+      const more = {
+        id: `${id}-${name}`, of: kind.title, setting, value: values[name] ?? setting.default, isDisabled,
+      };
+      const onValue = (given) => {
+        change(name, given);
+        finish(name, given);
+      };
+      return isTyped(setting)
+        ? html`<${OtherNumber} key=${name} ...${more} onValue=${onValue} />`
+        : html`<${OtherSlider} key=${name} ...${more} handlers=${handlers(name)} />`;
+    })}
   `;
 }
 
-function OtherSlider({ id, of, setting, value, isDisabled, handlers }) {
+/** A number of what happens that is typed. */
+const OtherNumber = ({ id, of, setting, isDisabled, ...rest }) => html`
+  <div class="slider happen other">
+    <label for=${`field-${id}`}><span class="sr-only">${of}: </span>${setting.title}</label>
+    <${NumberField} field=${id} setting=${setting} step=${setting.is_whole ? 1 : TYPED_STEP} isOfForm=${false}
+      isDisabled=${isDisabled} ...${rest} />
+    <span class="unit">${setting.unit}</span>
+    <${Description} field=${id} words=${setting.help} />
+  </div>
+`;
+
+function OtherSlider({ id, of, setting, value: given, isDisabled, handlers }) {
+  const value = given ?? 0;
   const ends = sliderOf(setting) ?? { min: 0, max: 1, step: 0.01 };
   const words = withUnit(value, setting.unit);
   const step = setting.unit === "°" ? DIRECTION_STEP : ends.step;
@@ -195,6 +245,8 @@ function OtherSlider({ id, of, setting, value, isDisabled, handlers }) {
 }
 
 const DIRECTION_STEP = 5;
+/** Of the arrow keys in a place [m]. */
+const TYPED_STEP = 0.01;
 
 // ---- both together
 
@@ -230,9 +282,8 @@ function WorldControls({ id, config, conditions, onHappen, sentenceOf, children 
     <details class="more">
       <summary>Ground, load and servos</summary>
       <div class="sliders">
-        ${slidable().map((one) => html`
-          <${KindSlider} key=${one.kind.name} one=${one} conditions=${conditions} simulator=${simulator}
-            onHappen=${onHappen} />
+        ${kindsWithSize().map((kind) => html`
+          <${KindSlider} key=${kind.name} kind=${kind} conditions=${conditions} config=${config} onHappen=${onHappen} />
         `)}
       </div>
     </details>
@@ -266,10 +317,8 @@ function BranchOf({ race }) {
   const { config } = race;
   // At the end nothing is left to walk: the middle is offered.
   const from = stepShown.value ?? Math.floor(config.steps / 2) + 1;
-  const before = conditionsAt(happeningsOf(race), from - 1);
-  const conditions = conditionsAt([...before, ...chosen].map((one) => ({ ...one, at_step: 0 })), 0);
-  /** A leg that works without what is chosen here needs no repair. */
-  const needed = (one) => (one.kind === "repair" && !legStates(before).has(one.legs[0]) ? [] : [one]);
+  const before = conditionsAt(happeningsOf(race), from - 1, config.robot);
+  const conditions = conditionsAt([...before, ...chosen].map((one) => ({ ...one, at_step: 0 })), 0, config.robot);
   const words = (now) => {
     const pushes = chosen.filter(({ kind }) => kind === PUSH).length ? ["a push"] : [];
     return html`<b>From step ${from}:</b> ${[...now, ...pushes].join(", ") || "as it was"}`;
@@ -283,9 +332,13 @@ function BranchOf({ race }) {
       onToggle=${({ target, currentTarget }) => target === currentTarget && (isBranchOpen.value = target.open)}>
       <summary>What if something had happened in this race?</summary>
       <${WorldControls} id="branch" config=${config} conditions=${conditions} sentenceOf=${words}
-        onHappen=${(one) => setChosen((all) => [...all.filter((other) => !replaces(one, other)), ...needed(one)])}>
+        onHappen=${(one) => setChosen((all) => chosenWith(all, one, before, config.robot))}>
         <button type="button" class="secondary" disabled=${!chosen.length || pending.value.branch} onClick=${start}>
           Race on from ${stepShown.value === null ? `step ${from}` : "here"}
+        </button>
+        ${" "}
+        <button type="button" class="secondary" disabled=${!chosen.length} onClick=${() => setChosen([])}>
+          Undo all
         </button>
       <//>
       <p class="sentence">Until then both races are the same. Hold the replay elsewhere for another step.</p>
@@ -293,7 +346,3 @@ function BranchOf({ race }) {
     </details>
   `;
 }
-
-/** Whether one that is chosen takes the place of another. */
-const replaces = (one, other) =>
-  legsOf(one).length ? legsOf(other)[0] === legsOf(one)[0] : one.kind === other.kind;

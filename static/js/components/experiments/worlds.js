@@ -5,7 +5,7 @@ import { bare, factorOf, inUnit, placeOf, placesOf, shown, unit, UNIT_NAMES } fr
 import { count, percentage, whole } from "../../format.js";
 import { largest } from "../../scale.js";
 import { agentOf } from "../../settings.js";
-import { agentTitle, gaitTitle } from "../../titles.js";
+import { agentTitle, gaitTitle, knowledgeTitle } from "../../titles.js";
 import { html, Segments } from "../elements.js";
 import { BandChart, CurveTable } from "./band-chart.js";
 import { AgentKey, PlaceSwitch, UnitSwitch } from "./report-tools.js";
@@ -64,15 +64,15 @@ export function Worlds({ known }) {
 // ---- the lines of references
 
 /** [field of an entry, kind of line, name] */
-const LEVELS = [
+const knownLevels = () => [
   ["greedy_m", "greedy", "Greedy"],
-  ["greedy_nominal_m", "nominal", "Greedy, nominal model"],
+  ["greedy_nominal_m", "nominal", `Greedy, ${knowledgeTitle(NOMINAL)}`],
   ["best_known_m", "best-known", "Best known"],
 ];
 
 /** The references that are known, in the unit that is shown. */
 const levelsOf = (entry) =>
-  LEVELS.map(([field, kind, name]) => ({ kind, name, value: inUnit(entry[field], factorOf(entry)) }))
+  knownLevels().map(([field, kind, name]) => ({ kind, name, value: inUnit(entry[field], factorOf(entry)) }))
     .filter(({ value }) => value !== null);
 
 const LevelKey = ({ known }) => levelsOf(known).map(({ kind, name }) => html`
@@ -87,7 +87,7 @@ const LevelKey = ({ known }) => levelsOf(known).map(({ kind, name }) => html`
 
 /** Names of entries: of one agent several, if the experiment practises for several numbers of steps. */
 const nameOf = ({ agent, plans_with, steps, role }, { config }) => [
-  agentTitle(agent), plans_with === NOMINAL && "nominal model",
+  agentTitle(agent), plans_with && knowledgeTitle(plans_with),
   role === "learner" && config.steps.length > 1 && count(steps, "step"),
 ].filter(Boolean).join(", ");
 
