@@ -164,7 +164,7 @@ def test_a_league_takes_worlds_by_their_pictures_and_as_a_text(
     expect(button).to_have_attribute("aria-disabled", "true")
     others.press("Backspace")
     expect(button).to_have_text("Run League: 36 trials")
-    page.get_by_label("Build tolerance").fill("0.05")
+    page.get_by_role("textbox", name="Build tolerance").fill("0.05")
     assert dashboard.violations() == []
     link = page.url
     page.goto("about:blank")
