@@ -245,7 +245,7 @@ def tells_who_recovers(dashboard: Dashboard) -> None:
     both = page.get_by_role("table", name="All worlds: share of the best known distance")
     titles = ["Agent", "Sensor noise, of greedy", "Sensor noise 10\u00a0mm, of greedy"]
     expect(both.get_by_role("columnheader")).to_have_text(titles)
-    expect(both.get_by_role("row", name="Greedy 100 % 100 %")).to_have_count(1)
+    expect(both.get_by_role("row", name="Greedy, true model 100 % 100 %")).to_have_count(1)
     dashboard.button("Sensor noise 10\u00a0mm").click()
     expect(page.locator(".worlds").first).to_contain_text("Sensor noise 10\u00a0mm: share of")
 

@@ -200,6 +200,7 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
     page.keyboard.press("r")
     menu = page.locator("details.menu").first
     menu.locator("summary").click()
+    expect(menu).to_have_attribute("open", "")
     page.keyboard.press("Tab")
     page.keyboard.press("Escape")
     expect(menu).not_to_have_attribute("open", "")

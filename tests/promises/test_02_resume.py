@@ -28,7 +28,7 @@ def test_interrupted_trainings_end_like_uninterrupted_ones(
     body = {"gait": "left-right-origin", "seed": seed, "pace": 20, "steps_per_episode": 20}
     server = launch()
     runs = [
-        server.start({**body, "simulator": simulator, "steps": 300, "evaluate_every": 60})
+        server.start({**body, "simulator": simulator, "steps": 300, "evaluate_every": 20})
         for simulator in SIMULATORS
     ]
     for run in runs:
