@@ -28,7 +28,7 @@ from tests.promises.processes import start_script
 from tests.served import BODY, ENDLESS, LONG_S, Served
 
 CONNECTIONS = at_length(1_600, 10_000)
-SECONDS = at_length(8.0, 120.0)
+SECONDS = at_length(5.0, 120.0)
 PROCESSES = at_length(1, 4)
 READERS = 8
 ADDRESSES = 8
