@@ -89,7 +89,8 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
     dashboard: Dashboard, tmp_path: Path
 ) -> None:
     page = dashboard.page
-    with serving(tmp_path) as server:
+    # It computes for as long as it is looked at, and leaves the machine to other tests.
+    with serving(tmp_path, job_niceness=15) as server:
         visit(dashboard, server, **ENDLESS)
         dashboard.button("Run Sweep: 5001 trials").click()
         expect(head(dashboard)).to_contain_text("a second")
@@ -100,7 +101,7 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
         assert dashboard.violations() == []
         page.goto("about:blank")
         dashboard.complaints.clear()
-    with serving(tmp_path) as server:
+    with serving(tmp_path, job_niceness=15) as server:
         visit(dashboard, server)
         expect(head(dashboard).locator(".state")).to_have_text("interrupted")
         done = trials_done(dashboard)
