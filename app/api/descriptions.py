@@ -54,6 +54,10 @@ VALID: Mapping[str, str] = {
     "race_id": "the id of a race",
     "step": "a whole number from 0 to the steps that the race has taken; at least one must be left",
     "world": f"the name of a world: {_one_of(WORLDS)}",
+    "worlds": (
+        f"a list, each the name of a world, {_one_of(WORLDS)}, or what happens, such as "
+        "limp:legs=1,4"
+    ),
     "disturbances": (
         f"a list of at most {MAX_DISTURBANCES}, each {{kind, at_step, until_step}} and the fields "
         f"of its kind: {', '.join(disturbances.KINDS)}"
@@ -84,7 +88,7 @@ def field_errors(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
     for error in errors:
         # `loc` also has the tags of unions, which are agents' names: keep only fields.
         fields = {*VALID, error.get("ctx", {}).get("name")}
-        if error["type"] == "missing":
+        if error["type"] == "missing" or error["type"] in _OF_LENGTH:
             fields.add(error["loc"][-1])
         path = [part for part in error["loc"] if part in fields or isinstance(part, int)]
         if error["type"] == "json_invalid":
@@ -106,5 +110,17 @@ def _sentence(field: str, error: Mapping[str, Any], path: list[Any]) -> str:
     if not names:
         return "The request's body must be a JSON object, sent as application/json."
     is_missing = error["type"] == "missing"
-    valid = VALID.get(names[-1], "given")
+    valid = VALID.get(names[-1]) or _length(error) or "given"
     return f"{field} {'is missing; it ' if is_missing else ''}must be {valid}."
+
+
+_OF_LENGTH = {"too_short": ("at least", "min_length"), "too_long": ("at most", "max_length")}
+
+
+def _length(error: Mapping[str, Any]) -> str | None:
+    """Return how long a list must be; None if its length is not what is wrong."""
+    if error["type"] not in _OF_LENGTH:
+        return None
+    words, limit = _OF_LENGTH[error["type"]]
+    length = error["ctx"][limit]
+    return f"a list of {words} {length} value{'' if length == 1 else 's'}"
