@@ -89,14 +89,25 @@ def _report(cluster: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
     results, set_aside = folder.planned()
     workers = None if cluster.scheduler is not None else cluster.workers or cores()
     summary = summarise(folder.plan.config, results, set_aside, folder.cost(workers))
-    try:
+    with report_errors(folder.path):
         write_report(folder.path, summary, results)
+    return summary
+
+
+@contextmanager
+def report_errors(path: Path) -> Iterator[None]:
+    """Say of a report that cannot be written what is kept.
+
+    Raises:
+        InvalidInput: in place of an OSError.
+    """
+    try:
+        yield
     except OSError as error:
         raise InvalidInput(
-            f"cannot write the report to {folder.path} ({error.strerror}); all trials are kept "
-            "there, and the same command writes it once it can"
+            f"cannot write the report to {path} ({error.strerror}); all trials are kept there, "
+            "and the same command writes it once it can"
         ) from error
-    return summary
 
 
 def _print_summary(summary: Mapping[str, Any], path: Path) -> None:

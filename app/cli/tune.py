@@ -26,12 +26,12 @@ from app.cli.trials import (
     INTERRUPTED,
     RATE_WINDOW_S,
     discard,
+    report_errors,
     share_text,
     stop_signals,
     workers_text,
 )
 from app.domain.checks import check_whole
-from app.domain.errors import InvalidInput
 from app.domain.gait import NAMED_GAITS
 from app.domain.robot import PRESETS
 from app.domain.settings import declared_fields
@@ -220,13 +220,8 @@ def _report(tuning: "Tuning", cluster: ClusterSpec, folder: ResultsFolder) -> di
 
     workers = None if cluster.scheduler is not None else cluster.workers or cores()
     summary = summarise_tuning(tuning, folder, workers)
-    try:
+    with report_errors(folder.path):
         write_tuning(folder.path, tuning, folder, summary)
-    except OSError as error:
-        raise InvalidInput(
-            f"cannot write the report to {folder.path} ({error.strerror}); all trials are kept "
-            "there, and the same command writes it once it can"
-        ) from error
     return summary
 
 
