@@ -23,6 +23,7 @@ from app.api import (
     pages,
     problems,
     races,
+    replays,
     runs,
     stage,
     trainings,
@@ -49,6 +50,7 @@ from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
 from app.runs.config import usable_agents
 from app.settings import Settings
+from app.stage.playback import Replays
 from app.stage.stage import Stage
 from app.storage.database.opening import open_store
 from app.storage.database.store import RunStore
@@ -57,6 +59,7 @@ from app.storage.idempotency import Idempotency
 from app.storage.recordings import Recordings
 from app.storage.server_lock import write_address_file
 from app.storage.sessions import Sessions
+from app.viewer.replay_frames import ReplayFrames
 from app.viewer.service import ViewerService, viewer_routes
 from app.viewer.session import websocket_options
 from app.what_if.trial_pool import TrialPool
@@ -112,6 +115,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         audience=lambda: viewer.hub.counters,
         ready=lambda: _unready_reason(jobs, store),
         film=viewer.recorded_stream,
+        replays=ReplayFrames(Replays(store, recordings)),
         what_if=WhatIf(TrialPool()),
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
@@ -137,7 +141,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
 def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) -> None:
     versioned = APIRouter(prefix="/api/v1")
     # First, so that no other route matches `import` as a run's id.
-    for module in (transfer, trainings, races, experiments, runs, stage, events, options):
+    for module in (transfer, trainings, races, experiments, runs, replays, stage, events, options):
         versioned.include_router(module.router)
     versioned.include_router(start_routes(agents))
     app.include_router(versioned)

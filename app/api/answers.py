@@ -18,6 +18,7 @@ from app.experiments.config import ExperimentName
 from app.runs.clocks import Clock
 from app.runs.config import SimulatorName
 from app.runs.lane import Knowledge
+from app.stage.show import MarkKind
 from app.storage.run import State
 
 Preset = Annotated[str, Field(json_schema_extra={"enum": list(PRESETS)})]
@@ -424,6 +425,35 @@ class TimelineView(Answer):
     finish_line_m: float
     first_finish_s: float | None
     lanes: list[TimelineLane]
+
+
+class ReplayMark(Answer):
+    """Something that happened in a run, as a point on its timeline."""
+
+    kind: MarkKind
+    time_s: float
+    lane: int | None = Field(description="from 0; null if it concerns all lanes")
+    step: int | None = Field(description="that begins then, or in which a robot fell, from 0")
+    distance_m: float | None = Field(description="that an evaluation reached")
+
+
+class ReplayView(Answer):
+    """What a page needs to play a run by itself; times are the run's own [s]."""
+
+    run_id: str
+    kind: Literal["training", "race"]
+    clock: Clock | None = Field(description="that times a race; null for a training")
+    complete: bool = Field(description="whether the run will record no more")
+    duration_s: float | None = Field(description="null while it is not known")
+    recorded_s: list[tuple[float, float]] = Field(
+        description="intervals that can be shown; of a long practice the first and newest steps"
+    )
+    step_ends_s: list[list[float]] = Field(description="for each lane, of its recorded steps")
+    marks: list[ReplayMark]
+    frame_s: float = Field(description="time between two frames of level 0")
+    segment_frames: int = Field(description="number of frames in a segment")
+    lowest_level: int = Field(description="each level has half as many frames as the one below")
+    highest_level: int
 
 
 class StageView(Answer):

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, NamedTuple, Protocol
+from typing import Annotated, Any, NamedTuple, Protocol
 
 from fastapi import Depends, Header, HTTPException, Request
 from starlette.requests import ClientDisconnect
@@ -37,6 +37,22 @@ class HubCounters(Protocol):
     frames_merged: int
 
 
+class ReplayFrames(Protocol):
+    """Encodes the frames of runs: see `app.viewer.replay_frames`."""
+
+    def plan(self, run_id: str, clock: Clock) -> dict[str, Any]:
+        """Return what a page needs to play a run."""
+
+    def scene(self, run_id: str) -> bytes:
+        """Return the scene at the start of a run."""
+
+    def moment(self, run_id: str, clock: Clock, time_s: float) -> bytes:
+        """Return the frame at a time."""
+
+    def segment(self, run_id: str, clock: Clock, level: int, number: int) -> bytes:
+        """Return the frames of a segment."""
+
+
 @dataclass(frozen=True)
 class Services:
     """Services that `create_app` builds and routes use.
@@ -48,6 +64,7 @@ class Services:
         ready: returns why runs cannot be started, in a sentence; None if they can.
         what_if: computes what-ifs.
         film: encodes a race's recording as a recorded stream for viser.
+        replays: encodes frames of runs for pages that play them by themselves.
         listeners: slots of event streams.
         exports: memory budget of exports that clients are still reading.
     """
@@ -62,6 +79,7 @@ class Services:
     audience: Callable[[], HubCounters]
     ready: Callable[[], str | None]
     film: StreamEncoder
+    replays: ReplayFrames
     what_if: WhatIf
     listeners: ClientSlots["Listener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))

@@ -15,6 +15,7 @@ from app.runs.clocks import CLOCKS
 from app.runs.config import SIMULATORS, TrainingConfig
 from app.runs.lane import LaneConfig
 from app.runs.race_config import MAX_LANES
+from app.stage.playback import HIGHEST_LEVEL, LOWEST_LEVEL
 from app.storage.run import KINDS, STATES
 
 MAX_PAGE = 100
@@ -75,6 +76,8 @@ VALID: Mapping[str, str] = {
     "limit": f"a whole number from 1 to {MAX_PAGE}",
     "cursor": "the next_cursor of the page before",
     "idempotency-key": "1 to 200 printable ASCII characters without spaces",
+    "level": f"a whole number from {LOWEST_LEVEL} to {HIGHEST_LEVEL}",
+    "number": "a whole number, 0 or more",
     "format": "a format that the description of the route names",
 }
 

@@ -10,6 +10,7 @@ puts the ground under it is the frame's `origin`.
 import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -24,7 +25,7 @@ from app.runs.recording import PracticeRecording, pose_at
 from app.runs.records import StepTaken
 from app.stage.race_lane import MARCHING_M, MARCHING_STEPS, ValueRange
 from app.stage.scene_spec import rest_pose
-from app.stage.show import RunLabel
+from app.stage.show import Mark, RunLabel
 from app.stage.stage_frame import (
     AT_ORIGIN,
     ActionValuesView,
@@ -105,6 +106,44 @@ class PracticeShow:
             not self._step_numbers or (self._done or 0) >= self._step_numbers[-1]
         )
 
+    @property
+    def duration_s(self) -> float:
+        """Practice time of all the steps that were ordered [s]."""
+        return self.steps * self._step_s
+
+    @property
+    def recorded(self) -> tuple[tuple[float, float], ...]:
+        """Intervals of practice time that can be shown [s]; a long practice has gaps."""
+        numbers, step_s = self._step_numbers, self._step_s
+        breaks = [n for n in range(1, len(numbers)) if numbers[n] != numbers[n - 1] + 1]
+        starts, ends = [0, *breaks], [*breaks, len(numbers)]
+        return tuple(
+            ((numbers[start] - 1) * step_s, numbers[end - 1] * step_s)
+            for start, end in zip(starts, ends, strict=True)
+            if end > start
+        )
+
+    @property
+    def step_ends_s(self) -> list[tuple[float, ...]]:
+        """The practice times at which the recorded steps end [s], as of one lane."""
+        return [tuple(number * self._step_s for number in self._step_numbers)]
+
+    def marks(self) -> list[Mark]:
+        """Return what happened, in order of time."""
+        last = self._step_numbers[-1] if self._step_numbers else 0
+        found = [
+            Mark("evaluation", ghost.step * self._step_s, 0, ghost.step, ghost.distance_m)
+            for ghost in self._evaluations
+        ]
+        found += [
+            Mark("disturbance", step * self._step_s, 0, step)
+            for step in self._world().change_steps
+            if step <= last
+        ]
+        if (fell := self._fell_at_step) is not None:
+            found.append(Mark("fall", (fell + 1) * self._step_s, 0, fell))
+        return sorted(found, key=lambda mark: mark.time_s)
+
     def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
         """Advance the playback position; see `Show.advance`."""
         self._run_ended = run_ended
@@ -146,7 +185,7 @@ class PracticeShow:
             lanes=(self._lane(),),
             ghosts=tuple(self._ghosts()[-SHOWN_GHOSTS:]),
             time_s=self.time_s,
-            duration_s=self.steps * self._step_s,
+            duration_s=self.duration_s,
             shown_speed=self._rate,
             playing=run_label.playing,
             replay=run_label.replay,
@@ -171,6 +210,8 @@ class PracticeShow:
             _RecordedStep(step, step.motion) for step in steps if step.motion is not None
         ]
         self._step_numbers = [recorded.step.step for recorded in self._recorded]
+        for step in steps[bisect_right(steps, self._range.last_step, key=attrgetter("step")) :]:
+            self._range.include(step.step, step.knowledge)
         world, last = self._world(), self.steps - 1
         self._evaluations = [
             Ghost(e.step, e.distance_m, world.as_of(min(e.step, last)))
@@ -280,7 +321,7 @@ class PracticeShow:
         learned = step.knowledge
         if learned is None:
             return None
-        low, high = self._range.extended_to(learned.values)
+        low, high = self._range.at(step.step)
         return ActionValuesView(
             learned.values, learned.visits, step.observation, step.action, low, high
         )

@@ -1,12 +1,15 @@
 """Playback of one lane of a race: pose, progress and action values at a given race time."""
 
+from bisect import bisect_right
+from operator import itemgetter
+
 import numpy as np
 
 from app.domain.robot import Robot
-from app.domain.types import FloatArray
 from app.domain.world import World
 from app.runs.clocks import Clock, Moment, Timetable, crossing_s, distance_at
 from app.runs.recording import LaneRecording, pose_at
+from app.runs.records import ActionValues
 from app.runs.results import fell_at_step
 from app.stage.stage_frame import ActionValuesView, LaneView
 
@@ -40,6 +43,21 @@ class RaceLane:
     def all_recorded(self) -> bool:
         """Whether all steps of the lane are recorded."""
         return len(self._timetable.ends) == self.steps
+
+    @property
+    def step_ends_s(self) -> tuple[float, ...]:
+        """Race times at which the steps recorded so far end [s]."""
+        return self._timetable.ends
+
+    @property
+    def crossing_s(self) -> float | None:
+        """Race time at which it crosses the finish line [s]; None until that is recorded."""
+        return self._crossing_s
+
+    @property
+    def fell_at_step(self) -> int | None:
+        """First step in which it fell, counted from 0; None until that is recorded."""
+        return self._fell_at_step
 
     @property
     def end_s(self) -> float:
@@ -167,20 +185,39 @@ class RaceLane:
         if step_taken is None or step_taken.knowledge is None:
             return None
         learned = step_taken.knowledge
-        low, high = self._range.extended_to(learned.values)
+        for earlier in self.recording.steps[self._range.last_step : step + 1]:
+            self._range.include(earlier.step, earlier.knowledge)
+        low, high = self._range.at(step_taken.step)
         return ActionValuesView(
             learned.values, learned.visits, step_taken.observation, step_taken.action, low, high
         )
 
 
 class ValueRange:
-    """Running minimum and maximum for a colour scale; it only grows, so colours stay comparable."""
+    """Minimum and maximum of all action values up to a step, and 0: a colour scale.
+
+    They do not depend on the order in which a recording is looked at.
+    """
 
     def __init__(self) -> None:
-        self._low = self._high = 0.0
+        self.last_step = 0
+        """Number of the last step that is included, from 1."""
+        self._changes = [(0, 0.0, 0.0)]
+        """Steps at which the range grew, with the range from then on."""
 
-    def extended_to(self, values: FloatArray) -> tuple[float, float]:
-        """Extend the range to these values, NaN ignored, and return (low, high)."""
-        self._low = min(self._low, float(np.nanmin(values)))
-        self._high = max(self._high, float(np.nanmax(values)))
-        return self._low, self._high
+    def include(self, step: int, known: ActionValues | None) -> None:
+        """Include the values before a step, NaN ignored; earlier steps have been included."""
+        if step <= self.last_step:
+            return
+        self.last_step = step
+        if known is None:
+            return
+        _, low, high = self._changes[-1]
+        lowest, highest = float(np.nanmin(known.values)), float(np.nanmax(known.values))
+        if lowest < low or highest > high:
+            self._changes.append((step, min(low, lowest), max(high, highest)))
+
+    def at(self, step: int) -> tuple[float, float]:
+        """Return (low, high) of the values up to a step."""
+        _, low, high = self._changes[bisect_right(self._changes, step, key=itemgetter(0)) - 1]
+        return low, high

@@ -11,7 +11,7 @@ from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.stage.race_lane import RaceLane
 from app.stage.scene_spec import rest_pose
-from app.stage.show import RunLabel
+from app.stage.show import Mark, RunLabel
 from app.stage.stage_frame import LaneView, Phase, SceneSpec, StageFrame
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
@@ -108,6 +108,35 @@ class RaceShow:
         ends = [lane.end_s for lane in self._lanes if lane.all_recorded]
         first = min(ends, default=None)
         return None if first is None or first > self._horizon_s else first
+
+    @property
+    def recorded(self) -> tuple[tuple[float, float], ...]:
+        """Intervals of race time that can be shown [s]."""
+        return ((0.0, self._horizon_s),) if self._lanes else ()
+
+    @property
+    def step_ends_s(self) -> list[tuple[float, ...]]:
+        """For each lane the race times at which its steps end [s]."""
+        return [lane.step_ends_s for lane in self._lanes]
+
+    def marks(self) -> list[Mark]:
+        """Return what happened, in order of time, as far as all lanes are computed."""
+        found = [] if self.first_finish_s is None else [Mark("time-out", self.first_finish_s)]
+        changes = self._world.change_steps
+        for number, lane in enumerate(self._lanes):
+            ends = lane.step_ends_s
+            found += [
+                Mark("disturbance", ends[step - 1], number, step)
+                for step in changes
+                if step <= len(ends)
+            ]
+            if lane.crossing_s is not None:
+                found.append(Mark("crossing", lane.crossing_s, number))
+            if lane.fell_at_step is not None and lane.fell_at_step < len(ends):
+                fell = lane.fell_at_step
+                found.append(Mark("fall", ends[fell], number, fell))
+        in_view = [mark for mark in found if mark.time_s <= self._horizon_s]
+        return sorted(in_view, key=lambda mark: mark.time_s)
 
     def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
         """Advance the playback position; see `Show.advance`."""

@@ -1,7 +1,7 @@
 """Interface of playbacks on the stage (`Show`), and the playback of the idle stage."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, NamedTuple, Protocol, get_args
 
 from app.runs.clocks import Clock
 from app.stage.scene_spec import idle_scene, rest_pose
@@ -18,6 +18,29 @@ class RunLabel:
     name: str
     playing: bool = True
     replay: bool = False
+
+
+MarkKind = Literal["time-out", "crossing", "fall", "disturbance", "evaluation"]
+MARK_KINDS: tuple[MarkKind, ...] = get_args(MarkKind)
+
+
+class Mark(NamedTuple):
+    """Something that happened in a run, as a point on its timeline.
+
+    Attributes:
+        kind: what it is.
+        time_s: when it happened, in the run's own time [s].
+        lane: in which lane, from 0; None if it concerns all.
+        step: the step that begins with it, or the one in which a robot fell, counted from 0; None
+            if it belongs to no step.
+        distance_m: what an evaluation reached.
+    """
+
+    kind: MarkKind
+    time_s: float
+    lane: int | None = None
+    step: int | None = None
+    distance_m: float | None = None
 
 
 class Show(Protocol):

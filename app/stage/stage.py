@@ -7,15 +7,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, Literal
 
-from app.domain.errors import HexapodError, InvalidInput
+from app.domain.errors import HexapodError
 from app.domain.world import UNDISTURBED, World
 from app.events.bus import Event, EventBus
 from app.runs.clocks import Clock
 from app.runs.config import TrainingConfig
-from app.runs.race_config import RaceConfig
-from app.stage.practice_show import PracticeShow
-from app.stage.race_show import RaceShow, original_of
-from app.stage.scene_spec import race_scene, training_scene
+from app.stage.playback import show_of
 from app.stage.show import TIME_LAPSE, IdleShow, RunLabel, Show
 from app.stage.stage_frame import StageFrame
 from app.storage.database.store import RunStore
@@ -229,34 +226,19 @@ class Stage:
         self._changes = changes
 
     def _play(self, playlist: list[Run], replay: bool = False) -> None:
-        self._show, self._world = self._make_show(playlist[0]), world_of(playlist[0])
+        run = playlist[0]
+        show = show_of(
+            run,
+            self._store,
+            self._recordings,
+            self._clock,
+            world=lambda: self._world,
+            pace=lambda: self._pace(run.id),
+        )
+        self._show, self._world = show, world_of(run)
         self._playlist, self._replay = playlist, replay
         self._playing, self._speed, self._idle_since_s = True, None, None
         self._publish()
-
-    def _make_show(self, run: Run) -> Show:
-        config, recordings = run.config, self._recordings
-        if isinstance(config, RaceConfig):
-            spec = race_scene(config)
-            return RaceShow(
-                spec,
-                config.steps,
-                self._clock,
-                lambda: recordings.race(run.id),
-                world=config.world,
-                original=original_of(config, self._store, recordings),
-            )
-        if not isinstance(config, TrainingConfig):
-            raise InvalidInput(f"{run.id!r} is an {run.kind}; on stage are trainings and races")
-        return PracticeShow(
-            training_scene(config),
-            config.steps,
-            config.robot.step_s,
-            lambda: self._pace(run.id),
-            lambda: recordings.training(run.id),
-            world=lambda: self._world,
-            fell_at_step=(run.result or {}).get("fell_at_step"),
-        )
 
     def _pace(self, run_id: str) -> float | str:
         """Return the present pace of a training: its last change, or the configured one."""

@@ -16,7 +16,7 @@ from starlette.websockets import WebSocket
 
 from app.limits.addresses import client_of
 from app.limits.client_slots import ClientSlots, NoFreeSlot
-from app.viewer.session import FREE, Counters, Session, valid_view
+from app.viewer.session import ELSEWHERE, FREE, Counters, Session, valid_view
 from app.viewer.snapshot import Snapshot
 from app.viewer.track import WORLD, Position
 from app.viewer.viser_internals import stream
@@ -187,12 +187,17 @@ class Hub:
     def _fan_out(self, frame: stream.Frame) -> None:
         by_view: dict[str, stream.Frame] = {}
         for session in self._sessions:
+            if session.view == ELSEWHERE:
+                continue
             if session.view not in by_view:
                 # In the same frame, so that no browser draws the robot moved but not yet centred.
                 by_view[session.view] = frame.with_messages(*self._centring_messages(session.view))
             session.push(by_view[session.view], self._snapshot.version)
 
-    def _catch_up_frame(self, session: Session) -> tuple[stream.Frame, int] | None:
+    def _catch_up_frame(self, session: Session) -> tuple[stream.Frame, int | None] | None:
+        if session.view == ELSEWHERE:
+            # viser's client waits for the end of the backlog before it shows anything.
+            return stream.pack([{"type": stream.REPLAY_DONE}], (), self._snapshot.timestamp_s), None
         if not self._live:
             return None
         # Cached: sessions that lag by the same version share one encoding.
@@ -203,8 +208,14 @@ class Hub:
         return self._catch_up_frames[key], self._snapshot.version
 
     def _send_view(self, session: Session) -> None:
+        if session.view == ELSEWHERE:
+            session.forget()
+            return
+        if session.version is None:
+            session.resume()
+            return
         centring_message = self._centring_messages(session.view)
-        if centring_message and session.version is not None:
+        if centring_message:
             frame = stream.pack(centring_message, (), self._snapshot.timestamp_s)
             session.push(frame, self._snapshot.version)
 

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 from app.runs.clocks import Clock
 from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
+from app.stage.playback import FRAMES_PER_S
 from app.stage.race_show import Original, RaceShow
 from app.stage.scene_spec import race_scene
 from app.stage.show import RunLabel
 from app.viewer.scene import StageScene
-from app.viewer.stage_loop import FRAMES_PER_S
 from app.viewer.viser_internals.server import in_process_viser
 
 MAX_LENGTH_S = 90.0

@@ -19,9 +19,10 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 from app.runs.race_config import MAX_LANES
 from app.viewer.viser_internals import stream
 
-FREE = "free"
-VIEWS = frozenset({FREE, "leader", *map(str, range(1, MAX_LANES + 1))})
-"""Valid views: the leader of the race, the robot on a lane from 1, or none."""
+FREE, ELSEWHERE = "free", "elsewhere"
+VIEWS = frozenset({FREE, ELSEWHERE, "leader", *map(str, range(1, MAX_LANES + 1))})
+"""Valid views: the leader of the race, the robot on a lane from 1, none; or not the stage at all,
+while the page plays a run by itself."""
 
 _HIGH_WATER_BYTES = 8 * 1024
 _SEND_BUFFER_BYTES = 16 * 1024
@@ -43,7 +44,7 @@ class Counters:
     """Viewers that were made to reconnect because viser was restarted."""
 
 
-CatchUp = Callable[["Session"], tuple[stream.Frame, int] | None]
+CatchUp = Callable[["Session"], tuple[stream.Frame, int | None] | None]
 """Returns one frame with all changes since a session's version, and the new version; None while
 there is nothing to show."""
 
@@ -73,7 +74,7 @@ class Session:
         self._websocket = websocket
         self._counters = counters
         self._catch_up = catch_up
-        self._queue: deque[tuple[stream.Frame, int]] = deque()
+        self._queue: deque[tuple[stream.Frame, int | None]] = deque()
         self._is_lagging = True
         self._wake = asyncio.Event()
         self._wake.set()
@@ -94,6 +95,17 @@ class Session:
                 self._counters.frames_merged += len(self._queue) + 1
             self._queue.clear()
             self._is_lagging = True
+        self._wake.set()
+
+    def forget(self) -> None:
+        """Drop queued frames, and forget what the browser has: it shows something else."""
+        self.version = None
+        self._queue.clear()
+        self._is_lagging = False
+
+    def resume(self) -> None:
+        """Send all changes since the browser's version, or the whole scene if it has none."""
+        self._is_lagging = True
         self._wake.set()
 
     def wake(self) -> None:
@@ -146,14 +158,14 @@ class Session:
             # Disconnected; uvicorn raises RuntimeError for a send after it closed by itself.
             return
 
-    def _next(self) -> tuple[stream.Frame, int] | None:
+    def _next(self) -> tuple[stream.Frame, int | None] | None:
         if self._queue:
             return self._queue.popleft()
         if not self._is_lagging:
             return None
-        catch_up = self._catch_up(self)
-        self._is_lagging = catch_up is None
-        return catch_up
+        frame = self._catch_up(self)
+        self._is_lagging = frame is None
+        return frame
 
     async def _receive(self, on_view: Callable[["Session"], None]) -> None:
         while True:

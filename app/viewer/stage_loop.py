@@ -5,10 +5,11 @@ import threading
 import time
 
 from app.events.bus import EventBus
+from app.stage.playback import FRAMES_PER_S
 from app.stage.stage import Stage
 from app.viewer.scene import StageScene
 
-FRAMES_PER_S, IDLE_FRAMES_PER_S, SCENES_PER_S = 30.0, 10.0, 5.0
+IDLE_FRAMES_PER_S, SCENES_PER_S = 10.0, 5.0
 _STILL_FRAMES = 15
 """Number of frames without motion before the rate drops; longer than a pause between steps."""
 

@@ -268,3 +268,40 @@ def test_recorded_stream_plays_in_the_viewer(api: Api) -> None:
     assert len(film.content) > 1000
     assert api.call("GET", path).content == film.content
     assert api.client.get("/viewer/", params={"playbackPath": f"/api/v1{path}"}).status_code == 200
+
+
+def test_race_is_replayed_by_each_page_for_itself(raced: dict[str, Any], api: Api) -> None:
+    shared = ("run_id", "speed", "clock", "playing")
+    before = {name: api.get("/stage")[name] for name in shared}
+    path = f"/runs/{raced['id']}/replay"
+    plan = api.get(path, params={"clock": "free"})
+    lanes = raced["result"]["lanes"]
+
+    assert plan["clock"] == "free"
+    assert plan["complete"]
+    assert plan["recorded_s"] == [[0.0, plan["duration_s"]]]
+    assert plan["duration_s"] == max(lane["clocks"]["free"]["elapsed_s"] for lane in lanes)
+    assert [len(ends) for ends in plan["step_ends_s"]] == [50, 50, 50]
+    assert "time-out" in {mark["kind"] for mark in plan["marks"]}
+    for address in ("/scene", "/moment?time_s=1.5", "/segments/0/1?clock=free"):
+        packed = api.call("GET", path + address)
+        plain = api.call("GET", path + address, headers={"Accept-Encoding": "identity"})
+        assert packed.headers["content-encoding"] == "gzip"
+        assert packed.content == plain.content, "the client unpacks it"
+    after = api.get("/stage")
+    assert {name: after[name] for name in shared} == before, "the stage is everybody's"
+
+
+def test_replay_that_cannot_be_says_why(raced: dict[str, Any], api: Api) -> None:
+    path = f"/runs/{raced['id']}/replay"
+    refused(api.call("GET", "/runs/none/replay"), 404, "none")
+    refused(api.call("GET", f"{path}/segments/0/100000"), 404, "its last segment is")
+    refused(api.call("GET", f"{path}/segments/8/0"), 422, "level must be a whole number from -3")
+    refused(api.call("GET", f"{path}/segments/0/-1"), 422, "number must be a whole number, 0")
+    refused(api.call("GET", f"{path}/moment?time_s=-1"), 422, "0 or more")
+    refused(api.call("GET", f"{path}?clock=sundial"), 422, "paper, wall, free")
+    past = api.call("GET", f"{path}/moment?time_s=1e6")
+    assert past.status_code == 200, "the last moment"
+    queued = api.race(lanes=[{"agent": "q-learning", "training": {"steps": 100_000}}])
+    refused(api.call("GET", f"/runs/{queued['id']}/replay"), 409, "has no recording")
+    api.stop(queued)

@@ -42,6 +42,10 @@ def robots_at(place: float) -> Any:
     return predicate
 
 
+def follow(viewer: Viewer, view: str) -> None:
+    viewer.socket.send(msgspec.msgpack.encode({"type": "FollowMessage", "view": view}))
+
+
 def close_code(viewer: Viewer) -> tuple[int, str]:
     with pytest.raises(ConnectionClosed) as closed:
         viewer.frames_until(lambda _: False)
@@ -314,7 +318,7 @@ def test_view_can_be_changed_without_a_new_connection(
     served_with_follow: ServedHub, robots: Robots, follow_positions: FollowPositions
 ) -> None:
     def choose(view: str) -> None:
-        viewer.socket.send(msgspec.msgpack.encode({"type": "FollowMessage", "view": view}))
+        follow(viewer, view)
 
     with served_with_follow.watch("free") as viewer:
         viewer.frame()
@@ -348,3 +352,20 @@ def test_error_while_relaying_makes_viewers_reconnect(
         assert close_code(viewer)[0] == 1012
     with served_with_follow.watch("leader") as viewer:
         assert robots_at(1)(viewer.frame())
+
+
+def test_a_page_that_plays_a_run_by_itself_gets_no_frames(
+    served: ServedHub, robots: Robots
+) -> None:
+    with served.watch() as everybody, served.watch("elsewhere") as own:
+        everybody.frames_until(is_complete)
+        assert [message["type"] for message in own.frame().messages] == ["ReplayDoneMessage"]
+        robots.move_to(7)
+        everybody.frames_until(robots_at(7))
+        follow(own, "free")
+        (back,) = own.frames_until(is_complete)
+        assert robots_at(7)(back), "the whole scene at once, and nothing before it"
+
+        follow(own, "elsewhere")
+        follow(own, "free")
+        assert own.frames_until(is_complete)

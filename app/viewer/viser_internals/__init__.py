@@ -2,7 +2,7 @@
 
 Only this package imports viser's private modules or uses its private attributes; the rest of the
 app draws with viser's public functions. `server` runs viser without a socket, `stream` decodes and
-encodes what it sends, `client` is its page in the browser, patched.
+encodes what it sends, `recorder` keeps what is drawn, `client` is its page in the browser, patched.
 
 viser promises none of the following, so each is checked by the test of the same name in
 `tests/viewer/viser_internals/test_assumptions.py`. If a new version breaks one, its test fails.
@@ -31,6 +31,12 @@ Assumed by `stream`:
   `entity_id_field`; the phases are create, update_dict, update_simple, remove and none.
 - redundancy_of_messages: two messages are redundant for viser exactly if they are for `slot_of`.
 - commands_to_the_browser: only the messages in `BLOCKED_TYPES` run scripts or ask for an answer.
+
+Assumed by `recorder`:
+
+- serializers_get_each_message: `queue_message` passes each message to every serializer in
+  `_record_handles`, under `_record_lock`; a `StateSerializer` keeps them in `_messages`, with their
+  arrays in `_binary_buffers`; `message_from_id` of the buffer is the whole scene.
 
 Assumed by `client`:
 

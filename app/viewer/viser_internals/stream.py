@@ -156,7 +156,7 @@ class Slot(NamedTuple):
 
 def slot_of(message: Message) -> Slot:
     """Return the slot of a message, by the rule that viser's message classes declare."""
-    kind, phase, id_field = _LIFECYCLES.get(message["type"], (None, None, None))
+    kind, phase, id_field = LIFECYCLES.get(message["type"], (None, None, None))
     entity: Entity | None = None
     if kind is not None and id_field is not None:
         entity = (kind, message[id_field], message.get("owner", ""))
@@ -171,7 +171,7 @@ def slot_of(message: Message) -> Slot:
     return Slot(entity, phase, (*subject, message["type"], str(message.get("bone_index", ""))))
 
 
-_LIFECYCLES = {
+LIFECYCLES = {
     cls.__name__: (cls.entity_type, cls.lifecycle_phase, cls.entity_id_field)
     for cls in _messages.Message.get_subclasses()
 }

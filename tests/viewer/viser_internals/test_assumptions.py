@@ -334,6 +334,24 @@ def test_commands_to_the_browser(client: str) -> None:
 # ---- assumed by client
 
 
+def test_serializers_get_each_message() -> None:
+    from app.viewer.viser_internals.recorder import recorder
+    from app.viewer.viser_internals.server import in_process_viser
+
+    with in_process_viser() as server:
+        frame = server.scene.add_frame("/one")
+        with recorder(server) as recording:
+            scene = recording.take()
+            frame.position = (1.0, 2.0, 3.0)
+            server.scene.add_frame("/two")
+            changes = recording.take()
+            assert recording.take() == ([], [])
+        frame.visible = False
+
+    assert "/one" in {message.get("name") for message in scene.messages}
+    assert [message["name"] for message in changes.messages][:2] == ["/one", "/two"]
+
+
 def test_page_is_one_file() -> None:
     assert [path.name for path in BUILD.iterdir()] == ["index.html"]
     html = (BUILD / "index.html").read_text("utf-8")

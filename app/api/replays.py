@@ -1,0 +1,94 @@
+"""Routes of replays: a run's timeline, and its frames, for a page with a position of its own."""
+
+import gzip
+from typing import Annotated, NamedTuple
+
+from fastapi import APIRouter, Depends, Path, Query, Request
+from starlette.responses import JSONResponse, Response
+
+from app.api.answers import ReplayView
+from app.api.compression import accepts_gzip
+from app.api.contract import BINARY, answers
+from app.api.deps import ServicesDep
+from app.api.descriptions import VALID
+from app.api.runs import RunPath
+from app.runs.clocks import Clock
+from app.stage.playback import HIGHEST_LEVEL, LOWEST_LEVEL
+
+router = APIRouter(prefix="/runs/{run_id}/replay", tags=["replays"])
+
+_MEDIA_TYPE = "application/octet-stream"
+_FRAMES = answers(200, {_MEDIA_TYPE: BINARY})
+_MAX_TIME_S = 1e9
+ClockQuery = Annotated[Clock, Query(description="times a race; a training has one clock")]
+
+
+@router.get("", summary="What a run's replay shows, and when", response_model=ReplayView)
+def get_replay(services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper") -> Response:
+    """Return the recorded intervals of the run's time, its steps, and marks for a timeline.
+
+    The frames are at `segments/{level}/{number}`.
+    """
+    return JSONResponse(services.replays.plan(run_id, clock))
+
+
+@router.get(
+    "/scene",
+    summary="The scene at the start of a replay",
+    response_class=Response,
+    responses=_FRAMES,
+)
+def get_replay_scene(services: ServicesDep, request: Request, run_id: RunPath) -> Response:
+    """Return the scene on which all frames are based; for the format see `docs/replays.md`."""
+    return _response(request, services.replays.scene(run_id))
+
+
+@router.get("/moment", summary="One frame of a replay", response_class=Response, responses=_FRAMES)
+def get_replay_moment(
+    services: ServicesDep,
+    request: Request,
+    run_id: RunPath,
+    time_s: Annotated[float, Query(ge=0, le=_MAX_TIME_S, description=VALID["time_s"])],
+    clock: ClockQuery = "paper",
+) -> Response:
+    """Return the frame at a time of the run, or at the nearest that is recorded."""
+    return _response(request, services.replays.moment(run_id, clock, time_s))
+
+
+class Place(NamedTuple):
+    """Which segment."""
+
+    level: int
+    number: int
+
+
+def _place(
+    level: Annotated[int, Path(ge=LOWEST_LEVEL, le=HIGHEST_LEVEL, description=VALID["level"])],
+    number: Annotated[int, Path(ge=0, lt=1 << 40, description=VALID["number"])],
+) -> Place:
+    return Place(level, number)
+
+
+@router.get(
+    "/segments/{level}/{number}",
+    summary="Frames of a replay",
+    response_class=Response,
+    responses=_FRAMES,
+)
+def get_replay_segment(
+    services: ServicesDep,
+    request: Request,
+    run_id: RunPath,
+    place: Annotated[Place, Depends(_place)],
+    clock: ClockQuery = "paper",
+) -> Response:
+    """Return the frames of a segment; fewer than it can have where the run still computes."""
+    return _response(request, services.replays.segment(run_id, clock, *place))
+
+
+def _response(request: Request, frames: bytes) -> Response:
+    headers = {"Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
+    if accepts_gzip(request.headers.get("accept-encoding", "")):
+        headers["Content-Encoding"] = "gzip"
+        return Response(frames, headers=headers, media_type=_MEDIA_TYPE)
+    return Response(gzip.decompress(frames), headers=headers, media_type=_MEDIA_TYPE)

@@ -1,0 +1,197 @@
+"""Playback of a stored run: its show, and a replay that can be at any moment of it.
+
+The stage has one playback position for everybody. A replay has none: it is asked for the frame at a
+time, so that every page can have a position of its own.
+
+As in adaptive streaming (HLS, DASH) a run's time is divided into segments of `SEGMENT_FRAMES`
+frames. At level 0 they follow each other 30 times a second of the run's time, at each level above
+half as often, at each level below twice as often: a page takes the level at which it draws about 30
+pictures a second at its own speed.
+"""
+
+import json
+import math
+import threading
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from app.domain.errors import InvalidInput
+from app.domain.world import World
+from app.runs.clocks import Clock
+from app.runs.config import TrainingConfig
+from app.runs.race_config import RaceConfig
+from app.stage.practice_show import PracticeShow
+from app.stage.race_show import RaceShow, original_of
+from app.stage.scene_spec import race_scene, training_scene
+from app.stage.show import RunLabel
+from app.stage.stage_frame import StageFrame
+from app.storage.database.store import RunStore
+from app.storage.errors import Conflict, NotFound
+from app.storage.recordings import Recordings
+from app.storage.run import NOT_ENDED, Run, world_of
+
+FRAMES_PER_S = 30.0
+SEGMENT_FRAMES = 64
+LOWEST_LEVEL, HIGHEST_LEVEL = -3, 7
+"""From 240 frames a second of the run's time to one in 4.3 s."""
+_KEPT_REPLAYS = 4
+"""Number of replays that are kept, few because recordings are large."""
+
+
+def show_of(
+    run: Run,
+    store: RunStore,
+    recordings: Recordings,
+    clock: Clock,
+    *,
+    world: Callable[[], World],
+    pace: Callable[[], float | str] = lambda: "max",
+) -> RaceShow | PracticeShow:
+    """Return the show of a run, at its start.
+
+    Args:
+        run: a training or a race.
+        store: store of the runs.
+        recordings: recordings of the runs.
+        clock: times a race.
+        world: returns all that happens in a training, as far as it is known.
+        pace: returns the present pace of a training that runs.
+
+    Raises:
+        InvalidInput: if the run is an experiment.
+    """
+    config = run.config
+    if isinstance(config, RaceConfig):
+        return RaceShow(
+            race_scene(config),
+            config.steps,
+            clock,
+            lambda: recordings.race(run.id),
+            world=config.world,
+            original=original_of(config, store, recordings),
+        )
+    if not isinstance(config, TrainingConfig):
+        raise InvalidInput(f"{run.id!r} is an {run.kind}; only trainings and races can be shown")
+    return PracticeShow(
+        training_scene(config),
+        config.steps,
+        config.robot.step_s,
+        pace,
+        lambda: recordings.training(run.id),
+        world=world,
+        fell_at_step=(run.result or {}).get("fell_at_step"),
+    )
+
+
+class Replay:
+    """A run that can be looked at in any moment. Thread-safe.
+
+    Args:
+        run: the run as it was when the replay was asked for.
+        show: its show.
+    """
+
+    def __init__(self, run: Run, show: RaceShow | PracticeShow) -> None:
+        self.run, self.show = run, show
+        self.is_complete = run.state not in NOT_ENDED
+        """Whether the run will record no more."""
+        self._lock = threading.Lock()
+        self._label = RunLabel(run.id, run.name, playing=True, replay=True)
+
+    @property
+    def version(self) -> str:
+        """Identifies what the frames are made from, but for the steps that are still to come."""
+        return _version_of(self.run)
+
+    @property
+    def recorded(self) -> tuple[tuple[float, float], ...]:
+        """Intervals of the run's time that can be shown [s]; none before it has recorded any."""
+        with self._lock:
+            self.show.advance(0.0, 1.0, run_ended=self.is_complete)
+            return self.show.recorded
+
+    def plan(self) -> dict[str, Any]:
+        """Return the recorded intervals, the steps and the marks of the run, in plain types."""
+        with self._lock:
+            show = self.show
+            return {
+                "run_id": self.run.id,
+                "kind": self.run.kind,
+                "clock": show.clock if isinstance(show, RaceShow) else None,
+                "complete": self.is_complete,
+                "duration_s": show.duration_s,
+                "recorded_s": [list(interval) for interval in show.recorded],
+                "step_ends_s": [[round(t, 5) for t in ends] for ends in show.step_ends_s],
+                "marks": [mark._asdict() for mark in show.marks()],
+                "frame_s": 1 / FRAMES_PER_S,
+                "segment_frames": SEGMENT_FRAMES,
+                "lowest_level": LOWEST_LEVEL,
+                "highest_level": HIGHEST_LEVEL,
+            }
+
+    def segment_times_s(self, level: int, number: int) -> list[float]:
+        """Return the times of a segment's frames that are recorded; the end of the run is the last.
+
+        Raises:
+            NotFound: if the segment is past the end.
+        """
+        interval_s, end_s = 2.0**level / FRAMES_PER_S, self.recorded[-1][1]
+        first = number * SEGMENT_FRAMES
+        if first * interval_s > end_s:
+            last = math.floor(end_s / interval_s / SEGMENT_FRAMES)
+            raise NotFound(
+                f"the recording ends at {end_s:.2f} s: at level {level} its last segment is {last}"
+            )
+        times_s = [(first + n) * interval_s for n in range(SEGMENT_FRAMES)]
+        recorded = [time_s for time_s in times_s if time_s <= end_s]
+        if len(recorded) < SEGMENT_FRAMES and self.is_complete:
+            recorded.append(end_s)
+        return recorded
+
+    def frame_at(self, time_s: float) -> StageFrame:
+        """Return the frame at a time [s], or at the nearest that is recorded."""
+        with self._lock:
+            self.show.seek(time_s)
+            return replace(self.show.frame(self._label), shown_speed=1.0)
+
+
+class Replays:
+    """Makes the replays of runs, and keeps the last few. Thread-safe.
+
+    Args:
+        store: store of the runs.
+        recordings: recordings of the runs.
+    """
+
+    def __init__(self, store: RunStore, recordings: Recordings) -> None:
+        self._store, self._recordings = store, recordings
+        self._kept: OrderedDict[tuple[str, Clock], Replay] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def get(self, run_id: str, clock: Clock) -> Replay:
+        """Return the replay of a run, of a race as timed by a clock.
+
+        Raises:
+            NotFound: if there is no such run.
+            InvalidInput: if it is an experiment.
+            Conflict: if it has no recording (yet).
+        """
+        run = self._store.get(run_id)
+        with self._lock:
+            replay = self._kept.pop((run_id, clock), None)
+            if replay is None or replay.version != _version_of(run):
+                world = world_of(run)
+                show = show_of(run, self._store, self._recordings, clock, world=lambda: world)
+                replay = Replay(run, show)
+            self._kept[run_id, clock] = replay
+            while len(self._kept) > _KEPT_REPLAYS:
+                self._kept.popitem(last=False)
+        if not replay.recorded:
+            raise Conflict(f"{run.kind} {run.id} is {run.state} and has no recording", run.state)
+        return replay
+
+
+def _version_of(run: Run) -> str:
+    return json.dumps([run.id, run.created_at, run.state, run.name, run.changes], default=str)

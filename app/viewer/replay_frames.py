@@ -1,0 +1,178 @@
+"""Frames of a replay as viser messages, which each page plays, seeks and repeats by itself.
+
+A segment (`stage.playback`) is encoded once, and is the same for everybody who watches the run.
+
+The first frame of a segment says all that differs from the scene at the start of the run, the next
+ones what changed since the one before. So a page that has the scene (`scene`) needs one segment to
+be at any moment of it, and the server keeps nothing for it.
+"""
+
+import gzip
+import struct
+import threading
+from collections import OrderedDict
+from collections.abc import Hashable, Iterator, Sequence
+from typing import Any
+
+import msgspec
+
+from app.runs.clocks import Clock
+from app.stage.playback import FRAMES_PER_S, SEGMENT_FRAMES, Replay, Replays
+from app.stage.stage_frame import StageFrame
+from app.viewer.scene import StageScene
+from app.viewer.stage_loop import SCENES_PER_S
+from app.viewer.viser_internals.recorder import Recorded, recorder
+from app.viewer.viser_internals.server import in_process_viser
+from app.viewer.viser_internals.stream import LIFECYCLES, remap_buffers
+
+_CACHE_BYTES = 64 << 20
+_FRAMES_PER_SCENE = round(FRAMES_PER_S / SCENES_PER_S)
+_ALIGNMENT_BYTES = 8
+_HEADER = struct.Struct("<I")
+_COMPRESSION = 1
+
+
+class ReplayFrames:
+    """Encodes replays, one request at a time, and keeps the newest segments. Thread-safe.
+
+    An encoding, compressed with gzip, is `u32 size of the JSON, little-endian | JSON | arrays`,
+    each array aligned to 8 bytes. The JSON has `lengths` of the arrays [bytes] and `frames`, each
+    with its `time_s`, its viser `messages`, which name an array as viser does
+    (`{"__binary_index": 3, "dtype": "<f4"}`), `follow`, the position of each view [m], and now and
+    then `scene`, as the event of this name.
+
+    Args:
+        replays: makes the replays.
+    """
+
+    def __init__(self, replays: Replays) -> None:
+        self._replays = replays
+        self._encoding = threading.Lock()
+        self._segments = _SegmentCache(_CACHE_BYTES)
+
+    def plan(self, run_id: str, clock: Clock) -> dict[str, Any]:
+        """Return what a page needs to play a run, in plain types: see `ReplayView` of the API.
+
+        Raises:
+            NotFound, InvalidInput, Conflict: see `Replays.get`.
+        """
+        return self._replays.get(run_id, clock).plan()
+
+    def scene(self, run_id: str) -> bytes:
+        """Return the scene at the start of a run, on which all frames are based.
+
+        It also has `lifecycles`: type of message → what it does to a scene node.
+
+        Raises:
+            NotFound, InvalidInput, Conflict: see `Replays.get`.
+        """
+        replay = self._replays.get(run_id, "paper")
+        with self._encoding:
+            return _encode(_frames(replay, ()), lifecycles=LIFECYCLES)
+
+    def moment(self, run_id: str, clock: Clock, time_s: float) -> bytes:
+        """Return one frame, at a time [s] or the nearest that is recorded.
+
+        Raises:
+            NotFound, InvalidInput, Conflict: see `Replays.get`.
+        """
+        replay = self._replays.get(run_id, clock)
+        with self._encoding:
+            return _encode(_after_scene(replay, [time_s]))
+
+    def segment(self, run_id: str, clock: Clock, level: int, number: int) -> bytes:
+        """Return a segment; of a run that is still computed only the frames so far.
+
+        Args:
+            run_id: id of a training or race.
+            clock: times a race.
+            level: see `stage.playback`.
+            number: number of the segment, from 0.
+
+        Raises:
+            NotFound: if there is no such run, or the segment is past its end.
+            InvalidInput, Conflict: see `Replays.get`.
+        """
+        replay = self._replays.get(run_id, clock)
+        key = (replay.version, clock, level, number)
+        if (kept := self._segments.get(key)) is not None:
+            return kept
+        times_s = replay.segment_times_s(level, number)
+        with self._encoding:
+            encoded = _encode(_after_scene(replay, times_s))
+        if replay.is_complete or len(times_s) == SEGMENT_FRAMES:
+            self._segments.put(key, encoded)
+        return encoded
+
+
+class _SegmentCache:
+    """Segments by what they are made from, the least recently used dropped first. Thread-safe."""
+
+    def __init__(self, max_bytes: int) -> None:
+        self._max_bytes, self._bytes = max_bytes, 0
+        self._segments: OrderedDict[Hashable, bytes] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def get(self, key: Hashable) -> bytes | None:
+        with self._lock:
+            if key in self._segments:
+                self._segments.move_to_end(key)
+            return self._segments.get(key)
+
+    def put(self, key: Hashable, segment: bytes) -> None:
+        with self._lock:
+            self._bytes += len(segment) - len(self._segments.pop(key, b""))
+            self._segments[key] = segment
+            while self._bytes > self._max_bytes:
+                self._bytes -= len(self._segments.popitem(last=False)[1])
+
+
+def _after_scene(replay: Replay, times_s: Sequence[float]) -> Iterator[tuple[Recorded, Any]]:
+    """Yield the frames of a replay at some times, based on its scene."""
+    frames = _frames(replay, times_s)
+    next(frames)
+    return frames
+
+
+def _frames(replay: Replay, times_s: Sequence[float]) -> Iterator[tuple[Recorded, Any]]:
+    """Yield the scene at the start, then what each frame changes; each with its other fields."""
+    with in_process_viser() as server, recorder(server) as recording:
+        stage_scene = StageScene(server)
+        for number, time_s in enumerate([0.0, *times_s], start=-1):
+            frame = replay.frame_at(time_s)
+            stage_scene.draw(frame)
+            yield (
+                recording.take(),
+                {
+                    "time_s": frame.time_s,
+                    "follow": _follow_points(frame, stage_scene),
+                    "scene": None if number % _FRAMES_PER_SCENE else frame.scene(),
+                },
+            )
+
+
+def _follow_points(frame: StageFrame, scene: StageScene) -> dict[str, tuple[float, float]]:
+    """Return the position of each view on the ground [m]."""
+    views = ["leader", *(str(number) for number in range(1, len(frame.lanes) + 1))]
+    points = ((view, scene.follow_position(view)) for view in views)
+    return {view: (round(at[0], 4), round(at[1], 4)) for view, at in points if at is not None}
+
+
+def _encode(frames: Iterator[tuple[Recorded, Any]], **more: Any) -> bytes:
+    arrays: list[memoryview] = []
+    encoded_frames = [
+        {
+            **fields,
+            "messages": [
+                remap_buffers(message, recorded.arrays, arrays) for message in recorded.messages
+            ],
+        }
+        for recorded, fields in frames
+    ]
+    lengths = [array.nbytes for array in arrays]
+    header = msgspec.json.encode({**more, "lengths": lengths, "frames": encoded_frames})
+    encoded = bytearray(_HEADER.pack(len(header)) + header)
+    for array in arrays:
+        encoded += bytes(-len(encoded) % _ALIGNMENT_BYTES)
+        encoded += array
+    return gzip.compress(bytes(encoded), compresslevel=_COMPRESSION, mtime=0)

@@ -1,0 +1,123 @@
+"""Replays: any moment of a run, whatever was looked at before, and the marks of its timeline."""
+
+import numpy as np
+import pytest
+
+from app.domain.disturbances import SensorNoise
+from app.domain.world import World
+from app.runs.clocks import CLOCKS
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
+from app.runs.results import finish_s
+from app.stage.playback import FRAMES_PER_S, Replays
+from app.storage.errors import Conflict, NotFound
+from tests.stage.stage_parts import StageParts
+
+LANES = ("q-learning", "greedy", "two-step")
+
+
+def replays_of(parts: StageParts) -> Replays:
+    return Replays(parts.store, parts.recordings)
+
+
+def test_a_moment_does_not_depend_on_those_before(parts: StageParts) -> None:
+    run = parts.finished_race(LANES)
+    watched = replays_of(parts).get(run.id, "paper")
+    for time_s in (9.0, 0.5, 3.0):
+        watched.frame_at(time_s)
+    seen, fresh = watched.frame_at(2.5), replays_of(parts).get(run.id, "paper").frame_at(2.5)
+
+    assert seen.scene() == fresh.scene()
+    for one, other in zip(seen.lanes, fresh.lanes, strict=True):
+        assert np.array_equal(one.qpos, other.qpos)
+
+
+def test_poses_at_the_ends_of_steps_are_those_that_were_simulated(parts: StageParts) -> None:
+    run = parts.finished_race(LANES)
+    replay = replays_of(parts).get(run.id, "free")
+    recorded = parts.recordings.race(run.id) or []
+
+    for step, end_s in enumerate(replay.show.step_ends_s[1]):
+        shown = replay.frame_at(end_s).lanes[1].qpos
+        assert shown == pytest.approx(recorded[1].steps[step].motion.qpos[-1], abs=1e-6)
+
+
+def test_marks_of_a_race_are_in_order_and_where_it_says(parts: StageParts) -> None:
+    world = World((SensorNoise(at_step=4, sd_m=0.002),))
+    run = parts.finished_race(LANES, world=world)
+    for clock in CLOCKS:
+        replay = replays_of(parts).get(run.id, clock)
+        marks = replay.show.marks()
+        ends = replay.show.step_ends_s
+
+        assert [mark.time_s for mark in marks] == sorted(mark.time_s for mark in marks)
+        changes = {mark.lane: mark for mark in marks if mark.kind == "disturbance"}
+        assert {lane: mark.time_s for lane, mark in changes.items()} == {
+            lane: ends[lane][3] for lane in range(3)
+        }
+        time_out = next(mark for mark in marks if mark.kind == "time-out")
+        assert time_out.time_s == finish_s(parts.recordings.race(run.id) or [], 12, clock)
+
+
+def test_a_practice_has_its_evaluations_and_the_steps_that_are_kept(parts: StageParts) -> None:
+    run = parts.finished_training(600)
+    replay = replays_of(parts).get(run.id, "paper")
+    step_s = run.config.robot.step_s  # type: ignore[union-attr]
+    recording = parts.recordings.training(run.id)
+    assert recording is not None
+
+    first, newest = replay.recorded
+    assert first == pytest.approx((0.0, 20 * step_s))
+    assert newest == pytest.approx((100 * step_s, 600 * step_s))
+    assert [mark.step for mark in replay.show.marks() if mark.kind == "evaluation"] == [
+        evaluation.step for evaluation in recording.evaluations
+    ]
+    in_gap = replay.frame_at(50 * step_s)
+    assert in_gap.time_s == pytest.approx(100 * step_s), "the next that is recorded"
+
+
+def test_a_renamed_run_is_replayed_under_its_new_name(parts: StageParts) -> None:
+    run = parts.finished_race(LANES)
+    replays = replays_of(parts)
+    assert replays.get(run.id, "paper") is replays.get(run.id, "paper")
+    assert run.name in replays.get(run.id, "paper").frame_at(0.0).label
+
+
+def test_a_race_that_is_computed_is_replayed_as_far_as_it_is(parts: StageParts) -> None:
+    run, advance = parts.running_race(LANES)
+    replays = replays_of(parts)
+    for _ in range(9):
+        advance()
+    first = replays.get(run.id, "paper").recorded[-1][1]
+    for _ in range(9):
+        advance()
+    later = replays.get(run.id, "paper")
+
+    assert 0 < first < later.recorded[-1][1]
+    assert not later.is_complete
+    assert later.plan()["duration_s"] is None
+
+
+def test_a_run_without_recording_has_no_replay(parts: StageParts) -> None:
+    replays = replays_of(parts)
+    with pytest.raises(NotFound):
+        replays.get("nothing", "paper")
+    lanes = (LaneConfig(agent="greedy"),)
+    queued = parts.create(RaceConfig(gait="left-right-origin", lanes=lanes))
+    with pytest.raises(Conflict, match=f"{queued.id} is queued and has no recording"):
+        replays.get(queued.id, "paper")
+
+
+def test_segments_cover_the_recording_to_its_last_moment(parts: StageParts) -> None:
+    replay = replays_of(parts).get(parts.finished_race(LANES).id, "paper")
+    end_s = replay.recorded[-1][1]
+    for level in (-1, 0, 2):
+        times_s: list[float] = []
+        interval_s, number = 2**level / FRAMES_PER_S, 0
+        while not times_s or times_s[-1] < end_s:
+            times_s += replay.segment_times_s(level, number)
+            number += 1
+        assert times_s[-1] == end_s
+        assert np.diff(times_s[:-1]) == pytest.approx(interval_s)
+        with pytest.raises(NotFound, match=f"its last segment is {number - 1}"):
+            replay.segment_times_s(level, number)

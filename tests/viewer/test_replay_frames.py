@@ -1,0 +1,113 @@
+"""Frames of a replay: what a page that applies them shows, and what is kept of them."""
+
+import gzip
+import json
+import struct
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.stage.playback import FRAMES_PER_S, SEGMENT_FRAMES, Replays
+from app.viewer.replay_frames import ReplayFrames
+from app.viewer.robot_mesh import RobotMesh
+from app.viewer.scene import SCENE_ROOT
+from tests.stage.stage_parts import StageParts
+
+LANES = ("q-learning", "greedy", "two-step")
+
+
+def frames_of(parts: StageParts) -> ReplayFrames:
+    return ReplayFrames(Replays(parts.store, parts.recordings))
+
+
+def decoded(encoded: bytes) -> tuple[dict[str, Any], list[bytes]]:
+    """Return the JSON and the arrays of an encoding, as the page reads them."""
+    data = gzip.decompress(encoded)
+    (size,) = struct.unpack_from("<I", data)
+    head, place, arrays = json.loads(data[4 : 4 + size]), 4 + size, []
+    for length in head["lengths"]:
+        place += -place % 8
+        arrays.append(data[place : place + length])
+        place += length
+    assert place == len(data)
+    return head, arrays
+
+
+def shown(frames: list[dict[str, Any]], arrays: list[bytes]) -> dict[str, Any]:
+    """Return the newest value of each property of the scene's nodes after these frames."""
+    state: dict[str, Any] = {}
+    for message in (message for frame in frames for message in frame["messages"]):
+        values = message.get("updates") or message.get("props") or {}
+        for name, value in values.items():
+            is_array = isinstance(value, dict) and "__binary_index" in value
+            plain = arrays[value["__binary_index"]] if is_array else value
+            state[f"{message['name']} {name}"] = plain
+    return state
+
+
+def test_a_segment_shows_the_joint_positions_that_were_simulated(parts: StageParts) -> None:
+    run = parts.finished_race(LANES)
+    replay = Replays(parts.store, parts.recordings).get(run.id, "paper")
+    segment, arrays = decoded(frames_of(parts).segment(run.id, "paper", 0, 1))
+    mesh = RobotMesh(replay.show.spec.robot)
+
+    assert len(segment["frames"]) == SEGMENT_FRAMES
+    for number in (0, 1, 40):
+        time_s = segment["frames"][number]["time_s"]
+        assert time_s == pytest.approx((SEGMENT_FRAMES + number) / FRAMES_PER_S)
+        state = shown(segment["frames"][: number + 1], arrays)
+        for part, links in enumerate(part.links for part in mesh.parts):
+            name = f"{SCENE_ROOT}/robots/{part} batched_positions"
+            drawn = np.frombuffer(state[name], np.float32).reshape(len(LANES), len(links), 3)
+            for lane, view in enumerate(replay.frame_at(time_s).lanes):
+                expected = mesh.body_poses(view.qpos).positions[links]
+                offset = drawn[lane] - expected
+                assert np.ptp(offset, axis=0) == pytest.approx(0, abs=1e-5)
+                assert offset[:, 1:] == pytest.approx(0, abs=1e-5), "lanes differ in x"
+
+
+def test_a_moment_is_as_the_segment_that_has_it(parts: StageParts) -> None:
+    run, frames = parts.finished_race(LANES), frames_of(parts)
+    segment, segment_arrays = decoded(frames.segment(run.id, "paper", 0, 1))
+    moment, arrays = decoded(frames.moment(run.id, "paper", segment["frames"][30]["time_s"]))
+
+    state = shown(moment["frames"], arrays)
+    played = shown(segment["frames"][:31], segment_arrays)
+    assert {name: played[name] for name in state} == state
+    assert moment["frames"][0]["scene"]["time_s"] == segment["frames"][30]["scene"]["time_s"]
+    assert moment["frames"][0]["follow"] == segment["frames"][30]["follow"]
+
+
+def test_the_scene_comes_with_what_its_messages_do(parts: StageParts) -> None:
+    scene, arrays = decoded(frames_of(parts).scene(parts.finished_race(LANES).id))
+
+    (start,) = scene["frames"]
+    assert start["time_s"] == 0
+    kinds = {message["type"] for message in start["messages"]}
+    assert {"BatchedMeshesMessage", "LabelMessage"} <= kinds
+    assert scene["lifecycles"]["BatchedMeshesMessage"] == ["scene", "create", "name"]
+    assert len(arrays) > 20
+
+
+def test_segments_are_encoded_once_until_the_run_changes(parts: StageParts) -> None:
+    run, frames = parts.finished_race(LANES), frames_of(parts)
+    first = frames.segment(run.id, "paper", 0, 0)
+
+    assert frames.segment(run.id, "paper", 0, 0) is first
+    assert frames.segment(run.id, "free", 0, 0) != first
+    parts.store.change(run.id, ["finished"], "stopped")
+    assert frames.segment(run.id, "paper", 0, 0) is not first
+
+
+def test_a_race_under_way_is_encoded_as_far_as_it_is(parts: StageParts) -> None:
+    run, advance = parts.running_race(LANES)
+    for _ in range(12):
+        advance()
+    frames = frames_of(parts)
+    early, _ = decoded(frames.segment(run.id, "paper", 0, 0))
+    while advance():
+        pass
+    later, _ = decoded(frames.segment(run.id, "paper", 0, 0))
+
+    assert 0 < len(early["frames"]) < len(later["frames"])
