@@ -6,16 +6,21 @@ are no frames to count: start a race or a training first.
 
 What is promised: 200 viewers get 20 frames/s or more in the median, the API's 95th percentile
 stays under 250 ms, and 20 who do not read cost the others less than 5 % of their frames.
+
+With `--replays 20` so many more play a run of the server by themselves, each from a time of its
+own, as the page does: twice as fast as real time, the next segment requested in the middle of one.
 """
 
 import argparse
 import asyncio
+import gzip
 import http.client
 import json
 import socket
 import statistics
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack
 from dataclasses import dataclass
 from urllib.parse import urlsplit
@@ -29,6 +34,8 @@ _LOOPBACK = ("127.0.0.1", "localhost")
 _OPENING_AT_ONCE = 20
 _SMALL_BUFFER_BYTES = 4096
 _API_PAUSE_S = 0.05
+_REPLAY_LEVEL, _REPLAY_SPEED = 1, 2.0
+_PICTURES_PER_S = 30.0
 
 
 @dataclass
@@ -57,17 +64,85 @@ async def measure(host: str, port: int, options: argparse.Namespace) -> dict[str
         # What a newcomer gets first, the whole scene, is not the stream's rate.
         await asyncio.gather(*(viewer.recv(decode=False) for viewer in viewers))
         tallies = [Tally() for _ in viewers]
+        replays = [Replay(number) for number in range(options.replays)]
         began_s = time.perf_counter()
         until_s = began_s + options.seconds
-        _, latencies_s = await asyncio.gather(
-            asyncio.gather(*map(_watch, viewers, tallies, [until_s] * len(viewers))),
-            asyncio.to_thread(_ask, host, port, until_s),
-        )
+        # As many as there are; the loop's own pool has only a few.
+        with ThreadPoolExecutor(len(replays) or 1) as pool:
+            playing = [pool.submit(replay.play, host, port, until_s) for replay in replays]
+            _, latencies_s = await asyncio.gather(
+                asyncio.gather(*map(_watch, viewers, tallies, [until_s] * len(viewers))),
+                asyncio.to_thread(_ask, host, port, until_s),
+            )
+            await asyncio.gather(*map(asyncio.wrap_future, playing))
         took_s = time.perf_counter() - began_s
         for viewer in (*viewers, *stalled):
             # No farewells: hundreds of them would take longer than the measurement.
             viewer.transport.abort()
-    return _report(tallies, latencies_s, took_s)
+    return {**_report(tallies, latencies_s, took_s), **_replay_report(replays)}
+
+
+class Replay:
+    """A page that plays a run by itself, by its number, which decides the run and the time."""
+
+    def __init__(self, number: int) -> None:
+        self._number = number
+        self.pictures = 0
+        self.played_s = 0.0
+        self.waits_s: list[float] = []
+        """How long each segment took from its request until it could be drawn [s]."""
+
+    def play(self, host: str, port: int, until_s: float) -> None:
+        """Play until a time of `time.perf_counter`; run it in a thread."""
+        connection = http.client.HTTPConnection(host, port, timeout=30)
+        runs = json.loads(_get(connection, "/api/v1/races?state=finished"))["items"]
+        path = f"/api/v1/runs/{runs[self._number % len(runs)]['id']}/replay"
+        plan = json.loads(_get(connection, path))
+        _get(connection, f"{path}/scene")
+        segment_s = plan["segment_frames"] * plan["frame_s"] * 2**_REPLAY_LEVEL / _REPLAY_SPEED
+        last = int(plan["recorded_s"][-1][1] / _REPLAY_SPEED / segment_s)
+        began_s = due_s = time.perf_counter()
+        number = self._number
+        while due_s < until_s:
+            requested_s = time.perf_counter()
+            frames = _get(connection, f"{path}/segments/{_REPLAY_LEVEL}/{number % last}")
+            gzip.decompress(frames)
+            arrived_s = time.perf_counter()
+            self.waits_s.append(arrived_s - requested_s)
+            if len(self.waits_s) == 1:
+                began_s = arrived_s
+            # What is late is waited for; playback goes on from there.
+            due_s = max(due_s, arrived_s)
+            self.pictures += min(plan["segment_frames"], round((until_s - due_s) * _PICTURES_PER_S))
+            due_s += segment_s
+            time.sleep(max(0.0, min(due_s - segment_s / 2, until_s) - time.perf_counter()))
+            number += 1
+        self.played_s = until_s - began_s
+        connection.close()
+
+
+def _get(connection: http.client.HTTPConnection, path: str) -> bytes:
+    connection.request("GET", path, headers={"Accept-Encoding": "gzip"})
+    response = connection.getresponse()
+    content = response.read()
+    if response.status != http.client.OK:
+        raise RuntimeError(f"{path}: {response.status} {content[:200]!r}")
+    is_frames = response.headers.get("Content-Encoding") == "gzip" and "segments" not in path
+    return gzip.decompress(content) if is_frames else content
+
+
+def _replay_report(replays: list[Replay]) -> dict[str, float]:
+    if not replays:
+        return {}
+    rates = [replay.pictures / replay.played_s for replay in replays]
+    waits_s = [wait_s for replay in replays for wait_s in replay.waits_s]
+    return {
+        "replays": len(replays),
+        "pictures_per_s_median": round(statistics.median(rates), 2),
+        "pictures_per_s_lowest": round(min(rates), 2),
+        "segments": len(waits_s),
+        "segment_p95_ms": round(statistics.quantiles(waits_s, n=20)[-1] * 1e3, 1),
+    }
 
 
 def _viewer(url: str, host: str, port: int, buffer_bytes: int | None) -> connect:
@@ -136,6 +211,7 @@ def main() -> None:
     parser.add_argument("address", help="of the server, such as http://127.0.0.1:8000")
     parser.add_argument("--viewers", type=int, default=200)
     parser.add_argument("--stalled", type=int, default=0, help="further ones that never read")
+    parser.add_argument("--replays", type=int, default=0, help="further ones with an own replay")
     parser.add_argument("--seconds", type=float, default=30.0)
     parser.add_argument("--view", default="leader", help="leader, 1 to 8, or free")
     options = parser.parse_args()

@@ -21,6 +21,7 @@ from app.stage.playback import FRAMES_PER_S, SEGMENT_FRAMES, Replay, Replays
 from app.stage.stage_frame import StageFrame
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import SCENES_PER_S
+from app.viewer.track import WORLD
 from app.viewer.viser_internals.recorder import Recorded, recorder
 from app.viewer.viser_internals.server import in_process_viser
 from app.viewer.viser_internals.stream import LIFECYCLES, remap_buffers
@@ -61,14 +62,15 @@ class ReplayFrames:
     def scene(self, run_id: str) -> bytes:
         """Return the scene at the start of a run, on which all frames are based.
 
-        It also has `lifecycles`: type of message → what it does to a scene node.
+        It also has `lifecycles`, by type of message what it does to a scene node, and `world`, the
+        node that a page moves to follow a robot.
 
         Raises:
             NotFound, InvalidInput, Conflict: see `Replays.get`.
         """
         replay = self._replays.get(run_id, "paper")
         with self._encoding:
-            return _encode(_frames(replay, ()), lifecycles=LIFECYCLES)
+            return _encode(_frames(replay, ()), lifecycles=LIFECYCLES, world=WORLD)
 
     def moment(self, run_id: str, clock: Clock, time_s: float) -> bytes:
         """Return one frame, at a time [s] or the nearest that is recorded.

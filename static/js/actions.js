@@ -8,12 +8,15 @@ import {
 } from "./form.js";
 import { count, listed, whole } from "./format.js";
 import {
-  isActive, isOperator, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, myWork, shownRun, work,
+  canPlay, isActive, isOperator, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, myWork, shownRun, work,
 } from "./selectors.js";
+import {
+  closeReplay, ownRunId, playReplay, replayLink, seekReplay, setReplayClock, setReplaySpeed,
+} from "./replay.js";
 import { formRobot } from "./robots.js";
 import { agentOf, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
 import {
-  markDeleted, options, rates, requestRun, requestStage, runs, scene, served, setEntry, stage,
+  commonStage, markDeleted, options, rates, requestRun, requestStage, runs, scene, served, setEntry, stage,
 } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -121,7 +124,10 @@ export const runPrimaryAction = () => (canStart.value ? primaryAction.value.run(
  */
 const adopt = async (send) => {
   const run = await requestRun(send);
-  if (run?.id) markAsMine(run.id);
+  if (run?.id) {
+    markAsMine(run.id);
+    closeReplay();
+  }
   return run;
 };
 
@@ -148,7 +154,7 @@ const commandWork = (verb) =>
     const current = work.value?.current;
     if (!current) return;
     await requestRun(() => api.command(current, verb));
-    if (stage.value?.run_id === current.id) await api.putStage({ playing: verb === "resume" });
+    if (commonStage.value?.run_id === current.id) await api.putStage({ playing: verb === "resume" });
   });
 
 export const stop = () =>
@@ -157,11 +163,15 @@ export const stop = () =>
     if (!requested) return;
     // A race that waits for its training stops that too.
     await requestRun(() => api.command(requested, "stop"));
-    if (stage.value?.playing === false) await api.putStage({ playing: true });
+    if (commonStage.value?.playing === false) await api.putStage({ playing: true });
   });
 
 /** Pause or resume the training on stage, else the playback. */
 export function togglePause() {
+  if (ownRunId.value !== null) {
+    togglePlaying();
+    return;
+  }
   if (!isOperator.value) return;
   const current = work.value?.current;
   if (current && current.id === stage.value?.run_id && current.kind === "training") {
@@ -243,20 +253,28 @@ export const branchRace = (race, step, disturbances) =>
     if (run) await requestStage(() => api.putStage({ run_id: run.id, playing: true }));
   });
 
-// ---- the stage, which all pages share
+// ---- the stage: the one that all pages share, or this page's own replay
 
 /** @param {Partial<Stage> & { time_s?: number }} changes */
-export const setStage = (changes) =>
-  attempt("stage", () => requestStage(() => api.putStage(changes)));
+export function setStage(changes) {
+  if (ownRunId.value === null) return attempt("stage", () => requestStage(() => api.putStage(changes)));
+  const { time_s, playing, speed, clock } = changes;
+  if (clock !== undefined) setReplayClock(clock);
+  if (typeof speed === "number") setReplaySpeed(speed);
+  if (time_s !== undefined) seekReplay(time_s);
+  if (playing !== undefined) playReplay(playing);
+  return Promise.resolve();
+}
 
 export const togglePlaying = () => {
-  if (isOperator.value && stage.value?.run_id) setStage({ playing: !isPlaying.value });
+  if (canPlay.value && stage.value?.run_id) setStage({ playing: !isPlaying.value });
 };
 export const skipToEnd = () => setStage({ time_s: scene.value?.duration_s ?? undefined, playing: true });
 
 /** @param {Run} run */
 export const showOnStage = (run) =>
   attempt(run.id, async () => {
+    closeReplay();
     const start = isActive(run) ? {} : { time_s: 0 };
     await requestStage(() => api.putStage({ run_id: run.id, playing: true, ...start }));
     location.hash = "";
@@ -337,12 +355,15 @@ function toast(message) {
 }
 
 export async function share() {
+  const isOwn = ownRunId.value !== null;
+  const address = isOwn ? replayLink() : link();
   try {
-    await navigator.clipboard.writeText(link());
-    toast("Link copied. It contains every setting of the form.");
+    await navigator.clipboard.writeText(address);
+    const contents = isOwn ? "It opens this replay at this moment." : "It contains every setting of the form.";
+    toast(`Link copied. ${contents}`);
   } catch {
     // There is no clipboard outside of https and loopback.
-    history.replaceState(history.state, "", link());
+    history.replaceState(history.state, "", address);
     toast("The address bar has the link: copy it from there.");
   }
 }

@@ -1,7 +1,7 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
 
 /** @import { Curve, Disturbance, Kind, Options, Page, Rates, Run, Stage, Summary, Timeline, Verb } from "./types.js" */
-/** @import { WhatIfAnswer } from "./types.js" */
+/** @import { ReplayPlan, WhatIfAnswer } from "./types.js" */
 
 const base = () => new URL("api/v1/", document.baseURI);
 
@@ -165,6 +165,23 @@ export const getCurve = (id) => call("GET", `${pathOf({ kind: "training", id })}
 /** @type {(id: string, clock: string) => Promise<Omit<Timeline, "id">>} */
 export const getTimeline = (id, clock) =>
   call("GET", `${pathOf({ kind: "race", id })}/timeline?clock=${clock}`);
+/** @type {(id: string, clock: string) => Promise<ReplayPlan>} */
+export const getReplay = (id, clock) => call("GET", `runs/${encodeURIComponent(id)}/replay?clock=${clock}`);
+
+/**
+ * Frames of a replay, encoded.
+ * @param {string} id
+ * @param {string} address of the frames in the replay
+ * @throws {RequestError}
+ */
+export async function getReplayFrames(id, address) {
+  const response = await fetch(new URL(`runs/${encodeURIComponent(id)}/replay/${address}`, base())).catch(() => {
+    throw new Unreachable();
+  });
+  if (!response.ok) throw refusal(response.status, parse(await response.text()) ?? {});
+  return response.arrayBuffer();
+}
+
 /** @type {(id: string) => Promise<Summary>} */
 export const getSummary = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/summary`);
 

@@ -3,6 +3,7 @@ import { computed, signal } from "@preact/signals";
 import { isSimulated, parseText } from "./disturbances.js";
 import { listed } from "./format.js";
 import { parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
+import { REPLAY_FIELDS } from "./page.js";
 import { agentOf, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
 import { options, served } from "./store.js";
 
@@ -263,7 +264,8 @@ export function readQuery(query) {
   for (const [field, text] of query) {
     if (field in known && !(field in found) && !(field in texts)) take(field, text, agents);
   }
-  unknownParts.value = [...query].filter(([field]) => !(field in known)).map((part) => part.join("="));
+  const isUnknown = (/** @type {string} */ field) => !(field in known) && !REPLAY_FIELDS.includes(field);
+  unknownParts.value = [...query].filter(([field]) => isUnknown(field)).map((part) => part.join("="));
   overrides.value = select(found, (field) => field === "lanes" || written(found[field]) !== written(defaults[field])
     || (field === "agent" && found.agent !== served().defaults.training.agent));
   typed.value = texts;
@@ -274,7 +276,11 @@ export const readAddress = () => readQuery(new URLSearchParams(location.search))
 
 /** Write the form to the page's address; an unchanged form keeps it clean. */
 export function writeAddress() {
-  const search = isChanged.value ? `?${toQuery()}` : "";
+  const query = isChanged.value ? toQuery() : new URLSearchParams();
+  for (const [field, text] of new URLSearchParams(location.search)) {
+    if (REPLAY_FIELDS.includes(field)) query.set(field, text);
+  }
+  const search = query.size ? `?${query}` : "";
   history.replaceState(history.state, "", `${location.pathname}${search}${location.hash}`);
 }
 

@@ -8,6 +8,7 @@ import { announceExperiments, followAddress, followExperiments, followSummary } 
 import { readAddress, writeAddress } from "./form.js";
 import { followTheme } from "./page.js";
 import { announceOutcomes, followTimeline } from "./race.js";
+import { followReplay, readReplayAddress } from "./replay.js";
 import { followRuns, runList, stageIds } from "./runs.js";
 import { applyEvent, connection, isLockedOut, options, version } from "./store.js";
 import { followCurves } from "./training.js";
@@ -51,6 +52,8 @@ followRuns(stageIds);
 runList.follow("runs");
 followCurves();
 followTimeline();
+followReplay();
+readReplayAddress();
 followExperiments();
 followSummary();
 announceOutcomes();

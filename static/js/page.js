@@ -25,6 +25,9 @@ function readShortcuts() {
   }
 }
 
+/** Fields of the address for a replay of this page's own: the run, and the position in it [s]. */
+export const REPLAY_FIELDS = ["run", "t"];
+
 // ---- the first lesson
 
 /** Whether the first lesson is open: at the first visit ("first"), or from the help ("again"). */

@@ -5,7 +5,7 @@ import { form } from "./form.js";
 import { count, duration, whole } from "./format.js";
 import { formRobot, isSame } from "./robots.js";
 import { learns } from "./settings.js";
-import { options, role, runs, scene, stage } from "./store.js";
+import { commonStage, options, ownStage, role, runs, scene, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { FormValues, GaitConfig, LaneConfig, Run, Scene, State } from "./types.js" */
@@ -25,6 +25,9 @@ export const isActive = (run) => isKnown(run) && ACTIVE.has(run.state);
 export const hasTable = (run) => run?.kind === "training" && WITH_TABLE.has(run.state);
 
 export const isOperator = computed(() => role.value === "operator");
+
+/** Whether this page may play and seek: the common stage is the operators', a replay of its own is anybody's. */
+export const canPlay = computed(() => isOperator.value || ownStage.value !== null);
 
 /** Every known run, newest first. */
 export const everyRun = computed(() =>
@@ -161,8 +164,8 @@ export const liveTraining = computed(() => {
 /** This tab's run, while another live run is on stage. */
 export const offStage = computed(() => {
   const { requested, current } = myWork.value ?? {};
-  const onStage = stage.value?.run_id;
-  if (!requested || !current || !onStage || !isActive(shownRun.value)) return null;
+  const onStage = commonStage.value?.run_id;
+  if (!requested || !current || !onStage || !isActive(get(onStage))) return null;
   return [requested.id, current.id, ...trainingIds(requested)].includes(onStage) ? null : current;
 });
 

@@ -1,5 +1,5 @@
 // The server's state as signals. Written by events, and by answers to requests that no event has overtaken.
-import { batch, signal } from "@preact/signals";
+import { batch, computed, signal } from "@preact/signals";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { DamagedRun, Evaluation, Options, Rates, Run, Scene, Stage } from "./types.js" */
@@ -22,10 +22,18 @@ export const served = () => /** @type {Options} */ (options.value);
 export const runs = signal(new Map());
 /** Runs that the server cannot read, by id: listed, and can be deleted. @type {Signal<Map<string, DamagedRun>>} */
 export const damagedRuns = signal(new Map());
-/** The stage as GET /stage has it. @type {Signal<Stage | null>} */
-export const stage = signal(null);
-/** The moment that is shown, updated about five times a second. @type {Signal<Scene | null>} */
-export const scene = signal(null);
+/** The stage that all pages share, as GET /stage has it. @type {Signal<Stage | null>} */
+export const commonStage = signal(null);
+/** Its moment, updated about five times a second. @type {Signal<Scene | null>} */
+const commonScene = signal(null);
+/** What this page shows while it plays a run by itself, as the common stage has it. @type {Signal<Stage | null>} */
+export const ownStage = signal(null);
+/** @type {Signal<Scene | null>} */
+export const ownScene = signal(null);
+/** The stage of this page: its own, or else the common one. */
+export const stage = computed(() => ownStage.value ?? commonStage.value);
+/** The moment that this page shows; null while its own replay has none yet. */
+export const scene = computed(() => (ownStage.value ? ownScene.value : commonScene.value));
 /** Run id → evaluations received while the page was open. @type {Signal<Record<string, Evaluation[]>>} */
 export const evaluations = signal({});
 /** Run id → greedy's distance on the same robot [m]. @type {Signal<Record<string, number>>} */
@@ -77,8 +85,8 @@ const handlers = {
     damagedRuns.value = new Map();
     rates.value = {};
     (data.runs ?? []).forEach(upsertRun);
-    stage.value = data.stage ?? null;
-    scene.value = data.scene ?? null;
+    commonStage.value = data.stage ?? null;
+    commonScene.value = data.scene ?? null;
   },
   run(data) {
     newestEvents.set(data.id, eventCount);
@@ -100,11 +108,11 @@ const handlers = {
   rates: ({ run_id, step: _, ...changed }) => setEntry(rates, run_id, { ...rates.value[run_id], ...changed }),
   stage(data) {
     newestEvents.set("stage", eventCount);
-    stage.value = data;
+    commonStage.value = data;
   },
   summary: ({ run_id, done }) => setEntry(summarised, run_id, done),
   viewers: (data) => (viewers.value = data.count),
-  scene: (data) => (scene.value = data),
+  scene: (data) => (commonScene.value = data),
 };
 
 /**
@@ -159,7 +167,7 @@ export async function requestRuns(send) {
  */
 export async function requestStage(send) {
   const { answer, isNews } = await perform(send);
-  if (answer && isNews("stage")) stage.value = answer;
+  if (answer && isNews("stage")) commonStage.value = answer;
 }
 
 /**

@@ -375,6 +375,30 @@ export interface Stage {
   clock: Clock;
 }
 
+// ---- GET /runs/{id}/replay
+
+export interface ReplayMark {
+  kind: "time-out" | "crossing" | "fall" | "disturbance" | "evaluation";
+  time_s: number;
+  lane: number | null;
+  step: number | null;
+  distance_m: number | null;
+}
+
+export interface ReplayPlan {
+  run_id: string;
+  kind: "training" | "race";
+  complete: boolean;
+  duration_s: number | null;
+  recorded_s: [number, number][];
+  step_ends_s: number[][];
+  marks: ReplayMark[];
+  frame_s: number;
+  segment_frames: number;
+  lowest_level: number;
+  highest_level: number;
+}
+
 export interface SceneLane {
   lane: number;
   name: string;

@@ -4,6 +4,7 @@
 //
 //   from the parent   {type: "hexapods:show", lanes?: colours of the lanes, covered?: [{left, top, right, bottom}],
 //                      what the parent shows over the picture, in pixels of it}
+//                     {type: "hexapods:draw", messages: of viser, which the parent draws instead of the stream's}
 (() => {
   "use strict";
 
@@ -115,8 +116,16 @@
     });
   }
 
+  const draw = (messages) => {
+    messages.forEach(take);
+    window.__viserMutable?.messageQueue.push(...messages);
+    window.__viserMutable?.requestRender();
+  };
+
   addEventListener("message", ({ origin, source, data }) => {
-    if (origin !== location.origin || source !== parent || data?.type !== "hexapods:show") return;
+    if (origin !== location.origin || source !== parent) return;
+    if (data?.type === "hexapods:draw") draw(data.messages);
+    if (data?.type !== "hexapods:show") return;
     covered = data.covered ?? covered;
     lanes = data.lanes ?? lanes;
     labels.forEach(paint);

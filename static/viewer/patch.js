@@ -2,6 +2,7 @@
 // What it assumes of the client is listed and tested in app/viewer/viser_internals.
 //
 //   from the parent   {type: "hexapods:show", view?: "leader" | a lane from "1" | "free", theme?: "light" | "dark"}
+//                     view "elsewhere": the parent draws by itself (labels.js), and the stream is left out
 //   to the parent     {type: "hexapods:status", status: "connected" | "reconnecting" | "full" | "address full" |
 //                      "place taken"}
 //                     {type: "hexapods:key", key, code, shiftKey}
@@ -60,6 +61,12 @@
     }
   };
 
+  /** Leave out frames of the stage that were on their way; the client waits for the end of the backlog. */
+  const dropElsewhere = ({ data }) => {
+    if (data?.type !== "message_batch" || view !== "elsewhere") return;
+    data.messages = data.messages.filter(({ type }) => type === "ReplayDoneMessage");
+  };
+
   // The server has been upgraded under this page; but never reload in a loop.
   const reloadOnce = () => {
     const last = Number(sessionStorage.getItem("hexapods:reloaded"));
@@ -69,6 +76,12 @@
   };
 
   window.Worker = class extends Worker {
+    constructor(...args) {
+      super(...args);
+      // Before the listeners of the labels and of the client, which get the same object.
+      this.addEventListener("message", dropElsewhere);
+    }
+
     postMessage(message, ...rest) {
       if (message?.type !== "set_server") return super.postMessage(message, ...rest);
       socketWorker = this;

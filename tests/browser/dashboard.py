@@ -89,10 +89,10 @@ class Dashboard:
             self.page.wait_for_timeout(250)
         raise AssertionError(f"not within {PATIENCE_MS / 1000:.0f} s: {what}")
 
-    def has_figures(self) -> bool:
+    def has_figures(self, lanes: int = 3) -> bool:
         """Whether every lane has a distance."""
         shown = self.distances()
-        return len(shown) == 3 and all(_METRES.fullmatch(one) for one in shown)
+        return len(shown) == lanes and all(_METRES.fullmatch(one) for one in shown)
 
     def box(self, selector: str) -> FloatRect:
         """Where the first element of a selector lies in the window [px]."""

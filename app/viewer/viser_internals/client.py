@@ -151,12 +151,12 @@ def _patched_page() -> str:
         raise _unsupported("its head or title is not where the patch goes")
     folder = assets.static_dir() / "viewer"
     # Read as they are sent, since the policy has the scripts' hashes.
-    labels, script, style = (
-        (folder / name).read_text("utf-8") for name in ("labels.js", "patch.js", "patch.css")
+    script, labels, style = (
+        (folder / name).read_text("utf-8") for name in ("patch.js", "labels.js", "patch.css")
     )
     html = html.replace(_TITLE, "<title>Racing Hexapods: the stage</title>")
     # At the start of the head, since viser's loader runs while the page is still parsed.
-    patch = f"<script>{labels}</script><script>{script}</script><style>{style}</style>"
+    patch = f"<script>{script}</script><script>{labels}</script><style>{style}</style>"
     return html.replace(_HEAD, f"{_HEAD}{patch}")
 
 

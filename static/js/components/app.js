@@ -6,6 +6,7 @@ import {
   closeLesson, helpIsOpen, isNarrow, lesson, nextTheme, openLesson, place, setShortcuts, shortcuts, theme, view,
 } from "../page.js";
 import { announcement } from "../race.js";
+import { ownRunId, stepReplay } from "../replay.js";
 import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { Controls } from "./controls.js";
@@ -13,7 +14,8 @@ import { html, Icon } from "./elements.js";
 import { Knowledge, LearningChart } from "./learning.js";
 import { RaceChart, Scoreboard } from "./race.js";
 import { Runs } from "./runs.js";
-import { SharedChoices, Stage } from "./stage.js";
+import { Stage } from "./stage.js";
+import { SharedChoices } from "./transport.js";
 import { WhatIf } from "./what-if.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -201,6 +203,7 @@ const KEYS = [
   ["R", "press the main button: train and race"],
   ["1 – 8", "follow the robot in that lane"],
   ["0", "free the camera"],
+  [", .", "in your own replay: one robot step back or on"],
   ["?", "show this list"],
 ];
 
@@ -218,6 +221,7 @@ function press(key) {
   else if (key === "r" || key === "R") runPrimaryAction();
   else if (/^[1-8]$/.test(key)) view.value = key;
   else if (key === "0") view.value = "free";
+  else if (ownRunId.value !== null && (key === "," || key === ".")) stepReplay(key === "." ? 1 : -1);
   else if (key === "?") helpIsOpen.value = !helpIsOpen.value;
   else return false;
   return true;

@@ -18,13 +18,16 @@ const PATHS = {
   pause: "M4 3h3v10H4zM9 3h3v10H9z",
   stop: "M3.5 3.5h9v9h-9z",
   skip: "M3 3.2v9.6l6.5-4.8zM10.5 3h2.5v10h-2.5z",
+  stepOn: "M3 3.2v9.6l4-4.8zM9 3h1.8v10H9zM12.2 3H14v10h-1.8z",
+  stepBack: "M13 3.2v9.6l-4-4.8zM7 3H5.2v10H7zM3.8 3H2v10h1.8z",
+  replay: "M3.2 8a4.8 4.8 0 1 0 1.6-3.6M3 2.4v3h3",
   link: `${LINK_LEFT}${LINK_RIGHT}`,
   light: `${SUN}${STRAIGHT_RAYS}${SLANTED_RAYS}`,
   dark: "M13.2 9.6A5.6 5.6 0 0 1 6.4 2.8a5.6 5.6 0 1 0 6.8 6.8z",
   auto: "M8 2.2a5.8 5.8 0 1 0 0 11.6A5.8 5.8 0 0 0 8 2.2M8 2.2v11.6M8 4.8h3.9M8 8h5.8M8 11.2h3.9",
   flag: "M4 14V2.5h8.5L10.8 5.3l1.7 2.7H4",
 };
-const OUTLINED = new Set(["link", "light", "dark", "auto", "flag"]);
+const OUTLINED = new Set(["link", "replay", "light", "dark", "auto", "flag"]);
 const SIZE = 16;
 
 /** An icon, drawn in the colour of the text beside it. */

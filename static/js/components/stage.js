@@ -1,18 +1,16 @@
-// The 3D stage in its frame, with labels over it and the transport below.
+// The 3D stage in its frame, with labels over it.
 import { computed, signal } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
-import { setStage, skipToEnd, togglePlaying } from "../actions.js";
 import { form } from "../form.js";
-import { clockTime, sentence, times, whole } from "../format.js";
-import { isNarrow, shownTheme, view } from "../page.js";
+import { sentence, times, whole } from "../format.js";
+import { shownTheme, view } from "../page.js";
 import { standings } from "../race.js";
-import {
-  clock, conditionsShown, isActive, isOperator, isPlaying, playbackName, raceScene, shownRun,
-} from "../selectors.js";
+import { closeReplay, drawIn, isBuffering, ownRunId, replayProblem } from "../replay.js";
+import { conditionsShown, playbackName, raceScene } from "../selectors.js";
 import { agentOf } from "../settings.js";
-import { connection, options, scene, stage } from "../store.js";
-import { choicesOf, clockTitle } from "../titles.js";
-import { html, Icon, Problem } from "./elements.js";
+import { connection, scene, stage } from "../store.js";
+import { html } from "./elements.js";
+import { Transport } from "./transport.js";
 
 /** A frame that has not reported its status for so long is shown as it is. */
 const STATUS_TIMEOUT_MS = 12_000;
@@ -24,14 +22,19 @@ const laneColours = computed(() => (scene.value?.lanes ?? []).map(({ color }) =>
 export function Stage() {
   const frame = useRef(/** @type {HTMLIFrameElement | null} */ (null));
   const [status, setStatus] = useState("loading");
+  const followed = ownRunId.value === null ? view.value : ELSEWHERE;
   // The first address has both; later changes are sent to the frame, which must not load again.
-  const [address] = useState(() => `viewer/?view=${view.peek()}&theme=${shownTheme.peek()}`);
+  const [address] = useState(() => `viewer/?view=${followed}&theme=${shownTheme.peek()}`);
 
   useEffect(() => {
     const onMessage = ({ origin, source, data }) => {
       if (origin !== location.origin || source !== frame.current?.contentWindow) return;
-      if (data?.type === "hexapods:status") setStatus(data.status);
+      if (data?.type !== "hexapods:status") return;
+      setStatus(data.status);
+      if (data.status === "connected") drawIn(send);
     };
+    const send = (messages) =>
+      frame.current?.contentWindow?.postMessage({ type: "hexapods:draw", messages }, location.origin);
     addEventListener("message", onMessage);
     const timer = setTimeout(
       () => setStatus((now) => (now === "loading" ? "connected" : now)), STATUS_TIMEOUT_MS,
@@ -45,11 +48,11 @@ export function Stage() {
   const colours = laneColours.value;
   useEffect(() => {
     const message = {
-      type: "hexapods:show", view: view.value, theme: shownTheme.value, lanes: colours.split(" "),
+      type: "hexapods:show", view: followed, theme: shownTheme.value, lanes: colours.split(" "),
       covered: covered.value,
     };
     frame.current?.contentWindow?.postMessage(message, location.origin);
-  }, [view.value, shownTheme.value, status, colours, covered.value]);
+  }, [followed, shownTheme.value, status, colours, covered.value]);
 
   const isAway = connection.value === "reconnecting" || status === "reconnecting";
   return html`
@@ -58,6 +61,7 @@ export function Stage() {
         <iframe ref=${frame} src=${address} title="The robots on the track, in 3D"></iframe>
         ${(status === "loading" || isRefused(status)) && html`<${StagePlaceholder} status=${status} />`}
         <${StageLabels} />
+        <${ReplayProblem} />
         ${isAway && html`
           <p class="away-note" role="status">
             <span class="spinner" aria-hidden="true"></span>
@@ -69,6 +73,17 @@ export function Stage() {
     </section>
   `;
 }
+
+/** The view of the frame while this page draws a replay of its own. */
+const ELSEWHERE = "elsewhere";
+
+/** Why the run that a link names cannot be replayed. */
+const ReplayProblem = () => replayProblem.value && html`
+  <div class="replay-problem" role="alert">
+    <p>${replayProblem.value}</p>
+    <button class="secondary" onClick=${closeReplay}>Watch the stage</button>
+  </div>
+`;
 
 // ---- a drawing of the robots on the start line, shown until the stage has a picture
 
@@ -163,7 +178,9 @@ function SceneChips() {
       ${now?.phase === "photo-finish" && html`<p class="chip accent">Time-out: photo finish</p>`}
       ${now?.phase === "waiting" && html`<p class="chip">Waiting for a robot that still thinks</p>`}
       <${WorldChip} />
-      ${now?.replay && html`<p class="chip">Replay</p>`}
+      ${ownRunId.value !== null
+        ? html`<p class="chip accent">${isBuffering.value ? "Loading your replay…" : "Your own replay"}</p>`
+        : now?.replay && html`<p class="chip">Replay</p>`}
       <${SpeedChip} now=${now} />
     </div>
   `;
@@ -181,108 +198,4 @@ function SpeedChip({ now }) {
   }
   if (!now || now.kind === "idle" || now.phase === "finished" || !(now.shown_speed > 0)) return null;
   return html`<p class="chip num" title="Times real time">${times(now.shown_speed)}</p>`;
-}
-
-// ---- the playback; the camera is this page's own, all else is shared by every page
-
-const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 64];
-
-function Transport() {
-  const now = scene.value;
-  return html`
-    <div class="transport">
-      ${isOperator.value && html`<${PlayButton} />`}
-      <${Seek} now=${now} />
-      ${isOneLaneLeft(now) && isOperator.value && html`
-        <button class="secondary compact" onClick=${skipToEnd}><${Icon} name="skip" />Skip</button>
-      `}
-      <${Follow} />
-      ${!isNarrow.value && html`<${SharedChoices} />`}
-      <${Problem} at="stage" />
-    </div>
-  `;
-}
-
-function PlayButton() {
-  const verb = isPlaying.value ? "Pause" : "Play";
-  const label = stage.value?.ended ? "Play again for everyone" : `${verb} ${playbackName.value} for everyone`;
-  return html`
-    <button class="quiet square" disabled=${!stage.value?.run_id} onClick=${togglePlaying}
-      aria-label=${label} title=${label}>
-      <${Icon} name=${isPlaying.value ? "pause" : "play"} />
-    </button>
-  `;
-}
-
-/** Speed and clock; on a phone in a row of their own, which may scroll away. */
-export const SharedChoices = () => isOperator.value && html`<${Speed} /><${ClockChoice} />`;
-
-const isOneLaneLeft = (now) =>
-  now?.kind === "race" && now.phase !== "finished" && now.lanes?.length > 1 && now.duration_s &&
-  now.lanes.filter(({ done }) => !done).length === 1;
-
-function Seek({ now }) {
-  if (!now || now.kind === "idle") return html`<span class="seek"></span>`;
-  const { time_s, duration_s } = now;
-  if (!duration_s) {
-    return html`
-      <span class="seek">
-        <span class="num">${clockTime(time_s)}</span>
-        <span class="dim">${isActive(shownRun.value) ? "still being simulated" : ""}</span>
-      </span>
-    `;
-  }
-  const words = `${clockTime(time_s)} of ${clockTime(duration_s)}`;
-  const seek = ({ target }) => setStage({ time_s: Number(target.value) });
-  return html`
-    <span class="seek">
-      <span class="num">${clockTime(time_s)}</span>
-      <input type="range" min="0" max=${duration_s} step="0.1" value=${time_s} disabled=${!isOperator.value}
-        style=${{ "--share": `${(100 * time_s) / duration_s}%` }}
-        aria-label="Moment that is shown" aria-valuetext=${words} onChange=${seek} />
-      <span class="num dim">${clockTime(duration_s)}</span>
-    </span>
-  `;
-}
-
-const Choice = ({ label, name, value, choices, onValue, title }) => html`
-  <label class="choice" title=${title}>
-    <span>${label}</span>
-    <select name=${name} onChange=${({ target }) => onValue(target.value)}>
-      ${choices.map(([one, words]) => html`
-        <option value=${String(one)} selected=${String(one) === String(value)}>${words}</option>
-      `)}
-    </select>
-  </label>
-`;
-
-function Follow() {
-  const lanes = scene.value?.lanes ?? shownRun.value?.config?.lanes ?? [];
-  const robots = lanes.map((lane, n) => [String(n + 1), lane.name ?? agentOf(lane.agent).title]);
-  const choices = [["leader", "leader"], ...robots, ["free", "free camera"]];
-  if (!choices.some(([one]) => one === view.value)) choices.push([view.value, `lane ${view.value}`]);
-  return html`
-    <${Choice} label="Follow" name="follow" value=${view.value} choices=${choices}
-      title="The robot that your camera follows; keys 1 to 8, 0 for a free camera"
-      onValue=${(value) => (view.value = value)} />
-  `;
-}
-
-function Speed() {
-  const speed = stage.value?.speed ?? 1;
-  const isOther = typeof speed === "number" && !SPEEDS.includes(speed);
-  const numbers = isOther ? [...SPEEDS, speed].sort((a, b) => a - b) : SPEEDS;
-  const choices = [["time-lapse", "auto"], ...numbers.map((n) => [n, `×${n}`])];
-  return html`
-    <${Choice} label="Speed" name="speed" value=${speed} choices=${choices} title="For every page"
-      onValue=${(value) => setStage({ speed: value === "time-lapse" ? value : Number(value) })} />
-  `;
-}
-
-function ClockChoice() {
-  const about = options.value?.clocks.find(({ name }) => name === clock.value)?.description ?? "";
-  return html`
-    <${Choice} label="Clock" name="clock" value=${clock.value} title=${`${sentence(clockTitle(clock.value))}. ${about}`}
-      choices=${choicesOf(options.value?.clocks, clockTitle)} onValue=${(value) => setStage({ clock: value })} />
-  `;
 }

@@ -40,7 +40,7 @@ def test_patch_precedes_visers_loader(client: TestClient) -> None:
     html = client.get("/viewer/").text
 
     patch_position, loader_position = (
-        html.index(f"<script>{LABELS}</script><script>{SCRIPT}</script>"),
+        html.index(f"<script>{SCRIPT}</script><script>{LABELS}</script>"),
         html.index("<script data-p="),
     )
     assert html.index("<head>") < patch_position < loader_position

@@ -1,0 +1,220 @@
+// The transport below the stage: play, seek, speed, clock, camera. The camera is this page's own; all else is shared by
+// every page, unless this one plays a replay of its own.
+import { setStage, skipToEnd, togglePlaying } from "../actions.js";
+import { conditionsAt, conditionsInWords, happeningsOf } from "../disturbances.js";
+import { clockTime, count, metres, sentence } from "../format.js";
+import { isNarrow, view } from "../page.js";
+import {
+  closeReplay, endTime, openReplay, ownRunId, plan, replayTime, seekReplay, stepReplay,
+} from "../replay.js";
+import { canPlay, clock, isActive, isOperator, isPlaying, playbackName, shownRun } from "../selectors.js";
+import { agentOf } from "../settings.js";
+import { options, scene, stage } from "../store.js";
+import { choicesOf, clockTitle } from "../titles.js";
+import { html, Icon, Problem } from "./elements.js";
+
+const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 64];
+
+export function Transport() {
+  const now = scene.value;
+  const isOwn = ownRunId.value !== null;
+  return html`
+    <div class=${`transport ${isOwn ? "own" : ""}`}>
+      ${canPlay.value && html`<${PlayButton} />`}
+      ${isOwn && html`<${StepButtons} />`}
+      <${Seek} now=${now} />
+      ${isOneLaneLeft(now) && canPlay.value && html`
+        <button class="quiet square" onClick=${skipToEnd} aria-label="Skip to the end" title="Skip to the end">
+          <${Icon} name="skip" />
+        </button>
+      `}
+      ${isOwn ? html`<${BackToStage} /><${Marks} />` : html`<${ReplayButton} />`}
+      <${Follow} />
+      ${!isNarrow.value && html`<${SharedChoices} />`}
+      <${Problem} at="stage" />
+    </div>
+  `;
+}
+
+function PlayButton() {
+  const verb = isPlaying.value ? "Pause" : "Play";
+  const whose = ownRunId.value === null ? " for everyone" : "";
+  const label = stage.value?.ended ? `Play again${whose}` : `${verb} ${playbackName.value}${whose}`;
+  return html`
+    <button class="quiet square" disabled=${!stage.value?.run_id} onClick=${togglePlaying}
+      aria-label=${label} title=${label}>
+      <${Icon} name=${isPlaying.value ? "pause" : "play"} />
+    </button>
+  `;
+}
+
+// ---- a replay of this page's own
+
+function ReplayButton() {
+  const run = shownRun.value;
+  if (!run?.progress?.done) return null;
+  const open = () => openReplay(run.id, { time_s: scene.value?.time_s ?? 0, clock: clock.value });
+  return html`
+    <button class="secondary compact" onClick=${open}
+      title="Play and seek on this page only; the stage goes on for all">
+      <${Icon} name="replay" />Replay
+    </button>
+  `;
+}
+
+const BackToStage = () => html`
+  <button class="secondary compact to-stage" onClick=${closeReplay} title="Watch the stage with everybody">
+    <span class="dot" aria-hidden="true"></span>Live
+  </button>
+`;
+
+const StepButton = ({ direction, label, icon }) => html`
+  <button class="quiet square" onClick=${() => stepReplay(direction)} aria-label=${label} title=${label}>
+    <${Icon} name=${icon} />
+  </button>
+`;
+
+const StepButtons = () => html`
+  <${StepButton} direction=${-1} label="One robot step back" icon="stepBack" />
+  <${StepButton} direction=${1} label="One robot step on" icon="stepOn" />
+`;
+
+const MARKS = {
+  "time-out": "Time-out", "crossing": "crosses the line", "fall": "falls", "disturbance": "Something changes",
+  "evaluation": "Evaluation",
+};
+
+/** What a mark says, such as "Greedy crosses the line". */
+function markTitle({ kind, lane, step, distance_m }) {
+  const names = (shownRun.value?.config?.lanes ?? []).map((one) => agentOf(one.agent).title);
+  if (kind === "evaluation") return `Evaluation after ${count(step, "step")}: ${metres(distance_m)}`;
+  if (kind === "disturbance") {
+    const run = shownRun.value;
+    const words = run ? conditionsInWords(conditionsAt(happeningsOf(run), step, run.config.robot)) : [];
+    const what = sentence(words.join(", ")) || "As built again";
+    return names.length > 1 ? `${what}: ${names[lane]}, step ${step + 1}` : `${what}, step ${step + 1}`;
+  }
+  if (lane === null) return MARKS[kind];
+  return `${names[lane] ?? "The robot"} ${MARKS[kind]}`;
+}
+
+/** Jump to something that happened. */
+function Marks() {
+  const marks = plan.value?.marks ?? [];
+  if (!marks.length) return null;
+  const jump = ({ target }) => {
+    if (target.value !== "") setStage({ time_s: marks[Number(target.value)].time_s, playing: false });
+    target.value = "";
+  };
+  return html`
+    <label class="choice" title="Something that happened in this run">
+      <span class="sr-only">Jump to something that happened</span>
+      <select name="mark" onChange=${jump}>
+        <option value="">Jump to…</option>
+        ${marks.map((mark, n) => html`
+          <option value=${n}>${clockTime(mark.time_s)} ${markTitle(mark)}</option>
+        `)}
+      </select>
+    </label>
+  `;
+}
+
+/** The slider with marks: seeks while it is dragged. */
+function OwnSeek() {
+  const known = plan.value;
+  const end = endTime.value;
+  const time = replayTime.value;
+  const placeOf = (time_s) => `${(100 * time_s) / end}%`;
+  if (!known) return html`<span class="seek"><span class="num">${clockTime(time)}</span></span>`;
+  return html`
+    <span class="seek">
+      <span class="num">${clockTime(time)}</span>
+      <span class="slider">
+        <input type="range" min="0" max=${end} step="0.01" value=${time} style=${{ "--share": placeOf(time) }}
+          aria-label="Moment of your replay" aria-valuetext=${`${clockTime(time)} of ${clockTime(end)}`}
+          onInput=${({ target }) => seekReplay(Number(target.value))} />
+        <span class="marks" aria-hidden="true">
+          ${known.marks.map(({ kind, time_s }) => html`<i class=${kind} style=${{ left: placeOf(time_s) }}></i>`)}
+        </span>
+      </span>
+      <span class="num dim">${clockTime(end)}</span>
+    </span>
+  `;
+}
+
+/** Speed and clock; on a phone in a row of their own, which may scroll away. */
+export const SharedChoices = () => canPlay.value && html`<${Speed} /><${ClockChoice} />`;
+
+const isOneLaneLeft = (now) =>
+  now?.kind === "race" && now.phase !== "finished" && now.lanes?.length > 1 && now.duration_s &&
+  now.lanes.filter(({ done }) => !done).length === 1;
+
+function Seek({ now }) {
+  if (ownRunId.value !== null) return html`<${OwnSeek} />`;
+  if (!now || now.kind === "idle") return html`<span class="seek"></span>`;
+  const { time_s, duration_s } = now;
+  if (!duration_s) {
+    return html`
+      <span class="seek">
+        <span class="num">${clockTime(time_s)}</span>
+        <span class="dim">${isActive(shownRun.value) ? "still being simulated" : ""}</span>
+      </span>
+    `;
+  }
+  const words = `${clockTime(time_s)} of ${clockTime(duration_s)}`;
+  const seek = ({ target }) => setStage({ time_s: Number(target.value) });
+  return html`
+    <span class="seek">
+      <span class="num">${clockTime(time_s)}</span>
+      <input type="range" min="0" max=${duration_s} step="0.1" value=${time_s} disabled=${!isOperator.value}
+        style=${{ "--share": `${(100 * time_s) / duration_s}%` }}
+        aria-label="Moment that is shown" aria-valuetext=${words} onChange=${seek} />
+      <span class="num dim">${clockTime(duration_s)}</span>
+    </span>
+  `;
+}
+
+const Choice = ({ label, name, value, choices, onValue, title }) => html`
+  <label class="choice" title=${title}>
+    <span>${label}</span>
+    <select name=${name} onChange=${({ target }) => onValue(target.value)}>
+      ${choices.map(([one, words]) => html`
+        <option value=${String(one)} selected=${String(one) === String(value)}>${words}</option>
+      `)}
+    </select>
+  </label>
+`;
+
+function Follow() {
+  const lanes = scene.value?.lanes ?? shownRun.value?.config?.lanes ?? [];
+  const robots = lanes.map((lane, n) => [String(n + 1), lane.name ?? agentOf(lane.agent).title]);
+  const choices = [["leader", "leader"], ...robots, ["free", "free camera"]];
+  if (!choices.some(([one]) => one === view.value)) choices.push([view.value, `lane ${view.value}`]);
+  return html`
+    <${Choice} label="Follow" name="follow" value=${view.value} choices=${choices}
+      title="The robot that your camera follows; keys 1 to 8, 0 for a free camera"
+      onValue=${(value) => (view.value = value)} />
+  `;
+}
+
+function Speed() {
+  const speed = stage.value?.speed ?? 1;
+  const isOther = typeof speed === "number" && !SPEEDS.includes(speed);
+  const numbers = isOther ? [...SPEEDS, speed].sort((a, b) => a - b) : SPEEDS;
+  const isOwn = ownRunId.value !== null;
+  const automatic = isOwn ? [] : [["time-lapse", "auto"]];
+  const choices = [...automatic, ...numbers.map((n) => [n, `×${n}`])];
+  return html`
+    <${Choice} label="Speed" name="speed" value=${speed} choices=${choices}
+      title=${isOwn ? "On this page" : "For every page"}
+      onValue=${(value) => setStage({ speed: value === "time-lapse" ? value : Number(value) })} />
+  `;
+}
+
+function ClockChoice() {
+  const about = options.value?.clocks.find(({ name }) => name === clock.value)?.description ?? "";
+  return html`
+    <${Choice} label="Clock" name="clock" value=${clock.value} title=${`${sentence(clockTitle(clock.value))}. ${about}`}
+      choices=${choicesOf(options.value?.clocks, clockTitle)} onValue=${(value) => setStage({ clock: value })} />
+  `;
+}

@@ -1,0 +1,146 @@
+// Frames of a replay: decodes them, and tells what to send to the 3D view to be at one of them.
+// How they are encoded: app/viewer/replay_frames.py.
+
+/** A message of viser. @typedef {Record<string, any> & { type: string }} Message */
+/** Position of each view on the ground [m]. @typedef {Record<string, [number, number]>} FollowPoints */
+/** @typedef {{ time_s: number, messages: Message[], follow: FollowPoints, scene: object | null }} Frame */
+/** What a type of message does: kind of entity, phase of its life, field with its id. @typedef {string | null} Part */
+/** @typedef {{ frames: Frame[], lifecycles?: Record<string, [Part, Part, Part]>, world?: string }} Frames */
+
+/** @type {Record<string, (new (buffer: ArrayBuffer) => ArrayBufferView)>} */
+const ARRAYS = {
+  "<f4": Float32Array, "<f8": Float64Array, "|u1": Uint8Array, "<u2": Uint16Array, "<u4": Uint32Array,
+  "|i1": Int8Array, "<i2": Int16Array, "<i4": Int32Array,
+};
+const HEAD_BYTES = 4;
+const ALIGNMENT_BYTES = 8;
+
+/**
+ * Decode frames. Each array has memory of its own, so that it can be sent by itself.
+ * @param {ArrayBuffer} data
+ * @returns {Frames}
+ */
+export function decode(data) {
+  const size = new DataView(data).getUint32(0, true);
+  const { lengths, ...frames } = JSON.parse(new TextDecoder().decode(new Uint8Array(data, HEAD_BYTES, size)));
+  let at = HEAD_BYTES + size;
+  const buffers = lengths.map((/** @type {number} */ length) => {
+    at += (ALIGNMENT_BYTES - (at % ALIGNMENT_BYTES)) % ALIGNMENT_BYTES;
+    at += length;
+    return data.slice(at - length, at);
+  });
+  /** @type {(value: any) => any} */
+  const resolve = (value) => {
+    if (Array.isArray(value)) return value.map(resolve);
+    if (value === null || typeof value !== "object") return value;
+    if ("__binary_index" in value) return new (ARRAYS[value.dtype] ?? Uint8Array)(buffers[value.__binary_index]);
+    return Object.fromEntries(Object.entries(value).map(([name, one]) => [name, resolve(one)]));
+  };
+  for (const frame of frames.frames) frame.messages = resolve(frame.messages);
+  return frames;
+}
+
+/** The messages about one entity by their slots. @typedef {Map<string, Message>} Slots */
+
+/**
+ * What the 3D view shows of a run, as the newest message for each slot. A newer message replaces the one in its slot;
+ * a node that is created or removed loses all that was said of it before, as in app/viewer/snapshot.py.
+ */
+export class SceneState {
+  /** @param {Frames} scene the scene at the start of the run, on which every segment is based */
+  constructor({ frames, lifecycles = {}, world = "" }) {
+    this.lifecycles = lifecycles;
+    /** The node that all others are in. */
+    this.world = world;
+    this.start = frames.flatMap(({ messages }) => messages);
+    /** @type {Map<string, Slots>} */
+    this.base = new Map();
+    for (const message of this.start) this.put(this.base, message);
+    this.clear();
+  }
+
+  /** Forget what is shown, and return the messages that show the start of the run instead. */
+  restart() {
+    this.clear();
+    return this.start;
+  }
+
+  /** @private */
+  clear() {
+    /** What is shown. @type {Map<string, Slots>} */
+    this.shown = new Map(this.base);
+    /** The entities that differ from the start. @type {Set<string>} */
+    this.changed = new Set();
+  }
+
+  /**
+   * Show what follows what is shown.
+   * @param {Message[]} messages
+   */
+  follow(messages) {
+    for (const message of messages) {
+      for (const entity of this.put(this.shown, message)) this.changed.add(entity);
+    }
+    return messages;
+  }
+
+  /**
+   * Show another moment, which messages tell from the start of the run on; returns what to send.
+   * @param {Message[]} messages
+   */
+  jump(messages) {
+    const target = new Map(this.base);
+    const changed = new Set(messages.flatMap((message) => this.put(target, message)));
+    const touched = [...target.keys()].filter((entity) => this.changed.has(entity) || changed.has(entity));
+    const gone = [...this.shown.keys()].filter((entity) => !target.has(entity));
+    const sent = gone.map(removal);
+    for (const entity of touched) {
+      const before = this.shown.get(entity);
+      const now = /** @type {Slots} */ (target.get(entity));
+      // A value that was set since cannot be taken back but by making its node again.
+      const isAnew = !before || [...before.keys()].some((key) => !now.has(key));
+      for (const [key, message] of now) if (isAnew || before.get(key) !== message) sent.push(message);
+    }
+    this.shown = target;
+    this.changed = new Set([...changed, ...gone.filter((entity) => this.base.has(entity))]);
+    return sent;
+  }
+
+  /**
+   * Put a message into its slot; returns the entities that it changes.
+   * @private
+   * @param {Map<string, Slots>} state
+   * @param {Message} message
+   */
+  put(state, message) {
+    const { entity, phase, key } = this.slotOf(message);
+    if (phase === "remove") {
+      const removed = [...state.keys()].filter((one) => one === entity || one.startsWith(`${entity}/`));
+      for (const one of removed) state.delete(one);
+      return removed;
+    }
+    // A copy, since states share what they have in common.
+    const slots = new Map(phase === "create" ? [] : state.get(entity));
+    slots.delete(key);
+    slots.set(key, message);
+    state.set(entity, slots);
+    return [entity];
+  }
+
+  /**
+   * @private
+   * @param {Message} message
+   */
+  slotOf(message) {
+    const [kind, phase, idField] = this.lifecycles[message.type] ?? [null, null, null];
+    let entity = message.type;
+    if (kind && idField) entity = `${kind} ${message[idField]}`;
+    else if ("name" in message) entity = `scene ${message.name}`;
+    if (phase === "create") return { entity, phase, key: phase };
+    const fields = phase === "update_dict" ? Object.keys(message.updates).sort().join() : "";
+    return { entity, phase, key: `${message.type} ${fields}` };
+  }
+}
+
+/** @type {(entity: string) => Message} */
+const removal = (entity) => ({ type: "RemoveSceneNodeMessage", name: entity.slice(entity.indexOf(" ") + 1) });

@@ -1,0 +1,389 @@
+// A replay of this page's own: it plays a run by itself, without the stage that all pages share.
+// The server gives frames (`replay-frames.js`); position, speed and clock are kept here and in the address.
+import { batch, computed, effect, signal } from "@preact/signals";
+import { getReplay, getReplayFrames } from "./api.js";
+import { REPLAY_FIELDS, view } from "./page.js";
+import { decode, SceneState } from "./replay-frames.js";
+import { connection, ownScene, ownStage } from "./store.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { RequestError } from "./api.js" */
+/** @import { Frame, Frames, Message } from "./replay-frames.js" */
+/** @import { Clock, ReplayPlan, Scene } from "./types.js" */
+
+const FIRST_SPEED = 2;
+const KEPT_SEGMENTS = 60;
+const SCENES_PER_S = 5;
+/** A run that is still computed is asked for more after so long. */
+const GROWTH_MS = 1000;
+const RETRY_MS = 1500;
+const ADDRESS_MS = 250;
+/** As on the stage, a stall does not skip what comes after it. */
+const LONGEST_TICK_S = 0.25;
+const SMOOTHING_S = 0.25;
+/** Of so many frames at once only the last is shown. */
+const MOST_STEPS = 4;
+const SAME_S = 1e-6;
+
+/** The id of the run that this page plays by itself; null while it shows the stage. @type {Signal<string | null>} */
+export const ownRunId = signal(null);
+/** What there is to play; null until it is known. @type {Signal<ReplayPlan | null>} */
+export const plan = signal(null);
+/** Why the run cannot be played. @type {Signal<string | null>} */
+export const replayProblem = signal(null);
+/** The position in the run's own time [s]. */
+export const replayTime = signal(0);
+/** Whether the picture waits for frames. */
+export const isBuffering = signal(false);
+const playing = signal(true);
+const speed = signal(FIRST_SPEED);
+/** @type {Signal<Clock>} */
+const clock = signal("paper");
+
+/** The last moment that can be shown [s]. */
+export const endTime = computed(() => plan.value?.recorded_s.at(-1)?.[1] ?? 0);
+const hasEnded = computed(() => plan.value?.complete === true && replayTime.value >= endTime.value - SAME_S);
+
+// ---- what is loaded
+
+/** The 3D view's place: takes viser's messages. @type {(messages: Message[]) => void} */
+let draw = () => {};
+/** @type {SceneState | null} */
+let scene = null;
+/** Address → frames; null while they are requested. @type {Map<string, Frames | null>} */
+const segments = new Map();
+/** The newest of the frames that are shown: of a segment by its address and index, or a moment. */
+let shown = { address: "", index: -1, time_s: NaN };
+let isMomentPending = false;
+/** Counts the runs and clocks that were opened: late answers are of an older one. */
+let opening = 0;
+let sceneSentAt = -Infinity;
+let followed = 0;
+
+/**
+ * Open a run at a time.
+ * @param {string} id
+ * @param {{ time_s?: number, isPlaying?: boolean, clock?: Clock }} [at]
+ */
+export async function openReplay(id, { time_s = 0, isPlaying = true, clock: timedBy = clock.peek() } = {}) {
+  opening += 1;
+  const own = opening;
+  forget();
+  batch(() => {
+    ownRunId.value = id;
+    plan.value = null;
+    replayProblem.value = null;
+    replayTime.value = time_s;
+    playing.value = isPlaying;
+    clock.value = timedBy;
+    ownScene.value = null;
+  });
+  location.hash = "";
+  writeReplayAddress();
+  try {
+    const [answer, start] = await Promise.all([getReplay(id, timedBy), load("scene")]);
+    if (own !== opening) return;
+    scene = new SceneState(start);
+    plan.value = answer;
+    redraw();
+    seekReplay(time_s);
+  } catch (error) {
+    if (own !== opening) return;
+    if (isLasting(error)) replayProblem.value = /** @type {Error} */ (error).message;
+    else setTimeout(() => own === opening && openReplay(id, { time_s, isPlaying, clock: timedBy }), RETRY_MS);
+  }
+}
+
+/** Whether an error will be the same the next time. @param {unknown} error */
+const isLasting = (error) => [403, 404, 409, 410, 422].includes(/** @type {RequestError} */ (error).status);
+
+/** Show the stage again that all pages share. */
+export function closeReplay() {
+  opening += 1;
+  if (scene) draw([removal(scene)]);
+  forget();
+  batch(() => {
+    ownRunId.value = null;
+    plan.value = null;
+    replayProblem.value = null;
+    isBuffering.value = false;
+    ownStage.value = null;
+    ownScene.value = null;
+  });
+  writeReplayAddress();
+}
+
+const forget = () => {
+  scene = null;
+  segments.clear();
+  shown = { address: "", index: -1, time_s: NaN };
+};
+
+/**
+ * Take the 3D view in which to draw; what it had is gone.
+ * @param {(messages: Message[]) => void} take
+ */
+export function drawIn(take) {
+  draw = take;
+  redraw();
+}
+
+/** Draw the scene anew, as the 3D view has none. */
+function redraw() {
+  if (!scene) return;
+  draw([removal(scene), ...scene.restart()]);
+  shown = { address: "", index: -1, time_s: NaN };
+}
+
+/** The message that removes all that is drawn. @type {(state: SceneState) => Message} */
+const removal = ({ world }) => ({ type: "RemoveSceneNodeMessage", name: world, owner: "" });
+
+/** @param {string} address */
+async function load(address) {
+  return decode(await getReplayFrames(/** @type {string} */ (ownRunId.peek()), address));
+}
+
+// ---- what the user can do
+
+/** Seek to a time [s], or to the nearest that is recorded. @param {number} time_s */
+export function seekReplay(time_s) {
+  const last = endTime.peek();
+  replayTime.value = plan.peek() ? Math.min(Math.max(time_s, 0), last) : Math.max(time_s, 0);
+  // Not at each pixel of a drag: browsers slow down pages that write their address often.
+  clearTimeout(addressTimer);
+  addressTimer = setTimeout(writeReplayAddress, ADDRESS_MS);
+}
+
+/** @type {ReturnType<typeof setTimeout> | undefined} */
+let addressTimer;
+
+/** Go on, hold, or play again from the start. @param {boolean} isOn */
+export function playReplay(isOn) {
+  if (isOn && hasEnded.peek()) replayTime.value = 0;
+  playing.value = isOn;
+  writeReplayAddress();
+}
+
+/** @param {number} times */
+export const setReplaySpeed = (times) => (speed.value = times);
+
+/** Time the race by another clock, from the same step of the first lane on. @param {Clock} name */
+export async function setReplayClock(name) {
+  const before = plan.peek();
+  const id = ownRunId.peek();
+  if (!before || !id || name === clock.peek()) return;
+  const step = stepOf(before.step_ends_s[0] ?? [], replayTime.peek());
+  const after = await getReplay(id, name).catch(() => null);
+  const time_s = after?.step_ends_s[0]?.[step - 1] ?? 0;
+  await openReplay(id, { time_s, isPlaying: playing.peek(), clock: name });
+}
+
+/** @type {(ends: number[], time_s: number) => number} */
+const stepOf = (ends, time_s) => ends.filter((end) => end <= time_s + SAME_S).length;
+
+/** Hold, and go to the end of the next robot step, or of the one before. @param {1 | -1} direction */
+export function stepReplay(direction) {
+  const ends = stepEnds.peek();
+  const now = replayTime.peek();
+  const next = direction > 0
+    ? ends.find((end) => end > now + SAME_S) ?? endTime.peek()
+    : ends.findLast((end) => end < now - SAME_S) ?? 0;
+  playing.value = false;
+  seekReplay(next);
+}
+
+/** The ends of the steps of the lane that the camera follows, or of all [s], in order. */
+const stepEnds = computed(() => {
+  const lanes = plan.value?.step_ends_s ?? [];
+  return lanes[Number(view.value) - 1] ?? lanes.flat().sort((a, b) => a - b);
+});
+
+// ---- playing
+
+/** @type {number | null} */
+let lastTick = null;
+
+/** Advance the position, and draw. @param {number} now of the browser's clock [ms] */
+export function tick(now) {
+  const elapsed_s = lastTick === null ? 0 : Math.min((now - lastTick) / 1000, LONGEST_TICK_S);
+  lastTick = now;
+  const known = plan.peek();
+  if (!known || !scene) return;
+  if (playing.peek() && !hasEnded.peek() && !isBuffering.peek()) {
+    replayTime.value = inRecording(known, replayTime.peek() + elapsed_s * speed.peek());
+  }
+  if (playing.peek() && !hasEnded.peek()) playFrame(known, now, elapsed_s);
+  else showMoment(now);
+}
+
+/** The time itself, or the next one that is recorded. @type {(known: ReplayPlan, time_s: number) => number} */
+function inRecording({ recorded_s }, time_s) {
+  const next = recorded_s.find(([, end]) => time_s <= end);
+  return next ? Math.max(time_s, next[0]) : endTime.peek();
+}
+
+/** Show the frame at the position, of a segment at the level that fits the speed. */
+function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /** @type {number} */ elapsed_s) {
+  const level = Math.min(Math.max(Math.round(Math.log2(speed.peek())), known.lowest_level), known.highest_level);
+  const interval_s = known.frame_s * 2 ** level;
+  const frame = Math.floor(replayTime.peek() / interval_s + SAME_S);
+  const number = Math.floor(frame / known.segment_frames);
+  const address = addressOf(level, number);
+  const loaded = request(address);
+  if (!loaded) {
+    isBuffering.value = true;
+    showMoment(now);
+    return;
+  }
+  const index = Math.min(frame % known.segment_frames, loaded.frames.length - 1);
+  if (index < frame % known.segment_frames && !known.complete) grow(address);
+  isBuffering.value = false;
+  if (index >= known.segment_frames / 2 && (number + 1) * known.segment_frames * interval_s <= endTime.peek()) {
+    request(addressOf(level, number + 1));
+  }
+  if (shown.address === address && shown.index === index) return;
+  const isNext = shown.address === address && shown.index < index && index - shown.index <= MOST_STEPS;
+  const frames = loaded.frames.slice(isNext ? shown.index + 1 : 0, index + 1);
+  const messages = frames.flatMap((one) => one.messages);
+  const state = /** @type {SceneState} */ (scene);
+  const newest = loaded.frames[index];
+  draw([...(isNext ? state.follow(messages) : state.jump(messages)), centring(state, newest, elapsed_s)]);
+  shown = { address, index, time_s: newest.time_s };
+  tell(loaded.frames.slice(0, index + 1).findLast((one) => one.scene) ?? newest, now);
+}
+
+/** @type {(level: number, number: number) => string} */
+const addressOf = (level, number) => `segments/${level}/${number}?clock=${clock.peek()}`;
+
+/** Frames that are loaded; requests them if they are not. @param {string} address */
+function request(address) {
+  const known = segments.get(address);
+  if (known !== undefined) {
+    // The newest are kept.
+    segments.delete(address);
+    segments.set(address, known);
+    return known;
+  }
+  segments.set(address, null);
+  for (const oldest of segments.keys()) {
+    if (segments.size <= KEPT_SEGMENTS) break;
+    segments.delete(oldest);
+  }
+  const own = opening;
+  load(address).then(
+    (frames) => own === opening && segments.set(address, frames),
+    (error) => {
+      if (own !== opening) return;
+      if (isLasting(error)) replayProblem.value = error.message;
+      else setTimeout(() => own === opening && segments.delete(address), RETRY_MS);
+    },
+  );
+  return null;
+}
+
+let grewAt = -Infinity;
+
+/** Request what a run has computed since. @param {string} address */
+async function grow(address) {
+  if (performance.now() - grewAt < GROWTH_MS) return;
+  grewAt = performance.now();
+  const own = opening;
+  const id = /** @type {string} */ (ownRunId.peek());
+  const [answer, frames] = await Promise.all([getReplay(id, clock.peek()), load(address)]).catch(() => []);
+  if (own !== opening || !answer || !frames) return;
+  segments.set(address, frames);
+  plan.value = answer;
+}
+
+/** Show the very moment of the position: while it is held, or until its segment is there. */
+async function showMoment(/** @type {number} */ now) {
+  const time_s = replayTime.peek();
+  if (isMomentPending || Math.abs(shown.time_s - time_s) < SAME_S) return;
+  isMomentPending = true;
+  const own = opening;
+  const answer = await load(`moment?time_s=${time_s}&clock=${clock.peek()}`).catch(() => null);
+  isMomentPending = false;
+  if (!answer || own !== opening || !scene) return;
+  const [frame] = answer.frames;
+  draw([...scene.jump(frame.messages), centring(scene, frame, Infinity)]);
+  shown = { address: "", index: -1, time_s };
+  if (frame.time_s > time_s + SAME_S && replayTime.peek() === time_s) {
+    // In a gap of the recording: the next moment is shown.
+    replayTime.value = frame.time_s;
+    shown.time_s = frame.time_s;
+  }
+  sceneSentAt = -Infinity;
+  tell(frame, now);
+}
+
+/**
+ * The message that centres the world on what the camera follows.
+ * @type {(state: SceneState, frame: Frame, elapsed_s: number) => Message}
+ */
+function centring({ world }, { follow }, elapsed_s) {
+  const [x, y] = follow[view.peek()] ?? [0, 0];
+  if (view.peek() === "leader") followed = y + (followed - y) * Math.exp(-elapsed_s / SMOOTHING_S);
+  const at = view.peek() === "leader" ? followed : y;
+  return { type: "SetPositionMessage", name: world, position: [-x, -at, 0], owner: "" };
+}
+
+/** Let the page know the moment, as often as the stage does. @param {Frame} frame @param {number} now */
+function tell(frame, now) {
+  if (!frame.scene || now - sceneSentAt < 1000 / SCENES_PER_S) return;
+  sceneSentAt = now;
+  const told = /** @type {Scene} */ (frame.scene);
+  ownScene.value = { ...told, time_s: replayTime.peek(), duration_s: endTime.peek(), shown_speed: speed.peek() };
+}
+
+// ---- the page's stage, and its address
+
+/** Keep the page's own stage, which takes the place of the one that all share. */
+export function followReplay() {
+  effect(() => {
+    const id = ownRunId.value;
+    if (id === null) return;
+    ownStage.value = {
+      run_id: id, next_run_id: null, playing: playing.value, ended: hasEnded.value, speed: speed.value,
+      clock: clock.value,
+    };
+  });
+  // A server that was away may have come back without the run.
+  effect(() => {
+    if (connection.value === "live" && replayProblem.peek() && ownRunId.peek()) readReplayAddress();
+  });
+  const loop = (/** @type {number} */ now) => {
+    if (ownRunId.peek() !== null) tick(now);
+    requestAnimationFrame(loop);
+  };
+  requestAnimationFrame(loop);
+  addEventListener("popstate", readReplayAddress);
+}
+
+/** Open the run that the address names, if any. */
+export function readReplayAddress() {
+  const query = new URLSearchParams(location.search);
+  const id = query.get("run");
+  if (id) openReplay(id, { time_s: Math.max(0, Number(query.get("t")) || 0), isPlaying: !query.has("t") });
+  else if (ownRunId.peek() !== null) closeReplay();
+}
+
+/** A link to the moment that is shown. */
+export function replayLink() {
+  const query = new URLSearchParams({ run: ownRunId.peek() ?? "", t: replayTime.peek().toFixed(2) });
+  return `${location.origin}${location.pathname}?${query}`;
+}
+
+/** Write the run and a held position into the address. */
+function writeReplayAddress() {
+  const query = new URLSearchParams(location.search);
+  const before = query.get("run");
+  for (const field of REPLAY_FIELDS) query.delete(field);
+  const id = ownRunId.peek();
+  if (id) query.set("run", id);
+  if (id && !playing.peek()) query.set("t", replayTime.peek().toFixed(2));
+  const search = query.size ? `?${query}` : "";
+  const address = `${location.pathname}${search}${location.hash}`;
+  // Back goes to what was shown before.
+  if (id !== before) history.pushState(history.state, "", address);
+  else history.replaceState(history.state, "", address);
+}
