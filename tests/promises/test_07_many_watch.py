@@ -108,6 +108,6 @@ def test_pages_that_replay_runs_get_their_pictures(server: Serving) -> None:
     figures = watch(server, at_length(3, 30), at_length(3.0, 60.0), replays=at_length(3, 20))
 
     assert figures["viewers_lost"] == 0
-    assert figures["frames_per_s_median"] > at_length(0.0, 29.0)
-    assert figures["pictures_per_s_median"] > at_length(0.0, 29.5)
-    assert figures["pictures_per_s_lowest"] > at_length(0.0, 28.0)
+    assert figures["frames_per_s_median"] > at_length(0.0, 25.0)
+    assert figures["pictures_per_s_median"] > at_length(0.0, 25.0)
+    assert figures["pictures_per_s_lowest"] > at_length(0.0, 25.0)
