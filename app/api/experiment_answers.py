@@ -151,10 +151,11 @@ class Named(Parameters):
 
 
 class Measured(Answer):
-    """Comparisons with the greedy agent; null where undefined."""
+    """Comparisons with the greedy agent and the best known distance; null where undefined."""
 
     relative: Interval95 | None
     relative_finished: Interval95 | None
+    of_best_known: Interval95 | None = None
     walkers: SharedBy | None
     beats_greedy: Beats | None
     beats_greedy_total: Beats | None
@@ -173,13 +174,15 @@ class SettingView(Measured, Named):
     finished: Distances | None
     elapsed_s: float | None
     published: PublishedView | None
+    best_known_m: float | None = None
 
 
 class PooledView(Measured, Named):
-    """Results of a setting, pooled over its gaits."""
+    """Results of a setting, pooled over its gaits, with the best known as a share of greedy's."""
 
     gaits: list[str]
     n: Count
+    best_known_relative: float | None = None
 
 
 class CurveOfSetting(Named):
@@ -188,6 +191,7 @@ class CurveOfSetting(Named):
     key: str
     gait: str
     greedy_m: float | None
+    best_known_m: float | None = None
     iqm_m: list[float]
     low_m: list[float | None]
     high_m: list[float | None]

@@ -24,15 +24,17 @@ REACHED_SHARE = 0.95
 
 @dataclass(frozen=True)
 class Reference:
-    """Greedy's distances under the same conditions [m].
+    """Greedy's distances under the same conditions, and the best known one [m].
 
     Attributes:
-        total_m: after its 50 steps; None if there is no result, or greedy hardly moved.
-        finished_m: at time-out, when the first lane has used its 50 steps; None likewise.
+        total_m: greedy's after its 50 steps; None if there is no result, or greedy hardly moved.
+        finished_m: greedy's at time-out, when the first lane has used its 50 steps; None likewise.
+        best_known_m: the best known distance of 50 steps; None where none was computed.
     """
 
     total_m: float | None = None
     finished_m: float | None = None
+    best_known_m: float | None = None
 
 
 @dataclass(frozen=True)
@@ -43,16 +45,16 @@ class Stratum:
         total_m: each seed's distance over 50 steps, after the last block of practice [m].
         finished_m: each seed's distance at time-out, when the first lane has used its 50 steps
             [m]; empty if no race was simulated.
-        greedy: the reference distances under the same conditions.
+        reference: the reference distances under the same conditions.
     """
 
     total_m: Points
     finished_m: Points
-    greedy: Reference
+    reference: Reference
 
 
-def measure_against_greedy(strata: Sequence[Stratum], seed: int) -> dict[str, Any]:
-    """Compute all measures relative to greedy, pooled over the seeds of all strata.
+def measure_against_references(strata: Sequence[Stratum], seed: int) -> dict[str, Any]:
+    """Compute all measures relative to greedy and to the best known, over the seeds of all strata.
 
     Args:
         strata: one setting, or one for each gait; strata without seeds are ignored.
@@ -60,20 +62,39 @@ def measure_against_greedy(strata: Sequence[Stratum], seed: int) -> dict[str, An
 
     Returns:
         Interquartile means of the shares of greedy's distance (`relative`, `relative_finished`)
-        and shares of seeds (`walkers`, `beats_greedy`, …); None where nothing can be computed.
+        and of the best known (`of_best_known`), and shares of seeds (`walkers`, `beats_greedy`, …);
+        None where nothing can be computed.
     """
-    walked = [one for one in strata if one.total_m and one.greedy.total_m is not None]
-    raced = [one for one in strata if one.finished_m and one.greedy.finished_m is not None]
-    total = [_as_share(one.total_m, one.greedy.total_m) for one in walked]
-    finished = [_as_share(one.finished_m, one.greedy.finished_m) for one in raced]
+    seen = [one for one in strata if one.total_m]
+    walked = [one for one in seen if one.reference.total_m is not None]
+    raced = [one for one in strata if one.finished_m and one.reference.finished_m is not None]
+    total = [_as_share(one.total_m, one.reference.total_m) for one in walked]
+    finished = [_as_share(one.finished_m, one.reference.finished_m) for one in raced]
+    # A mean over some of the gaits could not be compared with that over all.
+    is_known = all(one.reference.best_known_m is not None for one in seen)
+    known = [_as_share(one.total_m, one.reference.best_known_m) for one in seen if is_known]
     return {
         "relative": _iqm_interval_of(total, seed),
         "relative_finished": _iqm_interval_of(finished, seed),
+        "of_best_known": _iqm_interval_of(known, seed),
         "walkers": _share(total, lambda points: share_at_least(points, WALKER_SHARE)),
         "beats_greedy": _share_ahead_of_greedy(finished),
         "beats_greedy_total": _share_ahead_of_greedy(total),
         "reaches_greedy": _share(total, lambda points: share_at_least(points, REACHED_SHARE)),
     }
+
+
+def best_known_relative(strata: Sequence[Stratum]) -> float | None:
+    """Return the best known distance as a share of greedy's, the mean over the strata with seeds.
+
+    None if one of them lacks either.
+    """
+    shares = []
+    for reference in (one.reference for one in strata if one.total_m):
+        if reference.best_known_m is None or reference.total_m is None:
+            return None
+        shares.append(reference.best_known_m / reference.total_m)
+    return fmean(shares) if shares else None
 
 
 def summarise_distances(points: Points, seed: int) -> dict[str, Any] | None:
@@ -109,18 +130,18 @@ def compare_with_published(
 
 
 def learning_curve(
-    blocks: Sequence[Points], steps: int, greedy: Reference, seed: int
-) -> Mapping[str, list[Any]]:
-    """Return the learning curve: distance against steps of practice.
+    blocks: Sequence[Points], steps: int, reference: Reference, seed: int
+) -> Mapping[str, Any]:
+    """Return the learning curve: distance against steps of practice, with its references.
 
     Args:
         blocks: the seeds' distances after each block of practice [m].
         steps: steps of practice in one block.
-        greedy: reference distances under the same conditions.
+        reference: reference distances under the same conditions.
         seed: seed of the bootstrap's resampling.
     """
     intervals = [iqm_interval((points,), seed) for points in blocks]
-    limit = None if greedy.total_m is None else WALKER_SHARE * greedy.total_m
+    limit = None if reference.total_m is None else WALKER_SHARE * reference.total_m
     return {
         "steps": [steps * (1 + number) for number in range(len(blocks))],
         "iqm_m": [one.value for one in intervals],
@@ -129,6 +150,8 @@ def learning_curve(
         "mean_m": [fmean(points) for points in blocks],
         "walkers": [None if limit is None else share_at_least(p, limit).value for p in blocks],
         "points_m": [list(points) for points in blocks],
+        "greedy_m": reference.total_m,
+        "best_known_m": reference.best_known_m,
     }
 
 

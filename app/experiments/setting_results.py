@@ -9,6 +9,7 @@ from app.experiments.measures import Reference, Stratum
 from app.experiments.plan import Plan, Setting
 from app.experiments.statistics import Points, iqm
 from app.experiments.trial import TrialResult
+from app.runs.best_known import best_known_m
 
 _MIN_WALK = 0.5
 """In half grid sides: a greedy agent that covers less in 50 steps is not used as a reference."""
@@ -48,6 +49,12 @@ class SettingResults(NamedTuple):
         return (trial.blocks, trial.plans_with, self.setting.parameters)
 
     @property
+    def best_known_m(self) -> float | None:
+        """The best known distance in the world as it is in the end [m]; None if not computed."""
+        training = self.setting.training
+        return best_known_m(training, training.world.as_of(training.steps))
+
+    @property
     def total_m(self) -> Points:
         """Each seed's distance over 50 steps, after the last block of practice [m]."""
         return tuple(one.distances_m[-1] for one in self.succeeded if one.distances_m)
@@ -77,7 +84,10 @@ def group_by_setting(plan: Plan, results: Mapping[str, TrialResult]) -> list[Set
 
 
 def references_by_conditions(settings: Sequence[SettingResults]) -> dict[Any, Reference]:
-    """Return greedy's distances, over all its robots, by `SettingResults.conditions`."""
+    """Return the reference distances by `SettingResults.conditions`.
+
+    Greedy's are over all its robots.
+    """
     return {
         one.conditions: _reference(one)
         for one in settings
@@ -99,7 +109,9 @@ def _reference(greedy: SettingResults) -> Reference:
         for points in (greedy.total_m, greedy.finished_m)
     )
     return Reference(
-        total if total > min_walk_m else None, finished if finished > min_walk_m else None
+        total if total > min_walk_m else None,
+        finished if finished > min_walk_m else None,
+        greedy.best_known_m,
     )
 
 

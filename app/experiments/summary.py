@@ -15,9 +15,10 @@ from app.experiments.config import DISTURBED, ExperimentConfig, as_json
 from app.experiments.formatting import OBSERVATION_LABELS, gait_name, parameter_text
 from app.experiments.measures import (
     Reference,
+    best_known_relative,
     compare_with_published,
     learning_curve,
-    measure_against_greedy,
+    measure_against_references,
     summarise_distances,
 )
 from app.experiments.narrative.narrative import narrate
@@ -35,6 +36,8 @@ from app.experiments.trial import TrialResult
 from app.experiments.worlds import compare_in_worlds
 
 FORMAT = 1
+_DISTANCE_SHARES = ("relative", "relative_finished", "of_best_known")
+"""Measures that are shares of a distance, other than shares of seeds."""
 
 
 def summarise(
@@ -107,7 +110,8 @@ def _setting(
         "failed": len(one.results) - len(one.succeeded),
         "total": summarise_distances(seeds.total_m, config.seed),
         "finished": summarise_distances(seeds.finished_m, config.seed),
-        **measure_against_greedy([seeds], config.seed),
+        "best_known_m": seeds.reference.best_known_m,
+        **measure_against_references([seeds], config.seed),
         "elapsed_s": elapsed[0] if elapsed and one.setting.role == "reference" else None,
         "published": printed if config.experiment == "table1" else None,
     }
@@ -129,10 +133,11 @@ def _pooled(
         shared = {k: v for k, v in setting_fields(group[0]).items() if k != "gait"}
         gaits = [one.setting.gait for one in group]
         n = sum(len(one.total_m) for one in strata)
-        measured = measure_against_greedy(strata, config.seed)
+        measured = measure_against_references(strata, config.seed)
         if group[0].setting.role == "reference":
-            measured = {k: v if k.startswith("relative") else None for k, v in measured.items()}
-        entries.append({**shared, "gaits": gaits, "n": n, **measured})
+            measured = {k: v if k in _DISTANCE_SHARES else None for k, v in measured.items()}
+        known = best_known_relative(strata)
+        entries.append({**shared, "gaits": gaits, "n": n, "best_known_relative": known, **measured})
     return entries
 
 
@@ -151,11 +156,11 @@ def _group_by_gait(settings: Iterable[SettingResults]) -> list[list[SettingResul
 
 
 def _curve(one: SettingResults, references: Mapping[Any, Reference], seed: int) -> dict[str, Any]:
-    greedy = references.get(one.conditions, Reference())
+    reference = references.get(one.conditions, Reference())
     blocks = list(zip(*(result.distances_m for result in one.succeeded), strict=True))
     block = one.setting.training.steps
-    points = learning_curve(blocks, block, greedy, seed)
-    return {"key": one.setting.key, **setting_fields(one), **points, "greedy_m": greedy.total_m}
+    points = learning_curve(blocks, block, reference, seed)
+    return {"key": one.setting.key, **setting_fields(one), **points}
 
 
 def _versus(settings: Sequence[SettingResults], seed: int) -> list[dict[str, Any]]:

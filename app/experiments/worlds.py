@@ -9,7 +9,6 @@ import numpy as np
 
 from app.experiments.setting_results import SettingResults, setting_fields
 from app.experiments.statistics import Points, iqm_interval, share_at_least
-from app.runs.best_known import best_known_m
 from app.runs.lane import Knowledge, LaneConfig, plans_with
 
 LEAGUE_SHARE = 0.95
@@ -38,7 +37,7 @@ def compare_in_worlds(settings: Sequence[SettingResults], seed: int) -> list[dic
     """
     references: dict[Any, dict[str, Any]] = {}
     for one in settings:
-        known = references.setdefault(one.conditions, {"best_known_m": _best_known_m(one)})
+        known = references.setdefault(one.conditions, {"best_known_m": one.best_known_m})
         if one.setting.role == "reference" and one.total_m:
             agent, nominal = one.setting.training.agent, one.setting.trial.plans_with is not None
             name = f"{agent.replace('-', '_')}{'_nominal' if nominal else ''}_m"
@@ -50,12 +49,6 @@ def _plans_with(one: SettingResults) -> Knowledge | None:
     trial = one.setting.trial
     lane = LaneConfig(agent=trial.training.agent, plans_with=trial.plans_with)
     return plans_with(lane, trial.training)
-
-
-def _best_known_m(one: SettingResults) -> float | None:
-    """Return the best known distance in the world as it is in the end."""
-    training = one.setting.training
-    return best_known_m(training, training.world.as_of(training.steps))
 
 
 def _entry(one: SettingResults, known: Mapping[str, Any], seed: int) -> dict[str, Any]:

@@ -483,6 +483,8 @@ export interface Setting {
   finished: Distances | null;
   walkers: { share: number } | null;
   published: Record<string, number | null> | null;
+  /** Reports of earlier versions have none. */
+  best_known_m?: number | null;
 }
 
 /** Robot, observation and grid, within which agents are compared. */

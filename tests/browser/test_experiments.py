@@ -51,6 +51,10 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
     strips = table.get_by_role("img", name=re.compile("^3 seeds from .*; the paper 0.25 m$"))
     expect(strips).to_have_count(2)
     expect(table).to_contain_text("paper: unfinished")
+    expect(table.get_by_role("columnheader", name="Best known")).to_be_visible()
+    best = table.get_by_role("row", name=re.compile("^Total")).locator(".reference b").last
+    expect(best).to_have_text("–")
+    expect(page.locator(".table-one")).to_contain_text("elsewhere a dash stands")
     greedy = table.get_by_role("row", name=re.compile("^Total")).locator(".reference b").first
     expect(greedy).to_have_text("0.50\u00a0m")
     dashboard.button("half grid sides").click()

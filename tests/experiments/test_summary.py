@@ -6,11 +6,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.domain.gait import GaitSpec
 from app.experiments.plan import Plan
 from app.experiments.published import published
 from app.experiments.summary import summarise
 from app.experiments.trial import TrialResult
-from tests.experiments.made import ROBOTS, around, config, made_up, setting, summary_of, walked
+from app.runs.best_known import kept
+from tests.experiments.made import (
+    GREEDY_M,
+    ROBOTS,
+    around,
+    config,
+    made_up,
+    setting,
+    summary_of,
+    walked,
+)
 from tests.figures import GREEDY_H, H_M
 
 LRO = "left-right-origin"
@@ -162,6 +173,35 @@ def test_a_greedy_agent_that_hardly_moves_is_not_used_as_a_reference() -> None:
     key = f"{LRO}/measured/stiff/greedy#0"
     results[key] = replace(results[key], distances_m=(-0.002,), finished_distance_m=0.0)
     assert setting(summarise(tried, results), Q500)["relative"] is None
+
+
+@pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep"])
+def test_distances_are_measured_against_the_best_known(experiment: str) -> None:
+    gaits = (LRO, "left-right-vertical")
+    only = {"observations": ("measured",), "robots": ROBOTS[:1], "simulator": "mujoco"}
+    summary = summary_of(experiment, lambda _: around(0.3, 0.0), seeds=4, gaits=gaits, **only)
+    best_m = {gait: kept()["stiff", "flat", gait] for gait in gaits}
+    for one in [*summary["settings"], *summary["curves"]]:
+        assert one["best_known_m"] == best_m[one["gait"]]
+    learner = next(one for one in summary["settings"] if one["role"] == "learner")
+    far_m = learner["total"]["iqm_m"]
+    assert learner["of_best_known"]["iqm"] == pytest.approx(far_m / best_m[LRO])
+    pool = summary["pooled"][0]
+    shares = [far_m / most_m for most_m in best_m.values()]
+    assert pool["of_best_known"]["iqm"] == pytest.approx(sum(shares) / 2)
+    assert pool["best_known_relative"] == pytest.approx(sum(best_m.values()) / 2 / GREEDY_M)
+
+
+def test_where_one_gait_has_no_best_known_distance_their_mean_has_none() -> None:
+    own = GaitSpec(1, 2, pairs=((1, 2), (3, 4), (5, 6)))
+    summary = summary_of(
+        "sweep", lambda _: around(0.3), seeds=4, gaits=(LRO, own), simulator="mujoco"
+    )
+    learners = [one for one in summary["settings"] if one["role"] == "learner"]
+    assert [one["best_known_m"] is None for one in learners] == [False, True]
+    assert [one["of_best_known"] is None for one in learners] == [False, True]
+    assert summary["pooled"][0]["of_best_known"] is None
+    assert summary["pooled"][0]["best_known_relative"] is None
 
 
 def test_learning_agents_are_compared_in_pairs() -> None:

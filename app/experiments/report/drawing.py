@@ -21,6 +21,8 @@ The page replaces them by its CSS variables, see `CSS_NAMES`.
 """
 CSS_NAMES: Mapping[str, str] = {INK: "ink", MUTED: "muted", FAINT: "line", PAPER: "paper"}
 
+THIN = 0.8
+"""Width of the line of the best known distance."""
 FORMATS = ("png", "svg", "pdf")
 _NO_METADATA: Mapping[str, Mapping[str, Any]] = {
     "png": {"Software": None},
@@ -128,6 +130,25 @@ def jitter(count: int, height: float) -> list[float]:
     A low-discrepancy sequence: multiples of the golden ratio, modulo 1.
     """
     return [height * (2 * ((place * 0.618034) % 1) - 1) for place in range(count)]
+
+
+def draw_best_known(ax: Axes, last: float, best_known_m: float | None) -> None:
+    """Draw the best known distance as a thin line from 0 to `last`, captioned at its end.
+
+    It is drawn over greedy's line, which may be as far.
+    """
+    if best_known_m is None:
+        return
+    ax.plot([0, last], [best_known_m] * 2, color=INK, lw=THIN, zorder=3)
+    ax.annotate(
+        "best known",
+        (last, best_known_m),
+        (0, 2),
+        textcoords="offset points",
+        ha="right",
+        size=8,
+        color=MUTED,
+    )
 
 
 def style_axes(ax: Axes, along: str) -> None:

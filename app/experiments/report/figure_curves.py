@@ -12,7 +12,16 @@ from app.agents.appearance import title_of
 from app.domain.text import metres
 from app.experiments.claims.cases import Case
 from app.experiments.formatting import gait_name
-from app.experiments.report.drawing import INK, MUTED, Picture, agent_colours, figure, style_axes
+from app.experiments.report.drawing import (
+    INK,
+    MUTED,
+    THIN,
+    Picture,
+    agent_colours,
+    draw_best_known,
+    figure,
+    style_axes,
+)
 
 Curve = Mapping[str, Any]
 PANEL_IN = (3.0, 2.7)
@@ -54,7 +63,13 @@ def sheet(cases: Sequence[Case]) -> Picture:
 
 def highest(cases: Sequence[Case]) -> float:
     """Return the common upper limit of the distance axes [m]."""
-    greedy = [one["greedy_m"] for case in cases for one in case.curves if one["greedy_m"]]
+    references = [
+        one[field]
+        for case in cases
+        for one in case.curves
+        for field in ("greedy_m", "best_known_m")
+        if one[field]
+    ]
     points = [
         point
         for case in cases
@@ -62,7 +77,7 @@ def highest(cases: Sequence[Case]) -> float:
         for block in one["points_m"]
         for point in block
     ]
-    return float(1.08 * max([0.05, *greedy, *points]))
+    return float(1.08 * max([0.05, *references, *points]))
 
 
 def draw(ax: Axes, case: Case, gait: str, highest_m: float) -> None:
@@ -71,11 +86,16 @@ def draw(ax: Axes, case: Case, gait: str, highest_m: float) -> None:
     colour = agent_colours([one["agent"] for one in curves])
     for one in curves:
         _curve(ax, one, colour[one["agent"]], alone=len(curves) == 1)
-    greedy = next((one["greedy_m"] for one in curves if one["greedy_m"]), None)
+    greedy, best_known = (
+        next((one[field] for one in curves if one[field]), None)
+        for field in ("greedy_m", "best_known_m")
+    )
     steps = max((one["steps"][-1] for one in curves if one["steps"]), default=2000)
+    draw_best_known(ax, steps, best_known)
     if greedy is not None:
         ax.plot([0, steps], [greedy] * 2, color=agent_colours([])["greedy"], lw=2, ls=(0, (4, 2)))
-        ax.text(0, greedy + 0.012 * highest_m, "greedy", va="bottom", size=9, color=MUTED)
+        # Below its line, since the best known is above it; curves begin further down.
+        ax.text(0, greedy - 0.02 * highest_m, "greedy", va="top", size=9, color=MUTED)
     ax.set_xlim(0, steps * 1.02)
     ax.set_ylim(min(0.0, *_lowest(curves)), highest_m)
     ax.set_xticks([0, steps / 2, steps], ["0", f"{steps // 2:,}", f"{steps:,}"])
@@ -117,6 +137,8 @@ def _key(one: Figure, cases: Sequence[Case]) -> None:
             Patch(color=shade, alpha=0.4, lw=0, label="its 95 % interval"),
             Line2D([], [], color=shade, lw=0.9, alpha=0.6, label="one seed"),
         ]
+    if any(c["best_known_m"] for case in cases for c in case.curves):
+        handles.append(Line2D([], [], color=INK, lw=THIN, label="best known"))
     one.legend(handles=handles, loc="outside lower center", ncols=3, labelcolor=MUTED)
 
 
@@ -127,7 +149,8 @@ def _alt(case: Case, gait: str) -> str:
             f"{metres(middle)} after {steps:,} steps"
             for steps, middle in zip(one["steps"], one["iqm_m"], strict=True)
         )
-        + (f"; greedy {metres(one['greedy_m'])}." if one["greedy_m"] else ".")
+        + (f"; greedy {metres(one['greedy_m'])}" if one["greedy_m"] else "")
+        + (f"; best known {metres(one['best_known_m'])}." if one["best_known_m"] else ".")
         for one in case.curves
         if one["gait"] == gait and one["steps"]
     ]

@@ -9,7 +9,15 @@ from app.agents.appearance import title_of
 from app.experiments.claims.cases import Case
 from app.experiments.formatting import percent
 from app.experiments.narrative.sweep import combination_name
-from app.experiments.report.drawing import INK, MUTED, Picture, agent_colours, figure, style_axes
+from app.experiments.report.drawing import (
+    INK,
+    MUTED,
+    THIN,
+    Picture,
+    agent_colours,
+    figure,
+    style_axes,
+)
 
 MOST = 40
 """Maximal number of rows of a figure; of more combinations the best are drawn."""
@@ -38,19 +46,25 @@ def chosen(case: Case) -> tuple[list[Mapping[str, Any]], int]:
 def _draw(ax: Axes, rows: Sequence[Mapping[str, Any]], case: Case) -> None:
     shade = agent_colours([one["agent"] for one in case.pooled])
     for place, one in enumerate(rows):
-        middle = one["relative"]
+        middle, known = one["relative"], one["best_known_relative"]
+        if known is not None:
+            # It depends on the grid: rows with the same value draw one line.
+            ax.plot([known] * 2, [-place - 0.5, -place + 0.5], color=INK, lw=THIN)
         if middle["low"] is not None:
             ax.plot([middle["low"], middle["high"]], [-place] * 2, color=INK, lw=2)
         ax.plot([middle["iqm"]], [-place], "o", ms=7, color=shade[one["agent"]], mec=INK, mew=0.8)
-    ax.axvline(1, color=shade["greedy"], lw=2, ls=(0, (4, 2)))
+    ax.plot([1, 1], [1.1, -len(rows)], color=shade["greedy"], lw=2, ls=(0, (4, 2)))
     ax.text(0.99, 0.75, "greedy", size=9, color=MUTED, ha="right", va="center")
+    known = [one["best_known_relative"] for one in rows if one["best_known_relative"]]
+    if known:
+        ax.text(max(known), 1.4, "best known", size=9, color=MUTED, ha="right", va="center")
     ax.set_yticks(
         [-place for place in range(len(rows))],
         [combination_name(one, case) for one in rows],
     )
-    ax.set_ylim(-len(rows) + 0.4, 1.1)
+    ax.set_ylim(-len(rows) + 0.4, 1.8 if known else 1.1)
     lowest = min((one["relative"]["low"] or one["relative"]["iqm"] for one in rows), default=0)
-    ax.set_xlim(min(0, lowest) - 0.02, 1.05)
+    ax.set_xlim(min(0, lowest) - 0.02, 1.05 * max([1, *known]))
     ax.xaxis.set_major_formatter(lambda value, _: percent(value))
     ax.set_xlabel("share of greedy's distance")
     style_axes(ax, "x")
@@ -59,6 +73,7 @@ def _draw(ax: Axes, rows: Sequence[Mapping[str, Any]], case: Case) -> None:
 def _alt(rows: Sequence[Mapping[str, Any]], case: Case) -> str:
     sentences = [
         f"{title_of(one['agent'])} {combination_name(one, case)}: {percent(one['relative']['iqm'])}"
+        + (f" of {percent(known)} best known" if (known := one["best_known_relative"]) else "")
         for one in rows
     ]
     return (

@@ -15,6 +15,7 @@ from app.experiments.report.drawing import (
     INK,
     MUTED,
     PAPER,
+    THIN,
     Picture,
     agent_colours,
     figure,
@@ -69,6 +70,7 @@ def draw(ax: Axes, case: Case, limits: tuple[float, float]) -> None:
         ax.text(0, y, gait_name_with_papers(gait), va="center", weight="bold", color=INK)
         bottom = y - _HEAD - _ROW * (len(rows) - 1)
         _greedy(ax, case.setting(gait, 0, "greedy"), y - 0.35, bottom - 0.45)
+        _best_known(ax, rows[0], y - 0.35, bottom - 0.45)
         for place, one in enumerate(rows):
             at = y - _HEAD - _ROW * place
             ticks.append(at)
@@ -95,6 +97,11 @@ def _row(ax: Axes, one: Setting, at: float, colour: str) -> None:
         ax.plot([one["published"]["total_m"]], [at], "D", ms=7.5, mfc=PAPER, mec=INK, mew=1.4)
 
 
+def _best_known(ax: Axes, one: Setting, top: float, bottom: float) -> None:
+    if one["best_known_m"] is not None:
+        ax.plot([one["best_known_m"]] * 2, [bottom, top], color=INK, lw=THIN, zorder=3)
+
+
 def _greedy(ax: Axes, greedy: Setting | None, top: float, bottom: float) -> None:
     if greedy is None:
         return
@@ -115,6 +122,7 @@ def key_lines() -> list[Line2D]:
         Line2D([], [], ls="", marker="D", ms=7, mfc=PAPER, mec=INK, label="printed in the paper"),
         Line2D([], [], color=blue, lw=2.4, label="greedy, 50 steps"),
         Line2D([], [], color=blue, lw=1.8, ls=(0, (2, 2)), label="greedy, when Q-learning ends"),
+        Line2D([], [], color=INK, lw=THIN, label="best known, 50 steps"),
     ]
 
 
@@ -132,6 +140,7 @@ def _limits(cases: Sequence[Case]) -> tuple[float, float]:
     """Return the common limits of the distance axes [m], which include zero."""
     totals = [s["total"] for case in cases for s in case.settings if s["total"]]
     points = [point for one in totals for point in one["points_m"]] or [0.5]
+    points += [s["best_known_m"] for case in cases for s in case.settings if s["best_known_m"]]
     return min(0.0, *points) - 0.015, max(0.05, *points) * 1.04
 
 
@@ -143,4 +152,9 @@ def _alt(case: Case) -> str:
         for one in case.settings
         if one["role"] == "learner" and one["total"]
     ]
+    best_m = {one["gait"]: one["best_known_m"] for one in case.settings if one["best_known_m"]}
+    if sentences:
+        sentences += [
+            f"{gait_name(gait)}, best known {metres(far)}." for gait, far in best_m.items()
+        ]
     return f"Distances with {case.label}. {' '.join(sentences) or 'No trials yet.'}"

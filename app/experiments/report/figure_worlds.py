@@ -9,10 +9,9 @@ from app.agents.appearance import title_of
 from app.domain.text import metres
 from app.experiments.formatting import world_name
 from app.experiments.report.drawing import (
-    INK,
-    MUTED,
     Picture,
     agent_colours,
+    draw_best_known,
     figure,
     style_axes,
 )
@@ -65,24 +64,10 @@ def _draw(ax: Axes, entries: Sequence[Entry], what: str) -> None:
             )
         ax.plot(curve["steps"], curve["iqm_m"], color=colour, lw=2, marker="o", ms=3.5)
     known = entries[0]
-    lines = (
-        ("best_known_m", INK, 0.8, "-"),
-        ("greedy_m", shade["greedy"], 2.0, (0, (4, 2))),
-        ("greedy_nominal_m", shade["greedy"], 2.0, (0, (1, 2))),
-    )
-    for field, colour, width, dashes in lines:
+    draw_best_known(ax, last, known["best_known_m"])
+    for field, dashes in (("greedy_m", (4, 2)), ("greedy_nominal_m", (1, 2))):
         if known[field] is not None:
-            ax.plot([0, last], [known[field]] * 2, color=colour, lw=width, ls=dashes)
-    if known["best_known_m"] is not None:
-        ax.annotate(
-            "best known",
-            (last, known["best_known_m"]),
-            (0, 2),
-            textcoords="offset points",
-            ha="right",
-            size=8,
-            color=MUTED,
-        )
+            ax.plot([0, last], [known[field]] * 2, color=shade["greedy"], lw=2, ls=(0, dashes))
     ax.set_xlim(0, last * 1.03)
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
     ax.set_xlabel(f"steps {what}")

@@ -59,7 +59,7 @@ def table1(case: Case) -> dict[str, Any]:
     gaits = dict.fromkeys(one["gait"] for one in case.settings)
     return {
         "label": case.label,
-        "columns": [name for _, _, name in columns],
+        "columns": [*(name for _, _, name in columns), "Best known"],
         "gaits": [
             {
                 "name": gait_name_with_papers(gait),
@@ -67,7 +67,8 @@ def table1(case: Case) -> dict[str, Any]:
                     {
                         "name": _DISTANCE_NAMES[kind],
                         "cells": [
-                            _table1_cell(case, gait, kind, agent, n) for agent, n, _ in columns
+                            *(_table1_cell(case, gait, kind, agent, n) for agent, n, _ in columns),
+                            _best_known_cell(case, gait, kind),
                         ],
                     }
                     for kind in DISTANCES
@@ -98,6 +99,16 @@ def _table1_cell(case: Case, gait: str, kind: str, agent: str, steps: int) -> Ce
         "" if quantile is None else f"P{100 * quantile:.0f}",
         quantile is not None and not tail <= quantile <= 1 - tail,
     )
+
+
+def _best_known_cell(case: Case, gait: str, kind: str) -> Cell:
+    """Return the best known distance of 50 steps; there is none at time-out."""
+    one = next(s for s in case.settings if s["gait"] == gait)
+    best_m = one["best_known_m"] if kind == "total" else None
+    greedy_m = _iqm_m(case.setting(gait, 0, "greedy"), kind)
+    units = (("m", 1.0), ("h", one["half_side_m"]), ("r", greedy_m))
+    values = [(unit, _format(unit, best_m / by) if best_m and by else _NONE) for unit, by in units]
+    return Cell([Number(unit, value, "", "") for unit, value in values], "", False)
 
 
 def _in_unit(unit: str, distances: Mapping[str, Any] | None, by: float | None) -> tuple[str, str]:
@@ -146,14 +157,17 @@ def curves(case: Case) -> dict[str, Any]:
     several = len({one["agent"] for one in drawn}) > 1
     return {
         "label": case.label,
-        "columns": [f"{at:,} steps" for at in chosen] + ["Walk", "Greedy"],
+        "columns": [f"{at:,} steps" for at in chosen] + ["Walk", "Greedy", "Best known"],
         "rows": [
             {
                 "name": gait_name(one["gait"]) + (f", {title_of(one['agent'])}" if several else ""),
                 "cells": [_curve_cell(one, steps.index(at)) for at in chosen]
                 + [
                     (_NONE if one["walkers"][-1] is None else percent(one["walkers"][-1]), ""),
-                    (_NONE if one["greedy_m"] is None else number(one["greedy_m"]), ""),
+                    *(
+                        (_NONE if one[field] is None else number(one[field]), "")
+                        for field in ("greedy_m", "best_known_m")
+                    ),
                 ],
             }
             for one in drawn
@@ -272,12 +286,13 @@ def sweep(case: Case) -> dict[str, Any]:
     best = sorted(pools, key=lambda one: -float(one["relative"]["iqm"]))
     return {
         "label": case.label,
-        "columns": ["Of greedy's distance", "Walk", "Ahead at time-out", "Seeds"],
+        "columns": ["Of greedy's distance", "Of best known", "Walk", "Ahead at time-out", "Seeds"],
         "rows": [
             {
                 "name": combination_name(one, case),
                 "cells": [
                     share_cell(one["relative"], "iqm"),
+                    share_cell(one["of_best_known"], "iqm"),
                     share_cell(one["walkers"]),
                     share_cell(one["beats_greedy"]),
                     (f"{one['n']:,}", ""),

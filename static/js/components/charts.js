@@ -246,7 +246,8 @@ const AXIS_NUMBERS = 3;
  * @param {number} props.high where the axis ends
  * @param {{ iqm: number, low?: number | null, high?: number | null } | null} [props.typical] interquartile
  *   mean and, if known, its interval
- * @param {{ value: number, kind: "greedy" | "half" | "published" }[]} [props.marks] lines; published is a diamond
+ * @param {{ value: number, kind: "greedy" | "best-known" | "half" | "published" }[]} [props.marks] lines; a diamond
+ *   where published
  * @param {string} [props.color]
  * @param {number} [props.height] without the axis
  * @param {((value: number) => string) | null} [props.axis] a number of the axis in words; null: no axis

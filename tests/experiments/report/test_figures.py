@@ -24,9 +24,9 @@ EXPERIMENTS = ("table1", "figure4", "sweep")
 _BEGINS = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}
 
 
-def small(experiment: str, seeds: int = 3) -> dict[str, Any]:
+def small(experiment: str, seeds: int = 3, **given: Any) -> dict[str, Any]:
     only = {"gaits": ("left-right-origin",), "observations": ("measured",), "robots": ROBOTS[:1]}
-    return summary_of(experiment, lambda _: around(0.3), seeds=seeds, **only)
+    return summary_of(experiment, lambda _: around(0.3), seeds=seeds, **only, **given)
 
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
@@ -59,6 +59,21 @@ def test_every_picture_has_its_numbers_in_the_alternative_text(experiment: str) 
     for one in [picture for _, group in panels(summary) for picture in group] + sheets(summary):
         alt = one.alt.replace("\xa0", " ")
         assert "0.30 m" in alt or "60 %" in alt
+
+
+@pytest.mark.parametrize(
+    ("experiment", "words"),
+    [("table1", "best known 0.51"), ("figure4", "best known 0.51"), ("sweep", "102 % best known")],
+)
+def test_the_best_known_distance_is_in_the_picture_and_its_text(
+    experiment: str, words: str
+) -> None:
+    known, unknown = small(experiment, simulator="mujoco"), small(experiment)
+    for summary, is_known in ((known, True), (unknown, False)):
+        one = panels(summary)[0][1][0]
+        assert (words in one.alt.replace("\xa0", " ")) == is_known
+        if experiment != "table1":  # there the key names the line
+            assert ("best known" in inline_svg(one.figure, "t")) == is_known
 
 
 def test_every_seed_is_drawn() -> None:

@@ -77,6 +77,24 @@ def test_the_table_has_the_papers_shape_in_three_units() -> None:
     assert "unfinished" in text
 
 
+@pytest.mark.parametrize(
+    ("experiment", "column", "value", "key"),
+    [
+        ("table1", "Best known", "0.51", "best known, 50 steps</li>"),
+        ("figure4", "Best known", "0.51", "best known</li>"),
+        ("sweep", "Of best known", "62\xa0%", "line is the best known"),
+    ],
+)
+def test_the_best_known_distance_is_a_column_or_a_dash_with_its_reason(
+    experiment: str, column: str, value: str, key: str
+) -> None:
+    for simulator, is_known in (("mujoco", True), ("kinematic", False)):
+        text = page(small(experiment, simulator=simulator)[0])
+        assert text.count(f'<th scope="col">{column}</th>') == 1
+        assert "elsewhere a dash stands" in text
+        assert (f"<b>{value}</b>" in text) == (key in text) == is_known
+
+
 def test_the_csv_has_a_row_for_every_block_of_every_trial() -> None:
     tried, results = walked("figure4", 5, gaits=(LRO,))
     summary = summarise(tried, results)
@@ -210,7 +228,7 @@ def test_the_page_does_not_scroll_horizontally(shown: Page, tmp_path: Path) -> N
 
 def test_units_change_without_a_script(shown: Page, tmp_path: Path) -> None:
     _open(shown, tmp_path, small()[0])
-    cell = shown.locator("table.paper td").nth(6)  # greedy's total
+    cell = shown.locator("table.paper td").nth(7)  # greedy's total
     assert cell.inner_text().startswith("0.50")
     shown.get_by_label("half grid sides").check()
     assert cell.inner_text().startswith("25.0")

@@ -57,20 +57,22 @@ export function BandChart({ label, curves, levels, high, unit = "steps of practi
  * @param {object} props
  * @param {string} props.label
  * @param {BandCurve[]} props.curves at the same steps
+ * @param {Level[]} props.levels
  * @param {string} [props.alone] what a single curve is called
  */
-export function CurveTable({ label, curves, alone }) {
+export function CurveTable({ label, curves, levels, alone }) {
   const titles = curves.length === 1 && alone !== undefined ? [alone] : curves.map(({ name }) => name);
   return html`
-    <${AsTable} caption=${label} columns=${["Steps", ...titles.flatMap((title) => [title, "95 %"])]}
-      rows=${rowsOf(curves)} />
+    <${AsTable} caption=${label} rows=${rowsOf(curves, levels)}
+      columns=${["Steps", ...titles.flatMap((title) => [title, "95 %"]), ...levels.map(({ name }) => name)]} />
   `;
 }
 
-const rowsOf = (curves) =>
+const rowsOf = (curves, levels) =>
   curves[0].steps.map((steps, block) => [
     whole(steps),
     ...curves.flatMap((one) => [shown(one.iqm[block]), intervalOf(one, block)]),
+    ...levels.map(({ value }) => shown(value)),
   ]);
 
 const intervalOf = ({ low, high }, block) =>

@@ -7,7 +7,7 @@ import { agentOf } from "../../settings.js";
 import { gaitTitle } from "../../titles.js";
 import { html } from "../elements.js";
 import { BandChart, CurveTable } from "./band-chart.js";
-import { AgentKey, PlaceSwitch, PlaceWords, UnitSwitch } from "./report-tools.js";
+import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, PlaceWords, UnitSwitch } from "./report-tools.js";
 
 const HEADROOM = 1.06;
 
@@ -18,7 +18,8 @@ export function FigureFour({ known }) {
   if (!places.length) return null;
   const place = places.find(({ key }) => key === chosen) ?? places[0];
   const here = curves.filter((one) => placeOf(one) === place.key).map(toUnit);
-  const high = HEADROOM * largest(here.flatMap(({ greedy, points }) => [greedy ?? 0, ...points.flat()]), 1e-9);
+  const ends = here.flatMap(({ greedy, best, points }) => [greedy ?? 0, best ?? 0, ...points.flat()]);
+  const high = HEADROOM * largest(ends, 1e-9);
   const gaits = [...new Set(here.map(({ gait }) => gait))];
   const agents = [...new Set(here.map(({ agent }) => agent))];
   return html`
@@ -33,25 +34,34 @@ export function FigureFour({ known }) {
         ${sentence(UNIT_NAMES[unit.value])}, against steps of practice.
         Line: interquartile mean; band: its 95 % interval; thin: each seed.
       </p>
-      ${agents.length > 1 && html`<${AgentKey} agents=${agents} />`}
+      <${AgentKey} agents=${agents}><${LevelKey} levels=${keyOf(here)} /><//>
       <div class="gait-panels">
         ${gaits.map((gait) => html`
           <${Gait} key=${gait} gait=${gait} curves=${here.filter((one) => one.gait === gait)} high=${high} />
         `)}
       </div>
+      <${BestKnownWords} distances=${here.map(({ best_known_m }) => best_known_m)} />
     </section>
   `;
 }
+
+/** The lines of references of a curve's gait that are known, in the unit that is shown. */
+const levelsOf = ({ greedy, best }) => [
+  { name: agentOf("greedy").title, kind: "greedy", color: agentOf("greedy").color, value: greedy },
+  { name: "Best known", kind: "best-known", value: best },
+].filter(({ value }) => value !== null);
+
+/** One of each kind. */
+const keyOf = (curves) => [...new Map(curves.flatMap(levelsOf).map((one) => [one.kind, one])).values()];
 
 const lastOf = ({ iqm }) => shown(iqm.at(-1));
 const titleOf = ({ agent }) => agentOf(agent).title;
 
 function Gait({ gait, curves, high }) {
-  const [{ greedy }] = curves;
+  const levels = levelsOf(curves[0]);
   const ends = curves.map((one) => `${titleOf(one)} ${lastOf(one)} after ${count(one.steps.at(-1), "step")}`);
-  const label = `${gaitTitle(gait)}: ${ends.join(", ")}${greedy === null ? "" : `; greedy ${shown(greedy)}`}`;
-  const { title, color } = agentOf("greedy");
-  const levels = greedy === null ? [] : [{ name: title, kind: "greedy", color, value: greedy }];
+  const lines = levels.map(({ name, value }) => `; ${name.toLowerCase()} ${shown(value)}`);
+  const label = `${gaitTitle(gait)}: ${ends.join(", ")}${lines.join("")}`;
   const walkers = curves.length === 1 ? walkersOf(curves[0]) : "";
   return html`
     <figure>
@@ -59,7 +69,7 @@ function Gait({ gait, curves, high }) {
         <b>${gaitTitle(gait)}</b><span class="dim num">${curves.map(lastOf).join(" · ")}${walkers}</span>
       </figcaption>
       <${BandChart} label=${label} curves=${curves} levels=${levels} high=${high} />
-      <${CurveTable} label=${label} curves=${curves} alone="Typical" />
+      <${CurveTable} label=${label} curves=${curves} levels=${levels} alone="Typical" />
     </figure>
   `;
 }
@@ -78,5 +88,6 @@ function toUnit(one) {
     high: all(one.high_m),
     points: one.points_m.map(all),
     greedy: inUnit(one.greedy_m, factor),
+    best: inUnit(one.best_known_m, factor),
   };
 }

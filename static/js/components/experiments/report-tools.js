@@ -45,6 +45,7 @@ const SIGNS = {
   seed: ["one seed", html`<circle class="dot-of-seed" cx="10" cy="8" r="3.5" />`],
   typical: ["interquartile mean, 95 % interval", TYPICAL],
   greedy: ["greedy", html`<line class="mark greedy" x1="10" x2="10" y1="0" y2="16" />`],
+  "best-known": ["best known", html`<line class="mark best-known" x1="10" x2="10" y1="0" y2="16" />`],
   published: ["the paper", html`<path class="mark published" d="M10 2 16 8 10 14 4 8z" />`],
 };
 
@@ -56,6 +57,34 @@ const Sign = ({ name }) => html`
 export const StripKey = ({ signs = Object.keys(SIGNS), color }) => html`
   <p class="strip-key" style=${color && { "--agent": color }}>${signs.map((name) => html`<${Sign} name=${name} />`)}</p>
 `;
+
+const BEST_KNOWN =
+  "Best known is the farthest walk that a wide search found for the robot as designed; nothing proves that none is " +
+  "farther.";
+const WHERE_KNOWN =
+  "It was computed in MuJoCo for preset robots in named gaits and worlds on the usual grid; elsewhere a dash stands.";
+
+/**
+ * What the best known distance is, and where it is known if some lack one.
+ * @param {{ distances: (number | null | undefined)[] }} props
+ */
+export const BestKnownWords = ({ distances }) => html`
+  <p class="dim table-note">
+    ${BEST_KNOWN} ${distances.every((one) => typeof one === "number") ? "" : WHERE_KNOWN}
+  </p>
+`;
+
+/**
+ * The lines of references, after the colours of agents.
+ * @param {{ levels: { kind: string, name: string }[] }} props
+ */
+export const LevelKey = ({ levels }) => levels.map(({ kind, name }) => html`
+  <span>
+    <svg class="dots" width="24" height="8" aria-hidden="true">
+      <line class=${`mark ${kind}`} x1="0" x2="24" y1="4" y2="4" />
+    </svg>${name.toLowerCase()}
+  </span>
+`);
 
 /** The colours of agents, and what else a chart has. */
 export const AgentKey = ({ agents, children }) => html`

@@ -7,7 +7,7 @@ import { agentOf } from "../../settings.js";
 import { fieldTitle, isNamedByValue, valueTitle, variedFields } from "../../titles.js";
 import { DotStrip } from "../charts.js";
 import { html, Segments } from "../elements.js";
-import { StripKey, UnitSwitch } from "./report-tools.js";
+import { BestKnownWords, StripKey, UnitSwitch } from "./report-tools.js";
 
 const ORDERS = [["grid", "In the grid’s order"], ["best", "Furthest first"]];
 const MOST_ROWS = 60;
@@ -20,7 +20,7 @@ export function SweepTable({ known }) {
   const rows = shownSettings(known.settings).map((setting) => measured(setting, greedy(setting)));
   const columns = columnsOf(rows, known.parameters);
   const sorted = order === "best" ? [...rows].sort(byDistance) : rows;
-  const high = 1.03 * largest(rows.flatMap(({ points, line }) => [line ?? 0, ...points]), 1e-9);
+  const high = 1.03 * largest(rows.flatMap(({ points, line, best }) => [line ?? 0, best ?? 0, ...points]), 1e-9);
   const agents = [...new Set(rows.map(({ setting }) => setting.agent))];
   const color = agents.length === 1 ? agentOf(agents[0]).color : "var(--dim)";
   return html`
@@ -30,7 +30,7 @@ export function SweepTable({ known }) {
         <${Segments} label="Order" choices=${ORDERS} value=${order} onValue=${setOrder} />
         <${UnitSwitch} />
       </div>
-      <${StripKey} signs=${["seed", "typical", "greedy"]} color=${color} />
+      <${StripKey} signs=${["seed", "typical", "greedy", "best-known"]} color=${color} />
       <div class="scroller" tabindex="0" role="region" aria-label="Every setting">
         <table class="facts-table stacking" role="table">
           <${Head} columns=${columns} />
@@ -46,6 +46,7 @@ export function SweepTable({ known }) {
           <button class="secondary" onClick=${() => setWhole(true)}>Show all ${count(sorted.length, "setting")}</button>
         </div>
       `}
+      <${BestKnownWords} distances=${rows.map(({ setting }) => setting.best_known_m)} />
     </section>
   `;
 }
@@ -75,6 +76,7 @@ function measured(setting, greedy_m) {
     points: (total?.points_m ?? []).map(own),
     typical: total && { iqm: own(total.iqm_m), low: own(total.low_m), high: own(total.high_m) },
     line: own(greedy_m),
+    best: own(setting.best_known_m),
   };
 }
 
@@ -85,6 +87,7 @@ const Head = ({ columns }) => html`
       <th role="columnheader" scope="col" class="wide-cell">${STRIP_TITLE}</th>
       <th role="columnheader" scope="col" title="Interquartile mean, with its 95 % interval">Typical</th>
       <th role="columnheader" scope="col" title="Get at least half as far as greedy">Walk</th>
+      <th role="columnheader" scope="col" title="The farthest walk that a wide search found">Best known</th>
     </tr>
   </thead>
 `;
@@ -95,24 +98,28 @@ const nameOf = (setting, columns) =>
     .map((field) => (isNamedByValue(field) ? "" : `${fieldTitle(field)}\u00a0`) + valueTitle(field, setting[field]))
     .join(", ");
 
-function Row({ row: { setting, points, typical, line }, columns, high }) {
+function Row({ row, columns, high }) {
+  const { setting, typical, best } = row;
   return html`
     <tr role="row">
       <th role="rowheader" scope="row" class="num">${nameOf(setting, columns)}</th>
       <td role="cell" class="wide-cell" data-label=${STRIP_TITLE}>
         ${typical
-          ? html`<${Strip} agent=${setting.agent} points=${points} typical=${typical} line=${line} high=${high} />`
+          ? html`<${Strip} row=${row} high=${high} />`
           : html`<span class="dim">waiting for its first seed</span>`}
       </td>
       <td role="cell" data-label="Typical" class="num"><${Typical} typical=${typical} /></td>
       <td role="cell" data-label="Walk" class="num">${setting.walkers ? percentage(setting.walkers.share) : "–"}</td>
+      <td role="cell" data-label="Best known" class="num">${shown(best)}</td>
     </tr>
   `;
 }
 
-function Strip({ agent, points, typical, line, high }) {
-  const label = `${count(points.length, "seed")}, typically ${shown(typical.iqm)}, greedy ${shown(line)}`;
-  const marks = line === null ? [] : [{ value: line, kind: "greedy" }];
+function Strip({ row: { setting: { agent }, points, typical, line, best }, high }) {
+  const known = best === null ? "" : `, best known ${shown(best)}`;
+  const label = `${count(points.length, "seed")}, typically ${shown(typical.iqm)}, greedy ${shown(line)}${known}`;
+  const marks = [{ value: line, kind: "greedy" }, { value: best, kind: "best-known" }]
+    .filter(({ value }) => value !== null);
   return html`
     <${DotStrip} label=${label} points=${points} high=${high} typical=${typical} marks=${marks}
       color=${agentOf(agent).color} axis=${shown} />

@@ -7,7 +7,7 @@ import { agentOf } from "../../settings.js";
 import { gaitTitle } from "../../titles.js";
 import { DotStrip } from "../charts.js";
 import { html } from "../elements.js";
-import { PlaceSwitch, PlaceWords, StripKey, UnitSwitch } from "./report-tools.js";
+import { BestKnownWords, PlaceSwitch, PlaceWords, StripKey, UnitSwitch } from "./report-tools.js";
 
 const DISTANCES = [
   ["finished", "At time-out", "Distance at time-out: when the first lane has used its 50 steps"],
@@ -38,6 +38,7 @@ export function TableOne({ known }) {
         ${gaits.map((one) => html`<${Gait} key=${one.gait} gait=${one} place=${place} high=${high} />`)}
       </table>
       <p class="dim table-note">${NOTES[unit.value]}</p>
+      <${BestKnownWords} distances=${gaits.map(bestKnownOf)} />
     </section>
   `;
 }
@@ -51,9 +52,13 @@ const Head = ({ learners }) => html`
         <th role="columnheader" scope="col">${agentOf(agent).title}, ${whole(steps)} steps</th>
       `)}
       ${REFERENCES.map((agent) => html`<th role="columnheader" scope="col">${agentOf(agent).title}</th>`)}
+      <th role="columnheader" scope="col">Best known</th>
     </tr>
   </thead>
 `;
+
+/** Of a gait in a place [m]. */
+const bestKnownOf = ({ learners, references }) => (learners[0] ?? references.greedy)?.best_known_m ?? null;
 
 /** Factors from metres to the chosen unit: for this run's distances, and for the paper's. */
 const factorsOf = (greedy, place) => ({
@@ -61,8 +66,10 @@ const factorsOf = (greedy, place) => ({
   paper: factorOf({ ...place, greedy_m: greedy?.published?.total_m ?? null }),
 });
 
-function Gait({ gait: { gait, learners, references }, place, high }) {
-  const measure = { ...factorsOf(references.greedy, place), high };
+function Gait({ gait: found, place, high }) {
+  const { gait, learners, references } = found;
+  const factors = factorsOf(references.greedy, place);
+  const measure = { ...factors, high, best: inUnit(bestKnownOf(found), factors.ours) };
   return html`
     <tbody role="rowgroup">
       ${DISTANCES.map(([distance, title, words], n) => html`
@@ -79,19 +86,26 @@ function Gait({ gait: { gait, learners, references }, place, high }) {
             <${ReferenceCell} key=${agent} title=${agentOf(agent).title} setting=${references[agent]}
               distance=${distance} measure=${measure} />
           `)}
+          <td role="cell" data-label="Best known" class="reference num">${bestWords(distance, measure)}</td>
         </tr>
       `)}
     </tbody>
   `;
 }
 
+/** It is a distance after 50 steps, and has none at time-out. */
+const bestOf = (distance, { best }) => (distance === "total" ? best : null);
+const bestWords = (distance, measure) => html`<b>${shown(bestOf(distance, measure))}</b>`;
+
 /** The end of all axes, so that strips can be compared. */
 function highest(gaits, place) {
-  const ends = gaits.flatMap(({ learners, references: { greedy } }) => {
+  const ends = gaits.flatMap((gait) => {
+    const { learners, references: { greedy } } = gait;
     const { ours, paper } = factorsOf(greedy, place);
     const walked = [greedy, ...learners].flatMap((one) => one?.total?.points_m ?? []);
     const printed = [greedy, ...learners].map((one) => one?.published?.total_m);
-    return [...walked.map((one) => inUnit(one, ours)), ...printed.map((one) => inUnit(one, paper))];
+    return [...walked, bestKnownOf(gait)].map((far) => inUnit(far, ours))
+      .concat(printed.map((far) => inUnit(far, paper)));
   });
   return 1.03 * largest(ends.filter((one) => one !== null), 1e-9);
 }
@@ -105,7 +119,7 @@ const NOTES = {
 
 // ---- cells: the seeds of this run as a strip, and the paper's value
 
-/** `measure`: {ours, paper, high}: factors of the unit, and the end of the axis. */
+/** `measure`: {ours, paper, high, best}: factors of the unit, the end of the axis, and the best known distance. */
 function LearnerCell({ setting, distance, greedy, measure }) {
   const label = `${agentOf(setting.agent).title}, ${count(setting.steps, "step")}`;
   if (!setting[distance] || measure.ours === null) return html`<${EmptyCell} label=${label} />`;
@@ -133,9 +147,13 @@ function inUnits({ setting, distance, greedy, measure }) {
   const own = (metres) => inUnit(metres, measure.ours);
   const line = own(greedy?.[distance]?.mean_m ?? null);
   const printed = inUnit(setting.published?.[`${distance}_m`] ?? null, measure.paper);
-  const marks = [{ value: line, kind: "greedy" }, { value: printed, kind: "published" }];
+  const best = bestOf(distance, measure);
+  const marks = [
+    { value: line, kind: "greedy" }, { value: best, kind: "best-known" }, { value: printed, kind: "published" },
+  ];
   return {
     line,
+    best,
     printed,
     marks: marks.filter(({ value }) => value !== null),
     points: ours.points_m.map(own),
@@ -145,13 +163,14 @@ function inUnits({ setting, distance, greedy, measure }) {
 
 const intervalOf = ({ low, high }) => (low === null ? "" : `${bare(low)} – ${bare(high)}`);
 
-function captionOf({ points, typical, line, printed }) {
+function captionOf({ points, typical, line, best, printed }) {
   const interval = intervalOf(typical);
   const lowest = -largest(points.map((one) => -one), -Infinity);
   return [
     `${count(points.length, "seed")} from ${shown(lowest)} to ${shown(largest(points, -Infinity))}`,
     `typically ${shown(typical.iqm)}${interval && `, 95 % interval ${interval}`}`,
     line !== null && `greedy ${shown(line)}`,
+    best !== null && `best known ${shown(best)}`,
     printed !== null && `the paper ${shown(printed)}`,
   ].filter(Boolean).join("; ");
 }

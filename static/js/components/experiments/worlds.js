@@ -8,7 +8,7 @@ import { agentOf } from "../../settings.js";
 import { agentTitle, gaitTitle, knowledgeTitle } from "../../titles.js";
 import { html, Segments } from "../elements.js";
 import { BandChart, CurveTable } from "./band-chart.js";
-import { AgentKey, PlaceSwitch, UnitSwitch } from "./report-tools.js";
+import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, UnitSwitch } from "./report-tools.js";
 
 const HEADROOM = 1.06;
 const NOMINAL = "nominal";
@@ -45,7 +45,7 @@ export function Worlds({ known }) {
         ${worldTitle(world)}: ${UNIT_NAMES[unit.value]}, against ${STEPS_OF[known.experiment]}.
         Curve: interquartile mean; band: its 95 % interval.
       </p>
-      <${AgentKey} agents=${learners}><${LevelKey} known=${here[0]} /><//>
+      <${AgentKey} agents=${learners}><${LevelKey} levels=${levelsOf(here[0])} /><//>
       <div class=${`gait-panels ${gaits.length > 1 ? "" : "alone"}`}>
         ${gaits.map((gait) => html`
           <${Gait} key=${gait} gait=${gait} entries=${here.filter((one) => one.gait === gait)} known=${known} />
@@ -54,6 +54,7 @@ export function Worlds({ known }) {
       ${gaits.map((gait) => html`
         <${Table} key=${gait} gait=${gait} entries=${here.filter((one) => one.gait === gait)} known=${known} />
       `)}
+      <${BestKnownWords} distances=${here.map(({ best_known_m }) => best_known_m)} />
     </section>
     ${worlds.length > 1 && html`
       <${Overview} entries=${entries.filter((one) => placeOf(one) === place.key)} worlds=${worlds} known=${known} />
@@ -74,14 +75,6 @@ const knownLevels = () => [
 const levelsOf = (entry) =>
   knownLevels().map(([field, kind, name]) => ({ kind, name, value: inUnit(entry[field], factorOf(entry)) }))
     .filter(({ value }) => value !== null);
-
-const LevelKey = ({ known }) => levelsOf(known).map(({ kind, name }) => html`
-  <span>
-    <svg class="dots" width="24" height="8" aria-hidden="true">
-      <line class=${`mark ${kind}`} x1="0" x2="24" y1="4" y2="4" />
-    </svg>${name.toLowerCase()}
-  </span>
-`);
 
 // ---- one chart per gait
 
@@ -107,7 +100,7 @@ function Gait({ gait, entries, known }) {
       ${curves.length > 0 && html`
         <${BandChart} label=${label} curves=${curves} levels=${levels} high=${high}
           unit=${STEPS_OF[known.experiment]} />
-        <${CurveTable} label=${label} curves=${curves} />
+        <${CurveTable} label=${label} curves=${curves} levels=${levels} />
       `}
     </figure>
   `;
