@@ -173,6 +173,8 @@ class RunView(Answer):
     progress: ProgressView
     eta_s: float | None
     error: str | None
+    tags: list[str]
+    notes: str
     created_at: datetime
     started_at: datetime | None
     ended_at: datetime | None
@@ -303,7 +305,7 @@ class ExperimentView(RunView):
 
 
 class Page(Answer):
-    """Page of a list, newest first, with cursor pagination."""
+    """Page of a list, with cursor pagination."""
 
     next_cursor: str | None
     """Cursor of the next page; null on the last page."""

@@ -8,17 +8,19 @@ from app.domain.gait import NAMED_GAITS
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS
 from app.domain.settings import declared_fields
-from app.domain.text import MAX_NAME, NAMES
+from app.domain.text import MAX_NAME, MAX_TAG, NAMES, NOTES, TAGS
 from app.domain.world import MAX_DISTURBANCES, WORLDS
 from app.experiments.config import EXPERIMENTS, MAX_SEEDS
 from app.runs.clocks import CLOCKS
 from app.runs.config import SIMULATORS, TrainingConfig
 from app.runs.lane import LaneConfig
 from app.runs.race_config import MAX_LANES
-from app.storage.run import KINDS, STATES
+from app.storage.run import KINDS, SORTS, STATES
 
 MAX_PAGE = 100
 MAX_SEARCH = MAX_NAME
+MAX_CURSOR = 2000
+"""Maximum length of a cursor: a name, of which each character takes up to 12, and an id."""
 
 
 def _one_of(names: Iterable[str]) -> str:
@@ -71,7 +73,14 @@ VALID: Mapping[str, str] = {
     "clock": _one_of(CLOCKS),
     "kind": _one_of(KINDS),
     "state": _one_of(STATES),
-    "search": f"a part of the name or id, of at most {MAX_SEARCH} characters; A to Z match a to z",
+    "search": (
+        f"a part of the name, id, tags or notes, of at most {MAX_SEARCH} characters; A to Z match "
+        "a to z"
+    ),
+    "tag": f"a tag, of at most {MAX_TAG} characters; A to Z match a to z",
+    "tags": TAGS,
+    "notes": NOTES,
+    "sort": f"{_one_of(SORTS)}: by time of creation, A to Z, or the longest first",
     "limit": f"a whole number from 1 to {MAX_PAGE}",
     "cursor": "the next_cursor of the page before",
     "idempotency-key": "1 to 200 printable ASCII characters without spaces",

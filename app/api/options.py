@@ -19,7 +19,7 @@ from app.domain import disturbances
 from app.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
 from app.domain.robot import MAX_LEGS, PRESETS, Robot, as_mapping
 from app.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
-from app.domain.text import MAX_NAME
+from app.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS
 from app.domain.world import MAX_DISTURBANCES, WORLDS, is_simulated
 from app.experiments.config import (
     EXPERIMENTS,
@@ -352,6 +352,9 @@ def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | N
         "lanes": [1, MAX_LANES],
         "disturbances": [0, MAX_DISTURBANCES],
         "name": [0, MAX_NAME],
+        "tag": [1, MAX_TAG],
+        "tags": [0, MAX_TAGS],
+        "notes": [0, MAX_NOTES],
         "seeds": [1, MAX_SEEDS],
         "trials": [1, MAX_TRIALS],
         "settings": [1, MAX_SETTINGS],

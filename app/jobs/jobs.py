@@ -31,6 +31,7 @@ from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, NotAnswering, StorageFailed
 from app.storage.recordings import Recordings
 from app.storage.run import (
+    ANNOTATIONS,
     LIVE,
     NOT_ENDED,
     PAUSED,
@@ -332,6 +333,26 @@ class Jobs:
         if sent.changed.refusal is not None:
             raise InvalidInput(sent.changed.refusal)
         return sent.changed
+
+    def annotate(self, run_id: str, changes: Mapping[str, Any]) -> Run:
+        """Change what users say of a run: any of its `ANNOTATIONS`, in any state.
+
+        Raises:
+            NotFound: if there is no such run.
+            Damaged: if it cannot be decoded.
+            InvalidInput: if its name is empty.
+        """
+        if changes.get("name") == "":
+            raise InvalidInput("a run keeps a name: give one with a visible character")
+        with self._changed:
+            self._store.get(run_id)
+            run = self._store.update(run_id, **changes)
+            self._queue.replace(run)
+            job = self._supervisor.find(run_id)
+            if job is not None:
+                return job.publish(**{name: getattr(run, name) for name in ANNOTATIONS})
+            self._publish(run)
+        return run
 
     def delete(self, run_id: str) -> None:
         """Delete a run that has ended.

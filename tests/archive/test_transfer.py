@@ -5,6 +5,7 @@ import json
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -95,6 +96,22 @@ def test_export_and_import_preserve_everything(
             assert was is not None
             assert [s.step for s in practised.steps] == [s.step for s in was.steps]
             assert len(practised.evaluations) == len(was.evaluations) == 24
+
+
+def test_tags_and_notes_are_archived_and_checked(source: RunStore, store: RunStore) -> None:
+    data = export_run(source, TRAINING)
+    assert b'"tags"' not in data, "without any, earlier versions take it in too"
+    run = imported(data, store)
+    store.update(run.id, tags=("ice",), notes="one\ntwo")
+    again = imported(export_run(store, run.id))
+    assert (again.tags, again.notes) == (("ice",), "one\ntwo")
+    invalid: list[dict[str, Any]] = [{"tags": ["a", "A"]}, {"tags": ["x" * 31]}, {"notes": "\x1b"}]
+    for fields in invalid:
+        refusal(rewritten(data, partial(_set_in_run, fields)))
+
+
+def _set_in_run(fields: dict[str, Any], content: Any) -> None:
+    content["run"].update(fields)
 
 
 def test_import_does_not_replace_an_existing_run(source: RunStore, store: RunStore) -> None:
