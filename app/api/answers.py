@@ -335,6 +335,26 @@ class RunPage(Page):
     items: list[TrainingView | RaceView | ExperimentView]
 
 
+class KeptRun(Answer):
+    """A run that could not be deleted, and why."""
+
+    id: str
+    reason: str
+
+
+class DeletedView(Answer):
+    """Ids of the runs that were deleted, and those that could not be."""
+
+    deleted: list[str]
+    kept: list[KeptRun]
+
+
+class ImportedView(Answer):
+    """Runs that were imported, in the order of their archive."""
+
+    items: list[TrainingView | RaceView | ExperimentView]
+
+
 class Evaluation(Answer):
     """Evaluation of a training: the distance walked [m] after `step` steps of practice."""
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from app.archive.transfer import MAX_RUNS
 from app.domain import disturbances
 from app.domain.gait import NAMED_GAITS
 from app.domain.observation import OBSERVATIONS
@@ -67,6 +68,7 @@ VALID: Mapping[str, str] = {
     "plans_with": declared_fields(LaneConfig)["plans_with"].valid,
     "keep_learning": declared_fields(LaneConfig)["keep_learning"].valid,
     "run_id": "the id of a run",
+    "id": f"the id of a run; up to {MAX_RUNS} of them as id=…&id=…",
     "time_s": "a number of seconds, 0 or more",
     "playing": "true or false",
     "speed": "a number from 0.25 to 64, or time-lapse",

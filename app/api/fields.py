@@ -28,6 +28,7 @@ from app.domain.text import (
     MAX_TAG,
     MAX_TAGS,
     NOTES_CONTROLS,
+    TAG_SEPARATOR,
     check_name,
     check_notes,
     check_tags,
@@ -54,6 +55,11 @@ def _add_pattern(schema: dict[str, Any]) -> None:
     """Add the pattern of visible text; deferred, as only the OpenAPI document needs it."""
     ranges = (f"{_escaped(first)}-{_escaped(last)}" for first, last in invisible_ranges())
     schema["pattern"] = f"^[^{''.join(ranges)}]*$"
+
+
+def _add_tag_pattern(schema: dict[str, Any]) -> None:
+    _add_pattern(schema)
+    schema["pattern"] = schema["pattern"].replace("^[^", f"^[^{TAG_SEPARATOR}")
 
 
 def _add_notes_pattern(schema: dict[str, Any]) -> None:
@@ -116,7 +122,7 @@ Name = Annotated[
     _checked_by(check_name),
 ]
 Tags = Annotated[
-    list[Annotated[str, Field(max_length=MAX_TAG, json_schema_extra=_add_pattern)]],
+    list[Annotated[str, Field(max_length=MAX_TAG, json_schema_extra=_add_tag_pattern)]],
     Field(max_length=MAX_TAGS, description=VALID["tags"]),
     _checked_by(lambda tags: list(check_tags(tags))),
 ]

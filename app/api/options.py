@@ -14,6 +14,7 @@ from app.agents.appearance import colors_of, description_of, title_of
 from app.agents.registry import OURS, keeps_learning, learns, needs_practice, searches
 from app.api.compression import CompressedContent
 from app.api.deps import ServicesDep
+from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import OptionsView
 from app.domain import disturbances
 from app.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
@@ -355,6 +356,7 @@ def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | N
         "tag": [1, MAX_TAG],
         "tags": [0, MAX_TAGS],
         "notes": [0, MAX_NOTES],
+        "import_bytes": [1, MAX_FILE_BYTES],
         "seeds": [1, MAX_SEEDS],
         "trials": [1, MAX_TRIALS],
         "settings": [1, MAX_SETTINGS],

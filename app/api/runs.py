@@ -10,6 +10,7 @@ from fastapi import APIRouter, Depends, Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import (
+    DeletedView,
     ExperimentPage,
     ExperimentView,
     Page,
@@ -22,14 +23,20 @@ from app.api.answers import (
 )
 from app.api.deps import Services, ServicesDep
 from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_SEARCH, VALID
+from app.api.fields import RunId
 from app.api.schemas import AnnotationBody
+from app.archive.transfer import MAX_RUNS
 from app.domain.text import MAX_TAG
 from app.jobs.jobs import Jobs
 from app.storage.database.listing import Listing
-from app.storage.errors import Damaged, NotFound
+from app.storage.errors import Conflict, Damaged, NotFound
 from app.storage.run import AnyRun, DamagedRun, Kind, Run, Sort, State
 
 RunPath = Annotated[str, Path(description="of the run")]
+RunIdsQuery = Annotated[
+    list[RunId],
+    Query(alias="id", min_length=1, max_length=MAX_RUNS, description=VALID["id"]),
+]
 
 
 def _listing(
@@ -92,6 +99,20 @@ def list_runs(
 ) -> Response:
     """List runs, filtered by kind, state, tag, and a part of the name, id, tags or notes."""
     return _page(services, listing._replace(kind=kind))
+
+
+@router.delete("", summary="Delete runs that have ended", response_model=DeletedView)
+def delete_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
+    """Delete each run that can be deleted; the answer names the others, and why they are kept."""
+    deleted, kept = [], []
+    for one in dict.fromkeys(ids):
+        try:
+            services.jobs.delete(one)
+        except (NotFound, Conflict) as error:
+            kept.append({"id": one, "reason": str(error)})
+        else:
+            deleted.append(one)
+    return JSONResponse({"deleted": deleted, "kept": kept})
 
 
 @router.get(

@@ -16,9 +16,11 @@ NAMES = (
 MAX_TAG, MAX_TAGS = 30, 20
 TAGS = (
     f"a list of at most {MAX_TAGS} tags, each text of at most {MAX_TAG} characters, without "
-    "control characters or other invisible characters"
+    "commas, control characters or other invisible characters"
 )
 """Description of valid tags, for messages."""
+TAG_SEPARATOR = ","
+"""Between tags that are written in one line."""
 MAX_NOTES = 4_000
 NOTES = (
     f"text of at most {MAX_NOTES:,} characters, without control characters but line breaks and tabs"
@@ -55,6 +57,8 @@ def check_tags(tags: Iterable[str]) -> tuple[str, ...]:
     kept: dict[str, str] = {}
     for tag in tags:
         text = _checked(tag, MAX_TAG, valid)
+        if TAG_SEPARATOR in text:
+            raise InvalidInput(f"{valid}; one is {text!r}")
         if text:
             kept.setdefault(text.casefold(), text)
     if len(kept) > MAX_TAGS:

@@ -41,12 +41,12 @@ def test_a_long_name_is_refused() -> None:
 
 
 def test_tags_are_kept_once_without_blanks_in_the_first_spelling() -> None:
-    assert check_tags([" ice ", "Ice", "", "  ", "limp, leg 1", "Öl", "öl"]) == (
+    assert check_tags([" ice ", "Ice", "", "  ", "limp leg 1", "Öl", "öl"]) == (
         "ice",
-        "limp, leg 1",
+        "limp leg 1",
         "Öl",
     )
-    for bad in (["x" * (MAX_TAG + 1)], ["a\nb"], [f"{n}" for n in range(MAX_TAGS + 1)]):
+    for bad in (["x" * (MAX_TAG + 1)], ["a\nb"], ["a,b"], [f"{n}" for n in range(MAX_TAGS + 1)]):
         with pytest.raises(InvalidInput, match="at most 20 tags, each text of at most 30"):
             check_tags(bad)
 
