@@ -16,6 +16,7 @@ from app.api.compression import CompressedContent
 from app.api.deps import ServicesDep
 from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import OptionsView
+from app.archive.transfer import MAX_RUNS
 from app.domain import disturbances
 from app.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
 from app.domain.robot import MAX_LEGS, PRESETS, Robot, as_mapping
@@ -357,6 +358,7 @@ def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | N
         "tags": [0, MAX_TAGS],
         "notes": [0, MAX_NOTES],
         "import_bytes": [1, MAX_FILE_BYTES],
+        "archive_runs": [1, MAX_RUNS],
         "seeds": [1, MAX_SEEDS],
         "trials": [1, MAX_TRIALS],
         "settings": [1, MAX_SETTINGS],

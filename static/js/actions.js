@@ -18,7 +18,8 @@ import {
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { Change, DamagedRun, Disturbance, LaneConfig, Rates, Run, RunConfig, Stage, Verb } from "./types.js" */
+/** @import { Annotations, Change, DamagedRun, Disturbance, LaneConfig, Rates, Run, RunConfig } from "./types.js" */
+/** @import { Stage, Verb } from "./types.js" */
 
 /** A button of the page. @typedef {{ label: string, run: () => unknown }} Action */
 
@@ -277,6 +278,13 @@ export const deleteRun = (run) =>
     await api.deleteRun(run);
     markDeleted(run.id);
   });
+
+/**
+ * Change what users say of a run; null if that was refused.
+ * @type {(run: Run, changes: Annotations) => Promise<Run | null>}
+ */
+export const annotate = (run, changes) =>
+  attempt(run.id, () => requestRun(() => api.annotateRun(run.id, changes)));
 
 /**
  * Copy the settings of a run into the form as they hold at its end, those of a race with those of its training.
