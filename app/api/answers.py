@@ -335,6 +335,13 @@ class RunPage(Page):
     items: list[TrainingView | RaceView | ExperimentView]
 
 
+class CodeView(Answer):
+    """A run as commands for a shell, and as a Python program."""
+
+    command: str
+    python: str
+
+
 class KeptRun(Answer):
     """A run that could not be deleted, and why."""
 

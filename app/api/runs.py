@@ -10,6 +10,7 @@ from fastapi import APIRouter, Depends, Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import (
+    CodeView,
     DeletedView,
     ExperimentPage,
     ExperimentView,
@@ -21,9 +22,11 @@ from app.api.answers import (
     TrainingPage,
     TrainingView,
 )
-from app.api.deps import Services, ServicesDep
+from app.api.contract import LOCATION, answers
+from app.api.deps import Services, ServicesDep, StartRequestDep
 from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_SEARCH, VALID
 from app.api.fields import RunId
+from app.api.run_code import run_code
 from app.api.schemas import AnnotationBody
 from app.archive.transfer import MAX_RUNS
 from app.domain.text import MAX_TAG
@@ -133,6 +136,35 @@ def get_any_run(services: ServicesDep, run_id: RunPath) -> Response:
 def annotate_run(services: ServicesDep, run_id: RunPath, body: AnnotationBody) -> Response:
     """Change them in any state of the run; tags and notes are replaced as a whole."""
     return JSONResponse(services.jobs.view(services.jobs.annotate(run_id, body.changes())))
+
+
+@router.post(
+    "/{run_id}/again",
+    status_code=202,
+    summary="Start a run with the settings of another",
+    response_model=TrainingView | RaceView | ExperimentView,
+    responses=answers(202, headers=LOCATION),
+)
+def run_again(
+    services: ServicesDep, request: Request, run_id: RunPath, start_request: StartRequestDep
+) -> Response:
+    """Queue it as the other was started: with its seed and its tables, without what changed live.
+
+    It is the same to the last bit, wall times aside.
+    """
+    jobs = services.jobs
+    run = start_request.start(services, lambda key: jobs.again(run_id, key))
+    return accepted(request, jobs.view(run))
+
+
+@router.get("/{run_id}/code", summary="A run as commands and as Python", response_model=CodeView)
+def get_code(services: ServicesDep, request: Request, run_id: RunPath) -> Response:
+    """Return what makes exactly this run, on the command line and in Python.
+
+    Trainings that it rests on are practised first; a table that no practice repeats is downloaded.
+    """
+    run = services.store.get(run_id)
+    return JSONResponse(run_code(run, services.store, str(request.base_url))._asdict())
 
 
 def _page(services: Services, listing: Listing) -> Response:

@@ -20,6 +20,7 @@ from app.jobs.submissions import (
     RaceStart,
     TrainingStart,
     new_branch,
+    new_copy,
     new_experiment,
     new_race,
     new_training,
@@ -172,6 +173,20 @@ class Jobs:
             Busy: if the queue is full.
         """
         return self._enqueue([new_experiment(start, self.new_id)], key)
+
+    def again(self, run_id: str, key: IdempotencyKey | None = None) -> Run:
+        """Queue a run with the settings of another.
+
+        Args:
+            run_id: id of the other run, in any state.
+            key: idempotency key of the request, stored with the run.
+
+        Raises:
+            NotFound: if there is no such run.
+            InvalidInput, Conflict: if an agent or a table that it needs is not there any more.
+            Busy: if the queue is full.
+        """
+        return self._enqueue([new_copy(self._store.get(run_id), self._store, self.new_id)], key)
 
     def keep(self, run: Run, table: bytes, key: IdempotencyKey | None = None) -> Run:
         """Store an imported training, which ended elsewhere, and publish it.

@@ -280,6 +280,16 @@ export const deleteRun = (run) =>
   });
 
 /**
+ * Start a run with the settings of another, and show it.
+ * @param {Run} run
+ */
+export const runAgain = (run) =>
+  attempt(run.id, async () => {
+    const again = await adopt(() => api.startAgain(run.id));
+    location.hash = run.kind === "experiment" ? `#experiments?run=${again?.id}` : "";
+  });
+
+/**
  * Change what users say of a run; null if that was refused.
  * @type {(run: Run, changes: Annotations) => Promise<Run | null>}
  */
@@ -344,12 +354,23 @@ function toast(message) {
   toastTimer = setTimeout(() => (toastMessage.value = null), TOAST_MS);
 }
 
-export async function share() {
+/**
+ * Copy a text; false where there is no clipboard, as outside of https and loopback.
+ * @param {string} text
+ * @param {string} words that tell of it
+ */
+export async function copy(text, words) {
   try {
-    await navigator.clipboard.writeText(link());
-    toast("Link copied. It contains every setting of the form.");
+    await navigator.clipboard.writeText(text);
   } catch {
-    // There is no clipboard outside of https and loopback.
+    return false;
+  }
+  toast(words);
+  return true;
+}
+
+export async function share() {
+  if (!(await copy(link(), "Link copied. It contains every setting of the form."))) {
     history.replaceState(history.state, "", link());
     toast("The address bar has the link: copy it from there.");
   }

@@ -162,6 +162,11 @@ export const deleteRun = (run) => call("DELETE", pathOf(run));
 /** @type {(id: string, changes: Annotations) => Promise<Run>} */
 export const annotateRun = (id, changes) => call("PATCH", `runs/${encodeURIComponent(id)}`, changes);
 
+/** Start a run with the settings of another. @param {string} id */
+export const startAgain = (id) => start(`runs/${encodeURIComponent(id)}/again`, undefined);
+/** @type {(id: string) => Promise<{ command: string, python: string }>} */
+export const getCode = (id) => call("GET", `runs/${encodeURIComponent(id)}/code`);
+
 /** @param {string[]} ids */
 const idQuery = (ids) => new URLSearchParams(ids.map((id) => ["id", id]));
 /** @type {(ids: string[]) => Promise<{ deleted: string[], kept: { id: string, reason: string }[] }>} */

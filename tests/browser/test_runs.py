@@ -132,6 +132,20 @@ def test_a_run_gets_a_name_tags_and_notes_in_its_place(
     expect(row.locator(".notes summary")).to_have_text("Slips.")
     assert dashboard.violations() == []
 
+    row.get_by_label("More for this training").click()
+    dashboard.button("As code").click()
+    code = page.get_by_role("region", name="Code")
+    expect(code).to_contain_text("hexapods train")
+    dashboard.button("Python").click()
+    expect(code).to_contain_text("build_learner")
+    assert dashboard.violations() == []
+    dashboard.button("Close").click()
+    row.get_by_label("More for this training").click()
+    dashboard.button("Run again").click()
+    expect(page.locator(".controls")).to_be_visible()
+    newest = dashboard.get("/api/v1/trainings?sort=newest&limit=1")["items"][0]
+    assert (newest["name"], newest["tags"]) == ("Aardvark", ["ice", "week 3"])
+
     page.goto(f"{walks.address}#runs?sort=size")
     expect(page.get_by_text("sort must be one of newest, oldest, name, distance")).to_be_visible()
     assert dashboard.complaints.pop().startswith("422")

@@ -1,7 +1,7 @@
 // A run in the list: what it is, what came of it, what users say of it, and what can be done with it.
 import { useState } from "preact/hooks";
 import {
-  copySettings, deleteRun, isShown, pending, resumeRun, showOnStage,
+  copySettings, deleteRun, isShown, pending, resumeRun, runAgain, showOnStage,
 } from "../../actions.js";
 import { archiveAddress, downloads } from "../../api.js";
 import { changesInWords, rateChanges } from "../../changes.js";
@@ -16,6 +16,7 @@ import { served } from "../../store.js";
 import { describeRun, gaitTitle, observationTitle, robotTitle, runTitle, simulatorTitle } from "../../titles.js";
 import { html, Problem } from "../elements.js";
 import { edit, Name, Notes, Tags } from "./annotations.js";
+import { showCode } from "./code.js";
 
 export const RunRow = ({ run }) => html`<${"damaged" in run ? DamagedRow : Row} run=${run} />`;
 
@@ -140,7 +141,9 @@ function Menu({ run }) {
         ${isOperator.value && run.kind !== "experiment" && html`
           <a href="#" onClick=${() => copySettings(run)}>Use its settings</a>
         `}
+        <button onClick=${() => showCode(run)}>As code</button>
         ${isOperator.value && html`
+          <button onClick=${() => runAgain(run)}>Run again</button>
           <button onClick=${() => edit(run, "name")}>Rename</button>
           <button onClick=${() => edit(run, "tags")}>${run.tags?.length ? "Change its tags" : "Add tags"}</button>
           <button onClick=${() => edit(run, "notes")}>${run.notes ? "Change its notes" : "Add notes"}</button>

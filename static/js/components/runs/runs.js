@@ -8,6 +8,7 @@ import {
 import { clearSelection, selectAll, setSelected } from "../../run-selection.js";
 import { served } from "../../store.js";
 import { html, Icon, Segments } from "../elements.js";
+import { CodeDialog } from "./code.js";
 import { RunRow } from "./row.js";
 import { Selection } from "./selection.js";
 
@@ -40,6 +41,7 @@ export function Runs() {
         `}
       <${More} />
       ${isDragging && html`<p class="drop-note" role="status">Drop to take in: archives of runs, or Q-tables</p>`}
+      <${CodeDialog} />
     </section>
   `;
 }
