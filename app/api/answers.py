@@ -174,6 +174,8 @@ class RunView(Answer):
     progress: ProgressView
     eta_s: float | None
     error: str | None
+    tags: list[str]
+    notes: str
     created_at: datetime
     started_at: datetime | None
     ended_at: datetime | None
@@ -304,7 +306,7 @@ class ExperimentView(RunView):
 
 
 class Page(Answer):
-    """Page of a list, newest first, with cursor pagination."""
+    """Page of a list, with cursor pagination."""
 
     next_cursor: str | None
     """Cursor of the next page; null on the last page."""
@@ -330,6 +332,33 @@ class ExperimentPage(Page):
 
 class RunPage(Page):
     """Page of runs of every kind."""
+
+    items: list[TrainingView | RaceView | ExperimentView]
+
+
+class CodeView(Answer):
+    """A run as commands for a shell, and as a Python program."""
+
+    command: str
+    python: str
+
+
+class KeptRun(Answer):
+    """A run that could not be deleted, and why."""
+
+    id: str
+    reason: str
+
+
+class DeletedView(Answer):
+    """Ids of the runs that were deleted, and those that could not be."""
+
+    deleted: list[str]
+    kept: list[KeptRun]
+
+
+class ImportedView(Answer):
+    """Runs that were imported, in the order of their archive."""
 
     items: list[TrainingView | RaceView | ExperimentView]
 

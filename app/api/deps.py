@@ -115,20 +115,25 @@ def _role(request: Request) -> Role:
     return role
 
 
+async def _body(request: Request) -> bytes:
+    try:
+        return await request.body()
+    except ClientDisconnect as error:
+        raise HTTPException(400) from error
+
+
 async def _start_request(
     request: Request,
+    body: Annotated[bytes, Depends(_body)],
     idempotency_key: Annotated[
         str | None,
         Header(pattern=r"^[\x21-\x7e]{1,200}$", description=VALID["idempotency-key"]),
     ] = None,
 ) -> StartRequest:
-    try:
-        body = await request.body()
-    except ClientDisconnect as error:
-        raise HTTPException(400) from error
     return StartRequest(f"{request.url.path}?{request.url.query}", body, idempotency_key)
 
 
 ServicesDep = Annotated[Services, Depends(_services)]
+BodyDep = Annotated[bytes, Depends(_body)]
 StartRequestDep = Annotated[StartRequest, Depends(_start_request)]
 RoleDep = Annotated[Role, Depends(_role)]

@@ -3,12 +3,13 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from app.archive.transfer import MAX_RUNS
 from app.domain import disturbances
 from app.domain.gait import NAMED_GAITS
 from app.domain.observation import OBSERVATIONS
 from app.domain.robot import PRESETS
 from app.domain.settings import declared_fields
-from app.domain.text import MAX_NAME, NAMES
+from app.domain.text import MAX_NAME, MAX_TAG, NAMES, NOTES, TAGS
 from app.domain.world import MAX_DISTURBANCES, WORLDS
 from app.experiments.config import EXPERIMENTS, MAX_SEEDS
 from app.runs.clocks import CLOCKS
@@ -16,10 +17,12 @@ from app.runs.config import SIMULATORS, TrainingConfig
 from app.runs.lane import LaneConfig
 from app.runs.race_config import MAX_LANES
 from app.stage.playback import HIGHEST_LEVEL, LOWEST_LEVEL
-from app.storage.run import KINDS, STATES
+from app.storage.run import KINDS, SORTS, STATES
 
 MAX_PAGE = 100
 MAX_SEARCH = MAX_NAME
+MAX_CURSOR = 2000
+"""Maximum length of a cursor: a name, of which each character takes up to 12, and an id."""
 
 
 def _one_of(names: Iterable[str]) -> str:
@@ -66,13 +69,21 @@ VALID: Mapping[str, str] = {
     "plans_with": declared_fields(LaneConfig)["plans_with"].valid,
     "keep_learning": declared_fields(LaneConfig)["keep_learning"].valid,
     "run_id": "the id of a run",
+    "id": f"the id of a run; up to {MAX_RUNS} of them as id=…&id=…",
     "time_s": "a number of seconds, 0 or more",
     "playing": "true or false",
     "speed": "a number from 0.25 to 64, or time-lapse",
     "clock": _one_of(CLOCKS),
     "kind": _one_of(KINDS),
     "state": _one_of(STATES),
-    "search": f"a part of the name or id, of at most {MAX_SEARCH} characters; A to Z match a to z",
+    "search": (
+        f"a part of the name, id, tags or notes, of at most {MAX_SEARCH} characters; A to Z match "
+        "a to z"
+    ),
+    "tag": f"a tag, of at most {MAX_TAG} characters; A to Z match a to z",
+    "tags": TAGS,
+    "notes": NOTES,
+    "sort": f"{_one_of(SORTS)}: by time of creation, A to Z, or the longest first",
     "limit": f"a whole number from 1 to {MAX_PAGE}",
     "cursor": "the next_cursor of the page before",
     "idempotency-key": "1 to 200 printable ASCII characters without spaces",

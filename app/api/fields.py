@@ -1,6 +1,6 @@
 """Field types and the base class of request bodies."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import (
@@ -22,23 +22,50 @@ from app.api.descriptions import VALID
 from app.domain.errors import InvalidInput, UnknownName
 from app.domain.robot import AZIMUTH, MAX_LEGS, MIN_LEGS, MOUNT_RADIUS, PRESETS, RANGES
 from app.domain.settings import DeclaredSetting, declared_fields
-from app.domain.text import MAX_NAME, check_name, invisible_ranges
+from app.domain.text import (
+    MAX_NAME,
+    MAX_NOTES,
+    MAX_TAG,
+    MAX_TAGS,
+    NOTES_CONTROLS,
+    TAG_SEPARATOR,
+    check_name,
+    check_notes,
+    check_tags,
+    invisible_ranges,
+)
 from app.runs.config import TrainingConfig
 from app.runs.lane import LaneConfig
 from app.runs.race_config import MAX_ID, RaceConfig
 
 
-def _name(text: str) -> str:
-    try:
-        return check_name(text)
-    except InvalidInput as error:
-        raise ValueError(str(error)) from error
+def _checked_by(check: Callable[[Any], Any]) -> AfterValidator:
+    """Return a validator by a function of the domain that returns the value as it is kept."""
+
+    def validate(value: Any) -> Any:
+        try:
+            return check(value)
+        except InvalidInput as error:
+            raise ValueError(str(error)) from error
+
+    return AfterValidator(validate)
 
 
-def _add_name_pattern(schema: dict[str, Any]) -> None:
-    """Add the pattern of valid names; deferred, as only the OpenAPI document needs it."""
+def _add_pattern(schema: dict[str, Any]) -> None:
+    """Add the pattern of visible text; deferred, as only the OpenAPI document needs it."""
     ranges = (f"{_escaped(first)}-{_escaped(last)}" for first, last in invisible_ranges())
     schema["pattern"] = f"^[^{''.join(ranges)}]*$"
+
+
+def _add_tag_pattern(schema: dict[str, Any]) -> None:
+    _add_pattern(schema)
+    schema["pattern"] = schema["pattern"].replace("^[^", f"^[^{TAG_SEPARATOR}")
+
+
+def _add_notes_pattern(schema: dict[str, Any]) -> None:
+    _add_pattern(schema)
+    allowed = "".join(_escaped(ord(one)) for one in NOTES_CONTROLS)
+    schema["pattern"] = f"^({schema['pattern'][1:-2]}|[{allowed}])*$"
 
 
 def _escaped(point: int) -> str:
@@ -90,9 +117,19 @@ Name = Annotated[
     Field(
         max_length=MAX_NAME,
         description=VALID["name"],
-        json_schema_extra=_add_name_pattern,
+        json_schema_extra=_add_pattern,
     ),
-    AfterValidator(_name),
+    _checked_by(check_name),
+]
+Tags = Annotated[
+    list[Annotated[str, Field(max_length=MAX_TAG, json_schema_extra=_add_tag_pattern)]],
+    Field(max_length=MAX_TAGS, description=VALID["tags"]),
+    _checked_by(lambda tags: list(check_tags(tags))),
+]
+Notes = Annotated[
+    str,
+    Field(max_length=MAX_NOTES, description=VALID["notes"], json_schema_extra=_add_notes_pattern),
+    _checked_by(check_notes),
 ]
 RunId = Annotated[str, Field(min_length=1, max_length=MAX_ID)]
 

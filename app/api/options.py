@@ -14,12 +14,14 @@ from app.agents.appearance import colors_of, description_of, title_of
 from app.agents.registry import OURS, keeps_learning, learns, needs_practice, searches
 from app.api.compression import CompressedContent
 from app.api.deps import ServicesDep
+from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import OptionsView
+from app.archive.transfer import MAX_RUNS
 from app.domain import disturbances
 from app.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
 from app.domain.robot import MAX_LEGS, PRESETS, Robot, as_mapping
 from app.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
-from app.domain.text import MAX_NAME
+from app.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS
 from app.domain.world import MAX_DISTURBANCES, WORLDS, is_simulated
 from app.experiments.config import (
     EXPERIMENTS,
@@ -352,6 +354,11 @@ def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | N
         "lanes": [1, MAX_LANES],
         "disturbances": [0, MAX_DISTURBANCES],
         "name": [0, MAX_NAME],
+        "tag": [1, MAX_TAG],
+        "tags": [0, MAX_TAGS],
+        "notes": [0, MAX_NOTES],
+        "import_bytes": [1, MAX_FILE_BYTES],
+        "archive_runs": [1, MAX_RUNS],
         "seeds": [1, MAX_SEEDS],
         "trials": [1, MAX_TRIALS],
         "settings": [1, MAX_SETTINGS],

@@ -4,12 +4,14 @@
 """
 
 from collections.abc import Callable, Mapping
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import (
+    CodeView,
+    DeletedView,
     ExperimentPage,
     ExperimentView,
     Page,
@@ -20,31 +22,36 @@ from app.api.answers import (
     TrainingPage,
     TrainingView,
 )
-from app.api.deps import Services, ServicesDep
-from app.api.descriptions import MAX_PAGE, MAX_SEARCH, VALID
+from app.api.contract import LOCATION, answers
+from app.api.deps import Services, ServicesDep, StartRequestDep
+from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_SEARCH, VALID
+from app.api.fields import RunId
+from app.api.run_code import run_code
+from app.api.schemas import AnnotationBody
+from app.archive.transfer import MAX_RUNS
+from app.domain.text import MAX_TAG
 from app.jobs.jobs import Jobs
-from app.storage.errors import Damaged, NotFound
-from app.storage.run import AnyRun, DamagedRun, Kind, Run, State
+from app.storage.database.listing import Listing
+from app.storage.errors import Conflict, Damaged, NotFound
+from app.storage.run import AnyRun, DamagedRun, Kind, Run, Sort, State
 
 RunPath = Annotated[str, Path(description="of the run")]
-
-
-class Listing(NamedTuple):
-    """Which runs a list has, and which page of it."""
-
-    state: State | None
-    search: str | None
-    limit: int
-    cursor: str | None
+RunIdsQuery = Annotated[
+    list[RunId],
+    Query(alias="id", min_length=1, max_length=MAX_RUNS, description=VALID["id"]),
+]
 
 
 def _listing(
+    *,
     state: Annotated[State | None, Query(description=VALID["state"])] = None,
     search: Annotated[str | None, Query(max_length=MAX_SEARCH, description=VALID["search"])] = None,
     limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 50,
-    cursor: Annotated[str | None, Query(max_length=64, description=VALID["cursor"])] = None,
+    cursor: Annotated[str | None, Query(max_length=MAX_CURSOR, description=VALID["cursor"])] = None,
+    tag: Annotated[str | None, Query(max_length=MAX_TAG, description=VALID["tag"])] = None,
+    sort: Annotated[Sort, Query(description=VALID["sort"])] = "newest",
 ) -> Listing:
-    return Listing(state, search, limit, cursor)
+    return Listing(None, state, limit, cursor, search, tag, sort)
 
 
 ListingDep = Annotated[Listing, Depends(_listing)]
@@ -87,14 +94,28 @@ def accepted(request: Request, view: dict[str, Any]) -> Response:
 router = APIRouter(prefix="/runs", tags=["runs"])
 
 
-@router.get("", summary="The runs of every kind, newest first", response_model=RunPage)
+@router.get("", summary="The runs of every kind", response_model=RunPage)
 def list_runs(
     services: ServicesDep,
     listing: ListingDep,
     kind: Annotated[Kind | None, Query(description=VALID["kind"])] = None,
 ) -> Response:
-    """List runs, filtered by kind, state, and a part of the name or id."""
-    return _page(services, kind, listing)
+    """List runs, filtered by kind, state, tag, and a part of the name, id, tags or notes."""
+    return _page(services, listing._replace(kind=kind))
+
+
+@router.delete("", summary="Delete runs that have ended", response_model=DeletedView)
+def delete_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
+    """Delete each run that can be deleted; the answer names the others, and why they are kept."""
+    deleted, kept = [], []
+    for one in dict.fromkeys(ids):
+        try:
+            services.jobs.delete(one)
+        except (NotFound, Conflict) as error:
+            kept.append({"id": one, "reason": str(error)})
+        else:
+            deleted.append(one)
+    return JSONResponse({"deleted": deleted, "kept": kept})
 
 
 @router.get(
@@ -107,8 +128,47 @@ def get_any_run(services: ServicesDep, run_id: RunPath) -> Response:
     return JSONResponse(services.jobs.view(services.store.find(run_id)))
 
 
-def _page(services: Services, kind: Kind | None, listing: Listing) -> Response:
-    page = services.store.list(kind, **listing._asdict())
+@router.patch(
+    "/{run_id}",
+    summary="Rename a run, or change its tags or notes",
+    response_model=TrainingView | RaceView | ExperimentView,
+)
+def annotate_run(services: ServicesDep, run_id: RunPath, body: AnnotationBody) -> Response:
+    """Change them in any state of the run; tags and notes are replaced as a whole."""
+    return JSONResponse(services.jobs.view(services.jobs.annotate(run_id, body.changes())))
+
+
+@router.post(
+    "/{run_id}/again",
+    status_code=202,
+    summary="Start a run with the settings of another",
+    response_model=TrainingView | RaceView | ExperimentView,
+    responses=answers(202, headers=LOCATION),
+)
+def run_again(
+    services: ServicesDep, request: Request, run_id: RunPath, start_request: StartRequestDep
+) -> Response:
+    """Queue it as the other was started: with its seed and its tables, without what changed live.
+
+    It is the same to the last bit, wall times aside.
+    """
+    jobs = services.jobs
+    run = start_request.start(services, lambda key: jobs.again(run_id, key))
+    return accepted(request, jobs.view(run))
+
+
+@router.get("/{run_id}/code", summary="A run as commands and as Python", response_model=CodeView)
+def get_code(services: ServicesDep, request: Request, run_id: RunPath) -> Response:
+    """Return what makes exactly this run, on the command line and in Python.
+
+    Trainings that it rests on are practised first; a table that no practice repeats is downloaded.
+    """
+    run = services.store.get(run_id)
+    return JSONResponse(run_code(run, services.store, str(request.base_url))._asdict())
+
+
+def _page(services: Services, listing: Listing) -> Response:
+    page = services.store.list(**listing._asdict())
     items = [services.jobs.view(run) for run in page.items]
     return JSONResponse({"items": items, "next_cursor": page.next_cursor})
 
@@ -118,9 +178,9 @@ def run_routes(kind: Kind) -> APIRouter:
     router = APIRouter(prefix=f"/{kind}s", tags=[f"{kind}s"])
     view, page = _VIEWS[kind]
 
-    @router.get("", summary=f"The {kind}s, newest first", name=f"list_{kind}s", response_model=page)
+    @router.get("", summary=f"The {kind}s", name=f"list_{kind}s", response_model=page)
     def list_runs(services: ServicesDep, listing: ListingDep) -> Response:
-        return _page(services, kind, listing)
+        return _page(services, listing._replace(kind=kind))
 
     @router.get("/{run_id}", summary=phrase("{}", kind), name=f"get_{kind}", response_model=view)
     def get_run(services: ServicesDep, run_id: RunPath) -> Response:

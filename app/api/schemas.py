@@ -17,6 +17,7 @@ from app.api.fields import (
     KeepLearning,
     LaneObservation,
     Name,
+    Notes,
     Pace,
     PlansWith,
     RaceSteps,
@@ -25,6 +26,7 @@ from app.api.fields import (
     Seed,
     Steps,
     StepsPerEpisode,
+    Tags,
     Tolerance,
     number,
 )
@@ -249,11 +251,11 @@ class BranchBody(Body):
         return BranchStart(branch, disturbances, self.name or None)
 
 
-class ChangeBody(Body):
-    """Changes to a running training: its pace, and live settings of its agent."""
+class PatchBody(Body):
+    """Changes, of which at least one is given."""
 
     @model_validator(mode="after")
-    def _require_a_change(self) -> "ChangeBody":
+    def _require_a_change(self) -> "PatchBody":
         if not self.changes():
             names = ", ".join(type(self).model_fields)
             raise PydanticCustomError("says_all", "{message}", {"message": f"Give one of {names}"})
@@ -262,6 +264,18 @@ class ChangeBody(Body):
     def changes(self) -> dict[str, Any]:
         """Return the given fields."""
         return self.model_dump(exclude_none=True)
+
+
+class ChangeBody(PatchBody):
+    """Changes to a running training: its pace, and live settings of its agent."""
+
+
+class AnnotationBody(PatchBody):
+    """Changes to what users say of a run."""
+
+    name: Name | None = None
+    tags: Tags | None = None
+    notes: Notes | None = None
 
 
 class StageBody(Body):

@@ -1,17 +1,17 @@
-"""Routes that export a run as an archive, and import one."""
+"""Routes that export runs as an archive, and import them."""
 
 from collections.abc import Callable
 
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
-from app.api.answers import ExperimentView, RaceView, TrainingView
+from app.api.answers import ExperimentView, ImportedView, RaceView, TrainingView
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
-from app.api.deps import ServicesDep, StartRequestDep
+from app.api.deps import BodyDep, ServicesDep, StartRequestDep
 from app.api.formats import attachment
-from app.api.runs import RunPath, find, phrase
+from app.api.runs import RunIdsQuery, RunPath, find, phrase
 from app.archive import archive
-from app.archive.transfer import export_chunks, import_run
+from app.archive.transfer import export_chunks, export_many, import_run, import_runs
 from app.domain.errors import InvalidInput
 from app.events.run_view import run_view
 from app.storage.run import KINDS, Kind
@@ -41,6 +41,42 @@ for _kind in KINDS:
     )
 
 
+@router.get(
+    "/runs/export",
+    tags=["runs"],
+    summary="Several runs with all they have",
+    response_class=Response,
+    responses={
+        **answers(200, {archive.MEDIA_TYPE: BINARY}, headers=ATTACHMENT),
+        404: {},
+        409: {},
+    },
+)
+def export_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
+    """Return one `.zip` with the archive of each, which `POST /runs/import` accepts."""
+    data = export_many(services.store, ids, services.exports)
+    count = len(dict.fromkeys(ids))
+    return attachment(data, archive.MEDIA_TYPE, f"{count}-run{'' if count == 1 else 's'}.zip")
+
+
+@router.post(
+    "/runs/import",
+    status_code=201,
+    tags=["runs"],
+    summary="Take in what was exported, one run or several",
+    response_model=ImportedView,
+    openapi_extra=takes_file("application/octet-stream"),
+)
+def import_archive_of_runs(services: ServicesDep, body: BodyDep) -> Response:
+    """Import the body, an archive, whole or not at all; otherwise as `POST /import`."""
+    store, agents, ids = services.store, services.agents, services.jobs.new_id
+    runs = import_runs(store, _not_empty(body), ids, agents, "the archive")
+    views = [run_view(run) for run in runs]
+    for view in views:
+        services.bus.publish("run", view, view["id"])
+    return JSONResponse({"items": views}, 201)
+
+
 @router.post(
     "/import",
     status_code=201,
@@ -58,8 +94,7 @@ def import_archive(
     A repeated request with the same `Idempotency-Key` returns the run that it imported first. The
     run keeps its id if that is free here and not in the future; the response has the actual id.
     """
-    if not start_request.body:
-        raise InvalidInput("send the .zip file of an exported run as the request's body")
+    _not_empty(start_request.body)
     store, agents, ids = services.store, services.agents, services.jobs.new_id
     run = start_request.start(
         services,
@@ -68,3 +103,9 @@ def import_archive(
     services.bus.publish("run", run_view(run), run.id)
     location = request.url_for(f"get_{run.kind}", run_id=run.id).path
     return JSONResponse(run_view(run), 201, {"Location": location})
+
+
+def _not_empty(body: bytes) -> bytes:
+    if not body:
+        raise InvalidInput("send the .zip file of an exported run as the request's body")
+    return body

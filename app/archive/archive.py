@@ -60,12 +60,16 @@ def pack_chunks(members: Mapping[str, Member]) -> Iterator[bytes]:
     Raises:
         InvalidInput: at the call, if the archive would be too large to be imported again.
     """
-    overhead = _MAX_MANIFEST_BYTES + _MAX_DIRECTORY_BYTES
-    if sum(one.size for one in members.values()) + overhead > MAX_BYTES or (
+    if packed_size(sum(one.size for one in members.values())) > MAX_BYTES or (
         len(members) >= MAX_MEMBERS
     ):
-        raise InvalidInput(f"the run is too large for an archive, which has up to {MAX_BYTES:,} B")
+        raise InvalidInput(f"it is too large for an archive, which has up to {MAX_BYTES:,} B")
     return _pack_chunks(members)
+
+
+def packed_size(size: int) -> int:
+    """Return the maximum size of an archive whose members have this size together [bytes]."""
+    return size + _MAX_MANIFEST_BYTES + _MAX_DIRECTORY_BYTES
 
 
 def _pack_chunks(members: Mapping[str, Member]) -> Iterator[bytes]:

@@ -24,7 +24,7 @@ from app.archive.untrusted_input import (
 )
 from app.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownName
 from app.domain.robot import robot
-from app.domain.text import check_name
+from app.domain.text import MAX_NOTES, MAX_TAG, check_name, check_notes, check_tags
 from app.experiments.config import ExperimentConfig
 from app.jobs.submissions import MAX_WORKERS, check_training, check_walk, plan_of
 from app.runs.clocks import CLOCKS
@@ -116,6 +116,8 @@ class _EndedRun(UntrustedInput, frozen=True):
     started_at: Moment | None
     ended_at: Moment | None
     workers: Annotated[int, Meta(ge=1, le=MAX_WORKERS)] | None = None
+    tags: tuple[Annotated[str, Meta(max_length=MAX_TAG)], ...] = ()
+    notes: Annotated[str, Meta(max_length=MAX_NOTES)] = ""
 
 
 class _File(UntrustedInput, frozen=True):
@@ -141,6 +143,9 @@ def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
         raise Conflict(f"{run.kind} {run.id} is {run.state}; stop it first", run.state)
     run_fields = {name: getattr(run, name) for name in _EndedRun.__struct_fields__}
     run_fields["config"] = config_as_json(run.config)
+    for name in ("tags", "notes"):
+        if not run_fields[name]:
+            del run_fields[name]  # as in earlier versions, which do not know them
     document = {"format": FORMAT, "version": __version__, "run": run_fields, "curve": list(curve)}
     data = msgspec.json.format(msgspec.json.encode(document), indent=1)
     if len(data) > MAX_JSON_BYTES:
@@ -228,6 +233,8 @@ def _decode(raw: Raw, kind: Any) -> Any:
 def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
     """Check constraints on a run's fields beyond their types."""
     check_name(run.name)
+    if check_tags(run.tags) != run.tags or check_notes(run.notes) != run.notes:
+        raise ValueError("its tags or its notes are not as they are kept")
     for name in ("created_at", "started_at", "ended_at"):
         check_moment(name, getattr(run, name))
     for change in run.changes:

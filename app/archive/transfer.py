@@ -1,14 +1,19 @@
-"""Export a run from a store to an archive, and import one from an archive after validation."""
+"""Export runs from a store to an archive, and import them from one after validation.
 
-from collections.abc import Collection, Iterator
+An archive of several runs has the archive of each as a member.
+"""
+
+import re
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from app.archive import archive
 from app.archive.archived_files import check_files, is_file_of, members_of
 from app.archive.archived_run import read_run_json, run_json
 from app.archive.archived_trials import TRIALS, read_trials_json, trials_json
-from app.domain.errors import DamagedFile
+from app.domain.errors import DamagedFile, InvalidInput
 from app.events.damage import as_shown
 from app.experiments.config import ExperimentConfig
 from app.limits.memory_budget import MemoryBudget
@@ -19,6 +24,9 @@ from app.storage.run import KINDS, Content, DamagedRun, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
 
 RUN = "run.json"
+MAX_RUNS = 100
+"""Runs of an archive."""
+_ONE_OF_SEVERAL = re.compile(rf"({'|'.join(KINDS)})-[0-9a-z]{{1,32}}\.zip", re.ASCII)
 _ANYONE = "anyone"
 
 
@@ -46,6 +54,46 @@ def export_chunks(
         InvalidInput: if the archive would be too large to be imported.
         Busy: if the budget is exhausted at present.
     """
+    _, texts, files = _contents(store, run_id)
+    in_memory = {name: archive.member(text) for name, text in texts.items()}
+    chunks = archive.pack_chunks(in_memory | files)
+    size = sum(map(len, texts.values()))
+    return chunks if budget is None else _BudgetedChunks(chunks, size, budget)
+
+
+def export_many(
+    store: RunStore, run_ids: Sequence[str], budget: MemoryBudget | None = None
+) -> Iterator[bytes]:
+    """Export ended runs to one archive, as a stream of chunks that holds one run's texts at a time.
+
+    Args:
+        store: store of the runs.
+        run_ids: ids of the runs, at most `MAX_RUNS`; repeated ones count once.
+        budget: memory budget, as for `export_chunks`.
+
+    Raises:
+        InvalidInput: if there are none or too many, or the archive would be too large.
+        NotFound, Conflict, Damaged, DamagedFile, Busy: as `export_chunks`, for any of them.
+    """
+    ids = list(dict.fromkeys(run_ids))
+    if not 1 <= len(ids) <= MAX_RUNS:
+        raise InvalidInput(f"an archive has from 1 to {MAX_RUNS} runs, not {len(ids):,}")
+    members, held = {}, 0
+    for run_id in ids:
+        run, texts, files = _contents(store, run_id)
+        in_memory = sum(map(len, texts.values()))
+        size = in_memory + sum(file.size for file in files.values())
+        chunks = partial(export_chunks, store, run_id)
+        members[f"{run.kind}-{run.id}.zip"] = archive.Member(archive.packed_size(size), chunks)
+        held = max(held, in_memory)
+    packed = archive.pack_chunks(members)
+    return packed if budget is None else _BudgetedChunks(packed, held, budget)
+
+
+def _contents(
+    store: RunStore, run_id: str
+) -> tuple[Run, dict[str, bytes], dict[str, archive.Member]]:
+    """Return an ended run, and of its archive the members in memory and those in files."""
     run = as_shown(store.get(run_id))
     if isinstance(run, DamagedRun):
         raise Damaged(run.id, run.damaged)
@@ -56,10 +104,7 @@ def export_chunks(
     texts = {RUN: run_json(run, curve)}
     if run.kind == "experiment":
         texts[TRIALS] = trials_json(trials)
-    in_memory = {name: archive.member(text) for name, text in texts.items()}
-    chunks = archive.pack_chunks(in_memory | members_of(store, run))
-    size = sum(map(len, texts.values()))
-    return chunks if budget is None else _BudgetedChunks(chunks, size, budget)
+    return run, texts, members_of(store, run)
 
 
 class _BudgetedChunks:
@@ -114,6 +159,52 @@ def import_run(
         StorageFull: if there is too little disk space.
     """
     members = archive.unpack(data, label, _is_member_name)
+    run, content = _checked(members, ids, agents, label)
+    return store.add(run, content, ids, key)
+
+
+def import_runs(
+    store: RunStore, data: bytes, ids: RunIds, agents: Collection[str], label: str
+) -> list[Run]:
+    """Validate an archive of one run or several, and add all of them to a store, or none.
+
+    Args:
+        store: store that receives the runs.
+        data: the whole archive.
+        ids: generator of ids for this store.
+        agents: names of the registered agents.
+        label: name of the archive for error messages.
+
+    Returns:
+        the runs as stored.
+
+    Raises:
+        DamagedFile, InvalidInput, StorageFull: as `import_run`, for any of them.
+    """
+    members = archive.unpack(data, label, _is_any_member_name)
+    if RUN in members:
+        checked = [_checked(members, ids, agents, label)]
+    elif not members or not all(map(_ONE_OF_SEVERAL.fullmatch, members)):
+        raise DamagedFile(f"{label} is no archive of runs: it has no {RUN}")
+    else:
+        checked = [
+            _checked(archive.unpack(one, label, _is_member_name), ids, agents, label)
+            for label, one in ((f"{name} of {label}", one) for name, one in members.items())
+        ]
+    added: list[Run] = []
+    try:
+        added.extend(store.add(run, content, ids) for run, content in checked)
+    except BaseException:
+        for run in added:
+            store.delete(run.id)
+        raise
+    return added
+
+
+def _checked(
+    members: dict[str, bytes], ids: RunIds, agents: Collection[str], label: str
+) -> tuple[Run, Content]:
+    """Validate the members of a run's archive; return the run with the id that it is to get."""
     if RUN not in members:
         raise DamagedFile(f"{label} is no archive of a run: it has no {RUN}")
     run, curve = read_run_json(members.pop(RUN), f"{RUN} of {label}", agents)
@@ -121,8 +212,7 @@ def import_run(
     check_files(run, members, label)
     if not ids.is_plausible(run.id):
         run = replace(run, id=ids())
-    content = Content(evaluations=curve, trials=trials, artifacts=members)
-    return store.add(run, content, ids, key)
+    return run, Content(evaluations=curve, trials=trials, artifacts=members)
 
 
 def _trials(run: Run, members: dict[str, bytes], label: str) -> list[dict[str, Any]]:
@@ -132,6 +222,10 @@ def _trials(run: Run, members: dict[str, bytes], label: str) -> list[dict[str, A
     if TRIALS not in members:
         raise DamagedFile(f"{label} is no archive of an experiment: it has no {TRIALS}")
     return read_trials_json(members.pop(TRIALS), run.config, f"{TRIALS} of {label}")
+
+
+def _is_any_member_name(name: str) -> bool:
+    return _is_member_name(name) or _ONE_OF_SEVERAL.fullmatch(name) is not None
 
 
 def _is_member_name(name: str) -> bool:

@@ -1,4 +1,4 @@
-"""`hexapods export`: a run with all it has, in one file that another machine takes in."""
+"""`hexapods export`: runs with all they have, in one file that another machine takes in."""
 
 import argparse
 import json
@@ -11,8 +11,10 @@ from app.settings import read_settings
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
-    parser = commands.add_parser("export", help="put a run into a file", description=__doc__)
-    parser.add_argument("run_id", metavar="RUN", help="its id, as `hexapods runs list` tells it")
+    parser = commands.add_parser("export", help="put runs into a file", description=__doc__)
+    parser.add_argument(
+        "run_ids", nargs="+", metavar="RUN", help="an id, as `hexapods runs list` tells it"
+    )
     parser.add_argument("--out", required=True, metavar="RUN.ZIP", help="where to put it")
     add_data(parser)
     parser.add_argument("--json", action="store_true", help="for programs")
@@ -20,24 +22,30 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Export a run that has ended; works beside a running server.
+    """Export runs that have ended; works beside a running server.
 
     Raises:
-        HexapodError: if the run does not exist or has not ended, or the file cannot be written.
+        HexapodError: if a run does not exist or has not ended, or the file cannot be written.
     """
     # Imported here, as the database modules would slow the start of other commands.
-    from app.archive.transfer import export_run  # noqa: PLC0415
+    from app.archive.transfer import export_many, export_run  # noqa: PLC0415
 
     check_writable(options.out)
     with open_for_reading(read_settings(data=options.data)) as store:
-        exported = store.get(find_run(store, options.run_id).id)
-        data = export_run(store, exported.id)
+        exported = [store.get(find_run(store, run_id).id) for run_id in options.run_ids]
+        first, *others = exported
+        if others:
+            data = b"".join(export_many(store, [run.id for run in exported]))
+        else:
+            data = export_run(store, first.id)
     write_whole(options.out, data)
     if options.json:
-        print(json.dumps({"id": exported.id, "file": options.out, "bytes": len(data)}))
+        ids = {"ids": [run.id for run in exported]} if others else {"id": first.id}
+        print(json.dumps({**ids, "file": options.out, "bytes": len(data)}))
     else:
+        these = f"{len(exported)} runs are" if others else f"{first.kind} {first.id} is"
         print(
-            f"{exported.kind.capitalize()} {exported.id} is in {options.out} "
-            f"({len(data) / 1e6:.1f} MB); `hexapods import` takes it in."
+            f"{these.capitalize()} in {options.out} ({len(data) / 1e6:.1f} MB); `hexapods import` "
+            f"takes {'them' if others else 'it'} in."
         )
     return 0

@@ -1,4 +1,4 @@
-"""`hexapods import`: takes in a run that `hexapods export` put into a file.
+"""`hexapods import`: takes in the runs that `hexapods export` put into a file.
 
 Nothing of the file is believed before it is checked; see docs/operations.md.
 """
@@ -19,7 +19,7 @@ from app.settings import Settings, read_settings
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
-    parser = commands.add_parser("import", help="take a run out of a file", description=__doc__)
+    parser = commands.add_parser("import", help="take runs out of a file", description=__doc__)
     parser.add_argument("file", metavar="RUN.ZIP", help="what `hexapods export` made")
     add_data(parser)
     parser.add_argument("--json", action="store_true", help="for programs")
@@ -27,15 +27,16 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Import a run.
+    """Import the runs of an archive, all or none.
 
     Raises:
-        HexapodError: if the file is not a valid archive, or the run cannot be stored.
+        HexapodError: if the file is not a valid archive, or a run cannot be stored.
     """
-    view = _import(read_settings(data=options.data), _read(options.file), options.file)
+    views = _import(read_settings(data=options.data), _read(options.file), options.file)
     if options.json:
-        print(json.dumps(view))
-    else:
+        print(json.dumps(views[0] if len(views) == 1 else {"items": views}))
+        return 0
+    for view in views:
         print(f"{options.file} is {view['kind']} {view['id']} here, {view['name']!r}.")
     return 0
 
@@ -49,9 +50,9 @@ def _read(path: str) -> bytes:
         raise InvalidInput(f"cannot read {path}: {error.strerror}") from error
 
 
-def _import(settings: Settings, data: bytes, label: str) -> dict[str, Any]:
+def _import(settings: Settings, data: bytes, label: str) -> list[dict[str, Any]]:
     # Imported here, as the database modules would slow the start of other commands.
-    from app.archive.transfer import import_run  # noqa: PLC0415
+    from app.archive.transfer import import_runs  # noqa: PLC0415
     from app.events.run_view import run_view  # noqa: PLC0415
     from app.storage.database.opening import open_store  # noqa: PLC0415
     from app.storage.run_ids import RunIds  # noqa: PLC0415
@@ -59,7 +60,9 @@ def _import(settings: Settings, data: bytes, label: str) -> dict[str, Any]:
 
     try:
         with open_store(settings) as store:
-            return run_view(import_run(store, data, RunIds.of(store), usable_agents(), label))
+            runs = import_runs(store, data, RunIds.of(store), usable_agents(), label)
+            return [run_view(run) for run in runs]
     except FolderInUse:
-        answer: dict[str, Any] = call_server(settings, "POST", "api/v1/import", data)
-        return answer
+        answer = call_server(settings, "POST", "api/v1/runs/import", data)
+        views: list[dict[str, Any]] = answer["items"]
+        return views

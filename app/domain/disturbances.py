@@ -433,6 +433,18 @@ def as_mapping(value: Disturbance) -> dict[str, Any]:
 _SHORT = {"at": "at_step", "until": "until_step"}
 
 
+def as_text(value: Disturbance) -> str:
+    """Return a disturbance as on a command line, the inverse of `parse_disturbance`."""
+    given = as_mapping(value)
+    name = given.pop("kind")
+    times = [(short, given.pop(field)) for short, field in _SHORT.items() if field in given]
+    parts = [
+        f"{field}={','.join(map(str, one)) if isinstance(one, list) else one}"
+        for field, one in [*given.items(), *times]
+    ]
+    return ":".join([name, *parts])
+
+
 def parse_disturbance(text: str) -> Disturbance:
     """Parse a disturbance from a command line, such as `limp:legs=1,4:at=25`.
 

@@ -1,7 +1,8 @@
-"""Text that users see: allowed characters in names, CSV cells, and how numbers are written."""
+"""Text that users see: names, tags and notes, CSV cells, and how numbers are written."""
 
 import sys
 import unicodedata
+from collections.abc import Iterable
 from functools import cache
 
 from app.domain.errors import InvalidInput
@@ -12,6 +13,21 @@ NAMES = (
     "direction or other invisible characters"
 )
 """Description of a valid name, for messages."""
+MAX_TAG, MAX_TAGS = 30, 20
+TAGS = (
+    f"a list of at most {MAX_TAGS} tags, each text of at most {MAX_TAG} characters, without "
+    "commas, control characters or other invisible characters"
+)
+"""Description of valid tags, for messages."""
+TAG_SEPARATOR = ","
+"""Between tags that are written in one line."""
+MAX_NOTES = 4_000
+NOTES = (
+    f"text of at most {MAX_NOTES:,} characters, without control characters but line breaks and tabs"
+)
+"""Description of valid notes, for messages."""
+NOTES_CONTROLS = "\t\n\r"
+"""Control characters that notes may have."""
 _INVISIBLE = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
 """Unicode categories: controls, format controls (bidirectional marks, joiners, tags), surrogates,
 and separators of lines and paragraphs. With them a name could be spoofed to look like another."""
@@ -26,12 +42,48 @@ def check_name(name: str) -> str:
     Raises:
         InvalidInput: if it is too long, or has an invisible character.
     """
-    if len(name) > MAX_NAME:
-        raise InvalidInput(f"a name must be {NAMES}; it has {len(name):,} characters")
-    hidden = next((character for character in name if _is_invisible(character)), None)
+    return _checked(name, MAX_NAME, f"a name must be {NAMES}")
+
+
+def check_tags(tags: Iterable[str]) -> tuple[str, ...]:
+    """Validate tags; return them stripped, without blank ones and repetitions.
+
+    Tags that differ only in upper and lower case are the same; the first spelling stays.
+
+    Raises:
+        InvalidInput: if there are too many, one is too long, or has an invisible character.
+    """
+    valid = f"tags must be {TAGS}"
+    kept: dict[str, str] = {}
+    for tag in tags:
+        text = _checked(tag, MAX_TAG, valid)
+        if TAG_SEPARATOR in text:
+            raise InvalidInput(f"{valid}; one is {text!r}")
+        if text:
+            kept.setdefault(text.casefold(), text)
+    if len(kept) > MAX_TAGS:
+        raise InvalidInput(f"{valid}; there are {len(kept):,}")
+    return tuple(kept.values())
+
+
+def check_notes(notes: str) -> str:
+    """Validate notes; return them without surrounding whitespace, their line breaks as LF.
+
+    Raises:
+        InvalidInput: if they are too long, or have an invisible character.
+    """
+    return _checked(notes, MAX_NOTES, f"notes must be {NOTES}", NOTES_CONTROLS).replace(
+        "\r\n", "\n"
+    )
+
+
+def _checked(text: str, limit: int, valid: str, also_allowed: str = "") -> str:
+    if len(text) > limit:
+        raise InvalidInput(f"{valid}; it has {len(text):,} characters")
+    hidden = next((one for one in text if _is_invisible(one) and one not in also_allowed), None)
     if hidden is not None:
-        raise InvalidInput(f"a name must be {NAMES}; it has U+{ord(hidden):04X}")
-    return name.strip()
+        raise InvalidInput(f"{valid}; it has U+{ord(hidden):04X}")
+    return text.strip()
 
 
 @cache
@@ -49,11 +101,13 @@ def invisible_ranges() -> tuple[tuple[int, int], ...]:
     return tuple(ranges)
 
 
-def visible(text: str) -> str:
+def visible(text: str, also_allowed: str = "") -> str:
     """Replace each invisible character by U+FFFD, the replacement character."""
     if text.isascii() and text.isprintable():
         return text
-    return "".join(_REPLACEMENT if _is_invisible(one) else one for one in text)
+    return "".join(
+        _REPLACEMENT if _is_invisible(one) and one not in also_allowed else one for one in text
+    )
 
 
 def _is_invisible(character: str) -> bool:

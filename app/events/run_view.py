@@ -49,6 +49,8 @@ def _whole_view(run: Run, queue_position: int | None) -> dict[str, Any]:
         "eta_s": run.eta_s,
         "result": run.result,
         "error": run.error,
+        "tags": list(run.tags),
+        "notes": run.notes,
         "can_resume": run.state in RESUMABLE[run.kind] | PAUSED,
         "created_at": _time(run.created_at),
         "started_at": _time(run.started_at),

@@ -39,7 +39,7 @@ from app.storage.database.engine import retry_during_outage
 from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost, StorageFailed
 from app.storage.recordings import Recordings
-from app.storage.run import CHECKPOINT, LIVE, RUNNING, SUMMARY, TABLE, Run, State
+from app.storage.run import ANNOTATIONS, CHECKPOINT, LIVE, RUNNING, SUMMARY, TABLE, Run, State
 
 MAX_OUTAGE_S = 600.0
 """Longest database outage that a job waits out; after that its run becomes `interrupted`."""
@@ -224,7 +224,8 @@ class Job:
             self.run_id, LIVE, state, error=error, result=result, ended_at=ended_at
         )
         with self._publish_lock:
-            self.last = run
+            # They may have been changed since it was read.
+            self.last = replace(run, **{name: getattr(self.last, name) for name in ANNOTATIONS})
             self.ended.set()
             self.publish()
 

@@ -20,6 +20,7 @@ from app.jobs.submissions import (
     RaceStart,
     TrainingStart,
     new_branch,
+    new_copy,
     new_experiment,
     new_race,
     new_training,
@@ -31,6 +32,7 @@ from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, NotAnswering, StorageFailed
 from app.storage.recordings import Recordings
 from app.storage.run import (
+    ANNOTATIONS,
     LIVE,
     NOT_ENDED,
     PAUSED,
@@ -171,6 +173,20 @@ class Jobs:
             Busy: if the queue is full.
         """
         return self._enqueue([new_experiment(start, self.new_id)], key)
+
+    def again(self, run_id: str, key: IdempotencyKey | None = None) -> Run:
+        """Queue a run with the settings of another.
+
+        Args:
+            run_id: id of the other run, in any state.
+            key: idempotency key of the request, stored with the run.
+
+        Raises:
+            NotFound: if there is no such run.
+            InvalidInput, Conflict: if an agent or a table that it needs is not there any more.
+            Busy: if the queue is full.
+        """
+        return self._enqueue([new_copy(self._store.get(run_id), self._store, self.new_id)], key)
 
     def keep(self, run: Run, table: bytes, key: IdempotencyKey | None = None) -> Run:
         """Store an imported training, which ended elsewhere, and publish it.
@@ -332,6 +348,26 @@ class Jobs:
         if sent.changed.refusal is not None:
             raise InvalidInput(sent.changed.refusal)
         return sent.changed
+
+    def annotate(self, run_id: str, changes: Mapping[str, Any]) -> Run:
+        """Change what users say of a run: any of its `ANNOTATIONS`, in any state.
+
+        Raises:
+            NotFound: if there is no such run.
+            Damaged: if it cannot be decoded.
+            InvalidInput: if its name is empty.
+        """
+        if changes.get("name") == "":
+            raise InvalidInput("a run keeps a name: give one with a visible character")
+        with self._changed:
+            self._store.get(run_id)
+            run = self._store.update(run_id, **changes)
+            self._queue.replace(run)
+            job = self._supervisor.find(run_id)
+            if job is not None:
+                return job.publish(**{name: getattr(run, name) for name in ANNOTATIONS})
+            self._publish(run)
+        return run
 
     def delete(self, run_id: str) -> None:
         """Delete a run that has ended.

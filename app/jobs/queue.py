@@ -96,6 +96,11 @@ class RunQueue:
                 pass  # it was never stored
             self._unreconciled.discard(run_id)
 
+    def replace(self, run: Run) -> None:
+        """Replace a queued run by what is stored of it now; nothing if it is not in the queue."""
+        if run.id in self._runs:
+            self._runs[run.id] = run
+
     @property
     def has_ready(self) -> bool:
         """Whether a run waits for nothing but a core; callable from any thread."""

@@ -17,7 +17,7 @@ from app.domain.world import check_ends
 from app.experiments.config import GRID, ExperimentConfig
 from app.experiments.plan import Plan
 from app.runs.config import TrainingConfig, WalkingProblem, problem_of
-from app.runs.lane import LaneConfig, lane_config, observation_of
+from app.runs.lane import LaneConfig, check_lane, lane_config, observation_of
 from app.runs.race_config import Branch, RaceConfig
 from app.runs.tables import Checkpoint, check_fits
 from app.storage.database.store import RunStore
@@ -191,6 +191,37 @@ def new_branch(start: BranchStart, store: RunStore, new_id: Callable[[], str]) -
         name=start.name or _branch_name(original.name, step),
         config=replace(config, world=world, branch_from=start.branch),
         lane_training_ids=original.lane_training_ids,
+        total=original.total,
+    )
+
+
+def new_copy(original: Run, store: RunStore, new_id: Callable[[], str]) -> Run:
+    """Return a run to be queued with the settings of another, as that was started.
+
+    Raises:
+        InvalidInput, NotFound, Conflict: if an agent or a table that it needs is gone.
+    """
+    config = original.config
+    if isinstance(config, TrainingConfig):
+        check_training(config)
+    elif isinstance(config, ExperimentConfig):
+        plan_of(config)
+    else:
+        for lane, training_id in zip(config.lanes, original.lane_training_ids, strict=True):
+            check_lane(lane, has_training=training_id is not None)
+        if config.branch_from is not None:
+            store.get(config.branch_from.race_id)
+    for training_id in filter(None, (*original.lane_training_ids, original.continued_from)):
+        load_table(store, training_id)
+    return Run(
+        id=new_id(),
+        kind=original.kind,
+        name=original.name,
+        config=config,
+        lane_training_ids=original.lane_training_ids,
+        continued_from=original.continued_from,
+        workers=original.workers,
+        tags=original.tags,
         total=original.total,
     )
 

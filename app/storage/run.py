@@ -1,5 +1,6 @@
 """A stored run: its fields, states and artifact names, and its config as JSON."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
@@ -15,11 +16,13 @@ from app.runs.race_config import RaceConfig
 
 Kind = Literal["training", "race", "experiment"]
 State = Literal["queued", "running", "paused", "finished", "stopped", "failed", "interrupted"]
+Sort = Literal["newest", "oldest", "name", "distance"]
 
 Config = TrainingConfig | RaceConfig | ExperimentConfig
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
 STATES: tuple[State, ...] = get_args(State)
+SORTS: tuple[Sort, ...] = get_args(Sort)
 QUEUED: frozenset[State] = frozenset({"queued"})
 RUNNING: frozenset[State] = frozenset({"running"})
 PAUSED: frozenset[State] = frozenset({"paused"})
@@ -28,6 +31,8 @@ LIVE = RUNNING | PAUSED
 NOT_ENDED = QUEUED | LIVE
 """States from which a run can still change by itself; only ended runs can be deleted."""
 INTERRUPTED: frozenset[State] = frozenset({"interrupted"})
+ANNOTATIONS = ("name", "tags", "notes")
+"""Fields of a run that users may change in any of its states."""
 RESUMABLE: Mapping[Kind, frozenset[State]] = {
     # Resumes from its newest checkpoint: most failures are caused by the machine, not the run.
     "training": INTERRUPTED | {"failed"},
@@ -72,6 +77,8 @@ class Run:
             done before the change.
         greedy_distance_m: of a training, distance of the greedy baseline [m], once measured.
         error: one sentence for the user; None if there was none.
+        tags: by which users find it again, as `check_tags` returns them.
+        notes: of users, as `check_notes` returns them.
         created_at, started_at, ended_at: in UTC.
     """
 
@@ -91,6 +98,8 @@ class Run:
     greedy_distance_m: float | None = None
     result: dict[str, Any] | None = None
     error: str | None = None
+    tags: tuple[str, ...] = ()
+    notes: str = ""
     created_at: datetime = field(default_factory=lambda: datetime.now(UTC))
     started_at: datetime | None = None
     ended_at: datetime | None = None
@@ -118,7 +127,7 @@ AnyRun = Run | DamagedRun
 
 
 class Page(NamedTuple):
-    """One page of a listing, newest run first."""
+    """One page of a listing."""
 
     items: list[AnyRun]
     next_cursor: str | None
@@ -157,6 +166,25 @@ class Content:
     evaluations: Sequence[Mapping[str, Any]] = ()
     trials: Sequence[Mapping[str, Any]] = ()
     artifacts: Mapping[str, bytes] = field(default_factory=dict)
+
+
+def ranking_distance_m(result: Mapping[str, Any] | None) -> float | None:
+    """Return the distance by which runs are ranked [m]: a training's, or that of a race's winner.
+
+    None if there is none, as of an experiment.
+    """
+    try:
+        if result is None or "lanes" not in result:
+            return _finite((result or {}).get("distance_m"))
+        figures = [lane["clocks"]["paper"] for lane in result["lanes"]]
+        winners = (one["finished_distance_m"] for one in figures if one["rank"] == 1)
+        return _finite(next(winners, None))
+    except (TypeError, KeyError):
+        return None  # of an earlier version, or damaged
+
+
+def _finite(value: Any) -> float | None:
+    return float(value) if isinstance(value, int | float) and math.isfinite(value) else None
 
 
 def world_of(run: Run) -> World:

@@ -21,7 +21,8 @@ import {
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { Change, DamagedRun, Disturbance, LaneConfig, Rates, Run, RunConfig, Stage, Verb } from "./types.js" */
+/** @import { Annotations, Change, DamagedRun, Disturbance, LaneConfig, Rates, Run, RunConfig } from "./types.js" */
+/** @import { Stage, Verb } from "./types.js" */
 
 /** A button of the page. @typedef {{ label: string, run: () => unknown }} Action */
 
@@ -297,6 +298,23 @@ export const deleteRun = (run) =>
   });
 
 /**
+ * Start a run with the settings of another, and show it.
+ * @param {Run} run
+ */
+export const runAgain = (run) =>
+  attempt(run.id, async () => {
+    const again = await adopt(() => api.startAgain(run.id));
+    location.hash = run.kind === "experiment" ? `#experiments?run=${again?.id}` : "";
+  });
+
+/**
+ * Change what users say of a run; null if that was refused.
+ * @type {(run: Run, changes: Annotations) => Promise<Run | null>}
+ */
+export const annotate = (run, changes) =>
+  attempt(run.id, () => requestRun(() => api.annotateRun(run.id, changes)));
+
+/**
  * Copy the settings of a run into the form as they hold at its end, those of a race with those of its training.
  * @param {Run} run
  */
@@ -354,15 +372,26 @@ function toast(message) {
   toastTimer = setTimeout(() => (toastMessage.value = null), TOAST_MS);
 }
 
+/**
+ * Copy a text; false where there is no clipboard, as outside of https and loopback.
+ * @param {string} text
+ * @param {string} words that tell of it
+ */
+export async function copy(text, words) {
+  try {
+    await navigator.clipboard.writeText(text);
+  } catch {
+    return false;
+  }
+  toast(words);
+  return true;
+}
+
 export async function share() {
   const isOwn = ownRunId.value !== null;
   const address = isOwn ? replayLink() : link();
-  try {
-    await navigator.clipboard.writeText(address);
-    const contents = isOwn ? "It opens this replay at this moment." : "It contains every setting of the form.";
-    toast(`Link copied. ${contents}`);
-  } catch {
-    // There is no clipboard outside of https and loopback.
+  const contents = isOwn ? "It opens this replay at this moment." : "It contains every setting of the form.";
+  if (!(await copy(address, `Link copied. ${contents}`))) {
     history.replaceState(history.state, "", address);
     toast("The address bar has the link: copy it from there.");
   }

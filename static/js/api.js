@@ -1,7 +1,7 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
 
-/** @import { Curve, Disturbance, Kind, Options, Page, Rates, Run, Stage, Summary, Timeline, Verb } from "./types.js" */
-/** @import { ReplayPlan, WhatIfAnswer } from "./types.js" */
+/** @import { Annotations, Curve, Disturbance, Kind, Options, Page, Rates, ReplayPlan, Run } from "./types.js" */
+/** @import { Stage, Summary, Timeline, Verb, WhatIfAnswer } from "./types.js" */
 
 const base = () => new URL("api/v1/", document.baseURI);
 
@@ -63,19 +63,19 @@ const parse = (text) => {
 /**
  * @param {string} method
  * @param {string} path
- * @param {unknown} [body] sent as JSON
+ * @param {unknown} [body] a file as it is, all else as JSON
  * @param {Record<string, string>} [headers]
  * @returns {Promise<any>} the answer's JSON, null where there is none
  * @throws {RequestError}
  */
 async function call(method, path, body, headers = {}) {
   /** @type {Record<string, string>} */
-  const type = body === undefined ? {} : { "Content-Type": "application/json" };
+  const type = body === undefined || body instanceof Blob ? {} : { "Content-Type": "application/json" };
   const response = await fetch(new URL(path, base()), {
     method,
     // Forms of other sites cannot send this header, so the server can tell their requests from this page's.
     headers: { "X-Requested-With": "hexapods", ...type, ...headers },
-    body: body === undefined ? undefined : JSON.stringify(body),
+    body: body === undefined || body instanceof Blob ? body : JSON.stringify(body),
   }).catch(() => {
     throw new Unreachable();
   });
@@ -105,8 +105,8 @@ export const getRun = (run) => call("GET", pathOf(run));
 export const getAnyRun = (id) => call("GET", `runs/${encodeURIComponent(id)}`);
 
 /**
- * A page of runs, newest first. Empty values filter nothing.
- * @type {(query: Partial<Record<"kind" | "state" | "search" | "cursor", string | null>>) => Promise<Page<Run>>}
+ * A page of runs. Empty values filter nothing.
+ * @type {(query: Record<string, string | null>) => Promise<Page<Run>>}
  */
 export const listRuns = (query) => {
   const given = Object.entries(query).flatMap(([name, value]) => (value ? [[name, value]] : []));
@@ -159,6 +159,32 @@ export const whatIf = (body) => call("POST", "what-if", body);
 export const command = (run, verb) => call("POST", `${pathOf(run)}/${verb}`);
 /** @type {(run: RunKey) => Promise<null>} */
 export const deleteRun = (run) => call("DELETE", pathOf(run));
+/** @type {(id: string, changes: Annotations) => Promise<Run>} */
+export const annotateRun = (id, changes) => call("PATCH", `runs/${encodeURIComponent(id)}`, changes);
+
+/** Start a run with the settings of another. @param {string} id */
+export const startAgain = (id) => start(`runs/${encodeURIComponent(id)}/again`, undefined);
+/** @type {(id: string) => Promise<{ command: string, python: string }>} */
+export const getCode = (id) => call("GET", `runs/${encodeURIComponent(id)}/code`);
+
+/** @param {string[]} ids */
+const idQuery = (ids) => new URLSearchParams(ids.map((id) => ["id", id]));
+/** @type {(ids: string[]) => Promise<{ deleted: string[], kept: { id: string, reason: string }[] }>} */
+export const deleteRuns = (ids) => call("DELETE", `runs?${idQuery(ids)}`);
+/** Where the archive of a run is. @param {RunKey} run */
+export const archiveAddress = (run) => addressOf(run, "export");
+/** Where the archive of several runs is. @param {string[]} ids */
+export const exportAddress = (ids) => new URL(`runs/export?${idQuery(ids)}`, base()).href;
+/**
+ * Take in an archive of one run or several.
+ * @type {(file: Blob) => Promise<{ items: Run[] }>}
+ */
+export const importRuns = (file) => call("POST", "runs/import", file);
+/**
+ * Add a training out of the file of a Q-table.
+ * @type {(file: Blob, name: string) => Promise<Run>}
+ */
+export const importTable = (file, name) => call("POST", `trainings/import?${new URLSearchParams({ name })}`, file);
 
 /** @type {(id: string) => Promise<Curve>} */
 export const getCurve = (id) => call("GET", `${pathOf({ kind: "training", id })}/curve`);

@@ -9,7 +9,7 @@ import { readAddress, writeAddress } from "./form.js";
 import { followTheme } from "./page.js";
 import { announceOutcomes, followTimeline } from "./race.js";
 import { followReplay, readReplayAddress } from "./replay.js";
-import { followRuns, runList, stageIds } from "./runs.js";
+import { followRuns, stageIds } from "./runs.js";
 import { applyEvent, connection, isLockedOut, options, version } from "./store.js";
 import { followCurves } from "./training.js";
 import { followWhatIf } from "./what-if.js";
@@ -49,7 +49,6 @@ function reloadAfterUpgrade() {
 followTheme();
 reloadAfterUpgrade();
 followRuns(stageIds);
-runList.follow("runs");
 followCurves();
 followTimeline();
 followReplay();

@@ -70,6 +70,39 @@ export const viewOf = (hash) => VIEWS.find((name) => hash.slice(1).split("?")[0]
 export const place = signal(viewOf(location.hash));
 addEventListener("hashchange", () => (place.value = viewOf(location.hash)));
 
+/** The query after the view in a hash. @param {string} hash */
+const queryOf = (hash) => new URLSearchParams(hash.split("?")[1] ?? "");
+
+/**
+ * Keep the state of a view and the query in its hash the same.
+ * @param {string} name of the view
+ * @param {(query: URLSearchParams) => void} read
+ * @param {() => string} write the query; empty while nothing is chosen
+ */
+export function followQuery(name, read, write) {
+  /** The hash that was last written or read here. */
+  let known = "";
+  const readHash = () => {
+    const { hash } = location;
+    if (hash === known || viewOf(hash) !== name) return;
+    known = hash;
+    const query = queryOf(hash);
+    // The bare link of the navigation leaves the view as it was.
+    if (query.size > 0) read(query);
+  };
+  readHash();
+  addEventListener("hashchange", readHash);
+  effect(() => {
+    if (place.value !== name) return;
+    // A link that was followed is read before the state is written over it.
+    readHash();
+    const query = write();
+    known = query ? `#${name}?${query}` : `#${name}`;
+    if (location.hash === known) return;
+    history.replaceState(history.state, "", `${location.pathname}${location.search}${known}`);
+  });
+}
+
 const narrowScreen = matchMedia("(max-width: 1080px)");
 /** Whether the page has one column. */
 export const isNarrow = signal(narrowScreen.matches);

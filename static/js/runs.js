@@ -2,13 +2,13 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getAnyRun, listRuns } from "./api.js";
 import { place } from "./page.js";
-import { everyRun, trainingIds } from "./selectors.js";
+import { trainingIds } from "./selectors.js";
 import { connection, damagedRuns, isDeleted, requestRun, requestRuns, runs, stage } from "./store.js";
 import { messageOf } from "./titles.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { DamagedRun, Kind, Run, State } from "./types.js" */
+/** @import { DamagedRun, Run } from "./types.js" */
 
 // ---- single runs
 
@@ -67,28 +67,69 @@ export const stageIds = computed(() => {
 // ---- lists: filtered and searched by the server, a page at a time
 
 /**
- * Filters of a list; empty ones let every run pass.
- * @typedef {{ kind: Kind | "", state: State | "", search: string }} Filters
+ * Filters of a list and its order; empty filters let every run pass. They may come from a link: the server says what
+ * is not valid.
+ * @typedef {{ kind: string, state: string, search: string, tag: string, sort: string }} Filters
  */
 
 const SEARCH_PAUSE_MS = 250;
 
 /** @type {Filters} */
-const NO_FILTERS = { kind: "", state: "", search: "" };
+export const NO_FILTERS = { kind: "", state: "", search: "", tag: "", sort: "newest" };
+
+/** The server takes only the letters A to Z of upper and lower case for the same. @param {string} text */
+export const folded = (text) => text.replaceAll(/[A-Z]/g, (letter) => letter.toLowerCase());
+
+/**
+ * The distance by which runs are sorted [m]: a training's, or that of a race's winner by the paper clock; null if none.
+ * @param {Run | DamagedRun} run
+ * @returns {number | null}
+ */
+export function distanceOf(run) {
+  const { lanes, distance_m = null } = ("result" in run && run.result) || {};
+  const winner = lanes?.find(({ clocks }) => clocks.paper.rank === 1);
+  return winner ? winner.clocks.paper.finished_distance_m : distance_m;
+}
+
+/** @typedef {Run | DamagedRun} AnyRun */
+
+/** @type {(a: string, b: string) => number} */
+const byText = (a, b) => (a === b ? 0 : a < b ? -1 : 1);
+/** Ids sort by the time of creation. @type {(a: AnyRun, b: AnyRun) => number} */
+const newestFirst = (a, b) => byText(b.id, a.id);
+/** Sort → the order of two runs, as the server's. @type {Record<string, (a: AnyRun, b: AnyRun) => number>} */
+const ORDERS = {
+  oldest: (a, b) => newestFirst(b, a),
+  name: (a, b) => byText(folded(a.name ?? ""), folded(b.name ?? "")) || newestFirst(a, b),
+  distance: (a, b) => (distanceOf(b) ?? -Infinity) - (distanceOf(a) ?? -Infinity) || newestFirst(a, b),
+};
+/** @param {string} sort */
+export const orderOf = (sort) => ORDERS[sort] ?? newestFirst;
+
+/**
+ * The pages of a list that were loaded, of these filters.
+ * @typedef {{ filters: Filters | null, ids: string[], cursor: string | null }} Pages
+ */
+
+/** @type {Pages} */
+const NO_PAGES = { filters: null, ids: [], cursor: null };
+
+/** The last run of these that was not deleted since. @param {string[]} ids */
+const lastOf = (ids) =>
+  ids.map((id) => runs.value.get(id) ?? damagedRuns.value.get(id)).findLast((run) => run !== undefined);
 
 /**
  * A list of runs with these filters. `cursor` is null after the last page.
  * @param {ReadonlySignal<Filters>} filters
  */
 export function makeList(filters) {
-  /** @type {Signal<{ filters: Filters | null, ids: string[], cursor: string | null }>} */
-  const pages = signal({ filters: null, ids: [], cursor: null });
+  const pages = signal(NO_PAGES);
   const isLoading = signal(false);
   /** Why the last page could not be loaded; empty where it could. */
   const error = signal("");
   /** Whether the first page of these filters is here. */
   const isListed = computed(() => pages.value.filters === filters.value);
-  const hasOlder = computed(() => isListed.value && pages.value.cursor !== null);
+  const hasMore = computed(() => isListed.value && pages.value.cursor !== null);
   /** Number of the newest request; the answers of earlier ones are of other filters. */
   let newest = 0;
 
@@ -111,55 +152,31 @@ export function makeList(filters) {
     }
   };
 
-  /** Whether a run is in the pages that were loaded, or newer. @param {{ id: string }} run */
-  const includes = ({ id }) => {
+  const last = computed(() => lastOf(pages.value.ids));
+
+  /** Whether a run is in the pages that were loaded, or comes before their end. @param {AnyRun} run */
+  const includes = (run) => {
     const { ids, cursor } = pages.value;
-    return !isListed.value || cursor === null || ids.includes(id) || id > (ids.at(-1) ?? "");
+    if (!isListed.value || cursor === null || ids.includes(run.id)) return true;
+    return last.value !== undefined && orderOf(filters.value.sort)(run, last.value) < 0;
   };
 
-  return {
-    isListed, isLoading, error, hasOlder, includes,
-    /** Load the first page, or the next one: whichever is missing. */
-    loadMore: () => (isLoading.value ? undefined : load(isListed.value ? pages.value.cursor : null)),
-    /** Load the first page as soon as the view is open, and again after a reconnection and for other filters. */
-    follow(/** @type {string} */ view) {
-      const isOpen = computed(() => place.value === view);
-      effect(() => {
-        // The snapshot after a reconnection replaces all known runs.
-        if (connection.value !== "live") pages.value = { filters: null, ids: [], cursor: null };
-      });
-      effect(() => {
-        if (!isOpen.value || connection.value !== "live" || isListed.value) return undefined;
-        const timer = setTimeout(() => load(null), filters.value.search ? SEARCH_PAUSE_MS : 0);
-        return () => clearTimeout(timer);
-      });
-    },
+  /** Load the first page as soon as the view is open, and again after a reconnection and for other filters. */
+  const follow = (/** @type {string} */ view) => {
+    const isOpen = computed(() => place.value === view);
+    effect(() => {
+      // The snapshot after a reconnection replaces all known runs.
+      if (connection.value !== "live") pages.value = NO_PAGES;
+    });
+    effect(() => {
+      if (!isOpen.value || connection.value !== "live" || isListed.value) return undefined;
+      const timer = setTimeout(() => load(null), filters.value.search ? SEARCH_PAUSE_MS : 0);
+      return () => clearTimeout(timer);
+    });
   };
+
+  /** Load the first page, or the next one: whichever is missing. */
+  const loadMore = () => (isLoading.value ? undefined : load(isListed.value ? pages.value.cursor : null));
+
+  return { isListed, isLoading, error, hasMore, includes, loadMore, follow };
 }
-
-// ---- the list of the Runs view
-
-/** @type {Signal<Filters>} */
-export const filters = signal(NO_FILTERS);
-export const isFiltered = computed(() => Object.values(filters.value).some(Boolean));
-export const clearFilters = () => (filters.value = NO_FILTERS);
-
-export const runList = makeList(filters);
-
-/** The server matches only the letters A to Z in upper and lower case. @param {string} text */
-const folded = (text) => text.replaceAll(/[A-Z]/g, (letter) => letter.toLowerCase());
-
-/**
- * A run whose kind cannot be read is listed under every kind.
- * @param {Run | DamagedRun} run
- */
-const passes = (run) => {
-  const { kind, state, search } = filters.value;
-  const isFound = [run.name ?? "", run.id].some((text) => folded(text).includes(folded(search)));
-  return ["", run.kind ?? kind].includes(kind) && ["", run.state].includes(state) && isFound;
-};
-
-/** The runs to be shown, newest first: what the server has listed, and what has begun since. */
-export const shownRuns = computed(() =>
-  [...damagedRuns.value.values(), ...everyRun.value].filter(passes).filter(runList.includes),
-);

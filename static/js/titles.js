@@ -63,7 +63,7 @@ export const choicesOf = (list, nameOf) => (list ?? []).map(({ name }) => [name,
 const LABELS = {
   gait: "Gait", robot: "Robot", simulator: "Simulator", observation: "Observation", agent: "Learner", lanes: "Lanes",
   name: "Name", world: "World", disturb: "What happens", experiment: "Experiment", seeds: "Seeds", gaits: "Gaits",
-  robots: "Robots", observations: "Observation", agents: "Agents", worlds: "Worlds",
+  robots: "Robots", observations: "Observation", agents: "Agents", worlds: "Worlds", tags: "Tags", notes: "Notes",
 };
 
 /**

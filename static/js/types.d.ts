@@ -279,6 +279,8 @@ export interface Run {
   eta_s?: number | null;
   result?: RunResult | null;
   error?: string | null;
+  tags?: string[];
+  notes?: string;
   can_resume: boolean;
   created_at: string;
   /** The trainings that a race waits for. */
@@ -288,6 +290,13 @@ export interface Run {
   best_known_m?: number | null;
   /** Of a training: what was changed while it ran. */
   changes?: Change[];
+}
+
+/** What users say of a run. */
+export interface Annotations {
+  name?: string;
+  tags?: string[];
+  notes?: string;
 }
 
 /** New values of live settings and the pace, or what happened, with the number of steps done before. */

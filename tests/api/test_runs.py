@@ -33,3 +33,68 @@ def test_an_unknown_filter_value_is_refused_with_the_valid_ones(api: Api) -> Non
     refused(api.call("GET", "/runs?state=tired"), 422, "state", "running")
     refused(api.call("GET", f"/runs?search={'x' * 101}"), 422, "search", "at most 100 characters")
     refused(api.call("GET", "/runs/nothing"), 404, "nothing")
+
+
+def test_runs_are_renamed_tagged_and_found_by_tag_in_any_order(api: Api) -> None:
+    options = {"steps": 10, "evaluate_every": 0}
+    one, two = (api.finished(api.train(name=name, **options)) for name in ("Owl 2", "owl 1"))
+    changed = api.call("PATCH", f"/runs/{one['id']}", json={"name": " Owl 3 ", "tags": ["a", "A"]})
+    assert changed.status_code == 200
+    assert changed.json() == api.look(one) == {**one, "name": "Owl 3", "tags": ["a"]}
+    api.call("PATCH", f"/runs/{two['id']}", json={"tags": ["a", "b"], "notes": "one\r\ntwo\t"})
+    assert api.look(two) == {**two, "tags": ["a", "b"], "notes": "one\ntwo"}
+    assert names(api.get("/runs?tag=A&sort=name")) == ["owl 1", "Owl 3"]
+    assert names(api.get("/trainings?tag=b")) == ["owl 1"]
+    assert names(api.get("/runs?search=TWO")) == ["owl 1"]
+    page = api.get("/runs?tag=a&sort=distance&limit=1")
+    assert names(api.get(f"/runs?tag=a&sort=distance&cursor={page['next_cursor']}")) != names(page)
+
+
+def test_an_invalid_annotation_is_refused_and_changes_nothing(api: Api) -> None:
+    run = api.finished(api.train(name="Kept", steps=5, evaluate_every=0))
+    path = f"/runs/{run['id']}"
+    for body, words in (
+        ({}, ("name, tags, notes",)),
+        ({"name": "  "}, ("a visible character",)),
+        ({"name": "a\u202eb"}, ("name must be text of at most 100",)),
+        ({"tags": ["x" * 31]}, ("at most 20 tags", "at most 30 characters")),
+        ({"tags": [f"{n}" for n in range(21)]}, ("at most 20 tags",)),
+        ({"tags": "ice"}, ("tags must be a list",)),
+        ({"notes": "\x1b"}, ("notes must be text of at most 4,000",)),
+        ({"state": "finished"}, ("unknown field 'state'", "name, tags, notes")),
+    ):
+        refused(api.call("PATCH", path, json=body), 422, *words)
+    assert api.look(run) == run
+    refused(api.call("PATCH", "/runs/nothing", json={"name": "a"}), 404, "nothing")
+    refused(api.call("GET", "/runs?sort=size"), 422, "newest, oldest, name, distance")
+    refused(api.call("GET", "/runs?sort=name&cursor=abc"), 422, "must be the next_cursor")
+
+
+def test_several_runs_are_exported_deleted_and_taken_in_again(api: Api) -> None:
+    options = {"steps": 10, "evaluate_every": 0}
+    runs = [api.finished(api.train(name=f"Heron {n}", **options)) for n in range(2)]
+    live = api.slow_training(name="Heron, live")
+    query = "&".join(f"id={run['id']}" for run in runs)
+    exported = api.call("GET", f"/runs/export?{query}")
+    assert exported.status_code == 200
+    assert exported.headers["content-disposition"] == 'attachment; filename="2-runs.zip"'
+    refused(api.call("GET", f"/runs/export?{query}&id={live['id']}"), 409, "stop it first")
+    refused(api.call("GET", f"/runs/export?{query}&id=none"), 404, "none")
+
+    done = api.call("DELETE", f"/runs?{query}&id={live['id']}&id=none").json()
+    assert done["deleted"] == [run["id"] for run in runs]
+    reasons = {one["id"]: one["reason"] for one in done["kept"]}
+    assert reasons.keys() == {live["id"], "none"}
+    assert "stop it first" in reasons[live["id"]]
+    api.stop(live)
+
+    events = api.client.app.state.services.bus.subscribe(names={"run"})  # type: ignore[attr-defined]
+    taken = api.call("POST", "/runs/import", content=exported.content)
+    assert taken.status_code == 201
+    assert taken.json()["items"] == runs
+    assert {event.run_id for event in events.drain()} >= {run["id"] for run in runs}
+    refused(api.call("POST", "/runs/import", content=b"PK"), 422, "no archive of a run")
+    refused(api.call("POST", "/runs/import", content=b""), 422, "end the .zip file")
+    refused(api.call("DELETE", "/runs"), 422, "id is missing", "the id of a run")
+    many = "&".join("id=a" for _ in range(101))
+    refused(api.call("DELETE", f"/runs?{many}"), 422, "up to 100 of them")

@@ -5,6 +5,7 @@ import json
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ import pytest
 
 from app.agents.registry import OURS
 from app.archive import archive
-from app.archive.transfer import RUN, export_run, import_run
+from app.archive.transfer import RUN, export_many, export_run, import_run, import_runs
 from app.domain.disturbances import SensorNoise
 from app.domain.errors import InvalidInput
 from app.domain.settings import SettingValues
@@ -22,7 +23,7 @@ from app.runs.lane import lane_config
 from app.runs.race_config import Branch, RaceConfig
 from app.runs.recording import race_arrays
 from app.storage.database.store import RunStore
-from app.storage.errors import Conflict, NotFound
+from app.storage.errors import Conflict, NotFound, StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run, State
 from app.storage.run_ids import RunIds
@@ -32,6 +33,7 @@ from tests.storage.stores import ODD, opened, temporary_store, training
 
 TRAINING, RACED = "00000000000t1", "00000000000r1"
 ONE, OTHER = "00000000000a1", "00000000000b1"
+TRAINING_ZIP, RACE_ZIP = f"training-{TRAINING}.zip", f"race-{RACED}.zip"
 Change = Callable[[Any], object]
 
 
@@ -46,6 +48,10 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunStore]:
 def imported(data: bytes, store: RunStore | None = None) -> Run:
     with temporary_store() if store is None else nullcontext(store) as target:
         return import_run(target, data, RunIds(), tuple(OURS), "run.zip")
+
+
+def imported_runs(data: bytes, store: RunStore) -> list[Run]:
+    return import_runs(store, data, RunIds(), tuple(OURS), "runs.zip")
 
 
 def refusal(data: bytes) -> str:
@@ -95,6 +101,81 @@ def test_export_and_import_preserve_everything(
             assert was is not None
             assert [s.step for s in practised.steps] == [s.step for s in was.steps]
             assert len(practised.evaluations) == len(was.evaluations) == 24
+
+
+def test_tags_and_notes_are_archived_and_checked(source: RunStore, store: RunStore) -> None:
+    data = export_run(source, TRAINING)
+    assert b'"tags"' not in data, "without any, earlier versions take it in too"
+    run = imported(data, store)
+    store.update(run.id, tags=("ice",), notes="one\ntwo")
+    again = imported(export_run(store, run.id))
+    assert (again.tags, again.notes) == (("ice",), "one\ntwo")
+    invalid: list[dict[str, Any]] = [{"tags": ["a", "A"]}, {"tags": ["x" * 31]}, {"notes": "\x1b"}]
+    for fields in invalid:
+        refusal(rewritten(data, partial(_set_in_run, fields)))
+
+
+def _set_in_run(fields: dict[str, Any], content: Any) -> None:
+    content["run"].update(fields)
+
+
+def test_several_runs_are_one_archive_that_is_taken_in_whole(
+    source: RunStore, store: RunStore
+) -> None:
+    data = b"".join(export_many(source, [TRAINING, RACED, TRAINING]))
+    members = archive.unpack(data, "runs.zip", lambda name: True)
+    assert list(members) == [TRAINING_ZIP, RACE_ZIP]
+    assert members[TRAINING_ZIP] == export_run(source, TRAINING), "each is an archive by itself"
+    assert imported_runs(data, store) == [source.get(TRAINING), source.get(RACED)]
+    assert store.artifact(RACED, RACE) == source.artifact(RACED, RACE)
+    [one] = imported_runs(export_run(source, RACED), store)
+    assert one.id not in (TRAINING, RACED), "one run by itself is taken in too"
+
+
+def test_an_archive_of_several_runs_is_refused_as_a_whole(
+    source: RunStore, store: RunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    good = export_run(source, TRAINING)
+    walk = rewritten(export_run(source, RACED), lambda content: content["run"].update(kind="walk"))
+    for broken in (good[:-9], walk, archive.pack({RACE_ZIP: good})):
+        data = archive.pack({TRAINING_ZIP: good, RACE_ZIP: broken})
+        with pytest.raises(InvalidInput, match=f"{RACE_ZIP} of runs.zip"):
+            imported_runs(data, store)
+    mixed: list[dict[str, bytes]] = [
+        {},
+        {RACE_ZIP: good, RUN: b"{}"},
+        {RACE_ZIP: good, TABLE: good},
+    ]
+    for members in mixed:
+        with pytest.raises(InvalidInput):
+            imported_runs(archive.pack(members), store)
+    with pytest.raises(InvalidInput, match="which no run has"):
+        imported(b"".join(export_many(source, [TRAINING])), store)
+    add = store.add
+
+    def add_no_race(run: Run, *rest: Any) -> Run:
+        if run.kind == "race":
+            raise StorageFull("no space")
+        return add(run, *rest)
+
+    monkeypatch.setattr(store, "add", add_no_race)
+    with pytest.raises(StorageFull):
+        imported_runs(b"".join(export_many(source, [TRAINING, RACED])), store)
+    assert store.list().items == []
+
+
+def test_what_cannot_be_exported_together_is_refused_before_the_first_byte(
+    source: RunStore, store: RunStore
+) -> None:
+    store.create(training("a"), training("b", state="stopped"))
+    with pytest.raises(Conflict, match="stop it first"):
+        export_many(store, ["b", "a"])
+    with pytest.raises(NotFound):
+        export_many(store, ["b", "c"])
+    too_many: list[list[str]] = [[], [f"{n}" for n in range(101)]]
+    for ids in too_many:
+        with pytest.raises(InvalidInput, match="from 1 to 100 runs"):
+            export_many(source, ids)
 
 
 def test_import_does_not_replace_an_existing_run(source: RunStore, store: RunStore) -> None:

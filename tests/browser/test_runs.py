@@ -8,7 +8,7 @@ from typing import Any
 
 import httpx2
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Page, expect
 
 from app.storage.run_ids import RunIds
 from tests.browser.dashboard import Dashboard
@@ -53,9 +53,9 @@ def test_runs_older_than_a_page_are_found_and_shown(
     expect(rows).to_have_count(1)
     expect(rows).to_contain_text("Old race")
     page.get_by_role("button", name="All", exact=True).click()
-    page.get_by_label("Search names and ids").fill("OLD")
+    page.get_by_label("Search names, ids, tags and notes").fill("OLD")
     expect(rows).to_have_count(2)
-    page.get_by_label("Search names and ids").fill("nothing like this")
+    page.get_by_label("Search names, ids, tags and notes").fill("nothing like this")
     expect(page.get_by_text("No run matches these filters.")).to_be_visible()
     assert dashboard.violations() == []
     dashboard.button("Show all runs").click()
@@ -88,3 +88,126 @@ def test_a_dead_link_says_so(dashboard: Dashboard, shared_server: Serving) -> No
     expect(page.get_by_role("heading", name="This experiment is not here")).to_have_count(0)
     assert [complaint.split()[0] for complaint in dashboard.complaints] == ["404"]
     dashboard.complaints.clear()
+
+
+@pytest.fixture(scope="module")
+def walks(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serving]:
+    """A server with a dozen runs, which the tests of this module put in order one after another."""
+    folder, new_id = tmp_path_factory.mktemp("walks"), RunIds()
+    with opened(folder, None) as store:
+        store.create(*(training(new_id(), name=f"Walk {n}", state="stopped") for n in range(12)))
+    with serving(folder) as server:
+        yield server
+
+
+def test_a_run_gets_a_name_tags_and_notes_in_its_place(
+    dashboard: Dashboard, walks: Serving
+) -> None:
+    page = dashboard.page
+    page.goto(f"{walks.address}#runs?sort=oldest")
+    row, names = page.locator(".run").first, page.locator(".run-name b")
+    expect(names.first).to_have_text("Walk 0")
+    page.get_by_role("button", name="Rename Walk 3", exact=True).click()
+    page.keyboard.type("Aardvark")
+    page.keyboard.press("Enter")
+    page.get_by_label("Order").select_option("by name")
+    expect(names.first).to_have_text("Aardvark")
+
+    row.get_by_label("More for this training").click()
+    dashboard.button("Add tags").click()
+    too_long = "ice, week 3, " + "x" * 31
+    page.keyboard.type(too_long)
+    page.keyboard.press("Enter")
+    expect(row.get_by_role("alert")).to_contain_text("at most 30 characters")
+    field = page.get_by_label("Tags, with commas between")
+    expect(field).to_have_value(too_long)
+    assert dashboard.complaints.pop().startswith("422")
+    field.fill("ice, week 3")
+    dashboard.button("Save").click()
+    expect(row.locator(".chip")).to_have_text(["ice", "week 3"])
+    row.get_by_label("More for this training").click()
+    dashboard.button("Add notes").click()
+    page.keyboard.type("Slips.\nTry again.")
+    page.keyboard.press("Control+Enter")
+    expect(row.locator(".notes summary")).to_have_text("Slips.")
+    assert dashboard.violations() == []
+
+    row.get_by_label("More for this training").click()
+    dashboard.button("As code").click()
+    code = page.get_by_role("region", name="Code")
+    expect(code).to_contain_text("hexapods train")
+    dashboard.button("Python").click()
+    expect(code).to_contain_text("build_learner")
+    assert dashboard.violations() == []
+    dashboard.button("Close").click()
+    row.get_by_label("More for this training").click()
+    dashboard.button("Run again").click()
+    expect(page.locator(".controls")).to_be_visible()
+    newest = dashboard.get("/api/v1/trainings?sort=newest&limit=1")["items"][0]
+    assert (newest["name"], newest["tags"]) == ("Aardvark", ["ice", "week 3"])
+
+    page.goto(f"{walks.address}#runs?sort=size")
+    expect(page.get_by_text("sort must be one of newest, oldest, name, distance")).to_be_visible()
+    assert dashboard.complaints.pop().startswith("422")
+
+
+def test_several_runs_are_tagged_taken_away_as_a_file_and_brought_back(
+    dashboard: Dashboard, walks: Serving, tmp_path: Path
+) -> None:
+    page = dashboard.page
+    page.goto(f"{walks.address}#runs?sort=name&search=walk%201")
+    rows, names = page.locator(".run"), page.locator(".run-name b")
+    expect(names).to_have_text(["Walk 1", "Walk 10", "Walk 11"])
+    boxes = page.locator(".run-box input")
+    boxes.nth(0).focus()
+    page.keyboard.press("Shift+ArrowDown")
+    boxes.nth(2).click(modifiers=["Shift"])
+    expect(page.get_by_text("3 runs selected")).to_be_visible()
+    assert dashboard.violations() == []
+    boxes.nth(0).click()
+    page.get_by_label("Tag for the selected runs").fill("moved")
+    page.keyboard.press("Enter")
+    page.get_by_role("group", name="Tag").get_by_role("button", name="moved").click()
+    expect(names).to_have_text(["Walk 10", "Walk 11"])
+    page.get_by_label("Search names, ids, tags and notes").fill("")
+    expect(page).to_have_url(re.compile("#runs.tag=moved&sort=name$"))
+    page.reload()
+    expect(names).to_have_text(["Walk 10", "Walk 11"])
+
+    page.get_by_label("Select all").click()
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Export 2").click()
+    dashboard.button("Delete 2").click()
+    dashboard.button("Delete 2 runs for good?").click()
+    expect(page.get_by_text("No run matches these filters.")).to_be_visible()
+    assert dashboard.violations() == []
+    bad = tmp_path / "notes.zip"
+    bad.write_text("no zip")
+    page.get_by_label("Import…").set_input_files([download.value.path(), bad])
+    expect(names).to_have_text(["Walk 10", "Walk 11"])
+    expect(page.get_by_text("has brought 2 runs.")).to_be_visible()
+    expect(page.locator(".imports .problem")).to_contain_text("is no archive of a run")
+    assert dashboard.violations() == []
+    drop(page, "again.zip")
+    expect(page.locator(".imports .problem")).to_have_count(2)
+    assert [complaint[:3] for complaint in dashboard.complaints] == ["422", "422"]
+    dashboard.complaints.clear()
+    page.set_viewport_size({"width": 390, "height": 844})
+    assert dashboard.scroll_width() == 390
+    assert dashboard.violations() == []
+    expect(rows).to_have_count(2)
+
+
+def drop(page: Page, name: str) -> None:
+    """Drop a file, whose content is no archive, on the page."""
+    page.evaluate(
+        """name => {
+          const dataTransfer = new DataTransfer();
+          dataTransfer.items.add(new File(["x"], name));
+          for (const type of ["dragover", "drop"]) {
+            const event = new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true });
+            document.body.dispatchEvent(event);
+          }
+        }""",
+        name,
+    )

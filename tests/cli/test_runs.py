@@ -117,6 +117,15 @@ def test_exported_run_is_imported_into_another_folder(data: Path, tmp_path: Path
         assert len(store.list().items) == 4
 
 
+def test_several_runs_are_exported_and_imported_together(data: Path, tmp_path: Path) -> None:
+    out = ("--out", "runs.zip", "--data", str(data))
+    exported = output("export", RACED, TRAINING, *out, folder=tmp_path, run=in_process)
+    assert exported["ids"] == [RACED, TRAINING]
+    other = ("--data", str(tmp_path / "other"))
+    imported = output("import", "runs.zip", *other, folder=tmp_path, run=in_process)
+    assert [run["id"] for run in imported["items"]] == [RACED, TRAINING]
+
+
 def test_invalid_archive_or_output_is_refused_in_one_sentence(data: Path, tmp_path: Path) -> None:
     here = ("--data", str(data))
     (tmp_path / "junk.zip").write_text("milk")

@@ -11,6 +11,7 @@ from app.domain.disturbances import (
     Slope,
     Stuck,
     as_mapping,
+    as_text,
     disturbance,
     is_nothing,
     parse_disturbance,
@@ -45,6 +46,7 @@ def test_text_and_json_give_the_same_disturbance(text: str) -> None:
     parsed = parse_disturbance(text)
 
     assert disturbance(as_mapping(parsed)) == parsed
+    assert parse_disturbance(as_text(parsed)) == parsed
     assert parsed.title
     assert parsed.help.endswith(".")
     parsed.check(Robot())

@@ -5,7 +5,17 @@ import unicodedata
 import pytest
 
 from app.domain.errors import InvalidInput
-from app.domain.text import check_name, metres, visible, whole
+from app.domain.text import (
+    MAX_NOTES,
+    MAX_TAG,
+    MAX_TAGS,
+    check_name,
+    check_notes,
+    check_tags,
+    metres,
+    visible,
+    whole,
+)
 
 BIDI = [*map(chr, range(0x202A, 0x202F)), *map(chr, range(0x2066, 0x206A)), "\u200e", "\u200f"]
 HIDDEN = [*BIDI, "\u061c", "\u200b", "\u200d", "\u2060", "\ufeff", "\u00ad", "\U000e0041", "\u2028"]
@@ -28,6 +38,25 @@ def test_all_other_characters_are_allowed_in_names(name: str) -> None:
 def test_a_long_name_is_refused() -> None:
     with pytest.raises(InvalidInput, match="at most 100"):
         check_name("x" * 101)
+
+
+def test_tags_are_kept_once_without_blanks_in_the_first_spelling() -> None:
+    assert check_tags([" ice ", "Ice", "", "  ", "limp leg 1", "Öl", "öl"]) == (
+        "ice",
+        "limp leg 1",
+        "Öl",
+    )
+    for bad in (["x" * (MAX_TAG + 1)], ["a\nb"], ["a,b"], [f"{n}" for n in range(MAX_TAGS + 1)]):
+        with pytest.raises(InvalidInput, match="at most 20 tags, each text of at most 30"):
+            check_tags(bad)
+
+
+def test_notes_have_lines_and_nothing_invisible() -> None:
+    notes = "first\r\n\tsecond\n"
+    assert check_notes(notes) == "first\n\tsecond"
+    for bad in ("a\u202eb", "\x1b[2J", "x" * (MAX_NOTES + 1)):
+        with pytest.raises(InvalidInput, match="at most 4,000 characters"):
+            check_notes(bad)
 
 
 def test_digits_are_grouped_from_ten_thousand_on_without_commas() -> None:

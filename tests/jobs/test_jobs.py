@@ -1,5 +1,6 @@
 """Jobs in real processes: queue order, commands, crashes, store failures and shutdown."""
 
+import json
 import os
 import signal
 import threading
@@ -87,6 +88,28 @@ def test_paused_job_frees_its_core(jobs: Jobs, store: RunStore) -> None:
     jobs.resume(first.id)
     wait_until(lambda: store.get(first.id).done > done + 1)
     assert jobs.stop(first.id).state == "stopped"
+
+
+def test_runs_that_live_and_wait_are_renamed_for_good(store: RunStore) -> None:
+    bus = EventBus()
+    jobs = Jobs(store, Recordings(store), bus, cores=1)
+    jobs.open()
+    try:
+        live, waiting = jobs.train(endless()), jobs.train(training())
+        wait_for_progress(store, live)
+        for run in (live, waiting):
+            assert jobs.annotate(run.id, {"name": "after", "tags": ("ice",)}).name == "after"
+        events = bus.subscribe()
+        done = store.get(live.id).done
+        wait_until(lambda: store.get(live.id).done > done + 3)
+        jobs.stop(live.id)
+        wait_until_ended(store, waiting)
+        told = [json.loads(event.data) for event in events.drain() if event.event == "run"]
+        assert {run["id"] for run in told} == {live.id, waiting.id}
+        assert all((run["name"], run["tags"]) == ("after", ["ice"]) for run in told)
+        assert [run.name for run in store.list().runs] == ["after", "after"]
+    finally:
+        jobs.close()
 
 
 def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: RunStore) -> None:

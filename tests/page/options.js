@@ -172,7 +172,8 @@ export const OPTIONS = {
     pace: setting("Pace", { choices: ["max"], minimum: 0.01, maximum: 1000, default: "max" }),
     ...TRACER, ...LEARNER,
   },
-  limits: { seeds: [1, null], seed: [0, null], what_if_steps: [1, 2000], lanes: [1, 6], name: [0, 20] },
+  limits: { seeds: [1, null], seed: [0, null], what_if_steps: [1, 2000], lanes: [1, 6], name: [0, 20], tag: [1, 9],
+    tags: [0, 3], notes: [0, 90], archive_runs: [1, 2], import_bytes: [1, 2 ** 20] },
   help: { alpha: "Learning rate." },
 };
 
@@ -186,7 +187,7 @@ let number = 0;
 export function makeRun(changes) {
   number += 1;
   return /** @type {Run} */ ({
-    id: `run-${number}`, kind: "training", name: null, state: "finished",
+    id: `run-${String(number).padStart(4, "0")}`, kind: "training", name: null, state: "finished",
     config: /** @type {any} */ ({ ...TRAINING, pace: "max" }),
     progress: { done: 0, total: 500 }, can_resume: false,
     created_at: new Date(Date.UTC(2030, 0, 1) + 1000 * number).toISOString(),

@@ -75,7 +75,9 @@ def duplicated_entries() -> bytes:
 @pytest.mark.parametrize(
     "bomb", [compression_bomb, wrong_compression_method, oversized_header, duplicated_entries]
 )
-@pytest.mark.parametrize("path", ["/api/v1/trainings/import", "/api/v1/import"])
+@pytest.mark.parametrize(
+    "path", ["/api/v1/trainings/import", "/api/v1/import", "/api/v1/runs/import"]
+)
 def test_a_bomb_is_refused_without_allocating_memory(
     bomb: Callable[[], bytes], path: str, quiet_server: Serving
 ) -> None:

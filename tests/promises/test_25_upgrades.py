@@ -3,6 +3,7 @@
 import shutil
 import sqlite3
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import psycopg
@@ -59,6 +60,8 @@ def rows_in(table: str, database: Database) -> int:
 def check(store: RunStore, revision: str) -> None:
     runs = [*sample.RUNS, *([sample.EXPERIMENT] if revision >= "0002" else [])]
     assert [run.id for run in store.list().items] == [run.id for run in reversed(runs)]
+    if revision >= "0004":
+        runs[0] = replace(runs[0], **sample.ANNOTATIONS)
     for run in runs:
         # NaN is not equal to itself; its repr is.
         assert repr(store.get(run.id)) == repr(run)

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from app.domain.disturbances import Slope
+from app.domain.errors import InvalidInput
 from app.domain.world import World
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
@@ -144,6 +145,72 @@ def test_list_finds_a_part_of_a_name_or_id_literally(store: RunStore) -> None:
     page = store.list(kind="training", search="ripple", limit=1, cursor=page.next_cursor)
     assert [run.name for run in page.runs] == ["ripple 100%"]
     assert page.next_cursor is None
+
+
+def walked(run_id: str, distance_m: float, **fields: Any) -> Run:
+    return training(run_id, state="finished", result={"distance_m": distance_m}, **fields)
+
+
+def race_won(run_id: str, distance_m: float) -> Run:
+    """Create a race that its second lane won."""
+    lanes = [
+        {"clocks": {"paper": {"rank": rank, "finished_distance_m": distance_m / rank}}}
+        for rank in (2, 1)
+    ]
+    return race(run_id, state="finished", result={"lanes": lanes})
+
+
+def test_lists_are_sorted_by_name_distance_and_time_page_by_page(store: RunStore) -> None:
+    store.create(
+        walked("a", 0.3, name="beta"),
+        race_won("b", 0.5),
+        walked("c", float("nan"), name="Beta"),
+        training("d", name="ähnlich"),
+        walked("e", 0.3, name="Alpha"),
+    )
+
+    def listed(sort: Any) -> str:
+        """List two at a time."""
+        ids: list[str] = []
+        cursor = None
+        while not ids or cursor is not None:
+            page = store.list(limit=2, sort=sort, cursor=cursor)
+            ids += [run.id for run in page.items]
+            cursor = page.next_cursor
+        return "".join(ids)
+
+    assert listed("newest") == "edcba"
+    assert listed("oldest") == "abcde"
+    assert listed("name") == "ecabd", "A to Z alike, the newest first, and letters beyond Z last"
+    assert listed("distance") == "beadc", "those without a distance last"
+    store.change("e", {"finished"}, "failed", result=None)
+    assert listed("distance") == "baedc"
+    page = store.list(limit=2, sort="name")
+    store.delete("c")
+    assert [run.id for run in store.list(sort="name", cursor=page.next_cursor).runs] == [
+        "a",
+        "b",
+        "d",
+    ]
+    for cursor in ("a", "\ud800", "WyJhIiwgMV0=", page.next_cursor):
+        with pytest.raises(InvalidInput, match="cursor must be the next_cursor"):
+            store.list(sort="distance", cursor=cursor)
+
+
+def test_tags_and_notes_are_kept_and_found(store: RunStore) -> None:
+    store.create(training("a", tags=("ice", "50 %")), training("b", tags=("iceberg",), notes="Ice"))
+    store.update("a", notes="one\n\ttwo", name="A")
+    assert (store.get("a").tags, store.get("a").notes) == (("ice", "50 %"), "one\n\ttwo")
+
+    def found(**filters: Any) -> list[str]:
+        return [run.id for run in store.list(**filters).runs]
+
+    assert found(tag="ICE") == ["a"], "the whole tag, A to Z alike"
+    assert found(tag="50 %") == ["a"]
+    assert found(tag="50") == found(tag="%") == []
+    assert found(search="ice") == ["b", "a"], "in tags and in notes"
+    store.update("a", tags=())
+    assert found(tag="ice") == []
 
 
 def test_progress_is_visible_at_once_and_survives_changes(store: RunStore) -> None:

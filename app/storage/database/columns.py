@@ -32,6 +32,29 @@ class PortableText(TypeDecorator[str]):
         return text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
 
 
+class TagList(TypeDecorator[tuple[str, ...]]):
+    """Column of tags: each on a line of its own, between line feeds, which no tag contains.
+
+    So that a tag is found by a substring, on every database and whatever else a row contains.
+    """
+
+    impl = PortableText
+    cache_ok = True
+
+    def process_bind_param(self, value: Any, dialect: Dialect) -> str:
+        """Encode tags before they are stored."""
+        return "".join(f"\n{tag}\n" for tag in value)
+
+    def process_result_value(self, value: str | None, dialect: Dialect) -> tuple[str, ...]:
+        """Decode stored tags."""
+        return decode_tags(value or "")
+
+
+def decode_tags(text: str) -> tuple[str, ...]:
+    """Decode tags that `TagList` encoded."""
+    return tuple(filter(None, text.split("\n")))
+
+
 class UtcTime(TypeDecorator[datetime]):
     """Time column: aware `datetime` in Python, UTC in the database."""
 

@@ -22,8 +22,8 @@ from sqlalchemy import (
     type_coerce,
 )
 
-from app.storage.database.columns import JsonWithNan, PortableText, UtcTime
-from app.storage.database.schema import RUNS
+from app.storage.database.columns import JsonWithNan, PortableText, TagList, UtcTime
+from app.storage.database.schema import DERIVED, RUNS
 from app.storage.errors import NotFound
 
 Row = dict[str, Any]
@@ -44,12 +44,12 @@ def _undecoded(column: ColumnElement[Any], name: str) -> ColumnElement[Any]:
         return type_coerce(column, String).label(name)
     if isinstance(column.type, JsonWithNan | UtcTime):
         return func.substr(cast(column, String), 1, MAX_CELL_CHARS + 1).label(name)
-    if isinstance(column.type, PortableText):
+    if isinstance(column.type, PortableText | TagList):
         return func.substr(type_coerce(column, String), 1, MAX_CELL_CHARS + 1).label(name)
     return column.label(name)
 
 
-RAW_RUN = tuple(_undecoded(column, column.name) for column in RUNS.c)
+RAW_RUN = tuple(_undecoded(column, column.name) for column in RUNS.c if column is not DERIVED)
 """Undecoded columns of a run, for SELECT and RETURNING; `rows.try_decode_run` decodes them."""
 
 
@@ -93,6 +93,12 @@ def sorts_before(connection: Connection, run_id: str) -> ColumnElement[bool]:
     """Return the condition that a row's id sorts before the one with this public id."""
     stored = _stored_id(connection, run_id)
     return RUNS.c.id < run_id if stored is None else cast(RUNS.c.id, LargeBinary) < stored
+
+
+def sorts_after(connection: Connection, run_id: str) -> ColumnElement[bool]:
+    """Return the condition that a row's id sorts after the one with this public id."""
+    stored = _stored_id(connection, run_id)
+    return RUNS.c.id > run_id if stored is None else cast(RUNS.c.id, LargeBinary) > stored
 
 
 def _stored_id(connection: Connection, run_id: str) -> bytes | None:

@@ -7,9 +7,9 @@ from datetime import UTC, datetime
 from functools import lru_cache
 from typing import Any, TypeVar
 
-from app.domain.text import visible
+from app.domain.text import NOTES_CONTROLS, visible
 from app.runs.race_config import RaceConfig
-from app.storage.database.columns import decode_json
+from app.storage.database.columns import decode_json, decode_tags
 from app.storage.database.queries import MAX_CELL_CHARS, public_id
 from app.storage.errors import Damaged
 from app.storage.run import (
@@ -21,6 +21,7 @@ from app.storage.run import (
     DamagedRun,
     Run,
     config_as_json,
+    ranking_distance_m,
     run_config_from_json,
 )
 
@@ -51,6 +52,8 @@ def encode_fields(values: Mapping[str, Any]) -> dict[str, Any]:
     for name in _LISTS:
         if name in columns:
             columns[name] = [dict(v) if isinstance(v, Mapping) else v for v in columns[name]]
+    if "result" in columns:
+        columns["distance_m"] = ranking_distance_m(columns["result"])
     error = columns.get("error")
     if error is not None and len(error) > MAX_ERROR_CHARS:
         columns["error"] = f"{error[: MAX_ERROR_CHARS - 1]}…"
@@ -89,6 +92,8 @@ def _decode_fields(row: Mapping[str, Any]) -> dict[str, Any]:
     values |= {name: _time(name, row[name]) for name in _TIMES}
     for name in ("name", "error", "continued_from"):
         values[name] = _text(name, row[name], is_needed=name == "name")
+    values["tags"] = tuple(visible(tag) for tag in decode_tags(_limited("tags", row["tags"])))
+    values["notes"] = visible(_limited("notes", row["notes"]), NOTES_CONTROLS)
     _check_scalars(row, values)
     for name, kinds in _LISTS.items():
         values[name] = tuple(_list(name, values[name], kinds))
@@ -158,9 +163,15 @@ def _text(name: str, value: Any, *, is_needed: bool) -> str | None:
     if name == "error":
         # Not checked by `visible`: an agent's exception may have several lines.
         return value[:MAX_ERROR_CHARS].encode("utf-8", "replace").decode()
+    return visible(_limited(name, value))
+
+
+def _limited(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise ValueError(f"its {name} is no text")
     if len(value) > _MAX_TEXT:
         raise ValueError(f"its {name} is too long")
-    return visible(value)
+    return value
 
 
 def _check_count(name: str, value: Any, *, is_needed: bool) -> None:

@@ -2,7 +2,7 @@
 
 from sqlalchemy import BigInteger, Column, Double, ForeignKey, Index, MetaData, Table
 
-from app.storage.database.columns import JsonWithNan, PortableText, UtcTime
+from app.storage.database.columns import JsonWithNan, PortableText, TagList, UtcTime
 
 METADATA = MetaData()
 
@@ -35,6 +35,10 @@ RUNS = Table(
     Column("greedy_distance_m", Double),
     Column("result", JsonWithNan),
     Column("error", PortableText),
+    Column("tags", TagList, nullable=False, server_default=""),
+    Column("notes", PortableText, nullable=False, server_default=""),
+    # Derived from the result, for sorting; NULL where there is none.
+    Column("distance_m", Double),
     Column("created_at", UtcTime, nullable=False),
     Column("started_at", UtcTime),
     Column("ended_at", UtcTime),
@@ -42,6 +46,9 @@ RUNS = Table(
     Index("ix_runs_kind_state_id", "kind", "state", "id"),
     Index("ix_runs_state_id", "state", "id"),
 )
+
+DERIVED = RUNS.c.distance_m
+"""Column that is no field of a run."""
 
 EVALUATIONS = Table(
     "evaluations",

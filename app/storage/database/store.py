@@ -6,14 +6,12 @@ from datetime import UTC, datetime
 from typing import Any
 
 from sqlalchemy import (
-    ColumnElement,
     Connection,
     case,
     delete,
     func,
     insert,
     literal,
-    or_,
     select,
     update,
 )
@@ -25,6 +23,7 @@ from app.storage.database.columns import UtcTime
 from app.storage.database.curves import Curves
 from app.storage.database.engine import Database
 from app.storage.database.keys import Keys
+from app.storage.database.listing import Listing, fetch_page
 from app.storage.database.progress import ProgressCache
 from app.storage.database.queries import (
     RAW_RUN,
@@ -32,9 +31,6 @@ from app.storage.database.queries import (
     fetch_rows,
     fetch_run_row,
     has_public_id,
-    public_id,
-    select_runs,
-    sorts_before,
 )
 from app.storage.database.rows import decode_run, encode_fields, encode_run, try_decode_run
 from app.storage.database.schema import RUNS
@@ -42,7 +38,6 @@ from app.storage.database.trials import Trials
 from app.storage.disk_space import START_BYTES
 from app.storage.errors import Conflict, Damaged, StorageFailed
 from app.storage.run import (
-    KINDS,
     LIVE,
     NOT_ENDED,
     RUNNING,
@@ -54,6 +49,7 @@ from app.storage.run import (
     Kind,
     Page,
     Run,
+    Sort,
     State,
 )
 from app.storage.sessions import SessionRows
@@ -187,47 +183,25 @@ class RunStore:
         kind: Kind | None = None,
         state: State | None = None,
         limit: int = 50,
+        *,
         cursor: str | None = None,
         search: str | None = None,
+        tag: str | None = None,
+        sort: Sort = "newest",
     ) -> Page:
-        """Return one page of runs, newest first (keyset pagination by id).
+        """Return one page of runs; the arguments are those of a `Listing`.
 
-        A run that cannot be decoded is listed in its place as a `DamagedRun`; if its kind cannot
-        be decoded either, it is listed under every kind.
+        A run that cannot be decoded is listed in its place as a `DamagedRun`.
 
-        Args:
-            kind: only runs of this kind; None for all.
-            state: only runs in this state; None for all.
-            limit: items per page.
-            cursor: `Page.next_cursor` of the page before; None for the first page.
-            search: only runs with this text in their name or id; the letters A to Z match in
-                upper and lower case.
+        Raises:
+            InvalidInput: if the cursor is not one of a list in this order.
         """
-        newest_first = select_runs().order_by(RUNS.c.id.desc()).limit(limit + 1)
-        if state is not None:
-            newest_first = newest_first.where(RUNS.c.state == state)
-        if search:
-            is_found = [
-                column.icontains(search, autoescape=True) for column in (RUNS.c.name, RUNS.c.id)
-            ]
-            newest_first = newest_first.where(or_(*is_found))
-
-        def work(connection: Connection) -> Sequence[Row]:
-            query = newest_first
-            if kind is not None:
-                query = query.where(_is_of_kind(connection, kind))
-            if cursor is not None:
-                query = query.where(sorts_before(connection, cursor))
-            return fetch_rows(connection, query)
-
+        listing = Listing(kind, state, limit, cursor, search, tag, sort)
         progress = self._progress.snapshot()
-        rows = self._database.read(work)
+        rows, cursor = self._database.read(lambda connection: fetch_page(connection, listing))
         return Page(
-            [
-                try_decode_run(_with_progress(row, progress.get(row["id"], {})))
-                for row in rows[:limit]
-            ],
-            public_id(rows[limit - 1]["id"]) if len(rows) > limit else None,
+            [try_decode_run(_with_progress(row, progress.get(row["id"], {}))) for row in rows],
+            cursor,
         )
 
     def counts(self) -> Mapping[State, int]:
@@ -432,16 +406,6 @@ class RunStore:
     def _invalidate_progress(self, run_id: str, fields: Mapping[str, Any]) -> None:
         if "done" in fields:
             self._progress.drop(run_id)
-
-
-def _is_of_kind(connection: Connection, kind: Kind) -> ColumnElement[bool]:
-    """Return the condition that a run is of this kind, or of an unknown (damaged) kind.
-
-    The second part is added only if there are such runs, because it prevents the use of an index.
-    """
-    is_unknown = RUNS.c.kind.not_in(KINDS)
-    unknown = connection.execute(select(RUNS.c.id).where(is_unknown)).scalars().all()
-    return or_(RUNS.c.kind == kind, is_unknown) if unknown else RUNS.c.kind == kind
 
 
 def _with_progress(row: Row, progress: Mapping[str, Any]) -> Row:

@@ -8,12 +8,11 @@ import {
 import { announcement } from "../race.js";
 import { ownRunId, stepReplay } from "../replay.js";
 import { isOperator } from "../selectors.js";
-import { connection, isLockedOut, options, viewers } from "../store.js";
+import { connection, isLockedOut, options, setEntry, viewers } from "../store.js";
 import { Controls } from "./controls.js";
 import { html, Icon } from "./elements.js";
 import { Knowledge, LearningChart } from "./learning.js";
 import { RaceChart, Scoreboard } from "./race.js";
-import { Runs } from "./runs.js";
 import { Stage } from "./stage.js";
 import { SharedChoices } from "./transport.js";
 import { WhatIf } from "./what-if.js";
@@ -34,8 +33,7 @@ function Main() {
   if (options.value === null) return html`<${Loading} />`;
   return html`
     <${RaceView} isHidden=${place.value !== "race"} />
-    ${place.value === "experiments" && html`<${ExperimentsView} />`}
-    ${place.value === "runs" && html`<${Runs} />`}
+    ${place.value !== "race" && html`<${LoadedView} name=${place.value} key=${place.value} />`}
   `;
 }
 
@@ -82,26 +80,30 @@ const RaceView = ({ isHidden }) => html`
   </div>
 `;
 
-// ---- the view of experiments, loaded when it is first opened: most visits do not
+// ---- the other views, loaded when they are first opened: most visits open none
 
-/** @type {Signal<any>} */
-const loadedExperiments = signal(null);
+const LOADERS = {
+  experiments: () => import("./experiments/experiments.js").then(({ Experiments }) => Experiments),
+  runs: () => import("./runs/runs.js").then(({ Runs }) => Runs),
+};
 
-function ExperimentsView() {
+/** View → its component, once it is loaded. @type {Signal<Record<string, any>>} */
+const loadedViews = signal({});
+
+function LoadedView({ name }) {
   const [hasFailed, setFailed] = useState(false);
   const state = connection.value;
   useEffect(() => {
-    if (loadedExperiments.value || state !== "live") return;
-    const take = (loaded) => (loadedExperiments.value = loaded.Experiments);
-    import("./experiments/experiments.js").then(take, () => setFailed(true));
+    if (loadedViews.value[name] || state !== "live") return;
+    LOADERS[name]().then((component) => setEntry(loadedViews, name, component), () => setFailed(true));
   }, [state]);
-  const View = loadedExperiments.value;
+  const View = loadedViews.value[name];
   if (View) return html`<${View} />`;
   return html`
     <section class="panel locked">
       ${hasFailed
-        ? html`<p role="alert">The experiments could not be loaded. Load the page again.</p>`
-        : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the experiments…</p>`}
+        ? html`<p role="alert">The ${name} could not be loaded. Load the page again.</p>`
+        : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the ${name}…</p>`}
     </section>
   `;
 }

@@ -5,7 +5,6 @@ import { happeningsOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
 import { clipped, distanceAt, headline, isTimedOut, ruleOf, shownTime, standings, timeline } from "../race.js";
-import { filters } from "../runs.js";
 import { clock, isActive, originalRace, raceInView, raceScene, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs } from "../store.js";
@@ -44,10 +43,9 @@ function BranchWords() {
   if (!branch) return happens && html`<p class="happened">${sentence(happens)}.</p>`;
   const original = originalRace.value;
   const title = original?.name || "another race";
-  const find = () => (filters.value = { kind: "", state: "", search: branch.race_id });
   return html`
     <p class="happened">
-      The same as <a href="#runs" onClick=${find}>${title}</a> before step ${branch.step + 1}.
+      The same as <a href=${`#runs?search=${branch.race_id}`}>${title}</a> before step ${branch.step + 1}.
       ${happens && ` ${sentence(happens)}.`}
     </p>
   `;

@@ -4,9 +4,9 @@ import { attempt, deleteRun } from "../actions.js";
 import * as api from "../api.js";
 import { getSummary } from "../api.js";
 import { count, duration, whole } from "../format.js";
-import { place } from "../page.js";
+import { followQuery, place } from "../page.js";
 import { announcement } from "../race.js";
-import { absentIds, followRuns, makeList } from "../runs.js";
+import { absentIds, followRuns, makeList, NO_FILTERS } from "../runs.js";
 import { everyRun, isActive, isOperator } from "../selectors.js";
 import { connection, isDeleted, requestRun, runs, setEntry, summarised } from "../store.js";
 import { runTitle } from "../titles.js";
@@ -27,35 +27,12 @@ const query = () => {
   return search.toString().replaceAll("%2C", ",").replaceAll("%3B", ";");
 };
 
-const currentHash = () => (query() ? `#experiments?${query()}` : "#experiments");
-
-/** The hash that was last written or read here. */
-let known = "";
-
-function readHash() {
-  const { hash } = location;
-  if (hash === known || !hash.startsWith("#experiments")) return;
-  known = hash;
-  const search = new URLSearchParams(hash.split("?")[1] ?? "");
-  // The bare link of the navigation leaves the form as it was.
-  if (search.size === 0) return;
-  readQuery(search);
-  wantedRun.value = search.get("run");
-}
-
 /** Keep the form and the address the same. Call it once the options are known. */
-export function followAddress() {
-  readHash();
-  addEventListener("hashchange", readHash);
-  effect(() => {
-    if (place.value !== "experiments") return;
-    // A link that was followed is read before the form is written over it.
-    readHash();
-    known = currentHash();
-    if (location.hash === known) return;
-    history.replaceState(history.state, "", `${location.pathname}${location.search}${known}`);
-  });
-}
+export const followAddress = () =>
+  followQuery("experiments", (search) => {
+    readQuery(search);
+    wantedRun.value = search.get("run");
+  }, query);
 
 // ---- the known experiments, newest first, and the one whose report is shown
 
@@ -69,7 +46,7 @@ export const chosenRun = computed(() => {
 });
 
 /** Listed by themselves: the first snapshot may have had room for trainings and races only. */
-export const experimentList = makeList(signal({ kind: "experiment", state: "", search: "" }));
+export const experimentList = makeList(signal({ ...NO_FILTERS, kind: "experiment" }));
 
 /** Whether the requested run is no experiment of this server, by its answer. */
 export const isMissing = computed(() => {

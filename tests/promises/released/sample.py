@@ -46,6 +46,8 @@ EXPERIMENT = experiment(
     ended_at=_T,
 )
 """Since 0002, with `TRIALS`."""
+ANNOTATIONS: dict[str, Any] = {"tags": ("Übung 1", "kept"), "notes": "Slips.\n\tNext: µ = 0.4"}
+"""Of the first run, since 0004."""
 CURVE: list[dict[str, Any]] = [
     {"step": 50, "distance_m": 0.125, "epsilon": 1.0},
     {"step": 100, "distance_m": -0.25, "epsilon": 0.9},
@@ -59,3 +61,4 @@ def put(store: RunStore) -> None:
     store.append_trials(EXPERIMENT.id, TRIALS)
     store.append_evaluations(RUNS[0].id, CURVE)
     store.put_artifact(RUNS[0].id, TABLE, FILE)
+    store.update(RUNS[0].id, **ANNOTATIONS)

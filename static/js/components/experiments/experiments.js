@@ -59,7 +59,7 @@ function ExperimentList() {
     <section class="panel experiment-list" aria-labelledby="experiment-list">
       <h2 id="experiment-list">Experiments</h2>
       <ul>${all.map((run) => html`<${Row} key=${run.id} run=${run} />`)}</ul>
-      ${experimentList.hasOlder.value && html`<${Older} />`}
+      ${experimentList.hasMore.value && html`<${Older} />`}
     </section>
   `;
 }

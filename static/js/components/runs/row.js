@@ -1,0 +1,199 @@
+// A run in the list: what it is, what came of it, what users say of it, and what can be done with it.
+import { useState } from "preact/hooks";
+import {
+  copySettings, deleteRun, isShown, pending, resumeRun, runAgain, showOnStage,
+} from "../../actions.js";
+import { archiveAddress, downloads } from "../../api.js";
+import { changesInWords, rateChanges } from "../../changes.js";
+import { happeningsOf, inTime, joinedBySteps } from "../../disturbances.js";
+import { paceOf } from "../../experiments/runs.js";
+import { ago, count, listed, metres, sentence, whole } from "../../format.js";
+import { formRobot, isSame } from "../../robots.js";
+import { isSelected, setSelected } from "../../run-selection.js";
+import { hasTable, isActive, isOperator } from "../../selectors.js";
+import { agentOf, laneTitle, ratesInWords } from "../../settings.js";
+import { served } from "../../store.js";
+import { describeRun, gaitTitle, observationTitle, robotTitle, runTitle, simulatorTitle } from "../../titles.js";
+import { html, Problem } from "../elements.js";
+import { edit, Name, Notes, Tags } from "./annotations.js";
+import { showCode } from "./code.js";
+
+export const RunRow = ({ run }) => html`<${"damaged" in run ? DamagedRow : Row} run=${run} />`;
+
+function Row({ run }) {
+  const title = titleOf(run);
+  const gait = run.kind === "experiment" ? "" : gaitTitle(run.config.gait);
+  return html`
+    <li class="run">
+      <${Box} run=${run} title=${title} />
+      <${StateOf} run=${run} />
+      <div class="what">
+        <${Name} run=${run} title=${title} aside=${title.includes(gait) ? "" : gait} />
+        <p class="dim">${run.kind === "experiment" ? describeRun(run) : summaryOf(run)}</p>
+        <${Tags} run=${run} />
+        <${Notes} run=${run} />
+        ${run.error && html`<p class="bad">${run.error}</p>`}
+      </div>
+      <p class="outcome num"><${Outcome} run=${run} /></p>
+      <p class="when dim"><time datetime=${run.created_at}>${ago(run.created_at)}</time></p>
+      <${Actions} run=${run} />
+      <${Problem} at=${run.id} />
+    </li>
+  `;
+}
+
+const titleOf = (run) => (run.kind === "experiment" ? runTitle(run) : run.name || sentence(run.kind));
+
+/** Selects the run; a click with Shift selects all from the one before to it. */
+function Box({ run, title }) {
+  const onClick = ({ target, shiftKey }) => setSelected(run.id, target.checked, shiftKey);
+  return html`
+    <label class="run-box">
+      <input type="checkbox" value=${run.id} checked=${isSelected(run.id)} onClick=${onClick}
+        aria-label=${`Select ${title}`} />
+    </label>
+  `;
+}
+
+const StateOf = ({ run: { state, queue_position } }) => html`
+  <p class=${`state ${state}`}>
+    <span class="dot" aria-hidden="true"></span>${state}${queue_position
+      ? html` <span class="dim">no. ${queue_position}</span>`
+      : ""}
+  </p>
+`;
+
+function summaryOf(run) {
+  const { config } = run;
+  const { robot, simulator, agent } = served().defaults.training;
+  // What is as by default is not named.
+  const learner = [undefined, agent].includes(config.agent) ? "" : agentOf(config.agent).title;
+  const place = [
+    isSame(formRobot(config.robot), robot) ? "" : robotTitle(config.robot),
+    config.simulator === simulator ? "" : simulatorTitle(config.simulator),
+  ];
+  const own = run.kind === "race" ? ofRace(config) : ofTraining(run);
+  return [learner, ...own, ...place, ...joinedBySteps(happeningsOf(run)).map(inTime)].filter(Boolean).join(" · ");
+}
+
+const ofRace = ({ lanes, steps }) => [listed(lanes.map(laneTitle)), count(steps, "step")];
+
+function ofTraining(run) {
+  const { config, progress, state } = run;
+  const total = count(config.steps, "step");
+  return [
+    state === "finished" ? total : `${whole(progress.done)} of ${total}`,
+    config.continue_from ? "continues an earlier one" : `seed ${config.seed}`,
+    ...ratesInWords(config.agent, config), ...changesInWords(config.agent, rateChanges(run)),
+    observationTitle(config.observation),
+  ];
+}
+
+function Outcome({ run }) {
+  const { kind, result } = run;
+  if (kind === "experiment") return html`<span class="dim">${paceOf(run).label}</span>`;
+  if (!result) return null;
+  if (kind === "training") {
+    const greedy = metres(result.greedy_distance_m);
+    const best = typeof result.best_known_m === "number" ? `, best known ${metres(result.best_known_m)}` : "";
+    return html`<b>${metres(result.distance_m)}</b> <span class="dim">of greedy’s ${greedy}${best}</span>`;
+  }
+  const lanes = result.lanes.map((lane) => ({ ...lane, ...lane.clocks.paper }));
+  const first = lanes.find(({ rank }) => rank === 1);
+  if (!first) return null;
+  const { title, color } = agentOf(first.agent);
+  const distance = metres(first.finished_distance_m);
+  return html`
+    <span class="swatch" style=${{ "--agent": color }}></span><b>${title}</b> <span class="dim">${distance}</span>
+  `;
+}
+
+// ---- what can be done with it
+
+function Actions({ run }) {
+  const isPending = pending.value[run.id];
+  const canResume = run.can_resume && run.state !== "paused";
+  return html`
+    <div class="run-actions">
+      ${isOperator.value && canResume && html`
+        <button class="secondary compact" disabled=${isPending} onClick=${() => resumeRun(run)}>Resume</button>
+      `}
+      ${run.kind === "experiment"
+        ? html`<a class="to-report" href=${`#experiments?run=${encodeURIComponent(run.id)}`}>Report</a>`
+        : isOperator.value && html`
+          <button class="secondary compact" disabled=${isPending || run.state === "queued"}
+            onClick=${() => showOnStage(run)}>
+            ${isShown(run) ? "On stage" : "Show"}
+          </button>
+        `}
+      <${Menu} run=${run} />
+    </div>
+  `;
+}
+
+function Menu({ run }) {
+  const [isSure, setSure] = useState(false);
+  return html`
+    <details class="menu">
+      <summary class="quiet square" aria-label=${`More for this ${run.kind}`}>⋯</summary>
+      <div class="menu-body">
+        <${Downloads} run=${run} />
+        ${isOperator.value && run.kind !== "experiment" && html`
+          <a href="#" onClick=${() => copySettings(run)}>Use its settings</a>
+        `}
+        <button onClick=${() => showCode(run)}>As code</button>
+        ${isOperator.value && html`
+          <button onClick=${() => runAgain(run)}>Run again</button>
+          <button onClick=${() => edit(run, "name")}>Rename</button>
+          <button onClick=${() => edit(run, "tags")}>${run.tags?.length ? "Change its tags" : "Add tags"}</button>
+          <button onClick=${() => edit(run, "notes")}>${run.notes ? "Change its notes" : "Add notes"}</button>
+        `}
+        ${isOperator.value && !isActive(run) && html`
+          <button class="bad" onClick=${() => (isSure ? deleteRun(run) : setSure(true))}>
+            ${isSure ? "Delete for good?" : "Delete"}
+          </button>
+        `}
+      </div>
+    </details>
+  `;
+}
+
+function Downloads({ run }) {
+  const hasFiles = run.kind === "race" ? run.state === "finished" : run.kind === "experiment" || hasTable(run);
+  const files = [
+    ...(hasFiles ? downloads(run) : []),
+    ...(isActive(run) ? [] : [["Archive (zip)", archiveAddress(run)]]),
+  ];
+  if (files.length === 0) return html`<p class="dim">Nothing to download.</p>`;
+  return files.map(([label, href]) => html`<a href=${href} download>${label}</a>`);
+}
+
+// ---- a run that the server cannot read: what is known of it, the reason, and its deletion
+
+function DamagedRow({ run }) {
+  const title = run.name || `A ${run.kind ?? "run"} that cannot be read`;
+  return html`
+    <li class="run">
+      <${Box} run=${run} title=${title} />
+      <p class="state failed"><span class="dot" aria-hidden="true"></span>damaged</p>
+      <div class="what">
+        <p><b>${title}</b> <span class="dim">${run.id}</span></p>
+        <p class="bad">${run.damaged}</p>
+      </div>
+      <p class="outcome num"></p>
+      <p class="when dim">${run.created_at && html`<time datetime=${run.created_at}>${ago(run.created_at)}</time>`}</p>
+      <div class="run-actions">${isOperator.value && html`<${DeleteButton} run=${run} />`}</div>
+      <${Problem} at=${run.id} />
+    </li>
+  `;
+}
+
+function DeleteButton({ run }) {
+  const [isSure, setSure] = useState(false);
+  const onClick = () => (isSure ? deleteRun(run) : setSure(true));
+  return html`
+    <button class="secondary compact bad" disabled=${pending.value[run.id]} onClick=${onClick}>
+      ${isSure ? "Delete for good?" : "Delete"}
+    </button>
+  `;
+}

@@ -1,0 +1,83 @@
+// The runs of the list that are selected, and what is done with all of them.
+import { computed, signal } from "@preact/signals";
+import { attempt } from "./actions.js";
+import * as api from "./api.js";
+import { listed } from "./format.js";
+import { shownRuns } from "./run-list.js";
+import { isActive } from "./selectors.js";
+import { markDeleted, requestRun, served } from "./store.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { DamagedRun, Run } from "./types.js" */
+
+/** @typedef {Run | DamagedRun} AnyRun */
+
+/** @type {Signal<Set<string>>} */
+const ids = signal(new Set());
+/** The run from which a range is selected: the one that was clicked last. @type {string | null} */
+let anchor = null;
+
+/** The selected runs that the list shows: nothing is done with one that nobody sees. */
+export const selected = computed(() => shownRuns.value.filter(({ id }) => ids.value.has(id)));
+/** @param {string} id */
+export const isSelected = (id) => ids.value.has(id);
+
+/** @param {Iterable<string>} chosen */
+const select = (chosen) => (ids.value = new Set(chosen));
+export const clearSelection = () => select([]);
+export const selectAll = () => select(shownRuns.value.map(({ id }) => id));
+
+/**
+ * Select a run, or no longer; with `isRange` all from the one before to it.
+ * @param {string} id
+ * @param {boolean} isOn
+ * @param {boolean} [isRange]
+ */
+export function setSelected(id, isOn, isRange = false) {
+  const shown = shownRuns.value.map((run) => run.id);
+  const from = isRange && anchor !== null ? shown.indexOf(anchor) : -1;
+  const to = shown.indexOf(id);
+  const range = from < 0 ? [id] : shown.slice(Math.min(from, to), Math.max(from, to) + 1);
+  const left = [...ids.value].filter((one) => !range.includes(one));
+  select(isOn ? [...left, ...range] : left);
+  anchor = id;
+}
+
+/** Those that can be deleted: they have ended, or are damaged. */
+export const deletable = computed(() => selected.value.filter((run) => "damaged" in run || !isActive(run)));
+
+const exportable = computed(() => deletable.value.filter((run) => !("damaged" in run)));
+
+/** The address of an archive of the selected runs that have one; null if there are none, or too many. */
+export const exported = computed(() => {
+  const [, most] = served().limits.archive_runs;
+  const { length } = exportable.value;
+  const isPossible = length > 0 && length <= (most ?? Infinity);
+  return { count: length, most, address: isPossible ? api.exportAddress(exportable.value.map(({ id }) => id)) : null };
+});
+
+/** Delete the selected runs; those that are kept stay selected, and the reasons are told. */
+export const deleteSelected = () =>
+  attempt("selection", async () => {
+    const reasons = [];
+    const all = deletable.value.map(({ id }) => id);
+    const [, most] = served().limits.archive_runs;
+    for (let at = 0; at < all.length; at += most ?? all.length) {
+      const { deleted, kept } = await api.deleteRuns(all.slice(at, at + (most ?? all.length)));
+      deleted.forEach(markDeleted);
+      reasons.push(...kept.map(({ reason }) => reason));
+    }
+    select([...ids.value].filter((id) => !all.includes(id)));
+    if (reasons.length) throw new api.RequestError(`Not deleted: ${listed(reasons)}.`);
+  });
+
+/** Add a tag to all selected runs. @param {string} tag */
+export const tagSelected = (tag) =>
+  attempt("selection", async () => {
+    for (const run of selected.value) {
+      if (!("damaged" in run)) {
+        await requestRun(() => api.annotateRun(run.id, { tags: [...run.tags ?? [], tag] }));
+      }
+    }
+    return true;
+  });
