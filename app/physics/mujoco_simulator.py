@@ -19,9 +19,10 @@ from app.domain.kinematics import JOINT_LIMITS_RAD, check_reach
 from app.domain.motion import StepMotion, StepPlan, recorded_substeps
 from app.domain.robot import Robot
 from app.domain.simulator import Expansion, Motion, Step
+from app.domain.terrain import ROUGH_PERIOD_M
 from app.domain.types import Action, Cells, FloatArray
 from app.domain.world import UNDISTURBED, World
-from app.physics.conditions import ROUGH_PERIOD_M, direction
+from app.physics.conditions import direction
 from app.physics.mjcf import compile_model, joint_index
 from app.physics.servo_torque import servo_effort
 

@@ -79,7 +79,7 @@ def test_the_torque_is_what_accelerates_the_joints(kv: float, limit_nm: float) -
 
 @pytest.mark.parametrize("preset", ["stiff", "compliant"])
 def test_work_is_that_of_mujocos_forces_in_fine_substeps(preset: str) -> None:
-    """With an eighth of the time step, where MuJoCo's `actuator_force` is right to some per cent."""
+    """With an eighth of the time step `actuator_force` is right too, to some per cent."""
     robot = PRESETS[preset]
     fine = replace(robot, dt_s=robot.dt_s / 8)
     simulator = MujocoSimulator(fine, resolve("left-right-origin", fine.azimuths_deg), FootGrid())
