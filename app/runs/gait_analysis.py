@@ -10,7 +10,8 @@ about", American Scientist 63; Alexander 2003, chapter 7): energy is the joints'
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from itertools import takewhile
+from typing import NamedTuple, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +26,7 @@ from app.domain.world import World
 from app.runs.config import RACE_STEPS, WalkingProblem
 from app.runs.footfall import Interval, clearances_m, clipped, duty_factor, stance_intervals
 from app.runs.recording import LaneRecording, PracticeRecording
-from app.runs.records import Evaluated
+from app.runs.records import Evaluated, StepTaken
 
 GRAVITY_M_S2 = 9.81
 MAX_WINDOW_S = 120.0
@@ -39,14 +40,37 @@ CYCLE_REPEATS = 3
 MAX_CYCLE_STEPS = 200
 
 
-class WalkedStep(NamedTuple):
-    """A recorded step."""
+MAX_LOOKED_BACK = 10_000
+"""So many steps from the end the repetitions of a cycle are counted."""
 
-    number: int
-    """Counted from 0."""
+
+class WalkedStep(Protocol):
+    """A recorded step: a `LaneStep`, a `StepTaken` with its motion, or one of an evaluation."""
+
+    @property
+    def step(self) -> int:
+        """Its number, counted from 1."""
+
+    @property
+    def observation(self) -> Cells | None:
+        """Observation before the action; None if it was not recorded."""
+
+    @property
+    def action(self) -> Action | None:
+        """The action; None if it was not recorded."""
+
+    @property
+    def motion(self) -> Motion | None:
+        """The motion, which all steps of a `RecordedWalk` have."""
+
+
+class EvaluatedStep(NamedTuple):
+    """A step of an evaluation, whose choice was not recorded."""
+
+    step: int
     motion: Motion
-    choice: tuple[Cells, Action] | None
-    """Observation and action; None if they were not recorded."""
+    observation: None = None
+    action: None = None
 
 
 @dataclass(frozen=True)
@@ -68,35 +92,42 @@ class RecordedWalk:
     @property
     def from_s(self) -> float:
         """Robot time at the beginning of the first step [s]."""
-        return self.steps[0].number * self.problem.robot.step_s if self.steps else 0.0
+        return (self.steps[0].step - 1) * self.problem.robot.step_s if self.steps else 0.0
 
     @property
     def to_s(self) -> float:
         """Robot time at the end of the last step [s]."""
-        return (self.steps[-1].number + 1) * self.problem.robot.step_s if self.steps else 0.0
+        return self.steps[-1].step * self.problem.robot.step_s if self.steps else 0.0
+
+    def motion(self, index: int) -> Motion:
+        """Return the motion of the step with this index in `steps`."""
+        return cast(Motion, self.steps[index].motion)
+
+    def pose_before(self, index: int) -> NDArray[np.float32]:
+        """Return the pose before the step with this index in `steps`, (7 + joints,)."""
+        pose: NDArray[np.float32] = self.motion(index - 1).qpos[-1] if index else self.start_qpos
+        return pose
 
 
 def walk_of_lane(lane: LaneRecording, problem: WalkingProblem, world: World) -> RecordedWalk:
     """Return the walk of a race's lane."""
-    steps = [WalkedStep(s.step - 1, s.motion, (s.observation, s.action)) for s in list(lane.steps)]
-    return RecordedWalk(problem, world, lane.rest_qpos, steps)
+    return RecordedWalk(problem, world, lane.rest_qpos, list(lane.steps))
 
 
 def walk_of_practice(
     recording: PracticeRecording, problem: WalkingProblem, world: World
 ) -> RecordedWalk:
     """Return the newest steps of a practice that are recorded without a gap."""
-    steps: list[WalkedStep] = []
+    steps: list[StepTaken] = []
     start_qpos = recording.rest_qpos
     for taken in recording.steps:
-        number = taken.step - 1
         if taken.motion is None:
             continue
-        if steps and steps[-1].number != number - 1:
+        if steps and steps[-1].step != taken.step - 1:
             steps.clear()
-        if not steps and number:
+        if not steps and taken.step > 1:
             start_qpos = taken.motion.qpos[0]
-        steps.append(WalkedStep(number, taken.motion, (taken.observation, taken.action)))
+        steps.append(taken)
     return RecordedWalk(problem, world, start_qpos, steps)
 
 
@@ -104,14 +135,14 @@ def walk_of_evaluation(
     evaluated: Evaluated, recording: PracticeRecording, problem: WalkingProblem, world: World
 ) -> RecordedWalk:
     """Return the walk of an evaluation: 50 steps from rest in the world as it was then."""
-    motion, steps = evaluated.motion, []
+    motion, steps = evaluated.motion, list[WalkedStep]()
     if motion is not None:
         frames = len(motion.time_s) // RACE_STEPS
         for number in range(RACE_STEPS):
             part = slice(number * frames, (number + 1) * frames)
             begin_s = np.float32(number * problem.robot.step_s)
             own = Motion(motion.time_s[part] - begin_s, motion.qpos[part])
-            steps.append(WalkedStep(number, own, None))
+            steps.append(EvaluatedStep(number + 1, own))
     conditions = world.as_of(max(0, evaluated.step - 1))
     return RecordedWalk(problem, conditions, recording.rest_qpos, steps)
 
@@ -245,12 +276,14 @@ def window_of(
         begin = from_s
     end = min(begin + MAX_WINDOW_S, last_s) if to_s is None else to_s
     if walks and begin >= last_s > 0:
-        raise InvalidInput(f"from_s must be under {last_s:.2f}, the end of what is recorded")
+        raise InvalidInput(
+            f"the window begins after the end of the recording; choose a from_s under {last_s:.2f}"
+        )
     if end <= begin and last_s > 0:
-        raise InvalidInput(f"to_s must be over from_s, {begin:g}")
+        raise InvalidInput(f"the window ends before it begins; choose a to_s over {begin:g}")
     if end - begin > MAX_WINDOW_S + 1e-9:
         raise InvalidInput(
-            f"from_s and to_s must be at most {MAX_WINDOW_S:g} s of robot time apart"
+            f"the window is too long; choose a to_s at most {MAX_WINDOW_S:g} s after from_s"
         )
     return begin, min(end, last_s)
 
@@ -324,16 +357,18 @@ def _frames(walk: RecordedWalk, from_s: float, to_s: float) -> _Frames | None:
     step_s, steps = walk.problem.robot.step_s, walk.steps
     if not steps:
         return None
-    first = max(0, math.floor(from_s / step_s + 1e-9) - steps[0].number)
-    last = min(len(steps), math.ceil(to_s / step_s - 1e-9) - steps[0].number)
-    shown = steps[first:last]
-    if not shown:
+    number = steps[0].step - 1  # of the first, counted from 0
+    first = max(0, math.floor(from_s / step_s + 1e-9) - number)
+    last = min(len(steps), math.ceil(to_s / step_s - 1e-9) - number)
+    motions = [walk.motion(index) for index in range(first, last)]
+    if not motions:
         return None
-    start = walk.start_qpos if first == 0 else steps[first - 1].motion.qpos[-1]
-    times = [np.array([shown[0].number * step_s])]
-    times += [s.motion.time_s.astype(float) + s.number * step_s for s in shown]
-    numbers = [np.full(len(s.motion.time_s), s.number) for s in shown]
-    efforts = [(s.motion.torque_nm, s.motion.work_j) for s in shown]
+    start = walk.pose_before(first)
+    times, numbers = [np.array([(number + first) * step_s])], [np.array([number + first])]
+    for own, motion in enumerate(motions, start=number + first):
+        times.append(motion.time_s.astype(float) + own * step_s)
+        numbers.append(np.full(len(motion.time_s), own))
+    efforts = [(motion.torque_nm, motion.work_j) for motion in motions]
     torque = work = None
     if all(one is not None and other is not None for one, other in efforts):
         joints = len(start) - 7
@@ -343,8 +378,8 @@ def _frames(walk: RecordedWalk, from_s: float, to_s: float) -> _Frames | None:
         work = np.concatenate([np.zeros(1), *(other for _, other in efforts if other is not None)])
     return _Frames(
         np.concatenate(times),
-        np.concatenate([start[None], *(s.motion.qpos for s in shown)]).astype(float),
-        np.concatenate([numbers[0][:1], *numbers]),
+        np.concatenate([start[None], *(motion.qpos for motion in motions)]).astype(float),
+        np.concatenate(numbers),
         torque,
         work,
     )
@@ -376,36 +411,32 @@ def _mean_mass_kg(robot: Robot, world: World, steps: NDArray[np.int64]) -> float
 
 def _cycle(walk: RecordedWalk) -> Cycle | None:
     """Return the shortest sequence of choices that ends the walk `CYCLE_REPEATS` times in a row."""
-    choices = [step.choice for step in walk.steps]
-    count = len(choices)
-    if not count or None in choices:
+    newest = walk.steps[-MAX_LOOKED_BACK:]
+    choices = [(step.observation, step.action) for step in reversed(newest)]
+    if not choices or choices[0][1] is None:
         return None
-    for period in range(1, min(MAX_CYCLE_STEPS, count // CYCLE_REPEATS) + 1):
-        repeated = 0
-        while repeated + period < count and (
-            choices[count - 1 - repeated] == choices[count - 1 - repeated - period]
-        ):
-            repeated += 1
+    for period in range(1, min(MAX_CYCLE_STEPS, len(choices) // CYCLE_REPEATS) + 1):
+        earlier = zip(choices, choices[period:], strict=False)
+        repeated = sum(1 for _ in takewhile(lambda both: both[0] == both[1], earlier))
         if repeated >= (CYCLE_REPEATS - 1) * period:
-            return _cycle_of(walk, period, count - repeated - period)
+            return _cycle_of(walk, period, len(walk.steps) - repeated - period)
     return None
 
 
 def _cycle_of(walk: RecordedWalk, period: int, first: int) -> Cycle:
     repeats = (len(walk.steps) - first) // period
     end = first + repeats * period
-    start = walk.start_qpos if first == 0 else walk.steps[first - 1].motion.qpos[-1]
-    advance = float(walk.steps[end - 1].motion.qpos[-1][1] - start[1]) / repeats
+    advance = float(walk.motion(end - 1).qpos[-1][1] - walk.pose_before(first)[1]) / repeats
     return Cycle(
         steps=period,
         period_s=period * walk.problem.robot.step_s,
-        first_step=walk.steps[first].number,
+        first_step=walk.steps[first].step - 1,
         repeats=repeats,
         advance_m=advance,
         actions=[
-            (step.choice[1].pair, step.choice[1].cell)
+            (step.action.pair, step.action.cell)
             for step in walk.steps[first : first + period]
-            if step.choice is not None
+            if step.action is not None
         ],
     )
 

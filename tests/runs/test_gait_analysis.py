@@ -14,6 +14,7 @@ from app.runs.config import WalkingProblem, training_config
 from app.runs.gait_analysis import (
     MAX_SAMPLES,
     MAX_WINDOW_S,
+    EvaluatedStep,
     RecordedWalk,
     gait_figures,
     walk_of_evaluation,
@@ -129,10 +130,10 @@ def test_pitch_is_positive_with_the_front_up_and_roll_with_the_left_side_up(
     about = ahead - np.pi / 2 if axis == "pitch" else ahead
     half = np.deg2rad(10) / 2
     turned = np.array([np.cos(half), np.cos(about) * np.sin(half), np.sin(about) * np.sin(half), 0])
-    motion = greedy.steps[0].motion
+    motion = greedy.motion(0)
     poses = motion.qpos.copy()
     poses[:, 3:7] = turned
-    step = greedy.steps[0]._replace(motion=motion._replace(qpos=poses))
+    step = EvaluatedStep(1, motion._replace(qpos=poses))
     made = RecordedWalk(problem, UNDISTURBED, poses[0], [step])
     figures = gait_figures(made, 0, STEP_S)
 
@@ -147,7 +148,7 @@ def test_the_cost_of_transport_is_energy_by_weight_and_distance(with_physics: Re
     assert figures is not None
     effort = figures.effort
     assert effort is not None
-    recorded = [step.motion.work_j for step in with_physics.steps]
+    recorded = [with_physics.motion(index).work_j for index in range(15)]
     energy = sum(float(work.sum()) for work in recorded if work is not None)
     assert effort.energy_j == pytest.approx(energy)
     assert effort.mean_power_w == pytest.approx(energy / (15 * STEP_S))
@@ -180,7 +181,7 @@ def test_the_mass_counts_a_payload_and_legs_that_are_gone(with_physics: Recorded
 
 
 def test_long_windows_have_fewer_samples_and_the_same_energy(with_physics: RecordedWalk) -> None:
-    steps = [with_physics.steps[number % 15]._replace(number=number) for number in range(300)]
+    steps = [EvaluatedStep(n + 1, with_physics.motion(n % 15)) for n in range(300)]
     figures = gait_figures(replace(with_physics, steps=steps), 0, 300 * STEP_S)
 
     assert figures is not None
@@ -213,9 +214,9 @@ def test_the_window_is_all_that_is_recorded_unless_a_part_is_asked_for(
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ((16.0, None), r"from_s must be under 16\.00, the end of what is recorded"),
-        ((5.0, 5.0), "to_s must be over from_s, 5"),
-        ((0.0, 1 + MAX_WINDOW_S), "at most 120 s of robot time apart"),
+        ((16.0, None), r"choose a from_s under 16\.00"),
+        ((5.0, 5.0), "choose a to_s over 5"),
+        ((0.0, 1 + MAX_WINDOW_S), "choose a to_s at most 120 s after from_s"),
     ],
 )
 def test_a_window_that_is_none_is_refused(
