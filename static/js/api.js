@@ -1,7 +1,7 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
 
 /** @import { Curve, Disturbance, Kind, Options, Page, Rates, Run, Stage, Summary, Timeline, Verb } from "./types.js" */
-/** @import { WhatIfAnswer } from "./types.js" */
+/** @import { GaitAnalysis, WhatIfAnswer } from "./types.js" */
 
 const base = () => new URL("api/v1/", document.baseURI);
 
@@ -165,6 +165,15 @@ export const getCurve = (id) => call("GET", `${pathOf({ kind: "training", id })}
 /** @type {(id: string, clock: string) => Promise<Omit<Timeline, "id">>} */
 export const getTimeline = (id, clock) =>
   call("GET", `${pathOf({ kind: "race", id })}/timeline?clock=${clock}`);
+/**
+ * The gait of a race, or of a part of a training; from a moment of robot time on, or all that is analysed at once.
+ * @type {(id: string, part: string, from_s: number | null) => Promise<GaitAnalysis>}
+ */
+export const getGait = (id, part, from_s) => {
+  const query = new URLSearchParams(part === "race" ? {} : { part });
+  if (from_s !== null) query.set("from_s", String(from_s));
+  return call("GET", `runs/${encodeURIComponent(id)}/gait?${query}`);
+};
 /** @type {(id: string) => Promise<Summary>} */
 export const getSummary = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/summary`);
 

@@ -10,6 +10,7 @@ import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { Controls } from "./controls.js";
 import { html, Icon } from "./elements.js";
+import { LazyPanel } from "./lazy.js";
 import { Knowledge, LearningChart } from "./learning.js";
 import { RaceChart, Scoreboard } from "./race.js";
 import { Runs } from "./runs.js";
@@ -75,10 +76,13 @@ const RaceView = ({ isHidden }) => html`
       ${!isNarrow.value && html`<${Lesson} />`}
       <${LearningChart} />
       <${RaceChart} />
+      <${LazyPanel} title="Gait analysis" style="gait-analysis" load=${loadGait} />
       <${Knowledge} />
     </div>
   </div>
 `;
+
+const loadGait = () => import("./gait.js").then(({ Gait }) => Gait);
 
 // ---- the view of experiments, loaded when it is first opened: most visits do not
 
