@@ -251,7 +251,7 @@ def _walker(
     arguments = {
         **offered,
         "rng": rng,
-        "problem": Problem(simulator.gait.pairs, simulator.grid.cells),
+        "problem": Problem(simulator.gait.pairs, simulator.grid.cells, simulator.gait.azimuths_deg),
         "explore": explore,
         "expand": expand,
         "observe": sensors,

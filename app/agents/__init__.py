@@ -14,4 +14,5 @@ update their Q-table from it as well: `dyna_q`, `dyna_q_plus` and `prioritized_s
 `search` is the base of agents that plan by simulation: `lookahead` is exhaustive (paper, Algorithms
 3 and 4), `beam` follows the best few sequences, `informed` simulates what the kinematic law ranks
 best, and `mcts` samples sequences at random.
+`fixed_policies` neither learn nor look ahead: a wave made by hand, and a random walk.
 """

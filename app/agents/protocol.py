@@ -59,6 +59,8 @@ class Problem(NamedTuple):
     """(leader, partner) legs, counted from 1."""
     cells_m: FloatArray
     """Displacement of each cell of the foot grid from home, (cells, 2): x right, y forward."""
+    azimuths_deg: tuple[float, ...] = ()
+    """Each leg's azimuth relative to forward, anticlockwise; empty if unknown."""
 
 
 class Transition(NamedTuple):

@@ -16,6 +16,7 @@ from app.agents.double_q import DoubleQ
 from app.agents.dyna_q import DynaQ
 from app.agents.dyna_q_plus import DynaQPlus
 from app.agents.expected_sarsa import ExpectedSarsa
+from app.agents.fixed_policies import RandomWalk, Wave
 from app.agents.informed import Informed
 from app.agents.linear_model import LinearModel
 from app.agents.lookahead import Greedy, LookAhead, TwoStep
@@ -63,6 +64,8 @@ OURS: Mapping[str, AgentClass] = {
     "beam": Beam,
     "informed": Informed,
     "mcts": Mcts,
+    "wave": Wave,
+    "random-walk": RandomWalk,
 }
 _CLASS_PATH = re.compile(r"[\w.]+:\w+")
 

@@ -14,6 +14,7 @@ from app.domain.world import MAX_DISTURBANCES, WORLDS
 from app.experiments.config import EXPERIMENTS, MAX_SEEDS
 from app.runs.clocks import CLOCKS
 from app.runs.config import SIMULATORS, TrainingConfig
+from app.runs.gait_analysis import MAX_WINDOW_S
 from app.runs.lane import LaneConfig
 from app.runs.race_config import MAX_LANES
 from app.stage.playback import HIGHEST_LEVEL, LOWEST_LEVEL
@@ -89,6 +90,12 @@ VALID: Mapping[str, str] = {
     "idempotency-key": "1 to 200 printable ASCII characters without spaces",
     "level": f"a whole number from {LOWEST_LEVEL} to {HIGHEST_LEVEL}",
     "number": "a whole number, 0 or more",
+    "from_s": "a number of seconds of robot time, 0 or more; by default the beginning of the walk",
+    "to_s": (
+        f"a number of seconds of robot time over from_s, at most {MAX_WINDOW_S:g} s later; by "
+        "default the end of the walk"
+    ),
+    "part": "practice, or evaluation for the newest one; of a training",
     "format": "a format that the description of the route names",
 }
 

@@ -167,6 +167,22 @@ def _check_motion(motion: Motion | None, walk: WalkingProblem) -> None:
         raise ValueError("its times are none")
     if (np.diff(times) <= 0).any() or times[0] <= 0:
         raise ValueError("its time does not go on")
+    _check_effort(motion)
+
+
+def _check_effort(motion: Motion) -> None:
+    """Check torques, (frames, joints), and work, (frames,), which not every recording has."""
+    torque, work = motion.torque_nm, motion.work_j
+    if torque is not None:
+        if torque.shape != motion.qpos[:, 7:].shape or torque.dtype != np.float16:
+            raise ValueError("its torques are of another robot")
+        if not np.isfinite(torque).all():
+            raise ValueError("its torques are none")
+    if work is not None:
+        if work.shape != motion.time_s.shape or work.dtype.kind != "f":
+            raise ValueError("its work is of other frames")
+        if not np.isfinite(work).all() or (work < 0).any():
+            raise ValueError("its work is none")
 
 
 def _check_poses(qpos: NDArray[np.float32], walk: WalkingProblem) -> None:

@@ -6,7 +6,7 @@
   orientation and leg pairs; `grid`: the foot grid; `observation`: how the state is read, and the
   legal actions.
 - `disturbances`: what can happen to a robot or the ground, by kind; `world`: all that happens in a
-  run, and the conditions of each step.
+  run, and the conditions of each step; `terrain`: heights of the ground.
 - `feet`: foot offsets and the kinematic law of a step; `kinematics`: inverse and forward
   kinematics of the legs; `motion`: servo commands of a step.
 - `posture`: whether a robot has fallen, and its heading.

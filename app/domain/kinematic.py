@@ -51,7 +51,11 @@ class KinematicSimulator:
         return KinematicState(self._motion.at_home())
 
     def step(
-        self, state: KinematicState, action: Action, record: bool = False
+        self,
+        state: KinematicState,
+        action: Action,
+        record: bool = False,
+        effort: bool = False,  # noqa: ARG002  # nothing has servos here
     ) -> Step[KinematicState]:
         plan = self._motion.plan(state.feet, action)
         distance = state.distance_m + plan.advance_m

@@ -8,6 +8,7 @@ z up), joint angles in rad.
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -97,10 +98,8 @@ class Legs:
         robot, offsets = self.robot, []
         for leg, (home, _, x_along, x_across, y_along, y_across) in enumerate(self._frames):
             coxa, femur, tibia = angles[3 * leg : 3 * leg + 3]
-            knee = femur + tibia
-            r = robot.coxa_m + robot.femur_m * math.cos(femur) + robot.tibia_m * math.cos(knee)
-            along, across = r * math.cos(coxa) - home, r * math.sin(coxa)
-            height = robot.femur_m * math.sin(femur) + robot.tibia_m * math.sin(knee)
+            reach, across, height = _foot(robot, coxa, femur, tibia, math)
+            along = reach - home
             offsets.append(
                 (
                     x_along * along + x_across * across,
@@ -109,6 +108,53 @@ class Legs:
                 )
             )
         return offsets
+
+
+def _foot(robot: Robot, coxa: Any, femur: Any, tibia: Any, of: Any) -> tuple[Any, Any, Any]:
+    """Return a foot's place from its coxa joint: along the leg, across, and upward [m].
+
+    Angles [rad] are floats with the functions of `math`, or arrays with those of `numpy`.
+    """
+    knee = femur + tibia
+    r = robot.coxa_m + robot.femur_m * of.cos(femur) + robot.tibia_m * of.cos(knee)
+    height = robot.femur_m * of.sin(femur) + robot.tibia_m * of.sin(knee)
+    return r * of.cos(coxa), r * of.sin(coxa), height
+
+
+def foot_positions(robot: Robot, poses: FloatArray) -> FloatArray:
+    """Compute the forward kinematics of many poses, in the world.
+
+    Args:
+        robot: the robot.
+        poses: torso position [m], rotation (wxyz) and joint angles [rad], (k, 7 + 3 · legs).
+
+    Returns:
+        (k, legs, 3), the centres of the feet [m].
+    """
+    angles = poses[:, 7:].reshape(len(poses), -1, 3)
+    coxa, femur, tibia = np.moveaxis(angles, -1, 0)
+    along, across, height = _foot(robot, coxa, femur, tibia, np)
+    azimuth = np.deg2rad(robot.azimuths_deg)
+    along = along + np.array([leg.radius_m for leg in robot.legs])
+    cos, sin = np.cos(azimuth), np.sin(azimuth)
+    feet = np.stack([along * cos - across * sin, along * sin + across * cos, height], axis=-1)
+    turned: FloatArray = np.einsum("kij,klj->kli", rotation_matrices(poses), feet)
+    return poses[:, None, :3] + turned
+
+
+def rotation_matrices(poses: FloatArray) -> FloatArray:
+    """Return the rotation of each pose's torso as a matrix, (k, 3, 3).
+
+    Args:
+        poses: torso position and rotation (wxyz), which may be followed by joint angles, (k, ...).
+    """
+    w, x, y, z = poses[:, 3:7].T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), -1, 0)
 
 
 def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> None:

@@ -47,6 +47,11 @@ class Motion(NamedTuple):
     qpos: NDArray[np.float32]
     """Torso position [m], its rotation (quaternion wxyz), joint angles [rad],
     (k, 7 + 3 · legs)."""
+    torque_nm: NDArray[np.float16] | None = None
+    """Of each servo its largest torque by magnitude since the frame before [N·m], (k, 3 · legs);
+    None if it was not recorded, or nothing has servos."""
+    work_j: NDArray[np.float32] | None = None
+    """Positive mechanical work of all servos since the frame before [J], (k,); likewise None."""
 
 
 class Step(NamedTuple, Generic[S]):
@@ -81,8 +86,15 @@ class Simulator(Protocol[S]):
     def rest(self) -> S:
         """Return the state at rest on the start line, with every foot at home."""
 
-    def step(self, state: S, action: Action, record: bool = False) -> Step[S]:
+    def step(self, state: S, action: Action, record: bool = False, effort: bool = False) -> Step[S]:
         """Carry out one action.
+
+        Args:
+            state: the state before.
+            action: the action.
+            record: whether to return the motion.
+            effort: whether the motion includes torque and work of the servos, where there are any;
+                a recorded step takes 5 % longer with them.
 
         Raises:
             Diverged: if the physics diverges; the message names the step.

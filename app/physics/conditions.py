@@ -24,6 +24,7 @@ from app.domain.disturbances import (
     Weak,
 )
 from app.domain.robot import Robot
+from app.domain.terrain import ROUGH_CELL_M, ROUGH_PERIOD_M, rough_heights
 from app.domain.types import FloatArray
 from app.domain.world import World
 
@@ -33,11 +34,6 @@ _NO_TORQUE_NM = 1e-9
 _GROUND_HALF_WIDTH_M = 50.0
 _GROUND_END_M = 2000.0
 """Ground with patches is made of boxes, from here behind the start to here before it."""
-ROUGH_PERIOD_M = 2.56
-"""Side of the square of rough ground that repeats in both directions."""
-_ROUGH_CELL_M = 0.02
-_ROUGH_BUMP_M = 0.08
-"""Distance between independent heights; those between are interpolated."""
 _ROUGH_BASE_M = 0.1
 _ROUGH_MARGIN_M = 0.64
 """Ground beyond the square, for legs of a robot near its edge; more for larger robots."""
@@ -131,12 +127,12 @@ def _rough(rough: Rough, target: _Target) -> None:
         return
     heights = rough_heights(rough)
     margin_m = max(_ROUGH_MARGIN_M, 2 * target.robot.home_radius_m)
-    margin = round(margin_m / _ROUGH_CELL_M)
+    margin = round(margin_m / ROUGH_CELL_M)
     half = heights.shape[0] // 2
     # Row and column 0 of a period lie at the origin.
     index = np.arange(-half - margin, half + margin + 1) % heights.shape[0]
     field = heights[np.ix_(index, index)]
-    radius = ROUGH_PERIOD_M / 2 + margin * _ROUGH_CELL_M
+    radius = ROUGH_PERIOD_M / 2 + margin * ROUGH_CELL_M
     target.spec.add_hfield(
         name="rough",
         size=[radius, radius, rough.amplitude_m, _ROUGH_BASE_M],
@@ -230,22 +226,3 @@ def payload_center_m(payload: Payload, robot: Robot, forward_deg: float) -> Floa
     right = np.array([ahead[1], -ahead[0]])
     x, y = payload.x_m * right + payload.y_m * ahead
     return np.array([x, y, robot.torso_half_height_m + payload_half_side_m(payload.kg)])
-
-
-def rough_heights(rough: Rough) -> FloatArray:
-    """Return heights of one period of rough ground [m], (rows along the track, columns across).
-
-    Heights on a coarse square lattice are drawn from the seed, from 0 to the amplitude, and
-    interpolated by half a cosine in both directions; edges meet.
-    """
-    coarse_count = round(ROUGH_PERIOD_M / _ROUGH_BUMP_M)
-    coarse = np.random.default_rng(rough.seed).random((coarse_count, coarse_count))
-    fine = round(_ROUGH_BUMP_M / _ROUGH_CELL_M)
-    share = (1 - np.cos(np.pi * np.arange(fine) / fine)) / 2
-    for axis in (0, 1):
-        after = np.roll(coarse, -1, axis)
-        stacked = [coarse + part * (after - coarse) for part in share]
-        coarse = np.stack(stacked, axis + 1)
-        shape = (-1, coarse.shape[-1]) if axis == 0 else (coarse.shape[0], -1)
-        coarse = coarse.reshape(shape)
-    return np.asarray(rough.amplitude_m * coarse, float)

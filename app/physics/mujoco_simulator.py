@@ -19,10 +19,12 @@ from app.domain.kinematics import JOINT_LIMITS_RAD, check_reach
 from app.domain.motion import StepMotion, StepPlan, recorded_substeps
 from app.domain.robot import Robot
 from app.domain.simulator import Expansion, Motion, Step
+from app.domain.terrain import ROUGH_PERIOD_M
 from app.domain.types import Action, Cells, FloatArray
 from app.domain.world import UNDISTURBED, World
-from app.physics.conditions import ROUGH_PERIOD_M, direction
+from app.physics.conditions import direction
 from app.physics.mjcf import compile_model, joint_index
+from app.physics.servo_torque import servo_effort
 
 SETTLE_S = 1.0
 """Time that the robot stands before a walk, until servo torques and contact forces settle."""
@@ -134,13 +136,20 @@ class MujocoSimulator:
         qpos[:2] = 0
         return MujocoState(_read_only_copy(batch.state[0]), self._motion.at_home())
 
-    def step(self, state: MujocoState, action: Action, record: bool = False) -> Step[MujocoState]:
+    def step(
+        self, state: MujocoState, action: Action, record: bool = False, effort: bool = False
+    ) -> Step[MujocoState]:
         conditions = self.world.as_of(state.steps)
         batch = self._batches_of(conditions).single
         pushes = self.world.pushes_at(state.steps)
         moved = self._placed(state, conditions)
         (end,), (reward,), recorded = self._advance(
-            batch, conditions, [moved], [action], record=record, pushes=pushes
+            batch,
+            conditions,
+            [moved],
+            [action],
+            record=(("qpos", "qvel") if effort else ("qpos",)) if record else (),
+            pushes=pushes,
         )
         motion = None
         if record:
@@ -151,6 +160,17 @@ class MujocoSimulator:
                 ((self._recorded_substeps + 1) * self.robot.dt_s).astype(np.float32),
                 recorded_qpos.astype(np.float32),
             )
+            if effort:
+                motion = motion._replace(
+                    **servo_effort(
+                        batch.model,
+                        recorded["target"][0],
+                        recorded["qpos"][0, :, 7:],
+                        recorded["qvel"][0, :, 6:],
+                        speeds_before=recorded["qvel_before"][0, 6:],
+                        frames=self._recorded_substeps,
+                    )._asdict()
+                )
         return Step(end, reward, motion)
 
     def expand(
@@ -166,7 +186,7 @@ class MujocoSimulator:
         conditions = self.world.as_of(as_of or 0)
         batch = self._batches_of(conditions, len(states)).many
         moved = [self._placed(state, conditions) for state in states]
-        ends, rewards, _ = self._advance(batch, conditions, moved, actions, record=False)
+        ends, rewards, _ = self._advance(batch, conditions, moved, actions)
         return Expansion(ends, np.array(rewards))
 
     def _expand_by_conditions(
@@ -216,10 +236,12 @@ class MujocoSimulator:
         states: Sequence[MujocoState],
         actions: Sequence[Action],
         *,
-        record: bool,
+        record: Sequence[str] = (),
         pushes: Sequence[Push] = (),
     ) -> tuple[list[MujocoState], list[float], dict[str, FloatArray]]:
-        """Plan and simulate a step from each state; return ends, rewards, and `qpos` if recorded.
+        """Plan and simulate a step from each state; return ends, rewards, and what was recorded.
+
+        With `qvel`, that includes the servos' targets and the speeds before.
 
         Raises:
             Diverged: if the physics diverges.
@@ -231,10 +253,13 @@ class MujocoSimulator:
             change = push.impulse_ns / float(batch.model.body_mass.sum())
             batch.bind("qvel")[:count, :2] += change * direction(push.direction_deg)
         targets, delayed = self._received(batch, conditions, states, plans)
-        recorded = batch.rollout(
+        before = {}
+        if "qvel" in record:
+            before = {"target": targets, "qvel_before": batch.bind("qvel").copy()}
+        recorded = before | batch.rollout(
             self._substeps,
             targets,
-            record=("qpos",) if record else (),
+            record=record,
             ids=None if count == batch.nsim else np.arange(count),
         )
         after = _read_only_copy(batch.state[:count])

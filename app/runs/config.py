@@ -186,7 +186,8 @@ class WalkingProblem:
 
 def problem_of(walk: WalkingProblem) -> Problem:
     """Return the size and geometry of a walking problem, as agents know it."""
-    return Problem(walk.resolved_gait.pairs, walk.grid.cells)
+    gait = walk.resolved_gait
+    return Problem(gait.pairs, walk.grid.cells, gait.azimuths_deg)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -74,7 +74,7 @@ def _lane_step(
     except Exception as error:  # a user-supplied agent may raise anything
         return LaneFailed(lane, step, f"its agent failed: {type(error).__name__}: {error}")
     try:
-        outcome = walker.carry_out(action, record=True)
+        outcome = walker.carry_out(action, record=True, effort=True)
     except Diverged as error:
         return LaneFailed(lane, step, str(error))
     return LaneStep(

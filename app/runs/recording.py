@@ -114,7 +114,7 @@ def pose_at(start: NDArray[np.float32], motion: Motion, time_s: float) -> FloatA
 
 
 def race_arrays(lanes: Sequence[LaneRecording]) -> Arrays:
-    """Encode a race's recording as arrays for a file: about 0.3 MB per minute and lane."""
+    """Encode a race's recording as arrays for a file: about 0.4 MB per minute and lane."""
     arrays: Arrays = {}
     meta = []
     for number, lane in enumerate(lanes):
@@ -123,8 +123,10 @@ def race_arrays(lanes: Sequence[LaneRecording]) -> Arrays:
         arrays[key + "rest_qpos"] = lane.rest_qpos
         if not lane.steps:
             continue
-        for name in ("time_s", "qpos"):
-            arrays[key + name] = np.concatenate([getattr(s.motion, name) for s in lane.steps])
+        for name in Motion._fields:
+            columns = [getattr(s.motion, name) for s in lane.steps]
+            if all(column is not None for column in columns):
+                arrays[key + name] = np.concatenate(columns)
         arrays[key + "frames"] = np.array([len(s.motion.time_s) for s in lane.steps])
         arrays[key + "observation"] = np.array([s.observation for s in lane.steps])
         arrays[key + "action"] = np.array([s.action for s in lane.steps])
@@ -170,6 +172,11 @@ def _lane_step(arrays: Arrays, key: str, lane: int, step: int, frames: slice) ->
         distance,
         int(transitions),
         decision,
-        Motion(arrays[key + "time_s"][frames], arrays[key + "qpos"][frames]),
+        Motion(*(_column(arrays, key + name, frames) for name in Motion._fields)),
         knowledge,
     )
+
+
+def _column(arrays: Arrays, name: str, frames: slice) -> Any:
+    """Return a part of an array; None if it was not recorded."""
+    return arrays[name][frames] if name in arrays else None

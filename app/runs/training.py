@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -203,14 +202,16 @@ def walk(walker: Walker, record: bool) -> tuple[float, Motion | None]:
         step = walker.carry_out(walker.decide(), record)
         if step.motion:
             start = number * walker.simulator.robot.step_s
-            motions.append(Motion(step.motion.time_s + np.float32(start), step.motion.qpos))
+            motions.append(step.motion._replace(time_s=step.motion.time_s + np.float32(start)))
     distance: float = walker.state.distance_m
     return distance, _concatenate(motions) if motions else None
 
 
 def _concatenate(motions: list[Motion]) -> Motion:
-    columns: tuple[Any, ...] = tuple(zip(*motions, strict=True))
-    return Motion(*(np.concatenate(column) for column in columns))
+    return Motion(
+        np.concatenate([motion.time_s for motion in motions]),
+        np.concatenate([motion.qpos for motion in motions]),
+    )
 
 
 def _is_due(learner: Learner, config: TrainingConfig) -> bool:

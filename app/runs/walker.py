@@ -249,9 +249,9 @@ class Walker:
                 "choose one of the (pair, cell) in legal"
             ) from error
 
-    def carry_out(self, action: Action, record: bool = False) -> Step[Any]:
-        """Simulate an action, and make the resulting state the current one."""
-        step = self.simulator.step(self.state, action, record)
+    def carry_out(self, action: Action, record: bool = False, effort: bool = False) -> Step[Any]:
+        """Simulate an action as `Simulator.step`; its result becomes the current state."""
+        step = self.simulator.step(self.state, action, record, effort)
         self.place(step.state)
         return step
 

@@ -11,6 +11,7 @@ from typing import Generic, NamedTuple, TypeVar
 import numpy as np
 
 from app.domain.errors import HexapodError
+from app.domain.simulator import Motion
 from app.runs.recording import (
     Arrays,
     LaneRecording,
@@ -177,15 +178,17 @@ def _read_race(store: RunStore, run_id: str) -> list[LaneRecording] | None:
 def _size_of_training(recording: PracticeRecording) -> int:
     motions = [step.motion for step in recording.steps]
     motions += [evaluation.motion for evaluation in recording.evaluations]
-    return sum(motion.qpos.nbytes + motion.time_s.nbytes for motion in motions if motion)
+    return sum(_size_of(motion) for motion in motions if motion)
 
 
 def _size_of_race(lanes: list[LaneRecording]) -> int:
     return sum(
-        step.motion.qpos.nbytes + step.motion.time_s.nbytes + _STEP_OVERHEAD_BYTES
-        for lane in lanes
-        for step in lane.steps
+        _size_of(step.motion) + _STEP_OVERHEAD_BYTES for lane in lanes for step in lane.steps
     )
+
+
+def _size_of(motion: Motion) -> int:
+    return sum(array.nbytes for array in motion if array is not None)
 
 
 def evaluations_file(number: int) -> str:

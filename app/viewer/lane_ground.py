@@ -6,9 +6,9 @@ import numpy as np
 import viser
 
 from app.domain.disturbances import Disturbance, Friction, Patch, Rough, Slope
+from app.domain.terrain import rough_heights_at
 from app.domain.types import FloatArray
 from app.domain.world import World
-from app.physics.conditions import ROUGH_PERIOD_M, rough_heights
 from app.stage.stage_frame import Origin
 from app.viewer.colormap import Rgb, mix
 from app.viewer.condition_colors import HOLLOW, TOP, UPHILL, ground_color
@@ -91,16 +91,7 @@ class LaneGround(Temporary):
         xs = np.linspace(-self._half_m, self._half_m, 1 + math.ceil(2 * self._half_m / _CELL_M))
         ys = np.linspace(BEFORE_M, BEYOND_M, 1 + math.ceil((BEYOND_M - BEFORE_M) / _CELL_M))
         x, y = np.meshgrid(xs, ys)
-        heights = rough_heights(rough)
-        cells = _on_ground(np.stack([x, y], axis=-1), origin) / (ROUGH_PERIOD_M / len(heights))
-        first = np.floor(cells).astype(int)
-        (across, along), count = np.moveaxis(cells - first, -1, 0), len(heights)
-        column, row = np.moveaxis(first, -1, 0)
-        z = np.zeros_like(x)
-        for up, share_up in ((0, 1 - along), (1, along)):
-            for right, share_right in ((0, 1 - across), (1, across)):
-                corner = heights[(row + up) % count, (column + right) % count]
-                z += share_up * share_right * corner
+        z = rough_heights_at(rough, _on_ground(np.stack([x, y], axis=-1), origin))
         return surface(np.stack([x, y, z], axis=-1))
 
     def _draw_bumps(self, rough: Rough, origin: Origin, top: Rgb) -> None:

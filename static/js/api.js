@@ -1,7 +1,7 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
 
-/** @import { Annotations, Curve, Disturbance, Kind, Options, Page, Rates, ReplayPlan, Run } from "./types.js" */
-/** @import { Stage, Summary, Timeline, Verb, WhatIfAnswer } from "./types.js" */
+/** @import { Annotations, Curve, Disturbance, GaitAnalysis, Kind, Options, Page, Rates, ReplayPlan } from "./types.js" */
+/** @import { Run, Stage, Summary, Timeline, Verb, WhatIfAnswer } from "./types.js" */
 
 const base = () => new URL("api/v1/", document.baseURI);
 
@@ -208,6 +208,15 @@ export async function getReplayFrames(id, address) {
   return response.arrayBuffer();
 }
 
+/**
+ * The gait of a race, or of a part of a training; from a moment of robot time on, or all that is analysed at once.
+ * @type {(id: string, part: string, from_s: number | null) => Promise<GaitAnalysis>}
+ */
+export const getGait = (id, part, from_s) => {
+  const query = new URLSearchParams(part === "race" ? {} : { part });
+  if (from_s !== null) query.set("from_s", String(from_s));
+  return call("GET", `runs/${encodeURIComponent(id)}/gait?${query}`);
+};
 /** @type {(id: string) => Promise<Summary>} */
 export const getSummary = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/summary`);
 

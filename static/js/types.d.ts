@@ -358,6 +358,65 @@ export interface Timeline {
   finish_line_m: number;
 }
 
+// ---- GET /runs/{id}/gait; times are robot time [s]: motion only
+
+export interface GaitFigures {
+  from_s: number;
+  to_s: number;
+  distance_m: number;
+  speed_m_s: number;
+  speed_body_lengths_s: number;
+  duty_factor: number;
+  mass_kg: number;
+  /** When each foot is on the ground. */
+  legs: { leg: number; stance: [number, number][]; duty_factor: number }[];
+  /** The steps that the walk repeats at its end; its actions are [pair, cell]. */
+  cycle: {
+    steps: number;
+    period_s: number;
+    /** Counted from 0. */
+    first_step: number;
+    repeats: number;
+    advance_m: number;
+    actions: [number, number][];
+  } | null;
+  posture: {
+    time_s: number[];
+    height_m: number[];
+    pitch_deg: number[];
+    roll_deg: number[];
+    height_range_m: [number, number];
+    pitch_range_deg: [number, number];
+    roll_range_deg: [number, number];
+  };
+  effort: {
+    time_s: number[];
+    torque_nm: number[];
+    power_w: number[];
+    largest_torque_nm: number;
+    torque_limit_nm: number;
+    energy_j: number;
+    mean_power_w: number;
+    cost_of_transport: number | null;
+  } | null;
+}
+
+export interface GaitLane {
+  agent: string;
+  recorded_from_s: number;
+  recorded_to_s: number;
+  figures: GaitFigures | null;
+  /** Why there are neither torque nor energy. */
+  no_effort: string | null;
+}
+
+export interface GaitAnalysis {
+  part: "race" | "practice" | "evaluation";
+  /** Duration of a step [s]. */
+  step_s: number;
+  lanes: GaitLane[];
+}
+
 export interface WhatIfHalf {
   distances_m: number[];
   iqm_m: number;

@@ -125,16 +125,18 @@ def test_accepted_encodings(header: str, *, expected: bool) -> None:
     assert accepts_gzip(header) is expected
 
 
-def test_page_preloads_every_module_once_but_those_of_the_other_views(api: Api) -> None:
+def test_page_preloads_every_module_once_but_those_that_are_opened_later(api: Api) -> None:
     page = api.client.get("/").text
     folder = assets.static_dir()
     modules = imported_modules("static/js/main.js", folder)
-    views = [f"static/js/components/{view}/{view}.js" for view in ("experiments", "runs")]
-    later = {module for view in views for module in imported_modules(view, folder)} - {*modules}
+    components = "static/js/components"
+    names = ("experiments/experiments", "runs/runs", "gait")
+    opened = {f"{components}/{name}.js" for name in names}
+    later = {one for first in opened for one in imported_modules(first, folder)} - {*modules}
 
     every = {*(folder / "js").rglob("*.js")}
     assert {folder.parent / path for path in (*modules, *later)} == every
-    assert {*views} <= later
+    assert opened <= later
     assert not [module for module in later if module in page]
     for module in [*modules, *(f"static/vendor/{p.name}" for p in folder.glob("vendor/*.js"))]:
         assert page.count(f'<link rel="modulepreload" href="{module}">') == 1

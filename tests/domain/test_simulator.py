@@ -196,7 +196,7 @@ def test_a_recorded_step_has_fifty_poses_per_second(build: Build, made: Robot, f
     before = simulator.rest()
     step = simulator.step(before, Action(1, 2), record=True)
     assert step.motion is not None
-    time_s, qpos = step.motion
+    time_s, qpos, *_ = step.motion
 
     assert time_s.dtype == qpos.dtype == np.float32
     assert time_s.shape == (frames,)

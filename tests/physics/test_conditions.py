@@ -27,9 +27,9 @@ from app.domain.grid import FootGrid
 from app.domain.observation import legal_actions
 from app.domain.posture import has_fallen
 from app.domain.robot import Robot
+from app.domain.terrain import ROUGH_PERIOD_M, rough_heights
 from app.domain.types import Action, FloatArray
 from app.domain.world import WORLDS, World
-from app.physics.conditions import ROUGH_PERIOD_M, rough_heights
 from app.physics.mjcf import compile_model
 from app.physics.mujoco_simulator import MujocoSimulator, MujocoState
 

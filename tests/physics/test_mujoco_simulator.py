@@ -11,6 +11,7 @@ import pytest
 from app.domain.errors import Diverged
 from app.domain.gait import NAMED_GAITS, resolve
 from app.domain.grid import FootGrid
+from app.domain.kinematics import foot_positions
 from app.domain.observation import legal_actions
 from app.domain.robot import PRESETS, Robot, robot
 from app.domain.types import Action, FloatArray
@@ -71,6 +72,19 @@ def test_the_home_pose_stands_still(gait: str, preset: str) -> None:
     assert np.abs(data.qvel).max() < 1e-3
     assert np.abs(feet_of(data) - feet).max() < 2e-4
     assert data.time == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("gait", NAMED_GAITS)
+def test_forward_kinematics_in_the_world_are_those_of_the_model(gait: str) -> None:
+    made = robot({"n_legs": 8, "coxa_m": 0.04, "mount_radius_m": 0.12})
+    simulator = build(gait, made)
+    data = mujoco.MjData(simulator.model)
+    rng = np.random.default_rng(0)
+    data.qpos[:] = [0.3, -2.0, 0.2, *rng.normal(size=4), *rng.uniform(-1, 0, 24)]
+    data.qpos[3:7] /= np.linalg.norm(data.qpos[3:7])
+    mujoco.mj_kinematics(simulator.model, data)
+
+    assert foot_positions(made, data.qpos[None])[0] == pytest.approx(feet_of(data, 8), abs=1e-9)
 
 
 @pytest.mark.parametrize("legs", [4, 6, 8])

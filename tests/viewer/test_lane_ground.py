@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from app.domain.disturbances import Disturbance, Friction, Patch, Rough, Slope
+from app.domain.terrain import ROUGH_PERIOD_M, rough_heights
 from app.domain.types import FloatArray
 from app.domain.world import World
-from app.physics.conditions import ROUGH_PERIOD_M, rough_heights
 from app.stage.stage_frame import AT_ORIGIN, Origin
 from app.viewer.condition_colors import GRIP, ICE
 from app.viewer.scene import StageScene

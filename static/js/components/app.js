@@ -11,6 +11,7 @@ import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, setEntry, viewers } from "../store.js";
 import { Controls } from "./controls.js";
 import { html, Icon } from "./elements.js";
+import { LazyPanel } from "./lazy.js";
 import { Knowledge, LearningChart } from "./learning.js";
 import { RaceChart, Scoreboard } from "./race.js";
 import { Stage } from "./stage.js";
@@ -75,10 +76,13 @@ const RaceView = ({ isHidden }) => html`
       ${!isNarrow.value && html`<${Lesson} />`}
       <${LearningChart} />
       <${RaceChart} />
+      <${LazyPanel} title="Gait analysis" style="gait-analysis" load=${loadGait} />
       <${Knowledge} />
     </div>
   </div>
 `;
+
+const loadGait = () => import("./gait.js").then(({ Gait }) => Gait);
 
 // ---- the other views, loaded when they are first opened: most visits open none
 

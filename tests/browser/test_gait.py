@@ -1,0 +1,76 @@
+"""The gait analysis: footfalls that follow the moment shown, seek at a click, and as a table."""
+
+import re
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import serving
+
+pytestmark = pytest.mark.timeout(300)
+
+TOKEN = "for-the-operator"
+RACE = {
+    "gait": "left-right-origin",
+    "steps": 12,
+    "lanes": [{"agent": "greedy"}, {"agent": "informed"}],
+}
+START = """body => fetch("api/v1/races", {method: "POST", body: JSON.stringify(body),
+    headers: {"Content-Type": "application/json", "X-Requested-With": "hexapods"}})"""
+PAUSE = """time_s => fetch("api/v1/stage", {method: "PUT",
+    body: JSON.stringify({time_s, playing: false}),
+    headers: {"Content-Type": "application/json", "X-Requested-With": "hexapods"}})"""
+
+
+def test_footfalls_of_a_race(dashboard: Dashboard, browser: Browser, tmp_path: Path) -> None:
+    with serving(tmp_path, token=TOKEN) as server:
+        follows_and_seeks(dashboard, f"{server.address}?token={TOKEN}")
+        spectator = Dashboard(browser.new_page(), has_3d=False)
+        spectator.open(server.address)
+        panel = spectator.page.get_by_role("region", name="Gait analysis", exact=True)
+        panel.scroll_into_view_if_needed()
+        expect(panel.get_by_role("img", name=re.compile("^Footfalls of Greedy"))).to_be_visible()
+        expect(panel.get_by_role("slider")).to_have_count(0)
+        spectator.page.close()
+
+
+def follows_and_seeks(dashboard: Dashboard, address: str) -> None:
+    page = dashboard.page
+    dashboard.open(address)
+    page.evaluate(START, RACE)
+    expect(page.locator(".headline")).to_have_text(re.compile("wins|tie|leads"))
+    page.evaluate(PAUSE, 2.0)
+    panel = page.get_by_role("region", name="Gait analysis", exact=True)
+    panel.scroll_into_view_if_needed()
+    footfalls = panel.get_by_role("slider", name="Footfalls of Greedy")
+    # In 2 s under the paper clock Greedy walks 1.5 s, as each step takes 1.36 motions.
+    expect(footfalls).to_have_attribute(
+        "aria-valuetext", re.compile(r"^1\.\d s of robot time, step 5")
+    )
+    expect(panel.locator(".stance")).to_have_count(12)
+
+    footfalls.press("ArrowRight")
+    expect(footfalls).to_have_attribute("aria-valuetext", re.compile("step 6"))
+    dashboard.button("Whole walk").click()
+    box = footfalls.bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + 0.8 * box["width"], box["y"] + 20)
+    expect(footfalls).to_have_attribute(
+        "aria-valuetext", re.compile(r"^3\.1 s of robot time, step 10")
+    )
+
+    figures = panel.get_by_role("region", name="Figures of the gait")
+    expect(figures.get_by_role("row", name=re.compile("^Duty factor"))).to_contain_text("0.7")
+    expect(figures.get_by_role("row", name=re.compile("^Energy"))).to_contain_text(
+        re.compile(r"\d\.\d\sJ")
+    )
+    panel.get_by_text("As a table", exact=True).click()
+    leg = panel.get_by_role("row", name=re.compile("^Greedy, leg 1 0.7"))
+    expect(leg).to_contain_text(re.compile(r"\d\.\d\d–\d\.\d\d"))
+    assert dashboard.violations() == []
+    page.emulate_media(color_scheme="dark")
+    page.set_viewport_size({"width": 390, "height": 844})
+    assert dashboard.violations() == []
+    assert dashboard.scroll_width() == 390
