@@ -22,6 +22,7 @@ from app.api.answers import (
 )
 from app.api.deps import Services, ServicesDep
 from app.api.descriptions import MAX_PAGE, MAX_SEARCH, VALID
+from app.api.explanation_answers import ExplanationView
 from app.jobs.jobs import Jobs
 from app.storage.errors import Damaged, NotFound
 from app.storage.run import AnyRun, DamagedRun, Kind, Run, State
@@ -105,6 +106,25 @@ def list_runs(
 def get_any_run(services: ServicesDep, run_id: RunPath) -> Response:
     """Return a run whose kind is not known."""
     return JSONResponse(services.jobs.view(services.store.find(run_id)))
+
+
+@router.get(
+    "/{run_id}/explain",
+    summary="Why a step was taken, and what was learned from it",
+    response_model=ExplanationView,
+)
+def explain_step(
+    services: ServicesDep,
+    run_id: RunPath,
+    step: Annotated[int | None, Query(description="from 1 on; the newest if absent")] = None,
+    lane: Annotated[int, Query(description="of a race, from 0 on")] = 0,
+) -> Response:
+    """Explain a step of a training or of a lane of a race.
+
+    The learner is built again from what is stored, and takes the step once more: the rule of its
+    update is checked, and gives the value after it to the last bit.
+    """
+    return JSONResponse(services.explanations.explain(run_id, step, lane))
 
 
 def _page(services: Services, kind: Kind | None, listing: Listing) -> Response:

@@ -47,11 +47,10 @@ class LoggedSensors:
         self.see(self.feet.commanded, self.feet.commanded)
 
     def see(self, observation: Cells, measured: Cells) -> None:
-        """Set what is observed."""
-        self._cells: dict[Observation, Cells] = {
-            "measured": measured,
-            self._observation: observation,
-        }
+        """Set what is observed; no measured cells where they were not recorded."""
+        self._cells: dict[Observation, Cells] = {self._observation: observation}
+        if measured:
+            self._cells["measured"] = measured
 
     def legal(self, observation: Cells) -> Sequence[Action]:
         """Return the legal actions."""
@@ -68,6 +67,8 @@ class LoggedSensors:
             return self._cells[how]
         if how == "commanded":
             return self.feet.commanded
+        if how == "measured":
+            raise NotRebuilt("what its feet measured was not recorded, and its agent reads it")
         return tuple(self._grid.nearest(x, y) for x, y in self.planned_offsets_m)
 
     @property
@@ -142,6 +143,11 @@ class RebuiltLearner:
         """Whether it chooses the next action before it learns from the last one."""
         return self.learns and bool(getattr(self.agent, "is_on_policy", False))
 
+    @property
+    def can_explain(self) -> bool:
+        """Whether the choice of the next step is explained, or can be: it was not made yet."""
+        return self._next_action is None or self._next_choice is not None
+
     def tune(self, change: Mapping[str, Any]) -> None:
         """Change settings as in the training, from the next step on."""
         rates = {name: value for name, value in change.items() if name not in _NOT_RATES}
@@ -175,7 +181,7 @@ class RebuiltLearner:
         agent, update = self.agent, None
         visits = agent.visits(logged.observation) if isinstance(agent, Valuing) else None
         choice = self._choose(logged, explain=True)
-        transition = self._end(logged, explain_next=False)
+        transition = self._end(logged, explain_next=True)
         if transition is not None and isinstance(agent, Explaining):
             update = agent.explain_update(transition)
         elif transition is not None:

@@ -102,14 +102,11 @@ def test_explained_steps_are_those_of_the_training(agent: str) -> None:
     learner, log = practised(agent)
     rebuilt = rebuild_learner(config_of(agent))
     for step in steps_of(log):
-        is_early = rebuilt.chooses_early and rebuilt.step > 0
         explained = rebuilt.explain(step)
         assert explained.logged == step
         assert explained.update is not None
-        # An on-policy learner chose with the step before, of which no explanation was asked for.
-        assert (explained.choice is None) == is_early
-        if explained.choice is not None:
-            assert explained.choice.action == step.action
+        assert explained.choice is not None
+        assert explained.choice.action == step.action
 
     assert agent_state(rebuilt.agent) == agent_state(learner.walker.agent)
 
@@ -118,11 +115,15 @@ def test_the_choice_of_an_on_policy_learner_is_explained_with_the_step_before() 
     _, log = practised("sarsa")
     steps = steps_of(log)
     rebuilt = fed(rebuild_learner(config_of("sarsa")), steps[:10])
-    rebuilt.take(steps[10], explain_next=True)
-    explained = rebuilt.explain(steps[11])
+    can_explain = []
+    for number, explain_next in ((10, False), (11, True)):
+        rebuilt.take(steps[number], explain_next=explain_next)
+        can_explain.append(rebuilt.can_explain)
+    assert can_explain == [False, True]
+    explained = rebuilt.explain(steps[12])
 
     assert explained.choice is not None
-    assert explained.choice.action == steps[11].action
+    assert explained.choice.action == steps[12].action
 
 
 def test_rates_that_were_changed_are_changed_again() -> None:
