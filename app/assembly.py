@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from app.agents import registry
-from app.agents.protocol import Problem, Tabular
+from app.agents.protocol import Agent, Problem, Tabular
+from app.domain.errors import InvalidInput
 from app.domain.kinematic import KinematicSimulator
 from app.domain.observation import Observation
 from app.domain.settings import complete
@@ -21,6 +22,7 @@ from app.runs.best_known import best_known_m
 from app.runs.config import TrainingConfig, WalkingProblem, agent_settings
 from app.runs.lane import LaneConfig, check_lane
 from app.runs.race_config import RaceConfig
+from app.runs.rebuilding import LoggedSensors, RebuiltLearner
 from app.runs.seeding import EVALUATION, LEARNING, RACING, SENSING, generator
 from app.runs.tables import Checkpoint, check_fits, continue_from, load_agent
 from app.runs.training import Learner, evaluate, measure_baseline
@@ -112,8 +114,75 @@ def build_learner(
     learner = Learner(walker, rng, evaluator, baseline)
     if table is not None:
         check_fits(table, config, config.observation)
-        continue_from(learner, table)
+        continue_from(walker.agent, rng, table)
     return learner
+
+
+def rebuild_learner(config: TrainingConfig, table: Checkpoint | None = None) -> RebuiltLearner:
+    """Create the learner of a training without its robot, to be fed the training's log.
+
+    Args:
+        config: the training.
+        table: checkpoint from which the training continued.
+
+    Raises:
+        UnknownName, InvalidInput: if the agent does not exist any more, or needs a simulator.
+        TableMismatch: if the table is of another walking problem or agent.
+    """
+    rng, sensors = generator(config.seed, LEARNING), LoggedSensors(config, config.observation)
+    agent = _agent_without_robot(
+        config, config.agent, rng=rng, sensors=sensors, offered=_offered_by(config), explore=True
+    )
+    if table is not None:
+        check_fits(table, config, config.observation)
+        continue_from(agent, rng, table)
+    return RebuiltLearner(agent, rng, sensors)
+
+
+def rebuild_lane(
+    config: RaceConfig, number: int, table: Checkpoint | None = None
+) -> RebuiltLearner:
+    """Create the learner of a lane without its robot, to be fed the lane's recording.
+
+    Args:
+        config: the race.
+        number: of the lane, counted from 0.
+        table: checkpoint of its agent.
+
+    Raises:
+        UnknownName, InvalidInput, TableMismatch: as `rebuild_learner`.
+    """
+    lane = config.lanes[number]
+    rng, sensors = generator(config.seed, RACING, number), LoggedSensors(config, lane.observation)
+    offered = _offered_in(config, lane) if table is None else table.meta["config"]
+    agent = _agent_without_robot(
+        *(config, lane.agent),
+        rng=rng,
+        sensors=sensors,
+        offered=offered,
+        explore=lane.keep_learning,
+    )
+    if table is not None:
+        check_fits(table, config, lane.observation)
+        load_agent(agent, table)
+    return RebuiltLearner(agent, rng, sensors, learns=lane.keep_learning)
+
+
+def _agent_without_robot(
+    walk: WalkingProblem,
+    agent_name: str,
+    *,
+    rng: np.random.Generator,
+    sensors: LoggedSensors,
+    offered: Mapping[str, Any],
+    explore: bool,
+) -> Agent:
+    agent_class = registry.find(agent_name)
+    if registry.searches(agent_name):
+        raise InvalidInput(f"{agent_name} plans with a simulator, so it is not built again")
+    problem = Problem(walk.resolved_gait.pairs, walk.grid.cells)
+    own = {"rng": rng, "problem": problem, "explore": explore, "observe": sensors}
+    return registry.build(agent_class, {**offered, **own})
 
 
 def build_walkers(

@@ -44,6 +44,7 @@ from app.api.wellformed import WellFormed
 from app.domain.errors import HexapodError
 from app.events import logs
 from app.events.run_metrics import RunMetrics
+from app.explanations.service import Explanations
 from app.jobs.jobs import Jobs
 from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
@@ -118,6 +119,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         film=viewer.recorded_stream,
         replays=ReplayFrames(Replays(store, recordings)),
         what_if=WhatIf(TrialPool()),
+        explanations=Explanations(store, recordings),
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
     app.state.metrics = metrics.registry_of(app.state.services)

@@ -1,8 +1,13 @@
 """Bayesian linear regression with a Gaussian prior (Bishop 2006, §3.3.1)."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from app.domain.types import FloatArray
+
+_SUMS, _BLOCK = 8, 128
+"""Of NumPy's pairwise summation: number of sums at once, and of numbers that they are used for."""
 
 
 class BayesianRegression:
@@ -64,3 +69,36 @@ class BayesianRegression:
         self.covariance = np.linalg.inv(precision)
         weighted = self._prior_precision * self._prior_mean + products / self._variance
         self.mean = (self.covariance * weighted).sum(1)
+
+
+def sum_rule(products: Mapping[int, str], count: int) -> str:
+    """Return the sum of a few of `count` numbers, in the order in which NumPy adds them.
+
+    All others are 0. NumPy adds pairwise: up to seven numbers one by one, up to 128 in eight sums
+    of every eighth number, and more in halves (`pairwise_sum` in its loops_utils.h).
+
+    Args:
+        products: text of each number by its index, without the others.
+        count: number of all.
+    """
+    if count < _SUMS:
+        return _plus(*(products[index] for index in sorted(products)))
+    if count > _BLOCK:
+        half = count // 2 - count // 2 % _SUMS
+        first = {index: text for index, text in products.items() if index < half}
+        rest = {index - half: text for index, text in products.items() if index >= half}
+        return _plus(sum_rule(first, half), sum_rule(rest, count - half))
+    end = count - count % _SUMS
+    sums = [
+        _plus(*(products[index] for index in range(begin, end, _SUMS) if index in products))
+        for begin in range(_SUMS)
+    ]
+    while len(sums) > 1:
+        sums = [_plus(*sums[place : place + 2]) for place in range(0, len(sums), 2)]
+    return _plus(*sums, *(products[index] for index in range(end, count) if index in products))
+
+
+def _plus(*parts: str) -> str:
+    """Return the sum of some parts from the left; sums to the right are in parentheses."""
+    first, *others = [part for part in parts if part] or [""]
+    return " + ".join([first, *(f"({part})" if " + " in part else part for part in others)])

@@ -1,9 +1,11 @@
 """Tabular Double Q-learning (van Hasselt 2010; Sutton and Barto, 2nd edition, §6.7)."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from app.agents.explanation import Term
 from app.agents.protocol import AgentState, Transition
 from app.agents.q_table import QTable
 from app.agents.tabular import TabularLearner
@@ -36,9 +38,27 @@ class DoubleQ(TabularLearner):
         best = self._highest(legal, learning.values_of(observation, legal))
         (value,) = valuing.values_of(observation, [best])
         target = transition.reward_m + self._gamma * value
-        values, _ = learning.row(state)
-        values[column] = (1 - self._alpha) * values[column] + self._alpha * target
-        self.table.row(state)[0][column] = (values[column] + valuing.row(state)[0][column]) / 2
+        values, means = learning.row(state)[0], self.table.row(state)[0]
+        own, other, before = values[column], valuing.row(state)[0][column], means[column]
+        values[column] = (1 - self._alpha) * own + self._alpha * target
+        means[column] = (values[column] + other) / 2
+        if self._journal is not None:
+            terms = (
+                Term("α", self._alpha, "learning rate"),
+                Term("Q₁", float(own), f"value in table {chosen + 1}, which was drawn to learn"),
+                *self._explain_rates(transition),
+                Term("Q₂′", value, "value in the other table of the best next action by the first"),
+                Term("Q₂", float(other), "value in the other table"),
+            )
+            rule = "((1 − α) · Q₁ + α · (r + γ · Q₂′) + Q₂) / 2"
+            self._journal.note((state, column), rule, terms, (before, means[column]))
+
+    def _explain_target(
+        self,
+        transition: Transition,  # noqa: ARG002
+    ) -> tuple[str, Sequence[Term]]:
+        """Return nothing: only the drawn table tells, which the update notes."""
+        return "", ()
 
     def state(self) -> AgentState:
         """Return the state of `TabularLearner`, and the values of both tables at `where`."""

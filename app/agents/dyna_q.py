@@ -1,5 +1,6 @@
 """Dyna-Q (Sutton 1990; Sutton and Barto, 2nd edition, §8.2)."""
 
+from app.agents.explanation import Term
 from app.agents.planning import PlanningLearner
 from app.agents.protocol import Transition
 from app.agents.tabular_model import TriedPair
@@ -16,10 +17,14 @@ class DynaQ(PlanningLearner):
     description = "Q-learning that goes over remembered steps again after each new one."
     color = "#4C9A3F"
 
+    next_meaning = "highest value in the next state"
+
+    def _next_value(self, transition: Transition) -> float:
+        return self._best_next(transition)
+
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Update as in Q-learning, add the step to the model, and plan."""
-        target = transition.reward_m + self._gamma * self._best_next(transition)
-        self._move_towards(state, column, target)
+        super()._update(transition, state, column)
         after = self.table.index(transition.next_observation)
         self._model.learn(state, column, transition.reward_m, after)
         self._plan()
@@ -29,8 +34,15 @@ class DynaQ(PlanningLearner):
         pairs = self._model.pairs
         for number in self._rng.integers(len(pairs), size=self._planning_steps).tolist():
             pair = pairs[number]
-            target = self._imagined_reward_m(pair) + self._gamma * self.table.best(pair.last_next)
-            self._move_towards(pair.state, pair.column, target)
+            reward, best = self._imagined_reward_m(pair), self.table.best(pair.last_next)
+            self._move_towards(pair.state, pair.column, reward + self._gamma * best)
+            if self._journal is not None:
+                terms = (
+                    Term("r̂", reward, "imagined reward [m]"),
+                    Term("γ", self._gamma, "discount"),
+                    Term("Q′", best, "highest value in the state that followed last time"),
+                )
+                self._journal.explain_target("r̂ + γ · Q′", terms)
 
     def _imagined_reward_m(self, pair: TriedPair) -> float:
         """Return the reward [m] of an imagined step."""

@@ -1,5 +1,8 @@
 """Tabular Expected Sarsa (Sutton and Barto, 2nd edition, §6.6)."""
 
+from collections.abc import Sequence
+
+from app.agents.explanation import Term
 from app.agents.protocol import Transition
 from app.agents.tabular import TabularLearner
 
@@ -15,9 +18,19 @@ class ExpectedSarsa(TabularLearner):
     description = "Sarsa that reckons with the average of its next steps, not with the one it drew."
     color = "#BF6FC4"
 
-    def _update(self, transition: Transition, state: int, column: int) -> None:
+    def _next_value(self, transition: Transition) -> float:
         """Q(s, a) ← (1 − α) Q(s, a) + α (r + γ Σ π(a′|s′) Q(s′, a′)), π being ε-greedy."""
-        values = self.table.values_of(transition.next_observation, transition.next_legal)
-        epsilon = self.epsilon
-        expected = (1 - epsilon) * max(values) + epsilon * sum(values) / len(values)
-        self._move_towards(state, column, transition.reward_m + self._gamma * expected)
+        epsilon, values = self.epsilon, self._next_values(transition)
+        return (1 - epsilon) * max(values) + epsilon * sum(values) / len(values)
+
+    def _next_values(self, transition: Transition) -> list[float]:
+        return self.table.values_of(transition.next_observation, transition.next_legal)
+
+    def _explain_next(self, transition: Transition) -> tuple[str, Sequence[Term]]:
+        values = self._next_values(transition)
+        return "((1 − ε) · Q⁺ + ε · Σ / n)", (
+            Term("ε", self.epsilon, "probability that the next action is a random one"),
+            Term("Q⁺", max(values), "highest value in the next state"),
+            Term("Σ", sum(values), "sum of all values in the next state"),
+            Term("n", len(values), "number of actions there"),
+        )

@@ -14,7 +14,14 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from annotated_types import Ge, Le
 
-from app.agents.bayesian_regression import BayesianRegression
+from app.agents.bayesian_regression import BayesianRegression, sum_rule
+from app.agents.explanation import (
+    Belief,
+    ChoiceExplanation,
+    Term,
+    UpdateExplanation,
+    ValueUpdate,
+)
 from app.agents.protocol import AgentState, Observe, Problem, Transition
 from app.domain.settings import Setting, declare
 from app.domain.types import Action, Cells, FloatArray, IntArray
@@ -97,6 +104,23 @@ class Expert(ABC):
         """Return the expected rewards of n actions [m], (n,)."""
         return self.model.expected(self.features(before, actions))
 
+    def explain(self, features: FloatArray) -> tuple[str, Sequence[Term]]:
+        """Return the rule of the expected reward for features (d,), with its terms."""
+        used = np.flatnonzero(features).tolist()
+        terms, products = [], {}
+        for number, index in enumerate(used, 1):
+            name = self.feature_name(index)
+            terms += [
+                Term(f"w{number}", float(self.model.mean[index]), f"weight of {name} [m]"),
+                Term(f"x{number}", float(features[index]), name),
+            ]
+            products[index] = f"x{number} · w{number}"
+        return sum_rule(products, len(features)) or "0", terms
+
+    @abstractmethod
+    def feature_name(self, index: int) -> str:
+        """Return what a feature is, in words."""
+
     def upper_bound_m(
         self, before: Readings, actions: Sequence[Action], optimism: float
     ) -> FloatArray:
@@ -121,6 +145,10 @@ class MeasuredExpert(Expert):
         one_hot: FloatArray = np.eye(len(self._cells_m))[landed]
         return one_hot.reshape(len(actions), -1)
 
+    def feature_name(self, index: int) -> str:  # noqa: D102
+        pair, cell = divmod(index, len(self._cells_m))
+        return f"pair {pair + 1} on cell {cell}"
+
 
 class PlannedExpert(Expert):
     """Features of the planned offsets after landing, which are continuous: 1 + pairs weights.
@@ -143,6 +171,9 @@ class PlannedExpert(Expert):
             landed[row, action.pair] = self._cells_m[action.cell]
         landed /= self._half_side_m
         return np.column_stack((landed[:, :, 1].mean(1), landed[:, :, 0]))
+
+    def feature_name(self, index: int) -> str:  # noqa: D102
+        return f"how far pair {index} stands out" if index else "how far forward the feet stand"
 
 
 class Policy(NamedTuple):
@@ -224,17 +255,42 @@ class LinearModel:
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:  # noqa: ARG002
         """Return the action with the highest upper confidence bound, by the policy that decides."""
+        return self._choose(legal)[0]
+
+    def explain_choice(
+        self,
+        observation: Cells,  # noqa: ARG002
+        legal: Sequence[Action],
+    ) -> ChoiceExplanation:
+        """Choose as `act` does, and explain the choice."""
+        action, allowed, bounds_m = self._choose(legal)
+        scores = np.full(self._visits.shape, np.nan)
+        scores[tuple(np.transpose(allowed))] = bounds_m
+        policy, beta = self._policies[self._deciding], self._optimism if self._explore else 0.0
+        criterion = f"expected reward of the step by its {policy.expert.name} model"
+        if beta:
+            criterion += f", plus {beta:g} standard deviations"
+        if policy.successor is not None:
+            criterion += "; the pairs take turns"
+        return ChoiceExplanation(action, "exploited", criterion, scores)
+
+    def _choose(self, legal: Sequence[Action]) -> tuple[Action, Sequence[Action], FloatArray]:
+        """Return an action, those from which it is chosen, and their upper confidence bounds [m].
+
+        The policy that decides is chosen first, if it is time to.
+        """
         self._before = self._read()
         if self._decided % self._block_steps == 0:
             self._choose_policy()
         self._decided += 1
         policy = self._policies[self._deciding]
-        legal = policy.allowed(legal, self._last_pair)
+        allowed = policy.allowed(legal, self._last_pair)
         optimism = self._optimism if self._explore else 0.0
-        best = legal[int(policy.expert.upper_bound_m(self._before, legal, optimism).argmax())]
+        bounds_m = policy.expert.upper_bound_m(self._before, allowed, optimism)
+        best = allowed[int(bounds_m.argmax())]
         self._predicted += self._predictions(best)
         self._last_pair = best.pair
-        return best
+        return best, allowed, bounds_m
 
     def learn(self, transition: Transition) -> None:
         """Update both experts' posteriors, and the record of the policy that decided."""
@@ -250,6 +306,38 @@ class LinearModel:
         self._errors[:, 1] += _SLOW * (errors - self._errors[:, 1])
         if self._has_changed():
             self._forget()
+
+    def explain_update(self, transition: Transition) -> UpdateExplanation:
+        """Learn as `learn` does, and explain how both experts' expectations change.
+
+        The rule is the expectation of the step's reward, by the expert that decided, after it.
+        """
+        before = [self._belief(expert, transition.action) for expert in self._experts]
+        self.learn(transition)
+        after = [self._belief(expert, transition.action) for expert in self._experts]
+        beliefs = [
+            Belief(f"reward by its {expert.name} model", old[0], new[0], "m", old[1], new[1])
+            for expert, old, new in zip(self._experts, before, after, strict=True)
+        ]
+        decided = self._policies[self._deciding].expert
+        index = self._experts.index(decided)
+        (features,) = decided.features(self._before, [transition.action])
+        rule, terms = decided.explain(features)
+        (expected, deviation), (became, _) = before[index], after[index]
+        place = transition.observation, transition.action
+        update = ValueUpdate(*place, rule, tuple(terms), expected, became)
+        error = transition.reward_m - expected
+        summary = (
+            f"It expected {expected:.5f} ± {deviation:.5f} m and got {transition.reward_m:.5f} m, "
+            f"{abs(error):.5f} m {'more' if error > 0 else 'less'}. All steps that end alike are "
+            "expected to earn more or less by it, not this one alone."
+        )
+        return UpdateExplanation(summary, update, (), beliefs)
+
+    def _belief(self, expert: Expert, action: Action) -> tuple[float, float]:
+        """Return the reward of the last step that an expert expects, and its deviation [m]."""
+        features = expert.features(self._before, [action])
+        return float(expert.model.expected(features)[0]), float(expert.model.deviation(features)[0])
 
     def _read(self) -> Readings:
         return Readings(self._observe("measured"), np.array(self._observe.planned_offsets_m, float))

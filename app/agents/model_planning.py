@@ -1,12 +1,14 @@
 """Planning with a tabular model by value iteration, and the base class of agents that do so."""
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 
+from app.agents.explanation import Belief, Term, UpdateExplanation, ValueUpdate
 from app.agents.protocol import AgentState, Problem, Transition
 from app.agents.q_table import QTable
 from app.agents.tabular import Gamma, TabularAgent
@@ -24,11 +26,13 @@ class Plan(NamedTuple):
 
     Attributes:
         pair_values: value of each pair of the model [m].
+        later: expected value of what follows each pair [m], undiscounted.
         mean_value: mean value of all states of the problem [m]; 0 unless it was needed.
     """
 
     pair_values: FloatArray
     mean_value: float
+    later: FloatArray
 
 
 @dataclass(frozen=True)
@@ -101,10 +105,10 @@ class ModelArrays:
         """
         pairs, mean, unseen = len(rewards_m), 0.0, 0.0
         values, states = rewards_m, np.zeros(len(self.states))
+        later: FloatArray = np.zeros(pairs)
         for _ in range(MAX_SWEEPS):
-            later = 1.0 * np.bincount(
-                self.outcome_pairs, shares * states[self.outcome_places], pairs
-            )
+            weights = shares * states[self.outcome_places]
+            later = np.bincount(self.outcome_pairs, weights, pairs).astype(np.float64)
             others = untried_m
             if elsewhere is not None:
                 mean = _mean(states, unseen, elsewhere.states)
@@ -118,7 +122,7 @@ class ModelArrays:
                 states[at] = np.maximum(states[at], best)
             if np.abs(states - before).max(initial=0.0) <= TOLERANCE_M:
                 break
-        return Plan(values, mean)
+        return Plan(values, mean, later)
 
 
 def _mean(states: FloatArray, unseen: float, count: int) -> float:
@@ -191,6 +195,45 @@ class ModelAgent(TabularAgent):
     @abstractmethod
     def _learn(self, state: int, column: int, reward_m: float, next_state: int) -> None:
         """Add a transition to the model, and plan if it is time to."""
+
+    def explain_update(self, transition: Transition) -> UpdateExplanation:
+        """Learn as `learn` does, and explain how model and values change."""
+        observation, action = transition.observation, transition.action
+        table = self._table
+        state, column = table.index(observation), table.column(action)
+        before, model = float(self.values(observation)[action]), self._beliefs(state, column)
+        self.learn(transition)
+        after = float(self.values(observation)[action])
+        rule, terms, summary = self._explain_value(state, column, before)
+        beliefs = [
+            Belief(old.name, old.before, new.before, old.unit, *deviations)
+            for old, new in zip(model, self._beliefs(state, column), strict=True)
+            for deviations in [(old.deviation_before, new.deviation_before)]
+        ]
+        update = ValueUpdate(observation, action, rule, tuple(terms), before, after)
+        return UpdateExplanation(summary, update, (), beliefs)
+
+    @abstractmethod
+    def _explain_value(
+        self, state: int, column: int, before: float
+    ) -> tuple[str, Sequence[Term], str]:
+        """Return the rule of the present value of a pair, with its terms, and a summary.
+
+        Args:
+            state: row of the table.
+            column: column of the table.
+            before: the value before the last step [m].
+        """
+
+    def _beliefs(self, state: int, column: int) -> list[Belief]:
+        """Return what the model believes of a pair now; the values after are not yet known."""
+        number = self._model.number(state, column)
+        pair = None if number is None else self._model.pairs[number]
+        tries, mean = (0, 0.0) if pair is None else (pair.tries, pair.mean_reward_m)
+        return [
+            Belief("mean reward of its tries", mean, mean),
+            Belief("tries that count", tries, tries, "tries"),
+        ]
 
     def visits(self, observation: Cells) -> FloatArray:
         """Return the visit counts in this state, (pairs, cells), NaN where illegal."""

@@ -1,10 +1,13 @@
 """Tabular n-step Sarsa (Sutton and Barto, 2nd edition, §7.2)."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
 from annotated_types import Ge, Le
 
+from app.agents.explanation import Journal, Term, UpdateExplanation
 from app.agents.protocol import AgentState, Transition
 from app.agents.q_table import check_places
 from app.agents.tabular import TabularLearner
@@ -55,6 +58,41 @@ class NStepSarsa(TabularLearner):
             target = reward + self._gamma * target
         first_state, first_column, _ = self._waiting.pop(0)
         self._move_towards(first_state, first_column, target)
+
+    def _explain_target(self, transition: Transition) -> tuple[str, Sequence[Term]]:
+        """Return the n rewards and the value after them, nested as they are added up."""
+        rewards = [*(reward for *_, reward in self._waiting), transition.reward_m]
+        if len(rewards) < self._return_steps:
+            return "", ()
+        symbols = [f"r{number}" for number in range(1, len(rewards) + 1)]
+        rule = "Q′"
+        for symbol in reversed(symbols):
+            rule = f"{symbol} + γ · {rule if rule == 'Q′' else f'({rule})'}"
+        value = self._chosen_next(transition)
+        return rule, (
+            *(
+                Term(symbol, reward, f"reward {number} of these {len(rewards)} steps [m]")
+                for number, (symbol, reward) in enumerate(zip(symbols, rewards, strict=True), 1)
+            ),
+            Term("γ", self._gamma, "discount"),
+            Term("Q′", value, "value of the next action, which is chosen already"),
+        )
+
+    def _explanation(self, journal: Journal) -> UpdateExplanation:
+        """Return the explanation of the change of the value n − 1 steps ago, if there is one."""
+        late = self._return_steps - 1
+        if not journal.moves:
+            return UpdateExplanation(
+                f"No value changes yet: a step is judged when {self._return_steps} rewards are "
+                f"known, and {len(self._waiting)} of them are."
+            )
+        explained = super()._explanation(journal)
+        if late == 0:
+            return explained
+        ago = "one step" if late == 1 else f"{late} steps"
+        return replace(
+            explained, summary=f"The step of {ago} ago is judged now. {explained.summary}"
+        )
 
     def state(self) -> AgentState:
         """Return the state of `TabularLearner`, and the steps that are not judged yet."""

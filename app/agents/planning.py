@@ -1,10 +1,13 @@
 """Base class of learners that also learn from remembered steps (Sutton and Barto, chapter 8)."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
 from annotated_types import Ge, Le
 
+from app.agents.explanation import Journal, UpdateExplanation, ValueUpdate
 from app.agents.protocol import AgentState, Problem
 from app.agents.tabular import TabularLearner
 from app.agents.tabular_model import TabularModel, check_problem
@@ -48,6 +51,12 @@ class PlanningLearner(TabularLearner):
         self._planning_steps = planning_steps
         self._model = TabularModel(problem)
 
+    def _explanation(self, journal: Journal) -> UpdateExplanation:
+        """Return the explanation of the direct update, and what was planned after it."""
+        explained = super()._explanation(journal)
+        planned = planning_summary(explained.others)
+        return replace(explained, summary=f"{explained.summary} {planned}")
+
     def state(self) -> AgentState:
         """Return the state of `TabularLearner`, and the model."""
         return super().state() | self._model.dump()
@@ -61,3 +70,13 @@ class PlanningLearner(TabularLearner):
         """Check what `load` relies on beyond the table, as in `TabularLearner`."""
         TabularLearner.check_state(state)
         TabularModel.check(state)
+
+
+def planning_summary(planned: Sequence[ValueUpdate]) -> str:
+    """Return in a sentence how many values were changed by planning."""
+    changed = {(one.observation, one.action) for one in planned if one.before != one.after}
+    updates, values = len(planned), len(changed)
+    return (
+        f"Then it went over {updates} remembered step{'s' * (updates != 1)}, which changed "
+        f"{values or 'no'} value{'s' * (values != 1)}."
+    )

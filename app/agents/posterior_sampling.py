@@ -1,11 +1,13 @@
 """Posterior sampling (Strens 2000; Osband, Russo and Van Roy 2013, PSRL)."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
 from annotated_types import Ge, Gt, Le
 
+from app.agents.explanation import Belief, ChoiceExplanation, Term
 from app.agents.model_planning import Elsewhere, ModelAgent
 from app.agents.protocol import AgentState
 from app.agents.q_table import legal_columns
@@ -80,6 +82,8 @@ class PosteriorSampling(ModelAgent):
         self._prior_m, self._noise_m = prior_deviation_m, noise_deviation_m
         self._planned: dict[int, FloatArray] = {}
         """Values in the drawn world [m], (actions,) by state, for states that had been seen."""
+        self._drawn: tuple[FloatArray, FloatArray] | None = None
+        """Rewards and expected later values of the pairs in the newest world that was drawn."""
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         """Return the best action in the drawn world; a random one where none was drawn."""
@@ -111,8 +115,7 @@ class PosteriorSampling(ModelAgent):
     def _draw(self) -> None:
         """Draw a world from the posterior, and plan in it."""
         rng, arrays, table = self._rng, self._arrays(), self._table
-        precision = arrays.tries / self._noise_m**2 + 1 / self._prior_m**2
-        expected = arrays.tries * arrays.rewards_m / self._noise_m**2 / precision
+        expected, precision = self._posterior(arrays.tries, arrays.rewards_m)
         rewards = expected + rng.standard_normal(len(expected)) / np.sqrt(precision)
         # A Dirichlet distribution is one of independent gamma variables divided by their sum.
         seen = rng.standard_gamma(arrays.outcome_counts)
@@ -134,7 +137,49 @@ class PosteriorSampling(ModelAgent):
         plan = arrays.solve(rewards, shares, best, self._gamma, elsewhere)
         values = untried + self._gamma * plan.mean_value
         values[arrays.places, arrays.columns] = plan.pair_values
+        self._drawn = rewards, plan.later
         self._planned = dict(zip(arrays.states.tolist(), values, strict=True))
+
+    def _posterior(self, tries: Any, mean_rewards_m: Any) -> tuple[Any, Any]:
+        """Return the posterior means of rewards [m], and their precisions [1/m²]."""
+        precision = tries / self._noise_m**2 + 1 / self._prior_m**2
+        return tries * mean_rewards_m / self._noise_m**2 / precision, precision
+
+    def explain_choice(self, observation: Cells, legal: Sequence[Action]) -> ChoiceExplanation:
+        """Choose as `act` does, and explain the choice."""
+        explained = super().explain_choice(observation, legal)
+        if not self._explore:
+            return explained
+        is_planned = self._table.index(observation) in self._planned
+        return replace(
+            explained,
+            kind="exploited" if is_planned else "unknown",
+            criterion="value in the world that it drew",
+        )
+
+    def _explain_value(
+        self, state: int, column: int, before: float
+    ) -> tuple[str, Sequence[Term], str]:
+        left = -self._model.steps % self._plan_every
+        number = self._model.number(state, column)
+        if left or self._drawn is None or number is None or not self._explore:
+            count = f"{left} step{'s' * (left != 1)}"
+            summary = f"It goes on believing in the world that it drew, for {count} more."
+            return "Q", [Term("Q", before, "value before")], summary
+        rewards_m, later = self._drawn
+        terms = (
+            Term("r̂", float(rewards_m[number]), "reward in the world that it drew now [m]"),
+            Term("γ", self._gamma, "discount"),
+            Term("V′", float(later[number]), "expected value of what follows in that world"),
+        )
+        return "r̂ + γ · V′", terms, "It drew another world that fits what it has seen, and planned."
+
+    def _beliefs(self, state: int, column: int) -> list[Belief]:
+        tried, count = super()._beliefs(state, column)
+        mean, precision = self._posterior(count.before, tried.before)
+        deviation = float(1 / np.sqrt(precision))
+        believed = Belief("expected reward", mean, mean, "m", deviation)
+        return [believed, tried, count]
 
     def state(self) -> AgentState:
         """Return the state of `ModelAgent`, and the plan."""

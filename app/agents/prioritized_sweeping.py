@@ -1,14 +1,16 @@
 """Prioritized sweeping (Moore and Atkeson 1993; Sutton and Barto, 2nd edition, §8.4)."""
 
+from collections.abc import Sequence
 from heapq import heapify, heappop, heappush
 from typing import Annotated, Any
 
 import numpy as np
 from annotated_types import Ge, Le
 
-from app.agents.planning import PlanningLearner
+from app.agents.explanation import Journal, Term, UpdateExplanation
+from app.agents.planning import PlanningLearner, planning_summary
 from app.agents.protocol import AgentState, Transition
-from app.agents.tabular import Alpha
+from app.agents.tabular import Alpha, summary_of
 from app.agents.tabular_model import TriedPair
 from app.domain.settings import Setting
 
@@ -66,21 +68,53 @@ class PrioritizedSweeping(PlanningLearner):
     def _sweep(self, pair: TriedPair) -> None:
         """Q ← (1 − α) Q + α (r̄ + γ Σ p max Q(s′, ·)); then queue the pairs that led to its s."""
         before = self.table.best(pair.state)
-        self._move_towards(pair.state, pair.column, self._target(pair))
+        later = self._later(pair)
+        self._move_towards(pair.state, pair.column, self._planned_target(pair, later))
+        if self._journal is not None:
+            terms = (
+                Term("r̄", pair.mean_reward_m, "mean reward of all tries [m]"),
+                Term("γ", self._gamma, "discount"),
+                Term("Σ", later, "sum of the highest values in the states that followed"),
+                Term("N", pair.tries, "number of tries"),
+            )
+            self._journal.explain_target("r̄ + γ · Σ / N", terms)
         if self.table.best(pair.state) != before:
             for number in self._model.leading_to(pair.state):
                 self._enqueue(number)
 
-    def _target(self, pair: TriedPair) -> float:
-        best = self.table.best
-        later = sum(count * best(state) for state, count in pair.outcomes.items())
+    def _planned_target(self, pair: TriedPair, later: float) -> float:
         return pair.mean_reward_m + self._gamma * later / pair.tries
+
+    def _later(self, pair: TriedPair) -> float:
+        """Return the sum of the highest values in all states that followed a pair."""
+        best = self.table.best
+        return sum(count * best(state) for state, count in pair.outcomes.items())
+
+    def _explain_target(
+        self,
+        transition: Transition,  # noqa: ARG002
+    ) -> tuple[str, Sequence[Term]]:
+        """Return nothing: a step is added to the model, and its value follows by planning."""
+        return "", ()
+
+    def _explanation(self, journal: Journal) -> UpdateExplanation:
+        """Return the explanation of the first change of this step's value, if it was due."""
+        sweeps = [self._value_update(move) for move in journal.moves]
+        place = journal.transition.observation, journal.transition.action
+        own = [one for one in sweeps if (one.observation, one.action) == place]
+        others = [one for one in sweeps if not own or one is not own[0]]
+        if own:
+            summary = summary_of(own[0])
+        else:
+            summary = "Its own value was not worked on: others would change more, or it hardly."
+        planned = planning_summary(sweeps)
+        return UpdateExplanation(f"{summary} {planned}", own[0] if own else None, others)
 
     def _enqueue(self, number: int) -> None:
         """Set the priority of a pair; it leaves the queue if its value would hardly change."""
         pair = self._model.pairs[number]
         value = float(self.table.row(pair.state)[0][pair.column])
-        priority = abs(self._target(pair) - value)
+        priority = abs(self._planned_target(pair, self._later(pair)) - value)
         if priority > self._threshold_m:
             self._priorities[number] = priority
             heappush(self._heap, (-priority, number))

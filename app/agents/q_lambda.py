@@ -17,10 +17,13 @@ class QLambda(TraceLearner):
     )
     color = "#B4466F"
 
+    next_meaning = "highest value in the next state"
+
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Credit δ = r + γ max Q(s′, ·) − Q(s, a); a step that was not greedy ends all traces."""
-        value = self.table.row(state)[0][column]
-        if value < self.table.best(state):
+        if self.table.row(state)[0][column] < self.table.best(state):
             self._traces.clear()
-        target = transition.reward_m + self._gamma * self._best_next(transition)
-        self._credit(state, column, target - value)
+        super()._update(transition, state, column)
+
+    def _next_value(self, transition: Transition) -> float:
+        return self._best_next(transition)

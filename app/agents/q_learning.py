@@ -11,7 +11,8 @@ class QLearning(TabularLearner):
     description = "Learns by trying, knows nothing beforehand, and then decides without thinking."
     color = "#E69F00"
 
-    def _update(self, transition: Transition, state: int, column: int) -> None:
-        """Q(s, a) ← (1 − α) Q(s, a) + α (r + γ max Q(s′, ·)). No state is terminal."""
-        target = transition.reward_m + self._gamma * self._best_next(transition)
-        self._move_towards(state, column, target)
+    next_meaning = "highest value in the next state"
+
+    def _next_value(self, transition: Transition) -> float:
+        """Q(s, a) ← (1 − α) Q(s, a) + α (r + γ max Q(s′, ·))."""
+        return self._best_next(transition)

@@ -60,6 +60,18 @@ class QTable:
         """Return the column of an action."""
         return action.pair * self.cells + action.cell
 
+    def cells_at(self, state: int) -> Cells:
+        """Return the observation of a state given by its index."""
+        cells = []
+        for _ in range(self.pairs):
+            state, cell = divmod(state, self.cells)
+            cells.append(cell)
+        return tuple(reversed(cells))
+
+    def action_at(self, column: int) -> Action:
+        """Return the action of a column."""
+        return Action(*divmod(column, self.cells))
+
     def values_of(self, observation: Cells, actions: Sequence[Action]) -> list[float]:
         """Return the values of some actions in a state, as plain floats."""
         slot = self._slots[self.index(observation)]

@@ -1,11 +1,13 @@
 """R-max (Brafman and Tennenholtz 2002)."""
 
 from collections.abc import Sequence
-from typing import Annotated, Any
+from dataclasses import replace
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from annotated_types import Ge, Gt, Le
 
+from app.agents.explanation import ChoiceExplanation, Term
 from app.agents.model_planning import ModelAgent
 from app.agents.protocol import AgentState
 from app.agents.q_table import legal_columns
@@ -37,6 +39,14 @@ KnownAfter = Annotated[
 ]
 
 
+class _OptimisticPlan(NamedTuple):
+    """Values, rewards and expected later values of the pairs of the model [m]."""
+
+    values: list[float]
+    rewards_m: list[float]
+    later: list[float]
+
+
 class RMax(ModelAgent):
     """Learner that takes everything unknown for the best possible: optimism under uncertainty.
 
@@ -63,8 +73,8 @@ class RMax(ModelAgent):
     ) -> None:
         super().__init__(*args, **settings)
         self._max_reward_m, self._known_after = max_reward_m, known_after
-        self._planned: list[float] | None = None
-        """Value of each pair of the model in the optimistic plan [m]; None if it is out of date."""
+        self._planned: _OptimisticPlan | None = None
+        """Of the pairs of the model; None if it is out of date."""
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         """Return the best action of the optimistic plan; ties are broken at random."""
@@ -76,6 +86,19 @@ class RMax(ModelAgent):
         if unknown:
             return self._any(unknown)
         return self._highest(legal, [self._value(state, column(action)) for action in legal])
+
+    def explain_choice(self, observation: Cells, legal: Sequence[Action]) -> ChoiceExplanation:
+        """Choose as `act` does, and explain the choice."""
+        explained = super().explain_choice(observation, legal)
+        if not self._explore:
+            return explained
+        state, column = self._table.index(observation), self._table.column
+        is_known = self._is_known(state, column(explained.action))
+        return replace(
+            explained,
+            kind="exploited" if is_known else "unknown",
+            criterion="value in its plan, in which what is unknown is the best possible",
+        )
 
     def values(self, observation: Cells) -> FloatArray:
         """Return the values of the optimistic plan, in evaluations those of the table."""
@@ -102,27 +125,52 @@ class RMax(ModelAgent):
         number = self._model.number(state, column)
         if number is None:
             return self._highest_value
+        return self._plan.values[number]
+
+    @property
+    def _plan(self) -> "_OptimisticPlan":
         if self._planned is None:
-            self._planned = self._optimistic_values()
-        return self._planned[number]
+            self._planned = self._optimistic_plan()
+        return self._planned
 
     @property
     def _highest_value(self) -> float:
         """Upper bound of all values [m]: the highest reward for ever."""
         return self._max_reward_m / (1 - self._gamma)
 
-    def _optimistic_values(self) -> list[float]:
-        """Return the value of each pair of the model, if all that is unknown is the best [m]."""
+    def _optimistic_plan(self) -> "_OptimisticPlan":
+        """Return the plan for the case that all that is unknown is the best."""
         arrays, highest = self._arrays(), self._highest_value
         known = arrays.tries >= self._known_after
         rewards = np.where(known, np.minimum(arrays.rewards_m, self._max_reward_m), highest)
         counts = known[arrays.outcome_pairs] * arrays.outcome_counts
         shares = counts / arrays.tries[arrays.outcome_pairs]
         untried = np.where(arrays.untried > 0, highest, -np.inf)
-        values: list[float] = arrays.solve(
-            rewards, shares, untried, self._gamma
-        ).pair_values.tolist()
-        return values
+        plan = arrays.solve(rewards, shares, untried, self._gamma)
+        return _OptimisticPlan(plan.pair_values.tolist(), rewards.tolist(), plan.later.tolist())
+
+    def _explain_value(
+        self, state: int, column: int, before: float
+    ) -> tuple[str, Sequence[Term], str]:
+        if not self._explore:
+            return "Q", [Term("Q", before, "value before")], "It only follows what it learned."
+        number = self._model.number(state, column)
+        if number is None or not self._is_known(state, column):
+            highest = (
+                Term("R", self._max_reward_m, "highest reward, hoped for in every step [m]"),
+                Term("γ", self._gamma, "discount"),
+            )
+            return "R / (1 − γ)", highest, "It is still unknown, so it is hoped to be the best."
+        terms = (
+            Term("r̂", self._plan.rewards_m[number], "mean reward of its tries, at most R [m]"),
+            Term("γ", self._gamma, "discount"),
+            Term("V′", self._plan.later[number], "expected value of what follows, by its plan"),
+        )
+        became = self._value(state, column) != before
+        summary = "It is known, and its value stays as it was planned."
+        if became:
+            summary = "What it learned changes its plan, in which this step is known now."
+        return "r̂ + γ · V′", terms, summary
 
     def tune(self, **changes: Any) -> None:
         """Change rates from the next step on, as in `ModelAgent`."""

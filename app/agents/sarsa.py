@@ -12,7 +12,8 @@ class Sarsa(TabularLearner):
     color = "#8073C9"
     is_on_policy = True
 
-    def _update(self, transition: Transition, state: int, column: int) -> None:
-        """Q(s, a) ← (1 − α) Q(s, a) + α (r + γ Q(s′, a′)). No state is terminal."""
-        target = transition.reward_m + self._gamma * self._chosen_next(transition)
-        self._move_towards(state, column, target)
+    next_meaning = "value of the next action, which is chosen already"
+
+    def _next_value(self, transition: Transition) -> float:
+        """Q(s, a) ← (1 − α) Q(s, a) + α (r + γ Q(s′, a′))."""
+        return self._chosen_next(transition)

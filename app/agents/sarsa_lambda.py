@@ -12,8 +12,8 @@ class SarsaLambda(TraceLearner):
     color = "#0072B2"
     is_on_policy = True
 
-    def _update(self, transition: Transition, state: int, column: int) -> None:
+    next_meaning = "value of the next action, which is chosen already"
+
+    def _next_value(self, transition: Transition) -> float:
         """Credit δ = r + γ Q(s′, a′) − Q(s, a) to every step with a trace."""
-        value = self.table.row(state)[0][column]
-        target = transition.reward_m + self._gamma * self._chosen_next(transition)
-        self._credit(state, column, target - value)
+        return self._chosen_next(transition)

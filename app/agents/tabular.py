@@ -2,12 +2,21 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
 from annotated_types import Ge, Gt, Le, Lt
 
+from app.agents.explanation import (
+    ChoiceExplanation,
+    Journal,
+    Move,
+    Term,
+    UpdateExplanation,
+    ValueUpdate,
+    copy_of,
+)
 from app.agents.protocol import AgentState, Problem, Transition
 from app.agents.q_table import QTable
 from app.domain.settings import Setting, declare
@@ -106,6 +115,12 @@ class TabularAgent(ABC):
         """Return the action with the highest value in the table."""
         return self._highest(legal, self.table.values_of(observation, legal))
 
+    def explain_choice(self, observation: Cells, legal: Sequence[Action]) -> ChoiceExplanation:
+        """Choose as `act` does, and explain the choice."""
+        scores = self.values(observation)
+        action = self.act(observation, legal)
+        return ChoiceExplanation(action, "exploited", "value in the table", scores)
+
     def _highest(self, legal: Sequence[Action], values: Sequence[float]) -> Action:
         """Return the action with the highest of some values; ties are broken at random."""
         highest = max(values)
@@ -152,7 +167,8 @@ class TabularAgent(ABC):
 class TabularLearner(TabularAgent):
     """Learner of action values in a Q-table, with an ε-greedy policy.
 
-    A subclass implements the update rule, `_update`, and may add settings.
+    A subclass implements the value of the next state, `_next_value`, or another update rule,
+    `_update`, and may add settings.
 
     Args:
         rng: random generator for exploration and for breaking ties.
@@ -184,6 +200,11 @@ class TabularLearner(TabularAgent):
         self._steps_per_episode = steps_per_episode
         self._learned = 0
         self._fixed_epsilon: float | None = None
+        self._journal: Journal | None = None
+        """Notes each change of a value while an update is explained."""
+
+    next_meaning = "value of the next state"
+    """What `_next_value` is, for explanations."""
 
     @property
     def epsilon(self) -> float:
@@ -196,10 +217,23 @@ class TabularLearner(TabularAgent):
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         """Return an ε-greedy action; ties are broken at random."""
-        epsilon = self.epsilon
-        if epsilon > 0 and self._rng.random() < epsilon:
+        if self._explores(self._rng):
             return self._any(legal)
         return super().act(observation, legal)
+
+    def _explores(self, rng: np.random.Generator) -> bool:
+        """Whether the next action is a random one, by a draw."""
+        epsilon = self.epsilon
+        return epsilon > 0 and rng.random() < epsilon
+
+    def explain_choice(self, observation: Cells, legal: Sequence[Action]) -> ChoiceExplanation:
+        """Choose as `act` does, and explain the choice."""
+        epsilon = self.epsilon
+        draw = float(copy_of(self._rng).random()) if epsilon > 0 else None
+        explores = self._explores(copy_of(self._rng))
+        greedy = super().explain_choice(observation, legal)
+        explained = replace(greedy, epsilon=epsilon, draw=draw)
+        return replace(explained, kind="explored") if explores else explained
 
     def learn(self, transition: Transition) -> None:
         """Update the table, and the visit count of the state and action."""
@@ -209,17 +243,73 @@ class TabularLearner(TabularAgent):
         table.row(state)[1][column] += 1
         self._learned += 1
 
-    @abstractmethod
+    def explain_update(self, transition: Transition) -> UpdateExplanation:
+        """Learn as `learn` does, and explain how the values change."""
+        self._journal = journal = Journal(transition, *self._explain_target(transition))
+        try:
+            self.learn(transition)
+        finally:
+            self._journal = None
+        return self._explanation(journal)
+
+    def _explain_target(self, transition: Transition) -> tuple[str, Sequence[Term]]:
+        """Return what the target of the update is computed from, before it is made."""
+        rule, terms = self._explain_next(transition)
+        return f"r + γ · {rule}", (*self._explain_rates(transition), *terms)
+
+    def _explain_rates(self, transition: Transition) -> Sequence[Term]:
+        return (
+            Term("r", transition.reward_m, "reward of this step [m]"),
+            Term("γ", self._gamma, "discount"),
+        )
+
+    def _explain_next(self, transition: Transition) -> tuple[str, Sequence[Term]]:
+        """Return what `_next_value` is computed from."""
+        return "Q′", (Term("Q′", self._next_value(transition), self.next_meaning),)
+
+    def _explanation(self, journal: Journal) -> UpdateExplanation:
+        """Return the explanation of an update whose first noted change is the direct one."""
+        first, *others = journal.moves
+        update = self._value_update(first.with_target(journal.rule, journal.terms))
+        return UpdateExplanation(
+            summary_of(update), update, [self._value_update(one) for one in others]
+        )
+
+    def _value_update(self, move: Move) -> ValueUpdate:
+        table = self.table
+        observation, action = table.cells_at(move.state), table.action_at(move.column)
+        return ValueUpdate(observation, action, *move[2:])
+
     def _update(self, transition: Transition, state: int, column: int) -> None:
-        """Apply the update rule for a transition from row `state` by the action in `column`."""
+        """Apply the update rule for a transition from row `state` by the action in `column`.
+
+        Q(s, a) ← (1 − α) Q(s, a) + α (r + γ Q′), Q′ being the value of the next state.
+        """
+        self._move_towards(state, column, self._target(transition))
+
+    def _target(self, transition: Transition) -> float:
+        return transition.reward_m + self._gamma * self._next_value(transition)
+
+    def _next_value(self, transition: Transition) -> float:
+        """Return the value of the next state, by the rule of this learner. No state is terminal."""
+        raise NotImplementedError
 
     def _move_towards(self, state: int, column: int, target: float) -> None:
         """Q(s, a) ← (1 − α) Q(s, a) + α target."""
         values, _ = self.table.row(state)
-        values[column] = (1 - self._alpha) * values[column] + self._alpha * target
+        before = values[column]
+        values[column] = (1 - self._alpha) * before + self._alpha * target
+        if self._journal is not None:
+            terms = (
+                Term("Q", float(before), "value before"),
+                Term("α", self._alpha, "learning rate"),
+                Term("T", float(target), "target"),
+            )
+            change = before, values[column]
+            self._journal.note((state, column), "(1 − α) · Q + α · T", terms, change)
 
     def _best_next(self, transition: Transition) -> float:
-        """Return max Q(s′, ·). No state is terminal."""
+        """Return max Q(s′, ·)."""
         return max(self.table.values_of(transition.next_observation, transition.next_legal))
 
     def _chosen_next(self, transition: Transition) -> float:
@@ -270,3 +360,15 @@ class TabularLearner(TabularAgent):
         (learned,) = state["learned"].tolist()
         if not isinstance(learned, int) or learned < 0:
             raise ValueError("it has learned for less than no step")
+
+
+def summary_of(update: ValueUpdate) -> str:
+    """Return in a sentence how a value changed."""
+    change = update.after - update.before
+    if change == 0:
+        return "It got what it expected: the value stays as it was."
+    came = "more" if change > 0 else "less"
+    return (
+        f"It got {came} than it expected, counting what it expects from there on: the value "
+        f"{'rises' if change > 0 else 'falls'} from {update.before:.5f} to {update.after:.5f} m."
+    )

@@ -4,9 +4,10 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from app.agents.protocol import AgentState
+from app.agents.explanation import Journal, Term, UpdateExplanation
+from app.agents.protocol import AgentState, Transition
 from app.agents.q_table import check_places
-from app.agents.tabular import Share, TabularLearner
+from app.agents.tabular import Share, TabularLearner, summary_of
 from app.domain.settings import Setting, declare
 
 TraceDecay = Annotated[
@@ -37,16 +38,46 @@ class TraceLearner(TabularLearner):
         self._traces: dict[tuple[int, int], float] = {}
         """Eligibility traces by (row, column) of the table, the newest last."""
 
+    def _update(self, transition: Transition, state: int, column: int) -> None:
+        """Credit the error δ = r + γ Q′ − Q(s, a) to every step with a trace."""
+        value = self.table.row(state)[0][column]
+        self._credit(state, column, self._target(transition) - value)
+
     def _credit(self, state: int, column: int, error: float) -> None:
         """Q ← Q + α δ e for every trace e, that of this step being 1; then e ← γ λ e."""
         self._traces.pop((state, column), None)
         self._traces[state, column] = 1.0
         decay, kept = self._gamma * self._trace_decay, {}
         for place, trace in self._traces.items():
-            self.table.row(place[0])[0][place[1]] += self._alpha * error * trace
+            values, at = self.table.row(place[0])[0], place[1]
+            before = values[at]
+            values[at] += self._alpha * error * trace
+            if self._journal is not None:
+                terms = (
+                    Term("Q", float(before), "value before"),
+                    Term("α", self._alpha, "learning rate"),
+                    Term("δ", float(error), "what came, less what this step was worth before"),
+                    Term("e", trace, "trace: how much the step counts for it"),
+                )
+                self._journal.note(place, "Q + α · δ · e", terms, (before, values[at]))
             if trace * decay >= _MIN_TRACE:
                 kept[place] = trace * decay
         self._traces = kept
+
+    def _explanation(self, journal: Journal) -> UpdateExplanation:
+        """Return the explanation of the newest trace's change, and those of the other traces."""
+        *others, own = journal.moves
+        by_symbol = {term.symbol: term for term in own.terms}
+        shown = own._replace(
+            rule=f"Q + α · ({journal.rule} − Q) · e",
+            terms=(by_symbol["Q"], by_symbol["α"], *journal.terms, by_symbol["e"]),
+        )
+        update = self._value_update(shown)
+        earlier = "the step before" if len(others) == 1 else f"{len(others)} steps before"
+        summary = summary_of(update)
+        if others:
+            summary += f" {earlier[0].upper()}{earlier[1:]} share in it, by their traces."
+        return UpdateExplanation(summary, update, [self._value_update(one) for one in others])
 
     def tune(self, *, trace_decay: TraceDecay | None = None, **changes: Any) -> None:
         """Change rates from the next step on, as in `TabularLearner`."""

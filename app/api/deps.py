@@ -10,6 +10,7 @@ from starlette.requests import ClientDisconnect
 from app.api.auth import Role
 from app.api.descriptions import VALID
 from app.events.run_metrics import RunMetrics
+from app.explanations.service import Explanations
 from app.jobs.jobs import Jobs
 from app.limits.client_slots import ClientSlots
 from app.limits.memory_budget import MemoryBudget
@@ -63,6 +64,7 @@ class Services:
         audience: returns the counters of the viewer hub.
         ready: returns why runs cannot be started, in a sentence; None if they can.
         what_if: computes what-ifs.
+        explanations: explains steps, and shows tables of any moment.
         film: encodes a race's recording as a recorded stream for viser.
         replays: encodes frames of runs for pages that play them by themselves.
         listeners: slots of event streams.
@@ -81,6 +83,7 @@ class Services:
     film: StreamEncoder
     replays: ReplayFrames
     what_if: WhatIf
+    explanations: Explanations
     listeners: ClientSlots["Listener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
 

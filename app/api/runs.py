@@ -25,6 +25,7 @@ from app.api.answers import (
 from app.api.contract import LOCATION, answers
 from app.api.deps import Services, ServicesDep, StartRequestDep
 from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_SEARCH, VALID
+from app.api.explanation_answers import ExplanationView
 from app.api.fields import RunId
 from app.api.run_code import run_code
 from app.api.schemas import AnnotationBody
@@ -165,6 +166,25 @@ def get_code(services: ServicesDep, request: Request, run_id: RunPath) -> Respon
     """
     run = services.store.get(run_id)
     return JSONResponse(run_code(run, services.store, str(request.base_url))._asdict())
+
+
+@router.get(
+    "/{run_id}/explain",
+    summary="Why a step was taken, and what was learned from it",
+    response_model=ExplanationView,
+)
+def explain_step(
+    services: ServicesDep,
+    run_id: RunPath,
+    step: Annotated[int | None, Query(description="from 1 on; the newest if absent")] = None,
+    lane: Annotated[int, Query(description="of a race, from 0 on")] = 0,
+) -> Response:
+    """Explain a step of a training or of a lane of a race.
+
+    The learner is built again from what is stored, and takes the step once more: the rule of its
+    update is checked, and gives the value after it to the last bit.
+    """
+    return JSONResponse(services.explanations.explain(run_id, step, lane))
 
 
 def _page(services: Services, listing: Listing) -> Response:

@@ -10,6 +10,7 @@ from app.api.answers import CurveView, DisturbanceView, QTableView, TrainingView
 from app.api.contract import BINARY, LOCATION, TEXT, answers, takes_file
 from app.api.deps import ServicesDep, StartRequestDep
 from app.api.disturbance_body import AnyDisturbance
+from app.api.explanation_answers import TableView
 from app.api.fields import Name
 from app.api.formats import attachment, negotiated
 from app.api.runs import RunPath, find, run_routes
@@ -104,6 +105,27 @@ def _best_known_m(run: Run) -> float | None:
         return None
     step = min(run.done, run.config.steps - 1)
     return best_known_m(run.config, world_of(run).as_of(step))
+
+
+@router.get(
+    "/{run_id}/table",
+    summary="The table of any moment of the practice",
+    response_model=TableView,
+)
+def get_table_at(
+    services: ServicesDep,
+    run_id: RunPath,
+    step: Annotated[int | None, Query(description="after so many steps; newest if absent")] = None,
+    first: Annotated[int, Query(ge=0, description="index of the first state")] = 0,
+    count: Annotated[int, Query(ge=1, description="number of states, as far as they fit")] = 1000,
+) -> Response:
+    """Return values, visits and best actions as they were after a step, built again from its log.
+
+    The index of a state is the number whose digits are its cells, the first pair's the most
+    significant. An answer has at most 30,000 values; `first` and `count` choose which.
+    """
+    find(services, "training", run_id)
+    return JSONResponse(services.explanations.table(run_id, step, first, count))
 
 
 @router.get(

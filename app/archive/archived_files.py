@@ -22,13 +22,22 @@ from app.runs.race_config import RaceConfig
 from app.runs.recording import race_recording
 from app.runs.records import ActionValues
 from app.runs.stored_practice import practice_recording
+from app.runs.transition_log import MAX_LOGGED_STEPS, transitions
 from app.storage.artifact_file import chunks
 from app.storage.database.store import RunStore
 from app.storage.run import CHECKPOINT, RESUMABLE, TABLE, Run
-from app.storage.stored_recordings import PRACTICE, RACE, evaluations_file
+from app.storage.stored_recordings import (
+    PRACTICE,
+    RACE,
+    TRANSITIONS_PER_FILE,
+    evaluations_file,
+    transitions_file,
+)
 
 MAX_EVALUATION_FILES = 100
+MAX_TRANSITION_FILES = MAX_LOGGED_STEPS // TRANSITIONS_PER_FILE
 _EVALUATIONS = re.compile(r"evaluations-\d{4}\.npz", re.ASCII)
+_TRANSITIONS = re.compile(r"transitions-\d{4}\.npz", re.ASCII)
 
 
 def is_file_of(name: str, kind: str) -> bool:
@@ -37,7 +46,8 @@ def is_file_of(name: str, kind: str) -> bool:
         return is_report_file(name)
     if kind == "race":
         return name == RACE
-    return name in (TABLE, CHECKPOINT, PRACTICE) or _EVALUATIONS.fullmatch(name) is not None
+    is_numbered = _EVALUATIONS.fullmatch(name) or _TRANSITIONS.fullmatch(name)
+    return name in (TABLE, CHECKPOINT, PRACTICE) or is_numbered is not None
 
 
 def members_of(store: RunStore, run: Run) -> dict[str, Member]:
@@ -51,6 +61,7 @@ def members_of(store: RunStore, run: Run) -> dict[str, Member]:
         names = report_files(run)
     if run.kind == "training":
         names = [TABLE, PRACTICE, *map(evaluations_file, range(MAX_EVALUATION_FILES))]
+        names += map(transitions_file, range(MAX_TRANSITION_FILES))
         if run.state in RESUMABLE[run.kind]:
             names.append(CHECKPOINT)
     members = {}
@@ -94,6 +105,7 @@ def check_files(run: Run, files: Mapping[str, bytes], label: str) -> None:
             _check_race(run.config, files)
         else:
             _check_practice(run.config, files)
+            _check_transitions(run.config, files)
     except Exception as error:  # NumPy documents no complete list of exceptions
         raise DamagedFile(f"{label} has a recording that cannot be shown: {error}") from error
 
@@ -156,6 +168,19 @@ def _check_practice(config: WalkingProblem, files: Mapping[str, bytes]) -> None:
         msgspec.convert((evaluation.step, evaluation.epsilon), tuple[Step, Share])
         msgspec.convert(evaluation.distance_m, Metres)
         _check_motion(evaluation.motion, config)
+
+
+def _check_transitions(config: WalkingProblem, files: Mapping[str, bytes]) -> None:
+    names = sorted(name for name in files if _TRANSITIONS.fullmatch(name))
+    if names != [transitions_file(number) for number in range(len(names))]:
+        raise ValueError("some of its steps are missing")
+    for number, name in enumerate(names):
+        part = transitions(tables.read_arrays(files[name]))
+        part.check(len(config.resolved_gait.pairs), len(config.grid))
+        if part.first != number * TRANSITIONS_PER_FILE or part.rewards_m.size == 0:
+            raise ValueError("its steps do not follow each other")
+        if part.rewards_m.size > TRANSITIONS_PER_FILE:
+            raise ValueError("it has more steps than a file holds")
 
 
 def _check_motion(motion: Motion | None, walk: WalkingProblem) -> None:

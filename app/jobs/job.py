@@ -308,6 +308,8 @@ class Job:
         ]
         if rows:
             self._store.append_evaluations(self.run_id, rows)
+        if batch.transitions is not None:
+            self._recordings.log(self.run_id, batch.transitions)
         for record in batch.records:
             self._recordings.add(self.run_id, record)
             if isinstance(record, Reference):

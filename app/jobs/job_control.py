@@ -11,6 +11,7 @@ from app.domain.types import Action, Cells
 from app.jobs.messages import Batch, Changed, Checkpointed, Command, Message
 from app.runs.recording import NEWEST_STEPS
 from app.runs.records import RaceRecord, StepTaken, TrainingRecord
+from app.runs.transition_log import Transitions
 
 BATCHES_PER_S = 30
 CHECKPOINT_EVERY_S = 3.0
@@ -32,6 +33,7 @@ class JobControl:
             steps done.
         disturb: lets something happen to a training, given in plain types; returns it with the step
             in which it begins.
+        take_transitions: returns the steps of practice since its last call, for the log.
     """
 
     def __init__(
@@ -46,6 +48,7 @@ class JobControl:
         self.stopped = self.exiting = False
         self.changes: list[dict[str, Any]] = []
         self.disturb: Callable[[Mapping[str, Any]], Mapping[str, Any]] = _refuse
+        self.take_transitions: Callable[[], Transitions | None] = lambda: None
         self.send = send
         self._commands = commands
         self._paused = False
@@ -124,7 +127,8 @@ class JobControl:
     def flush(self) -> None:
         """Send the buffered records."""
         if self._records:
-            self.send(Batch(_without_dropped_steps(self._records), self._done))
+            records = _without_dropped_steps(self._records)
+            self.send(Batch(records, self._done, self.take_transitions()))
         self._records = []
         self._sent_s = time.monotonic()
 

@@ -13,6 +13,7 @@ from app.runs.config import TrainingConfig
 from app.runs.race_config import RaceConfig
 from app.runs.records import RaceRecord, TrainingRecord
 from app.runs.tables import Checkpoint
+from app.runs.transition_log import Transitions
 
 # To the process: a task first, then commands.
 
@@ -96,6 +97,8 @@ class Batch(NamedTuple):
     records: tuple[TrainingRecord | RaceRecord, ...]
     done: int
     """Steps so far, of all lanes together."""
+    transitions: Transitions | None = None
+    """All steps of a practice since the last batch, for its log."""
 
 
 class Changed(NamedTuple):

@@ -86,6 +86,7 @@ def _train(task: TrainingTask, control: JobControl) -> None:
         restore(learner, task.checkpoint)
         made = task.checkpoint.meta["changes"]
     control.disturb = lambda given: as_mapping(learner.disturb(disturbance(given), config))
+    learner.logged, control.take_transitions = [], learner.take_transitions
     control.restore_changes(made, task.changes, learner.step, walker.agent)
     control.send(Began((rest_qpos,), learner.step))
     control.checkpoint_regularly(lambda: Checkpointed(_saved(learner, task, control), learner.step))

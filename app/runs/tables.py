@@ -112,8 +112,8 @@ def restore(learner: Learner, checkpoint: Checkpoint) -> None:
         learner.next_epsilon = meta["next_epsilon"]
 
 
-def continue_from(learner: Learner, checkpoint: Checkpoint) -> None:
-    """Initialise a new learner from a checkpoint: values, visits and the generator only.
+def continue_from(agent: Agent, rng: np.random.Generator, checkpoint: Checkpoint) -> None:
+    """Initialise a new agent and its generator from a checkpoint: what was learned, and no more.
 
     Rates come from its own config, the ε schedule restarts, and the robot starts from rest.
 
@@ -121,13 +121,12 @@ def continue_from(learner: Learner, checkpoint: Checkpoint) -> None:
         TableMismatch: if the checkpoint is of another agent.
         DamagedFile: if the generator's state is missing or invalid.
     """
-    agent = learner.walker.agent
     if isinstance(agent, Tabular):
         agent.continue_from(agent_state(checkpoint))
     else:
         _load(agent, checkpoint, getattr(agent, "continue_from", agent.load))
     try:
-        seeding.load(learner.rng, checkpoint.meta["rng"])
+        seeding.load(rng, checkpoint.meta["rng"])
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFile("the table does not hold its generator's state") from error
 

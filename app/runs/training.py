@@ -14,6 +14,7 @@ from app.runs.best_known import best_known_m
 from app.runs.config import RACE_STEPS, TrainingConfig
 from app.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
 from app.runs.seeding import EVALUATION, generator
+from app.runs.transition_log import Logged, Transitions, transitions_of
 from app.runs.walker import Walker
 
 
@@ -36,6 +37,7 @@ class Learner:
         next_epsilon: ε when it was chosen.
         fell_at_step: the first step in which the robot fell, counted from 0; None if it did not.
         newest_epsilon: ε of the newest step.
+        logged: steps that were logged since `take_transitions`; None where no log is kept.
     """
 
     walker: Walker
@@ -51,6 +53,7 @@ class Learner:
     next_epsilon: float = 0.0
     fell_at_step: int | None = None
     newest_epsilon: float = 0.0
+    logged: list[Logged] | None = None
 
     @property
     def epsilon(self) -> float:
@@ -67,6 +70,13 @@ class Learner:
     def conditions(self, steps: int) -> World:
         """Return what holds in the next step, or after the last of `steps` steps in that one."""
         return self.world.as_of(min(self.step, steps - 1))
+
+    def take_transitions(self) -> Transitions | None:
+        """Return the steps logged since the last call; None if there are none."""
+        if not self.logged:
+            return None
+        steps, self.logged = self.logged, []
+        return transitions_of(self.step - len(steps), steps)
 
     def disturb(self, disturbance: Disturbance, config: TrainingConfig) -> Disturbance:
         """Let something happen from the next step on; an evaluation in the new world is due.
@@ -143,11 +153,15 @@ def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> S
     """Take one step: choose an action, carry it out, learn from the transition."""
     walker = learner.walker
     observation, knowledge = walker.observed, walker.knowledge() if record else None
+    measured = walker.measured if learner.logged is not None else ()
     action = walker.decide() if learner.next_action is None else learner.next_action
     step = walker.carry_out(action, record)
     learner.next_action = None
     learner.next_epsilon = learner.epsilon  # before it learns, as an on-policy agent chooses then
     learner.next_action = walker.learn(observation, action, step.reward_m)
+    if learner.logged is not None:
+        after = walker.observed, walker.measured
+        learner.logged.append(Logged(observation, measured, action, step.reward_m, *after))
     if learner.fell_at_step is None:
         pose, ground_m = walker.simulator.pose(walker.state), learner.world.ground_m(learner.step)
         if has_fallen(walker.simulator.robot, pose.tolist(), ground_m):

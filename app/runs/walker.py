@@ -218,6 +218,11 @@ class Walker:
             self._expand.at(state, self._sensors, self.legal)
 
     @property
+    def measured(self) -> Cells:
+        """The measured cells in the current state, whatever the observation mode is."""
+        return self._sensors("measured")
+
+    @property
     def transitions(self) -> int:
         """Number of transitions that the agent has simulated so far."""
         return self._expand.transitions if self._expand else 0

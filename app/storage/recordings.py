@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from app.runs.recording import LaneRecording, PracticeRecording
 from app.runs.records import Evaluated, LaneFailed, LaneStep, StepTaken
 from app.runs.stored_practice import rewound
+from app.runs.transition_log import TransitionLog, Transitions
 from app.storage.database.store import RunStore
 from app.storage.stored_recordings import StoredRecordings
 
@@ -28,6 +29,8 @@ class Recordings:
         self._trainings: dict[str, PracticeRecording] = {}
         self._races: dict[str, list[LaneRecording]] = {}
         self._evaluation_counts: dict[str, int] = {}
+        self._logs: dict[str, TransitionLog | None] = {}
+        """Of a training that resumed without a whole log there is none."""
         self._stored = StoredRecordings(store)
         self._lock = threading.Lock()
 
@@ -41,6 +44,12 @@ class Recordings:
         growing = self._races.get(run_id)
         return self._stored.race(run_id) if growing is None else growing
 
+    def transitions(self, run_id: str) -> TransitionLog | None:
+        """Return the log of a training's transitions; None if there is none, or it is damaged."""
+        if run_id in self._logs:
+            return self._logs[run_id]
+        return self._stored.transitions(run_id)
+
     def begin_training(
         self, run_id: str, rest_qpos: NDArray[np.float32], after_step: int = 0
     ) -> None:
@@ -52,10 +61,12 @@ class Recordings:
             after_step: step of the checkpoint from which the training resumes; 0 for a new one.
         """
         former = self.training(run_id) if after_step else None
+        log = self.transitions(run_id) if after_step else TransitionLog()
         recording = PracticeRecording(rest_qpos) if former is None else rewound(former, after_step)
         with self._lock:
             self._trainings[run_id] = recording
             self._evaluation_counts[run_id] = len(recording.evaluations)
+            self._logs[run_id] = None if log is None else log.truncated(after_step)
 
     def begin_race(self, run_id: str, lanes: list[LaneRecording]) -> None:
         """Start the recordings of a race's lanes, which are still empty."""
@@ -76,6 +87,12 @@ class Recordings:
                 record = replace(record, motion=None)
             self._trainings[run_id].add(record)
 
+    def log(self, run_id: str, steps: Transitions) -> None:
+        """Append to the log of a training, if it has one from its first step."""
+        log = self._logs.get(run_id)
+        if log is not None:
+            log.extend(steps)
+
     def save(self, run_id: str) -> None:
         """Store what a run has recorded so far; call from the run's writer thread.
 
@@ -84,6 +101,7 @@ class Recordings:
         """
         training, race = self._trainings.get(run_id), self._races.get(run_id)
         if training is not None:
+            self._stored.write_transitions(run_id, self._logs[run_id])
             self._stored.write_training(run_id, training)
         if race is not None:
             self._stored.write_race(run_id, race)
@@ -109,5 +127,7 @@ class Recordings:
 
     def _drop(self, run_id: str) -> None:
         with self._lock:
-            for table in (self._trainings, self._races, self._evaluation_counts):
-                table.pop(run_id, None)
+            self._trainings.pop(run_id, None)
+            self._races.pop(run_id, None)
+            self._evaluation_counts.pop(run_id, None)
+            self._logs.pop(run_id, None)

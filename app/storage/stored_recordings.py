@@ -20,13 +20,19 @@ from app.runs.recording import (
     race_recording,
 )
 from app.runs.stored_practice import evaluation_arrays, practice_arrays, practice_recording
+from app.runs.transition_log import (
+    BYTES_PER_STEP,
+    TransitionLog,
+    transition_arrays,
+    transitions,
+)
 from app.storage.artifact_file import ReadableArtifact
 from app.storage.database.store import RunStore
 from app.storage.errors import NotFound
 
 RACE, PRACTICE = "race.npz", "practice.npz"
-EVALUATIONS_PER_FILE = 20
-"""Evaluations per file: a growing training rewrites only its last file."""
+EVALUATIONS_PER_FILE, TRANSITIONS_PER_FILE = 20, 50_000
+"""Evaluations and logged steps per file: a growing training rewrites only its last file."""
 CACHE_RECORDINGS, CACHE_BYTES = 4, 100_000_000
 """Capacity of each cache in recordings and in bytes; the newest entry is kept whatever its size."""
 _MISS_TTL_S = 1.0
@@ -48,7 +54,11 @@ class StoredRecordings:
         self._races = _LruCache[list[LaneRecording]](
             lambda run_id: _read_race(store, run_id), _size_of_race
         )
+        self._logs = _LruCache[TransitionLog](
+            lambda run_id: _read_transitions(store, run_id), lambda log: BYTES_PER_STEP * len(log)
+        )
         self._evaluations: dict[str, int] = {}
+        self._logged: dict[str, int] = {}
 
     def training(self, run_id: str) -> PracticeRecording | None:
         """Return the recording of a training; None if there is none, or it is damaged."""
@@ -57,6 +67,25 @@ class StoredRecordings:
     def race(self, run_id: str) -> list[LaneRecording] | None:
         """Return the recordings of a race's lanes; None if there are none, or they are damaged."""
         return self._races.get(run_id)
+
+    def transitions(self, run_id: str) -> TransitionLog | None:
+        """Return the log of a training's transitions; None if there is none, or it is damaged."""
+        return self._logs.get(run_id)
+
+    def write_transitions(self, run_id: str, log: TransitionLog | None) -> None:
+        """Store a log incrementally: files that are complete, or have nothing new, are skipped.
+
+        Raises:
+            StorageFull, StorageFailed: if it cannot be stored.
+        """
+        done, end = self._logged.get(run_id, 0), 0 if log is None else len(log)
+        if log is None or done == end:
+            return
+        for number in range(done // TRANSITIONS_PER_FILE, -(-end // TRANSITIONS_PER_FILE)):
+            first = number * TRANSITIONS_PER_FILE
+            part = log.part(first, min(end, first + TRANSITIONS_PER_FILE))
+            self._write(run_id, transitions_file(number), transition_arrays(part))
+        self._logged[run_id] = end
 
     def write_training(self, run_id: str, recording: PracticeRecording) -> None:
         """Store a recording incrementally: files of evaluations that are complete are skipped.
@@ -84,6 +113,8 @@ class StoredRecordings:
     def cache_training(self, run_id: str, recording: PracticeRecording) -> None:
         """Cache a stored recording that is complete."""
         self._evaluations.pop(run_id, None)
+        self._logged.pop(run_id, None)
+        self._logs.drop(run_id)
         self._trainings.put(run_id, recording)
 
     def cache_race(self, run_id: str, lanes: list[LaneRecording]) -> None:
@@ -93,6 +124,8 @@ class StoredRecordings:
     def invalidate(self, run_id: str) -> None:
         """Invalidate the cache entries of a run."""
         self._evaluations.pop(run_id, None)
+        self._logged.pop(run_id, None)
+        self._logs.drop(run_id)
         self._trainings.drop(run_id)
         self._races.drop(run_id)
 
@@ -170,6 +203,17 @@ def _evaluations(store: RunStore, run_id: str) -> Iterator[Arrays]:
         number += 1
 
 
+def _read_transitions(store: RunStore, run_id: str) -> TransitionLog | None:
+    log, number = TransitionLog(), 0
+    while (arrays := _arrays(store, run_id, transitions_file(number))) is not None:
+        part = transitions(arrays)
+        if part.first != len(log):
+            break  # written before the training resumed from an earlier step
+        log.extend(part)
+        number += 1
+    return log if len(log) else None
+
+
 def _read_race(store: RunStore, run_id: str) -> list[LaneRecording] | None:
     arrays = _arrays(store, run_id, RACE)
     return None if arrays is None else race_recording(arrays)
@@ -194,6 +238,11 @@ def _size_of(motion: Motion) -> int:
 def evaluations_file(number: int) -> str:
     """Return the artifact name of a training's `number`-th file of evaluations, from 0 on."""
     return f"evaluations-{number:04}.npz"
+
+
+def transitions_file(number: int) -> str:
+    """Return the artifact name of a training's `number`-th file of logged steps, from 0 on."""
+    return f"transitions-{number:04}.npz"
 
 
 def _arrays(store: RunStore, run_id: str, name: str) -> Arrays | None:

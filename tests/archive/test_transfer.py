@@ -27,7 +27,7 @@ from app.storage.errors import Conflict, NotFound, StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run, State
 from app.storage.run_ids import RunIds
-from app.storage.stored_recordings import PRACTICE, RACE
+from app.storage.stored_recordings import PRACTICE, RACE, transitions_file
 from tests.storage.ended import ended_race, ended_training
 from tests.storage.stores import ODD, opened, temporary_store, training
 
@@ -85,7 +85,7 @@ def test_export_and_import_preserve_everything(
     with opened(tmp_path, None) as target:
         assert imported(data, target) == source.get(run_id)
         assert target.evaluations(run_id) == source.evaluations(run_id)
-        for name in (TABLE, RACE, PRACTICE):
+        for name in (TABLE, RACE, PRACTICE, transitions_file(0)):
             assert target.artifact(run_id, name) == source.artifact(run_id, name)
         assert export_run(target, run_id) == data
         here, there = Recordings(target), Recordings(source)
@@ -451,6 +451,27 @@ def test_invalid_recordings_are_refused(source: RunStore) -> None:
     np.savez_compressed(buffer, meta=np.zeros(10_000_000))
     bomb = repacked(export_run(source, RACED), race_npz=buffer.getvalue())
     assert "compressed" in refusal(bomb)
+
+
+def test_invalid_logs_of_steps_are_refused(source: RunStore) -> None:
+    name = transitions_file(0)
+    with np.load(io.BytesIO(source.artifact(TRAINING, name) or b"")) as file:
+        arrays = {key: file[key] for key in file.files}
+    for change in (
+        {"first": np.array(7)},
+        {"observed": arrays["observed"] + 100},
+        {"observed": arrays["observed"][1:]},
+        {"actions": arrays["actions"] * 0},
+        {"rewards_m": arrays["rewards_m"] * np.nan},
+        {"rewards_m": arrays["rewards_m"].astype(str)},
+        {"measured": np.array("x")},
+    ):
+        buffer = io.BytesIO()
+        np.savez(buffer, **{**arrays, **change})
+        changed = repacked(
+            export_run(source, TRAINING), **{"transitions-0000_npz": buffer.getvalue()}
+        )
+        assert "cannot be shown" in refusal(changed)
 
 
 def test_future_and_malformed_ids_are_replaced(source: RunStore, store: RunStore) -> None:

@@ -263,8 +263,9 @@ def test_newer_format_is_refused_with_the_supported_one() -> None:
 @pytest.mark.parametrize("state", ["", "[]", "{}", '{"bit_generator": "MT19937"}', 3])
 def test_invalid_generator_state_is_refused(state: object) -> None:
     checkpoint = Checkpoint({**TABLE.meta, "rng": state}, TABLE.arrays)
+    learner = build_learner(CONFIG)
     with pytest.raises(DamagedFile, match="does not hold its generator's state"):
-        continue_from(build_learner(CONFIG), checkpoint)
+        continue_from(learner.walker.agent, learner.rng, checkpoint)
 
 
 def test_invalid_table_in_a_well_formed_file_is_refused() -> None:

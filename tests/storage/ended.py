@@ -34,12 +34,16 @@ def ended_training(store: RunStore, run_id: str, name: str = "It learned", steps
     recordings, learner = Recordings(store), build_learner(config)
     rest = learner.walker.simulator.pose(learner.walker.state).astype(np.float32)
     recordings.begin_training(run_id, rest)
+    learner.logged = []
     for record in train(learner, config):
         if isinstance(record, StepTaken | Evaluated):
             recordings.add(run_id, record)
         if isinstance(record, Evaluated):
             row = {n: getattr(record, n) for n in ("step", "distance_m", "epsilon")}
             store.append_evaluations(run_id, [row])
+    taken = learner.take_transitions()
+    assert taken is not None
+    recordings.log(run_id, taken)
     recordings.finish(run_id)
     store.put_artifact(run_id, TABLE, to_bytes(snapshot(learner, config)))
     result = finish_training(learner, config)

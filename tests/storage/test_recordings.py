@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from app.runs.recording import LaneRecording, PracticeRecording
+from app.runs.transition_log import Logged, TransitionLog, Transitions
 from app.storage import stored_recordings
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
@@ -81,6 +82,56 @@ def test_resumed_training_continues_the_saved_recording(store: RunStore) -> None
     stored = Recordings(store).training("a")
     assert stored is not None
     assert_same(stored, whole)
+
+
+def logged(steps: int) -> TransitionLog:
+    """Return a log in which every step differs from its neighbours."""
+    cells = np.arange(steps + 1, dtype=np.uint8)[:, None] % [5, 3, 2]
+    log = TransitionLog()
+    actions = np.stack([np.arange(steps) % 3, np.arange(steps) % 5], 1).astype(np.uint8)
+    rewards = np.arange(steps) / 7
+    log.extend(Transitions(0, cells.astype(np.uint8), cells.astype(np.uint8), actions, rewards))
+    return log
+
+
+def steps_of(log: TransitionLog | None) -> list[Logged]:
+    assert log is not None
+    return [log.part(0, len(log)).step(number) for number in range(len(log))]
+
+
+def test_log_survives_restarts_and_is_cut_where_the_training_resumes(
+    store: RunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stored_recordings, "TRANSITIONS_PER_FILE", 20)
+    store.create(training("a"))
+    whole, rest = logged(70), practise(1).rest_qpos
+    recordings = Recordings(store)
+    recordings.begin_training("a", rest)
+    recordings.log("a", whole.part(0, 25))
+    recordings.save("a")
+    recordings.log("a", whole.part(25, 65))
+    recordings.save("a")
+    assert steps_of(Recordings(store).transitions("a")) == steps_of(whole)[:65]
+
+    resumed = Recordings(store)
+    resumed.begin_training("a", rest, after_step=33)
+    resumed.log("a", whole.part(33, 36))
+    resumed.finish("a")
+    # Files of steps that it has not taken again are left, and not read.
+    assert store.artifact("a", "transitions-0003.npz") is not None
+    for reader in (resumed, Recordings(store)):
+        assert steps_of(reader.transitions("a")) == steps_of(whole)[:36]
+
+
+def test_training_without_a_whole_log_has_none(store: RunStore) -> None:
+    """As one that an earlier version began."""
+    store.create(training("a"))
+    recordings = Recordings(store)
+    recordings.begin_training("a", practise(1).rest_qpos, after_step=10)
+    recordings.log("a", logged(20).part(10, 20))
+    recordings.finish("a")
+
+    assert recordings.transitions("a") is None
 
 
 def test_saving_again_writes_only_new_files(

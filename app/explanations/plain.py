@@ -1,0 +1,225 @@
+"""Explanations and tables in plain types, for answers in JSON."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from app.agents.explanation import ChoiceExplanation, Term, UpdateExplanation, ValueUpdate
+from app.agents.protocol import Valuing
+from app.domain.types import Action, Cells, FloatArray
+from app.runs.config import WalkingProblem
+from app.runs.rebuilding import ExplainedStep
+
+MAX_OTHERS = 24
+"""Further updates of values that are told one by one, those with the largest changes."""
+
+
+class Words:
+    """Names of the actions and states of a walking problem."""
+
+    def __init__(self, walk: WalkingProblem) -> None:
+        self._pairs, self._grid = walk.resolved_gait.pairs, walk.grid
+
+    def move(self, action: Action) -> str:
+        """Return an action in words: "legs 1 and 4 to front left"."""
+        legs = " and ".join(map(str, self._pairs[action.pair]))
+        return f"legs {legs} to {self._grid.name(action.cell)}"
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the leg pairs and the cells of the foot grid."""
+        return {
+            "pairs": [list(pair) for pair in self._pairs],
+            "cells_m": self._grid.cells.round(5).tolist(),
+            "cell_names": [self._grid.name(cell) for cell in range(len(self._grid))],
+        }
+
+
+def explanation_as_json(
+    run_id: str,
+    walk: WalkingProblem,
+    agent: str,
+    explained: ExplainedStep,
+    *,
+    lane: int | None = None,
+    unexplained: str | None = None,
+) -> dict[str, Any]:
+    """Return an explained step.
+
+    Args:
+        run_id: id of the run.
+        walk: its walking problem.
+        agent: name of the agent that took the step.
+        explained: the step.
+        lane: of a race; None for a training.
+        unexplained: why there is no explanation of its choice.
+    """
+    words, logged = Words(walk), explained.logged
+    visits = None if explained.visits is None else _number(explained.visits[logged.action])
+    return {
+        "run_id": run_id,
+        "lane": lane,
+        "step": explained.step,
+        "agent": agent,
+        **words.as_json(),
+        "observation": list(logged.observation),
+        "action": list(logged.action),
+        "reward_m": logged.reward_m,
+        "next_observation": list(logged.next_observation) or None,
+        "visits": visits,
+        "choice": None if explained.choice is None else _choice(explained.choice, words),
+        "update": None if explained.update is None else _update(explained.update, words),
+        "unexplained": unexplained,
+    }
+
+
+def _choice(choice: ChoiceExplanation, words: Words) -> dict[str, Any]:
+    return {
+        "kind": choice.kind,
+        "criterion": choice.criterion,
+        "scores": _rows(choice.scores),
+        "best": [list(action) for action in choice.best],
+        "runner_up": None if choice.runner_up is None else list(choice.runner_up),
+        "margin_m": choice.margin,
+        "epsilon": choice.epsilon,
+        "draw": choice.draw,
+        "probability": choice.probability,
+        "sentences": _reasons(choice, words),
+    }
+
+
+def _reasons(choice: ChoiceExplanation, words: Words) -> list[str]:
+    """Return why an action was chosen, why no other, and when another would be."""
+    move, count = words.move(choice.action), int(np.isfinite(choice.scores).sum())
+    sentences = []
+    if choice.kind == "unknown":
+        sentences.append(f"It tries {move} because it does not know yet what that brings.")
+        if len(choice.best) > 1:
+            sentences.append(f"{len(choice.best)} moves are as unknown; one was drawn by lot.")
+        return sentences
+    if choice.kind == "explored":
+        sentences.append(
+            f"It explores: {choice.draw:.3f} was drawn, below ε = {choice.epsilon:.3f}, so one of "
+            f"{count} moves was taken by lot: {move}."
+        )
+        sentences.append(f"By its {choice.criterion} it would {_wanted(choice, words)}.")
+        return sentences
+    drawn = ""
+    if choice.draw is not None:
+        drawn = f", as {choice.draw:.3f} was drawn, not below ε = {choice.epsilon:.3f}"
+    sentences.append(
+        f"It takes what it holds for best{drawn}: {move} has the highest {choice.criterion}, "
+        f"{_millimetres(choice.scores[choice.action])} mm."
+    )
+    if len(choice.best) > 1:
+        sentences.append(f"{len(choice.best)} moves are tied; one was drawn by lot.")
+    elif choice.runner_up is not None and choice.margin is not None:
+        sentences.append(
+            f"The next best, {words.move(choice.runner_up)}, is {_millimetres(choice.margin)} mm "
+            "worse: were it better by more than that, it would take it."
+        )
+    if choice.epsilon:
+        share = f"{100 * choice.probability:.0f} %"
+        sentences.append(
+            f"With ε = {choice.epsilon:.3f} it does this here in {share} of all cases."
+        )
+    return sentences
+
+
+def _wanted(choice: ChoiceExplanation, words: Words) -> str:
+    if choice.action in choice.best:
+        return "have done the same"
+    if len(choice.best) > 1:
+        return f"have drawn one of {len(choice.best)} tied moves"
+    (best,) = choice.best
+    return f"have moved {words.move(best)}, {_millimetres(-(choice.margin or 0))} mm better"
+
+
+def _millimetres(metres: float) -> str:
+    value = 1000 * float(metres)
+    return f"{value:.2f}".replace("-", "−") if abs(value) < 10 else f"{value:.1f}".replace("-", "−")
+
+
+def _update(explained: UpdateExplanation, words: Words) -> dict[str, Any]:
+    others = explained.others
+    changed = {(one.observation, one.action) for one in others if one.before != one.after}
+    largest = sorted(others, key=lambda one: -abs(one.after - one.before))[:MAX_OTHERS]
+    return {
+        "summary": explained.summary,
+        "direct": None if explained.update is None else _value_update(explained.update, words),
+        "stored": explained.stored,
+        "others": {
+            "count": len(others),
+            "values_changed": len(changed),
+            "largest": [_value_update(one, words) for one in others if one in largest],
+        },
+        "beliefs": [belief._asdict() for belief in explained.beliefs],
+    }
+
+
+def _value_update(update: ValueUpdate, words: Words) -> dict[str, Any]:
+    return {
+        "observation": list(update.observation),
+        "action": list(update.action),
+        "move": words.move(update.action),
+        "rule": update.rule,
+        "numbers": update.numbers,
+        "terms": [_term(term) for term in update.terms],
+        "before": update.before,
+        "after": update.after,
+        "is_exact": update.is_exact,
+    }
+
+
+def _term(term: Term) -> dict[str, Any]:
+    return {"symbol": term.symbol, "value": float(term.value), "meaning": term.meaning}
+
+
+def table_as_json(
+    walk: WalkingProblem,
+    agent: Valuing,
+    states: Sequence[Cells],
+    *,
+    step: int,
+    first: int,
+    total: int,
+) -> dict[str, Any]:
+    """Return values, visits and best actions of some states.
+
+    Args:
+        walk: the walking problem.
+        agent: the learner.
+        states: observations of the states.
+        step: number of steps that it has learned.
+        first: index of the first of them.
+        total: number of all states.
+    """
+    values = [agent.values(state) for state in states]
+    return {
+        "step": step,
+        **Words(walk).as_json(),
+        "states": total,
+        "first": first,
+        "values": [_flat(row) for row in values],
+        "visits": [_flat(agent.visits(state)) for state in states],
+        "best": [_best(row) for row in values],
+    }
+
+
+def _best(values: FloatArray) -> list[int]:
+    """Return the first action with the highest value, as (pair, cell)."""
+    return [int(index) for index in np.unravel_index(np.nanargmax(values), values.shape)]
+
+
+def _flat(values: FloatArray) -> list[float | None]:
+    return [_number(value) for value in values.ravel().tolist()]
+
+
+def _rows(values: FloatArray) -> list[list[float | None]]:
+    return [[_number(value) for value in row] for row in values.tolist()]
+
+
+def _number(value: float) -> float | None:
+    """Return a number, None for NaN, which JSON lacks."""
+    return float(value) if math.isfinite(value) else None

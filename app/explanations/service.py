@@ -1,0 +1,270 @@
+"""Explanation service: explains steps of trainings and races, and shows tables of any moment."""
+
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+from app.agents.protocol import Tabular, Valuing
+from app.assembly import rebuild_lane, rebuild_learner
+from app.domain.errors import InvalidInput
+from app.explanations.plain import explanation_as_json, table_as_json
+from app.explanations.rebuilt_practice import Changes, RebuiltPractice
+from app.runs.config import TrainingConfig
+from app.runs.race_config import RaceConfig
+from app.runs.rebuilding import ExplainedStep, NotRebuilt, RebuiltLearner
+from app.runs.recording import LaneRecording
+from app.runs.transition_log import Logged, TransitionLog
+from app.storage.database.store import RunStore
+from app.storage.errors import Busy, Conflict
+from app.storage.recordings import Recordings
+from app.storage.run import Run
+from app.storage.stored_tables import load_table
+
+MAX_PRACTICES = 4
+"""Walks that are kept; the one asked for least recently is dropped."""
+MAX_WAITING = 8
+MAX_TABLE_VALUES = 16_000_000
+"""Largest table of a learner that is built again, about 200 MB."""
+MAX_VALUES_SHOWN = 30_000
+"""Action values in one answer."""
+_BLOCK_STEPS = 1000
+T = TypeVar("T")
+
+
+class Explanations:
+    """Builds learners again to explain their steps; one request at a time. Thread-safe."""
+
+    def __init__(self, store: RunStore, recordings: Recordings) -> None:
+        self._store, self._recordings = store, recordings
+        self._practices: OrderedDict[tuple[str, int], RebuiltPractice] = OrderedDict()
+        self._lock, self._count_lock, self._waiting = threading.Lock(), threading.Lock(), 0
+
+    def explain(self, run_id: str, step: int | None, lane: int) -> dict[str, Any]:
+        """Explain a step of a training, or of a lane of a race.
+
+        Args:
+            run_id: id of the run.
+            step: counted from 1; None for the newest.
+            lane: of a race, counted from 0; 0 for a training.
+
+        Returns:
+            the explanation in plain types.
+
+        Raises:
+            NotFound: if there is no such run.
+            InvalidInput: if there is no such step or lane.
+            Conflict: if the run has no steps (yet), or its learner cannot be built again.
+            Busy: if it takes longer than a request may.
+        """
+        run = self._store.get(run_id)
+        if isinstance(run.config, RaceConfig):
+            return self._explain_lane(run, run.config, step, lane)
+        if not isinstance(run.config, TrainingConfig):
+            raise InvalidInput(f"run {run_id} is an experiment; its trials are no steps to explain")
+        if lane != 0:
+            raise InvalidInput("a training has one lane, 0")
+        log = self._log(run)
+        number = _checked_step(step, len(log))
+        with self._one_at_a_time():
+            practice, changes = self._practice(run, log)
+            explained = _in(run, lambda: practice.explain(number, changes))
+        return explanation_as_json(run_id, run.config, run.config.agent, explained)
+
+    def table(self, run_id: str, step: int | None, first: int, count: int) -> dict[str, Any]:
+        """Return the values, visits and best actions of some states, as a learner has them.
+
+        Args:
+            run_id: id of a training.
+            step: after so many steps; None for the newest.
+            first: index of the first state.
+            count: number of states.
+
+        Raises:
+            NotFound, InvalidInput, Conflict, Busy: as `explain`; Conflict also for a learner
+                without a table.
+        """
+        run = self._store.get(run_id)
+        if not isinstance(run.config, TrainingConfig):
+            raise InvalidInput(f"run {run_id} is a {run.kind}; only trainings have a table")
+        log = self._log(run)
+        number = len(log) if step is None else step
+        if not 0 <= number <= len(log):
+            raise InvalidInput(f"step must be from 0 to {len(log):,}, not {number}")
+        with self._one_at_a_time():
+            practice, changes = self._practice(run, log)
+            learner = _in(run, lambda: practice.learner_at(number, changes))
+            if not isinstance(learner.agent, Tabular) or not isinstance(learner.agent, Valuing):
+                raise Conflict(
+                    f"{run.config.agent} keeps no table: it generalises over all states", run.state
+                )
+            table = learner.agent.table
+            if not 0 <= first < table.states:
+                raise InvalidInput(f"first must be from 0 to {table.states - 1:,}, not {first}")
+            end = min(first + min(count, MAX_VALUES_SHOWN // table.actions), table.states)
+            states = [table.cells_at(state) for state in range(first, end)]
+            return table_as_json(
+                run.config, learner.agent, states, step=number, first=first, total=table.states
+            )
+
+    def _explain_lane(
+        self, run: Run, config: RaceConfig, step: int | None, lane: int
+    ) -> dict[str, Any]:
+        lanes = self._recordings.race(run.id)
+        if lanes is None:
+            raise Conflict(f"race {run.id} is {run.state} and has no recording (yet)", run.state)
+        if not 0 <= lane < len(lanes):
+            raise InvalidInput(f"lane must be from 0 to {len(lanes) - 1}, not {lane}")
+        number = _checked_step(step, len(lanes[lane].steps))
+        steps, why = LaneSteps(lanes[lane], config.lanes[lane].observation == "measured"), None
+        try:
+            with self._one_at_a_time():
+                explained = self._lane_practice(run, config, lane, steps).explain(number, ())
+        except (Conflict, InvalidInput, NotRebuilt) as error:
+            why = str(error)
+            explained = ExplainedStep(number, steps.step(number - 1), None, None, None)
+        agent = config.lanes[lane].agent
+        return explanation_as_json(run.id, config, agent, explained, lane=lane, unexplained=why)
+
+    def _log(self, run: Run) -> TransitionLog:
+        log = self._recordings.transitions(run.id)
+        if log is None or not len(log):
+            raise Conflict(
+                f"training {run.id} has no log of its steps: it has not begun, or was recorded by "
+                "an earlier version or elsewhere; train it again to explain it",
+                run.state,
+            )
+        return log
+
+    def _practice(self, run: Run, log: TransitionLog) -> tuple[RebuiltPractice, Changes]:
+        """Return the learner of a training, and the changes of its settings so far."""
+        # Read after the log: every change before its last step is known then.
+        run = self._store.get(run.id)
+        config = run.config
+        assert isinstance(config, TrainingConfig)  # noqa: S101 - no run changes its kind
+
+        def new() -> RebuiltLearner:
+            table = (
+                None if run.continued_from is None else load_table(self._store, run.continued_from)
+            )
+            return rebuild_learner(config, table)
+
+        def make() -> RebuiltPractice:
+            pairs, cells = len(config.resolved_gait.pairs), len(config.grid)
+            rows = cells**pairs if run.continued_from else min(cells**pairs, len(log))
+            if rows * pairs * cells > MAX_TABLE_VALUES:
+                raise Conflict(
+                    f"the table of training {run.id} is too large to be built again: it may have "
+                    f"{rows * pairs * cells:,} values, and the most is {MAX_TABLE_VALUES:,}",
+                    run.state,
+                )
+            return RebuiltPractice(new, _TrainingSteps(log))
+
+        practice = self._kept((run.id, 0), log, run.changes, make)
+        return practice, run.changes
+
+    def _lane_practice(
+        self, run: Run, config: RaceConfig, lane: int, steps: "LaneSteps"
+    ) -> RebuiltPractice:
+        training_id = run.lane_training_ids[lane]
+
+        def new() -> RebuiltLearner:
+            table = None if training_id is None else load_table(self._store, training_id)
+            return rebuild_lane(config, lane, table)
+
+        return self._kept((run.id, lane), steps.lane, (), lambda: RebuiltPractice(new, steps))
+
+    def _kept(
+        self,
+        key: tuple[str, int],
+        source: object,
+        changes: Changes,
+        make: Callable[[], RebuiltPractice],
+    ) -> RebuiltPractice:
+        """Return a practice that is kept, or a new one if it is not or does not fit any more."""
+        practice = self._practices.pop(key, None)
+        if practice is None or not practice.fits(source, changes):
+            practice = make()
+        self._practices[key] = practice
+        while len(self._practices) > MAX_PRACTICES:
+            self._practices.popitem(last=False)
+        return practice
+
+    @contextmanager
+    def _one_at_a_time(self) -> Iterator[None]:
+        with self._count_lock:
+            if self._waiting >= MAX_WAITING:
+                raise Busy(f"{MAX_WAITING} explanations are waiting; ask again later", 2)
+            self._waiting += 1
+        try:
+            with self._lock:
+                yield
+        finally:
+            with self._count_lock:
+                self._waiting -= 1
+
+
+class _TrainingSteps:
+    """The steps of a training's log, read in blocks."""
+
+    def __init__(self, log: TransitionLog) -> None:
+        self.source = log
+        self._block = log.part(0, 0)
+
+    def __len__(self) -> int:
+        return len(self.source)
+
+    def step(self, number: int) -> Logged:
+        """Return the step of an index, from 0 on."""
+        place = number - self._block.first
+        if not 0 <= place < len(self._block.rewards_m):
+            first = number - number % _BLOCK_STEPS
+            self._block, place = self.source.part(first, first + _BLOCK_STEPS), number - first
+        return self._block.step(place)
+
+
+class LaneSteps:
+    """The steps of a lane's recording."""
+
+    def __init__(self, lane: LaneRecording, is_measured: bool) -> None:
+        """Read a recording.
+
+        Args:
+            lane: the recording.
+            is_measured: whether the lane observed where its feet are.
+        """
+        self.lane, self._is_measured = lane, is_measured
+
+    @property
+    def source(self) -> LaneRecording:
+        """The recording."""
+        return self.lane
+
+    def __len__(self) -> int:
+        return len(self.lane.steps)
+
+    def step(self, number: int) -> Logged:
+        """Return the step of an index, from 0 on; the last one has no next observation."""
+        one, rest = self.lane.steps[number], self.lane.steps[number + 1 : number + 2]
+        after = rest[0].observation if rest else ()
+        measured = (one.observation, after) if self._is_measured else ((), ())
+        return Logged(one.observation, measured[0], one.action, one.reward_m, after, measured[1])
+
+
+def _checked_step(step: int | None, count: int) -> int:
+    if count == 0:
+        raise InvalidInput("it has taken no step yet")
+    if step is None:
+        return count
+    if not 1 <= step <= count:
+        raise InvalidInput(f"step must be from 1 to {count:,}, not {step}")
+    return step
+
+
+def _in(run: Run, explain: Callable[[], T]) -> T:
+    """Tell why a learner cannot be built again as a conflict with the run that it is of."""
+    try:
+        return explain()
+    except NotRebuilt as error:
+        raise Conflict(str(error), run.state) from error

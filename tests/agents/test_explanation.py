@@ -1,0 +1,211 @@
+"""Explanations: the rule with its numbers gives the stored value, to the last bit."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.agents.bayesian_regression import sum_rule
+from app.agents.explanation import (
+    ChoiceExplanation,
+    Explaining,
+    Term,
+    UpdateExplanation,
+    ValueUpdate,
+    copy_of,
+    evaluate,
+)
+from app.agents.protocol import Tabular, Transition, Valuing
+from app.agents.registry import OURS, find, learns
+from app.agents.tabular import TabularLearner
+from app.assembly import build_learner
+from app.domain.types import Action, FloatArray
+from app.runs.config import TrainingConfig, training_config
+from app.runs.tables import snapshot
+from app.runs.training import Learner, train
+
+LEARNERS = [name for name in OURS if learns(name)]
+TABLE_LEARNERS = [name for name in LEARNERS if issubclass(find(name), TabularLearner)]  # type: ignore[arg-type]
+
+
+def config_of(agent: str, seed: int = 4, steps: int = 90) -> TrainingConfig:
+    return training_config(
+        agent,
+        gait="left-right-origin",
+        simulator="kinematic",
+        steps=steps,
+        seed=seed,
+        evaluate_every=0,
+    )
+
+
+class ExplainedStep:
+    """A step of a learner that explained its choice and its update, and what it stored before."""
+
+    def __init__(self, learner: Learner) -> None:
+        walker = learner.walker
+        self.agent = walker.agent
+        assert isinstance(self.agent, Explaining)
+        assert isinstance(self.agent, Valuing)
+        self.table_before = table_of(learner)
+        observation, legal = walker.observed, walker.legal
+        chosen = learner.next_action
+        self.choice: ChoiceExplanation | None = None
+        if chosen is None:
+            self.choice = self.agent.explain_choice(observation, legal)
+            chosen = self.choice.action
+        step = walker.carry_out(walker.legal_action(chosen))
+        learner.next_action = None
+        if getattr(self.agent, "is_on_policy", False):
+            self.choice = self.agent.explain_choice(walker.observed, walker.legal)
+            learner.next_action = self.choice.action
+        self.transition = Transition(
+            observation, chosen, step.reward_m, walker.observed, walker.legal, learner.next_action
+        )
+        self.update: UpdateExplanation = self.agent.explain_update(self.transition)
+        self.table_after = table_of(learner)
+        learner.step += 1
+
+    @property
+    def updates(self) -> list[ValueUpdate]:
+        own = [] if self.update.update is None else [self.update.update]
+        return [*own, *self.update.others]
+
+    def stored(self, one: ValueUpdate) -> float:
+        """Return what the learner stores now of the value that was updated."""
+        assert isinstance(self.agent, Valuing)
+        return float(self.agent.values(one.observation)[one.action])
+
+
+def table_of(learner: Learner) -> FloatArray | None:
+    agent = learner.walker.agent
+    if not isinstance(agent, Tabular):
+        return None
+    return np.array([values for _, values, _ in agent.table.rows()])
+
+
+def explained(agent: str, seed: int = 4, steps: int = 90) -> list[ExplainedStep]:
+    learner = build_learner(config_of(agent, seed))
+    return [ExplainedStep(learner) for _ in range(steps)]
+
+
+@pytest.fixture(params=LEARNERS)
+def agent(request: pytest.FixtureRequest) -> str:
+    name: str = request.param
+    return name
+
+
+def test_an_explained_training_is_the_training_to_the_last_bit(agent: str) -> None:
+    config = config_of(agent)
+    plain, told = build_learner(config), build_learner(config)
+    for _ in train(plain, config):
+        pass
+    for _ in range(config.steps):
+        ExplainedStep(told)
+
+    arrays = snapshot(plain, config).arrays
+    for name, array in snapshot(told, config).arrays.items():
+        np.testing.assert_array_equal(array, arrays[name], name)
+
+
+def test_every_rule_gives_the_value_after_it_to_the_last_bit(agent: str) -> None:
+    for step in explained(agent):
+        for one in step.updates:
+            assert evaluate(one.rule, one.terms) == one.after, one
+            assert one.is_exact
+
+
+@pytest.mark.parametrize("name", [name for name in LEARNERS if name != "linear-model"])
+@settings(max_examples=4, deadline=None)
+@given(seed=st.integers(0, 10_000))
+def test_the_last_update_of_each_value_gives_what_is_stored(name: str, seed: int) -> None:
+    """The values of the linear model are those of where the feet stand now."""
+    learner = build_learner(config_of(name, seed))
+    for _ in range(30):
+        step = ExplainedStep(learner)
+        for one in {(one.observation, one.action): one for one in step.updates}.values():
+            assert one.after == step.stored(one)
+        if step.update.update is not None:
+            assert step.update.stored == step.stored(step.update.update)
+
+
+@pytest.mark.parametrize("name", TABLE_LEARNERS)
+def test_every_value_that_changed_is_explained(name: str) -> None:
+    changed = 0
+    for step in explained(name):
+        assert step.table_before is not None
+        assert step.table_after is not None
+        known = {(one.observation, one.action): one.before for one in reversed(step.updates)}
+        rows = np.nan_to_num(step.table_after) != np.nan_to_num(step.table_before)
+        for row, pair, cell in np.argwhere(rows).tolist():
+            observation = tuple(row // 5**place % 5 for place in (2, 1, 0))
+            before = known[observation, Action(pair, cell)]
+            assert before == step.table_before[row, pair, cell]
+            changed += 1
+    assert changed > 20
+
+
+def test_choices_are_explained_by_what_they_were_made_by(agent: str) -> None:
+    kinds = set()
+    for step in explained(agent):
+        choice = step.choice
+        if choice is None:
+            continue
+        kinds.add(choice.kind)
+        assert (choice.action in choice.best) == (choice.margin is None or choice.margin >= 0)
+        if choice.kind != "explored":
+            assert choice.action in choice.best
+        if choice.draw is not None:
+            assert choice.epsilon is not None
+            assert (choice.draw < choice.epsilon) == (choice.kind == "explored")
+        assert 0 < choice.probability <= 1
+    assert kinds & {"exploited", "unknown"}
+
+
+def test_probability_of_a_choice_counts_chance_and_ties() -> None:
+    scores = np.array([[np.nan, 2.0, 1.0], [2.0, np.nan, 0.5]])
+    choice = ChoiceExplanation(Action(0, 1), "exploited", "value", scores, 0.2, 0.7)
+
+    assert choice.best == [Action(0, 1), Action(1, 0)]
+    assert choice.runner_up == Action(1, 0)
+    assert choice.margin == 0
+    assert choice.probability == pytest.approx(0.2 / 4 + 0.8 / 2)
+
+
+def test_rules_are_arithmetic_and_nothing_else() -> None:
+    terms = [Term("Q", -0.5, ""), Term("Q′", 2.0, ""), Term("γ", 0.9, "")]
+
+    assert evaluate("(1 − γ) · Q + Q′ / 4", terms) == (1 - 0.9) * -0.5 + 2.0 / 4
+    for rule in ("Q + δ", "Q ** 2", "len(Q)", "Q +"):
+        with pytest.raises(ValueError, match="no arithmetic"):
+            evaluate(rule, terms)
+
+
+def test_numbers_are_put_into_the_rule() -> None:
+    terms = (Term("Q", -0.5, ""), Term("α", 0.25, ""), Term("Q′", 1.23456789, ""))
+    update = ValueUpdate((0,), Action(0, 1), "(1 − α) · Q + α · Q′", terms, -0.5, 0.0)
+
+    assert update.numbers == "(1 − 0.25) · (−0.5) + 0.25 · 1.235"
+
+
+@settings(deadline=None)
+@given(st.integers(1, 300), st.data())
+def test_sum_rule_adds_as_numpy_does(count: int, data: st.DataObject) -> None:
+    """The rule of the linear model relies on the order in which NumPy adds."""
+    some = st.dictionaries(
+        st.integers(0, count - 1), st.floats(-1, 1).filter(bool), min_size=1, max_size=9
+    )
+    values = data.draw(some)
+    row = np.zeros((1, count))
+    row[0, list(values)] = list(values.values())
+    terms = [Term(f"<{index}>", value, "") for index, value in values.items()]
+    rule = sum_rule({index: f"<{index}>" for index in values}, count)
+
+    assert evaluate(rule, terms) == row.sum(1)[0]
+
+
+def test_a_copy_of_a_generator_draws_the_same_and_leaves_it_alone() -> None:
+    rng = np.random.default_rng(3)
+    seen = copy_of(rng).random(4)
+
+    np.testing.assert_array_equal(rng.random(4), seen)

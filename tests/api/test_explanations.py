@@ -1,0 +1,186 @@
+"""Explained steps of trainings and races, and tables of any moment, over REST."""
+
+from typing import Any
+
+import pytest
+
+from app.agents.explanation import Term, evaluate
+from app.api.explanation_answers import ExplanationView, TableView
+from tests.api.calls import Api, refused
+
+STEPS = 100
+
+
+def stored_values(api: Api, run_id: str) -> dict[tuple[Any, ...], float]:
+    """Return the values of the stored table by state and action."""
+    table = api.get(f"/trainings/{run_id}/q-table")
+    return {(*entry["state"], *entry["action"]): entry["value"] for entry in table["values"]}
+
+
+def shown_values(table: dict[str, Any]) -> dict[tuple[Any, ...], float]:
+    cells = len(table["cells_m"])
+    found = {}
+    for index, row in enumerate(table["values"], table["first"]):
+        state = [index // cells**place % cells for place in (2, 1, 0)]
+        for column, value in enumerate(row):
+            if value is not None:
+                found[*state, *divmod(column, cells)] = value
+    return found
+
+
+def explained(api: Api, run_id: str, **query: int) -> dict[str, Any]:
+    answer: dict[str, Any] = api.get(f"/runs/{run_id}/explain", params=query)
+    ExplanationView.model_validate(answer)
+    return answer
+
+
+def table_at(api: Api, run_id: str, **query: int) -> dict[str, Any]:
+    answer: dict[str, Any] = api.get(f"/trainings/{run_id}/table", params=query)
+    TableView.model_validate(answer)
+    return answer
+
+
+def test_the_newest_table_is_the_stored_one(api: Api, trained: dict[str, Any]) -> None:
+    table = table_at(api, trained["id"])
+
+    assert table["step"] == STEPS
+    assert (table["states"], table["first"], len(table["values"])) == (125, 0, 125)
+    assert shown_values(table) == stored_values(api, trained["id"])
+    assert sum(visits or 0 for row in table["visits"] for visits in row) == STEPS
+
+
+def test_tables_of_earlier_moments_are_those_before(api: Api, trained: dict[str, Any]) -> None:
+    rows = [table_at(api, trained["id"], step=step)["visits"] for step in (0, 40, 100, 7)]
+    tried = [sum(visits or 0 for row in table for visits in row) for table in rows]
+
+    assert tried == [0, 40, 100, 7]
+
+
+def test_a_part_of_the_states_can_be_asked_for(api: Api, trained: dict[str, Any]) -> None:
+    whole, part = table_at(api, trained["id"]), table_at(api, trained["id"], first=120, count=9)
+
+    assert part["values"] == whole["values"][120:]
+    assert part["best"] == whole["best"][120:]
+
+
+def test_every_step_of_a_training_explains_the_stored_value(
+    api: Api, trained: dict[str, Any]
+) -> None:
+    for step in (1, 2, 50, 51, 99, 100, 3):
+        told = explained(api, trained["id"], step=step)
+        update = told["update"]["direct"]
+        terms = [Term(**term) for term in update["terms"]]
+        after = shown_values(table_at(api, trained["id"], step=step))
+        before = shown_values(table_at(api, trained["id"], step=step - 1))
+        place = (*update["observation"], *update["action"])
+
+        assert update["is_exact"]
+        assert evaluate(update["rule"], terms) == update["after"] == after[place]
+        assert update["before"] == before[place]
+        assert update["action"] == told["action"]
+        assert {p: v for p, v in after.items() if p != place} == {
+            p: v for p, v in before.items() if p != place
+        }
+
+
+def test_a_choice_is_told_in_words(api: Api, trained: dict[str, Any]) -> None:
+    told = [explained(api, trained["id"], step=step) for step in (1, STEPS)]
+    first, last = (" ".join(one["choice"]["sentences"]) for one in told)
+
+    assert "It explores" in first
+    assert "by lot: legs" in first
+    assert told[0]["choice"]["draw"] < told[0]["choice"]["epsilon"] == 1
+    assert "It takes what it holds for best" in last
+    assert told[1]["choice"]["epsilon"] == 0
+    assert "value in the table" in last
+    assert told[1]["update"]["summary"].startswith("It got ")
+
+
+def test_the_newest_step_is_explained_by_default(api: Api, trained: dict[str, Any]) -> None:
+    assert explained(api, trained["id"])["step"] == STEPS
+
+
+@pytest.mark.parametrize("agent", ["sarsa-lambda", "dyna-q", "r-max", "linear-model"])
+def test_steps_of_other_learners_are_explained(api: Api, agent: str) -> None:
+    run = api.finished(api.train(agent=agent, steps=30))
+    for step in (30, 12, 13):
+        told = explained(api, run["id"], step=step)
+        assert told["choice"]["sentences"]
+        assert told["update"]["summary"]
+        assert told["update"]["direct"]["is_exact"]
+        assert told["unexplained"] is None
+
+
+def test_a_learner_without_a_table_has_none(api: Api) -> None:
+    run = api.finished(api.train(agent="linear-model", steps=5))
+
+    refused(api.call("GET", f"/trainings/{run['id']}/table"), 409, "keeps no table")
+
+
+def test_steps_of_a_continued_training_are_explained(api: Api, trained: dict[str, Any]) -> None:
+    run = api.finished(api.train(continue_from=trained["id"], steps=20))
+    tables = [table_at(api, one["id"], **at) for one, at in ((trained, {}), (run, {"step": 0}))]
+
+    assert tables[0]["values"] == tables[1]["values"]
+    assert shown_values(table_at(api, run["id"])) == stored_values(api, run["id"])
+    assert explained(api, run["id"], step=11)["update"]["direct"]["is_exact"]
+
+
+def test_a_training_is_explained_while_it_runs_and_is_changed(api: Api) -> None:
+    run = api.slow_training()
+    seen = explained(api, run["id"], step=1)
+    api.call("PATCH", f"/trainings/{run['id']}", json={"alpha": 0.5, "epsilon": 0.1})
+    now = api.until(run, lambda now: now["changes"] and now["progress"]["done"] > 40)
+    at = now["changes"][0]["step"]
+    before, after = (explained(api, run["id"], step=step) for step in (at, at + 1))
+    rates = [
+        next(term["value"] for term in one["update"]["direct"]["terms"] if term["symbol"] == "α")
+        for one in (before, after)
+    ]
+    assert rates == [0.3, 0.5]
+    assert after["choice"]["epsilon"] == 0.1
+    api.tell(run, "stop")
+    api.ended(run)
+
+    assert explained(api, run["id"], step=1) == seen
+    assert shown_values(table_at(api, run["id"])) == stored_values(api, run["id"])
+
+
+def test_lanes_of_a_race_are_explained(api: Api, trained: dict[str, Any]) -> None:
+    lanes = [
+        {"agent": "q-learning", "training_id": trained["id"]},
+        {"agent": "sarsa", "keep_learning": True},
+        {"agent": "greedy"},
+    ]
+    race = api.finished(api.race(steps=10, lanes=lanes))
+    frozen, learning, search = (explained(api, race["id"], lane=n, step=6) for n in range(3))
+
+    assert frozen["choice"]["kind"] == "exploited"
+    assert frozen["update"] is None
+    assert learning["update"]["direct"]["is_exact"]
+    assert explained(api, race["id"], lane=1, step=10)["update"] is None
+    assert search["choice"] is None
+    assert "plans with a simulator" in search["unexplained"]
+
+
+def test_steps_and_lanes_that_are_not_there_are_refused(api: Api, trained: dict[str, Any]) -> None:
+    path = f"/runs/{trained['id']}/explain"
+    table = f"/trainings/{trained['id']}/table"
+    for query, sentence in (
+        ("?step=0", "Step must be from 1 to 100, not 0."),
+        ("?step=101", "Step must be from 1 to 100, not 101."),
+        ("?step=-5", "Step must be from 1 to 100, not -5."),
+        ("?lane=1", "A training has one lane, 0."),
+    ):
+        refused(api.call("GET", path + query), 422, sentence)
+    refused(api.call("GET", f"{table}?step=101"), 422, "Step must be from 0 to 100, not 101.")
+    refused(api.call("GET", f"{table}?first=125"), 422, "First must be from 0 to 124, not 125.")
+    refused(api.call("GET", "/runs/0000000000000/explain"), 404, "")
+    refused(api.call("GET", "/trainings/0000000000000/table"), 404, "")
+
+
+def test_a_training_without_a_log_says_so(api: Api, trained: dict[str, Any]) -> None:
+    file = api.call("GET", f"/trainings/{trained['id']}/q-table?format=npz").content
+    run = api.call("POST", "/trainings/import", content=file).json()
+
+    refused(api.call("GET", f"/runs/{run['id']}/explain"), 409, "has no log of its steps")

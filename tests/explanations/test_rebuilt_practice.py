@@ -1,0 +1,140 @@
+"""Moving a learner through its practice: forward, back, by snapshots, within limits."""
+
+import random
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from app.assembly import rebuild_learner
+from app.domain.errors import HexapodError
+from app.explanations import rebuilt_practice
+from app.explanations.rebuilt_practice import RebuiltPractice
+from app.runs.rebuilding import NotRebuilt, RebuiltLearner, Snapshot
+from app.runs.transition_log import Logged, Transitions
+from app.storage.errors import Busy
+from tests.runs.test_rebuilding import agent_state, config_of, fed, practised, steps_of
+
+
+class Steps:
+    """Steps of a training, as the service reads them from its log."""
+
+    def __init__(self, log: Transitions) -> None:
+        self.source: object = log
+        self._steps = steps_of(log)
+
+    def __len__(self) -> int:
+        return len(self._steps)
+
+    def step(self, number: int) -> Logged:
+        return self._steps[number]
+
+
+def practice_of(agent: str) -> RebuiltPractice:
+    return RebuiltPractice(lambda: rebuild_learner(config_of(agent)), Steps(practised(agent)[1]))
+
+
+def states_after(agent: str, steps: int) -> dict[str, bytes]:
+    log = steps_of(practised(agent)[1])
+    return agent_state(fed(rebuild_learner(config_of(agent)), log[:steps]).agent)
+
+
+@pytest.mark.parametrize("agent", ["q-learning", "sarsa", "r-max", "linear-model"])
+def test_any_order_of_moments_shows_the_same_learner(
+    agent: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rebuilt_practice, "SNAPSHOT_EVERY_S", 0.001)
+    practice, order = practice_of(agent), random.Random(3)
+    for _ in range(12):
+        step = order.randint(1, 80)
+        explained = practice.explain(step, ())
+        assert explained.step == step
+        assert explained.choice is not None
+        assert explained.choice.action == steps_of(practised(agent)[1])[step - 1].action
+        moment = order.randint(0, 80)
+        learner = practice.learner_at(moment, ())
+        assert agent_state(learner.agent) == states_after(agent, moment)
+
+
+def test_stepping_back_begins_at_the_nearest_snapshot(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rebuilt_practice, "SNAPSHOT_EVERY_S", 0.0)
+    made: list[int] = []
+
+    def new() -> RebuiltLearner:
+        made.append(1)
+        return rebuild_learner(config_of("q-learning"))
+
+    practice = RebuiltPractice(new, Steps(practised("q-learning")[1]))
+    practice.learner_at(80, ())
+    restored: list[int] = []
+    restore: Callable[..., None] = RebuiltLearner.restore
+
+    def spy(learner: RebuiltLearner, snapshot: Snapshot) -> None:
+        restored.append(snapshot.step)
+        restore(learner, snapshot)
+
+    monkeypatch.setattr(RebuiltLearner, "restore", spy)
+    practice.learner_at(60, ())
+    practice.learner_at(61, ())
+
+    assert len(made) == 2
+    assert len(restored) == 1
+    assert 40 < restored[0] <= 60
+
+
+def test_snapshots_are_thinned_out_to_their_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rebuilt_practice, "SNAPSHOT_EVERY_S", 0.0)
+    monkeypatch.setattr(rebuilt_practice, "MAX_SNAPSHOT_BYTES", 30_000)
+    practice = practice_of("q-learning")
+    practice.learner_at(80, ())
+
+    assert sum(one.size for one in practice._snapshots) <= 30_000
+    assert agent_state(practice.learner_at(30, ()).agent) == states_after("q-learning", 30)
+
+
+def test_a_long_way_is_gone_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rebuilt_practice, "WORK_S", 0.0)
+    practice, refusals = practice_of("q-learning"), []
+    for _ in range(500):
+        try:
+            learner = practice.learner_at(40, ())
+            break
+        except Busy as busy:
+            refusals.append(str(busy))
+
+    assert agent_state(learner.agent) == states_after("q-learning", 40)
+    assert "ask again" in refusals[0]
+    assert any("of 40 steps are done" in one for one in refusals)
+
+
+def test_a_practice_that_forgot_steps_or_changes_is_another() -> None:
+    practice = practice_of("q-learning")
+    change = {"step": 5, "alpha": 0.5}
+    practice.learner_at(4, (change,))
+    assert practice.fits(practice.steps.source, (change,))
+    assert practice.fits(practice.steps.source, ())  # it was not made yet
+    assert not practice.fits(object(), (change,))
+    practice.learner_at(6, (change,))
+    assert practice.fits(practice.steps.source, (change, {"step": 9, "alpha": 0.1}))
+    assert not practice.fits(practice.steps.source, ())
+    with pytest.raises(NotRebuilt, match=r"step \d+ cannot be explained"):
+        practice.learner_at(80, (change,))
+
+
+def test_an_agent_that_breaks_is_told_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
+    practice = practice_of("q-learning")
+    learner = practice.learner_at(3, ())
+
+    def breaks(*given: object) -> None:
+        raise ZeroDivisionError("no luck")
+
+    monkeypatch.setattr(learner.agent, "learn", breaks)
+    with pytest.raises(HexapodError, match=r"step 4 .* failed .*ZeroDivisionError: no luck"):
+        practice.learner_at(5, ())
+    assert agent_state(practice.learner_at(5, ()).agent) == states_after("q-learning", 5)
+
+
+def test_states_differ_between_moments() -> None:
+    """So that the comparisons above compare something."""
+    assert states_after("q-learning", 10) != states_after("q-learning", 11)
+    assert np.frombuffer(states_after("q-learning", 10)["q"]).size > 0
