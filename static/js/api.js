@@ -1,7 +1,7 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
 
-/** @import { Annotations, Curve, Disturbance, GaitAnalysis, Kind, Options, Page, Rates, ReplayPlan } from "./types.js" */
-/** @import { Run, Stage, Summary, Timeline, Verb, WhatIfAnswer } from "./types.js" */
+/** @import { Annotations, Curve, Disturbance, GaitAnalysis, Kind, Options, Page, Rates } from "./types.js" */
+/** @import { ReplayPlan, Run, Stage, Summary, Timeline, Verb, WhatIfAnswer } from "./types.js" */
 
 const base = () => new URL("api/v1/", document.baseURI);
 
