@@ -30,12 +30,18 @@ _CHROMIUM_OPTIONS = [
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put browser tests last.
+    """Put browser tests last, the longest files of them first.
 
     Playwright's synchronous interface keeps an event loop running in the main thread for as long
-    as it is open, and in that time no other test can `asyncio.run` there.
+    as it is open, and in that time no other test can `asyncio.run` there. A long file at the very
+    end would leave the other processes without work.
     """
-    items.sort(key=lambda item: "browser" in getattr(item, "fixturenames", ()))
+
+    def place(item: pytest.Item) -> tuple[bool, int]:
+        is_last = "browser" in getattr(item, "fixturenames", ())
+        return is_last, -item.path.stat().st_size if is_last else 0
+
+    items.sort(key=place)
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> FileByFile:

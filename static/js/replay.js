@@ -2,7 +2,7 @@
 // The server gives frames (`replay-frames.js`); position, speed and clock are kept here and in the address.
 import { batch, computed, effect, signal } from "@preact/signals";
 import { getReplay, getReplayFrames } from "./api.js";
-import { REPLAY_FIELDS, view } from "./page.js";
+import { place, REPLAY_FIELDS, view, viewOf } from "./page.js";
 import { decode, SceneState } from "./replay-frames.js";
 import { connection, ownScene, ownStage } from "./store.js";
 
@@ -78,7 +78,6 @@ export async function openReplay(id, { time_s = 0, isPlaying = true, clock: time
     clock.value = timedBy;
     ownScene.value = null;
   });
-  location.hash = "";
   writeReplayAddress();
   try {
     const [answer, start] = await Promise.all([getReplay(id, timedBy), load("scene")]);
@@ -367,6 +366,9 @@ export function readReplayAddress() {
   else if (ownRunId.peek() !== null) closeReplay();
 }
 
+/** The address at which a run is replayed. @param {string} id */
+export const replayAddress = (id) => `${location.pathname}?${new URLSearchParams({ run: id })}`;
+
 /** A link to the moment that is shown. */
 export function replayLink() {
   const query = new URLSearchParams({ run: ownRunId.peek() ?? "", t: replayTime.peek().toFixed(2) });
@@ -382,8 +384,10 @@ function writeReplayAddress() {
   if (id) query.set("run", id);
   if (id && !playing.peek()) query.set("t", replayTime.peek().toFixed(2));
   const search = query.size ? `?${query}` : "";
-  const address = `${location.pathname}${search}${location.hash}`;
+  // A replay opens in the view of the race, as the stage is there.
+  const address = `${location.pathname}${search}${id !== null && id !== before ? "" : location.hash}`;
   // Back goes to what was shown before.
   if (id !== before) history.pushState(history.state, "", address);
   else history.replaceState(history.state, "", address);
+  place.value = viewOf(location.hash);
 }

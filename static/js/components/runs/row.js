@@ -8,6 +8,7 @@ import { changesInWords, rateChanges } from "../../changes.js";
 import { happeningsOf, inTime, joinedBySteps } from "../../disturbances.js";
 import { paceOf } from "../../experiments/runs.js";
 import { ago, count, listed, metres, sentence, whole } from "../../format.js";
+import { openReplay, replayAddress } from "../../replay.js";
 import { formRobot, isSame } from "../../robots.js";
 import { isSelected, setSelected } from "../../run-selection.js";
 import { hasTable, isActive, isOperator } from "../../selectors.js";
@@ -120,15 +121,29 @@ function Actions({ run }) {
       `}
       ${run.kind === "experiment"
         ? html`<a class="to-report" href=${`#experiments?run=${encodeURIComponent(run.id)}`}>Report</a>`
-        : isOperator.value && html`
-          <button class="secondary compact" disabled=${isPending || run.state === "queued"}
-            onClick=${() => showOnStage(run)}>
-            ${isShown(run) ? "On stage" : "Show"}
-          </button>
+        : html`
+          <${ReplayLink} run=${run} />
+          ${isOperator.value && html`
+            <button class="secondary compact" disabled=${isPending || run.state === "queued"}
+              onClick=${() => showOnStage(run)} title="Show it on the stage, to everybody">
+              ${isShown(run) ? "On stage" : "Show"}
+            </button>
+          `}
         `}
       <${Menu} run=${run} />
     </div>
   `;
+}
+
+function ReplayLink({ run }) {
+  if (!run.progress.done) return null;
+  const open = (event) => {
+    // A click with a key opens the link in another tab.
+    if (event.ctrlKey || event.metaKey || event.shiftKey) return;
+    event.preventDefault();
+    openReplay(run.id);
+  };
+  return html`<a class="to-report" href=${replayAddress(run.id)} onClick=${open}>Replay</a>`;
 }
 
 function Menu({ run }) {
