@@ -25,6 +25,7 @@ from app.runs.best_known import best_known_in_race_m
 from app.runs.clocks import CLOCKS, check_clock
 from app.runs.config import agent_settings
 from app.runs.config_json import as_json
+from app.runs.gait_analysis import gait_figures, gait_summary, walk_of_lane, window_of
 from app.runs.lane import LaneConfig, lane_config, observation_of
 from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
@@ -83,7 +84,7 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         best_m = best_known_in_race_m(config)
         shown = {"config": as_json(config), "result": result, "best_known_m": best_m}
-        print(json.dumps(shown))
+        print(json.dumps({**shown, "gait": _gaits(lanes_recorded, config)}))
     else:
         show_lanes(config, result, options.clock)
     return 0
@@ -111,6 +112,13 @@ def _lane(text: str, observation: Any) -> tuple[LaneConfig, Checkpoint | None]:
             f"makes one), or learns in the race: --lane {agent},keep_learning=true"
         )
     return lane, table
+
+
+def _gaits(lanes: Sequence[LaneRecording], config: RaceConfig) -> list[dict[str, Any] | None]:
+    """Return the gait of each lane in single numbers; see `app.runs.gait_analysis`."""
+    walks = [walk_of_lane(lane, config, config.world) for lane in lanes]
+    window = window_of(walks, None, None)
+    return [gait_summary(gait_figures(walk, *window)) for walk in walks]
 
 
 def _race(walkers: Sequence[Walker], config: RaceConfig) -> list[LaneRecording]:

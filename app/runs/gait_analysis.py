@@ -9,9 +9,9 @@ about", American Scientist 63; Alexander 2003, chapter 7): energy is the joints'
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import takewhile
-from typing import NamedTuple, Protocol, cast
+from typing import Any, NamedTuple, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -337,6 +337,26 @@ def gait_figures(walk: RecordedWalk, from_s: float, to_s: float) -> GaitFigures 
             duration_s=to_s - from_s,
         ),
     )
+
+
+def gait_summary(figures: GaitFigures | None) -> dict[str, Any] | None:
+    """Return the single numbers of figures in plain types, without what they have over time."""
+    if figures is None:
+        return None
+    effort = figures.effort
+    return {
+        "from_s": figures.from_s,
+        "to_s": figures.to_s,
+        "speed_m_s": figures.speed_m_s,
+        "speed_body_lengths_s": figures.speed_body_lengths_s,
+        "duty_factor": figures.duty_factor,
+        "leg_duty_factors": [leg.duty_factor for leg in figures.legs],
+        "cycle": None if figures.cycle is None else asdict(figures.cycle),
+        "mass_kg": figures.mass_kg,
+        "largest_torque_nm": None if effort is None else effort.largest_torque_nm,
+        "energy_j": None if effort is None else effort.energy_j,
+        "cost_of_transport": None if effort is None else effort.cost_of_transport,
+    }
 
 
 @dataclass(frozen=True)

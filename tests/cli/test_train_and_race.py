@@ -79,6 +79,20 @@ def test_race_of_a_table_against_look_ahead(folder: Path) -> None:
     assert "Ranked at time-out, free clock" in shown.stdout
 
 
+def test_a_race_prints_the_gait_of_each_lane(tmp_path: Path) -> None:
+    ripple = json.dumps({"right_leg": 1, "left_leg": 2, "pairs": [[1, 4], [5, 3], [6, 2]]})
+    lanes = ("--lane", "wave", "--lane", "wave,direction=retrograde", "--lane", "random-walk")
+    race = ("race", "--gait", ripple, *lanes, "--steps", "20")
+    wave, retrograde, wandering = output(*race, folder=tmp_path, run=in_process)["gait"]
+
+    assert wave["cycle"]["steps"] == retrograde["cycle"]["steps"] == 3
+    assert wandering["cycle"] is None
+    for one in (wave, retrograde):
+        assert one["speed_m_s"] > 0.02
+        assert one["cost_of_transport"] < 5
+        assert len(one["leg_duty_factors"]) == 6
+
+
 def test_lanes_take_settings_and_keep_learning(folder: Path) -> None:
     lanes = (
         "look-ahead,depth=2",
