@@ -7,7 +7,7 @@ import {
 } from "../page.js";
 import { announcement } from "../race.js";
 import { isOperator } from "../selectors.js";
-import { connection, isLockedOut, options, viewers } from "../store.js";
+import { connection, isLockedOut, options, setEntry, viewers } from "../store.js";
 import { Controls } from "./controls.js";
 import { html, Icon } from "./elements.js";
 import { Knowledge, LearningChart } from "./learning.js";
@@ -76,30 +76,52 @@ const RaceView = ({ isHidden }) => html`
       <${LearningChart} />
       <${RaceChart} />
       <${Knowledge} />
+      <${StepsPanel} />
     </div>
   </div>
 `;
 
-// ---- the view of experiments, loaded when it is first opened: most visits do not
+// ---- what is loaded when it is first opened: most visits do not
 
-/** @type {Signal<any>} */
-const loadedExperiments = signal(null);
+/** What was loaded, by its name on the page. @type {Signal<Record<string, any>>} */
+const loaded = signal({});
 
-function ExperimentsView() {
+/** `load`: imports the module and returns its component. */
+function Loaded({ name, load }) {
   const [hasFailed, setFailed] = useState(false);
   const state = connection.value;
   useEffect(() => {
-    if (loadedExperiments.value || state !== "live") return;
-    const take = (loaded) => (loadedExperiments.value = loaded.Experiments);
-    import("./experiments/experiments.js").then(take, () => setFailed(true));
+    if (loaded.value[name] || state !== "live") return;
+    load().then((component) => setEntry(loaded, name, component), () => setFailed(true));
   }, [state]);
-  const View = loadedExperiments.value;
+  const View = loaded.value[name];
   if (View) return html`<${View} />`;
+  return hasFailed
+    ? html`<p role="alert">The ${name} could not be loaded. Load the page again.</p>`
+    : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the ${name}…</p>`;
+}
+
+const loadExperiments = () => import("./experiments/experiments.js").then((module) => module.Experiments);
+const loadSteps = () => import("./steps/steps.js").then((module) => module.Steps);
+
+function ExperimentsView() {
+  const shown = html`<${Loaded} name="experiments" load=${loadExperiments} />`;
+  return loaded.value.experiments ? shown : html`<section class="panel locked">${shown}</section>`;
+}
+
+const stepsAreOpen = signal(false);
+
+function StepsPanel() {
+  const isOpen = stepsAreOpen.value;
   return html`
-    <section class="panel locked">
-      ${hasFailed
-        ? html`<p role="alert">The experiments could not be loaded. Load the page again.</p>`
-        : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the experiments…</p>`}
+    <section class="panel steps" aria-labelledby="steps-title">
+      <div class="steps-head">
+        <h2 id="steps-title">Step by step</h2>
+        <p class="dim">Why it took each step, how its values changed, and its whole table</p>
+        <button class="secondary compact" aria-expanded=${isOpen ? "true" : "false"}
+          onClick=${() => (stepsAreOpen.value = !isOpen)}>${isOpen ? "Close" : "Explain this step"}</button>
+      </div>
+      ${isOpen && html`<${Loaded} name="steps" load=${loadSteps} />`}
     </section>
   `;
 }
