@@ -252,6 +252,13 @@ def _rounded(value: float) -> str:
     return f"{value:.4g}".replace("-", "−")
 
 
+def in_millimetres(metres: float) -> str:
+    """Return a length for a sentence, with three or more digits: "12.3 mm"."""
+    value = 1000 * float(metres)
+    text = f"{value:.2f} mm" if abs(value) < 10 else f"{value:.1f} mm"
+    return text.replace("-", "−")
+
+
 def copy_of(rng: np.random.Generator) -> np.random.Generator:
     """Return a generator that draws the same numbers, to look at what will be drawn."""
     bits = type(rng.bit_generator)()

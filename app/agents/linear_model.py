@@ -21,6 +21,7 @@ from app.agents.explanation import (
     Term,
     UpdateExplanation,
     ValueUpdate,
+    in_millimetres,
 )
 from app.agents.protocol import AgentState, Observe, Problem, Transition
 from app.domain.settings import Setting, declare
@@ -328,9 +329,10 @@ class LinearModel:
         update = ValueUpdate(*place, rule, tuple(terms), expected, became)
         error = transition.reward_m - expected
         summary = (
-            f"It expected {expected:.5f} ± {deviation:.5f} m and got {transition.reward_m:.5f} m, "
-            f"{abs(error):.5f} m {'more' if error > 0 else 'less'}. All steps that end alike are "
-            "expected to earn more or less by it, not this one alone."
+            f"It expected {in_millimetres(expected)}, ± {in_millimetres(deviation)}, and got "
+            f"{in_millimetres(transition.reward_m)}: {in_millimetres(abs(error))} "
+            f"{'more' if error > 0 else 'less'}. It now expects {'more' if error > 0 else 'less'} "
+            "of every step that ends alike, not of this one alone."
         )
         return UpdateExplanation(summary, update, (), beliefs)
 

@@ -16,6 +16,7 @@ from app.agents.explanation import (
     UpdateExplanation,
     ValueUpdate,
     copy_of,
+    in_millimetres,
 )
 from app.agents.protocol import AgentState, Problem, Transition
 from app.agents.q_table import QTable
@@ -370,5 +371,6 @@ def summary_of(update: ValueUpdate) -> str:
     came = "more" if change > 0 else "less"
     return (
         f"It got {came} than it expected, counting what it expects from there on: the value "
-        f"{'rises' if change > 0 else 'falls'} from {update.before:.5f} to {update.after:.5f} m."
+        f"{'rises' if change > 0 else 'falls'} from {in_millimetres(update.before)} to "
+        f"{in_millimetres(update.after)}."
     )

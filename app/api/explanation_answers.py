@@ -109,7 +109,8 @@ class ExplanationView(WalkedGrid):
     reward_m: float
     next_observation: list[Cell] | None
     visits: Annotated[
-        float | None, Field(description="how often the action had been tried here before")
+        list[list[float | None]] | None,
+        Field(description="how often each move had been tried here before, by leg pair and cell"),
     ]
     choice: ChoiceView | None
     update: Annotated[UpdateView | None, Field(description="null if it learned nothing from it")]

@@ -6,7 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from app.agents.explanation import ChoiceExplanation, Term, UpdateExplanation, ValueUpdate
+from app.agents.explanation import (
+    ChoiceExplanation,
+    Term,
+    UpdateExplanation,
+    ValueUpdate,
+    in_millimetres,
+)
 from app.agents.protocol import Valuing
 from app.domain.types import Action, Cells, FloatArray
 from app.runs.config import WalkingProblem
@@ -56,7 +62,6 @@ def explanation_as_json(
         unexplained: why there is no explanation of its choice.
     """
     words, logged = Words(walk), explained.logged
-    visits = None if explained.visits is None else _number(explained.visits[logged.action])
     return {
         "run_id": run_id,
         "lane": lane,
@@ -67,7 +72,7 @@ def explanation_as_json(
         "action": list(logged.action),
         "reward_m": logged.reward_m,
         "next_observation": list(logged.next_observation) or None,
-        "visits": visits,
+        "visits": None if explained.visits is None else _rows(explained.visits),
         "choice": None if explained.choice is None else _choice(explained.choice, words),
         "update": None if explained.update is None else _update(explained.update, words),
         "unexplained": unexplained,
@@ -110,13 +115,13 @@ def _reasons(choice: ChoiceExplanation, words: Words) -> list[str]:
         drawn = f", as {choice.draw:.3f} was drawn, not below ε = {choice.epsilon:.3f}"
     sentences.append(
         f"It takes what it holds for best{drawn}: {move} has the highest {choice.criterion}, "
-        f"{_millimetres(choice.scores[choice.action])} mm."
+        f"{in_millimetres(choice.scores[choice.action])}."
     )
     if len(choice.best) > 1:
         sentences.append(f"{len(choice.best)} moves are tied; one was drawn by lot.")
     elif choice.runner_up is not None and choice.margin is not None:
         sentences.append(
-            f"The next best, {words.move(choice.runner_up)}, is {_millimetres(choice.margin)} mm "
+            f"The next best, {words.move(choice.runner_up)}, is {in_millimetres(choice.margin)} "
             "worse: were it better by more than that, it would take it."
         )
     if choice.epsilon:
@@ -133,12 +138,7 @@ def _wanted(choice: ChoiceExplanation, words: Words) -> str:
     if len(choice.best) > 1:
         return f"have drawn one of {len(choice.best)} tied moves"
     (best,) = choice.best
-    return f"have moved {words.move(best)}, {_millimetres(-(choice.margin or 0))} mm better"
-
-
-def _millimetres(metres: float) -> str:
-    value = 1000 * float(metres)
-    return f"{value:.2f}".replace("-", "−") if abs(value) < 10 else f"{value:.1f}".replace("-", "−")
+    return f"have moved {words.move(best)}, {in_millimetres(-(choice.margin or 0))} better"
 
 
 def _update(explained: UpdateExplanation, words: Words) -> dict[str, Any]:

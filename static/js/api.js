@@ -1,7 +1,7 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
 
-/** @import { Annotations, Curve, Disturbance, GaitAnalysis, Kind, Options, Page, Rates } from "./types.js" */
-/** @import { ReplayPlan, Run, Stage, Summary, Timeline, Verb, WhatIfAnswer } from "./types.js" */
+/** @import { Annotations, Curve, Disturbance, Explanation, GaitAnalysis, Kind, Options, Page } from "./types.js" */
+/** @import { Rates, ReplayPlan, Run, Stage, StateTable, Summary, Timeline, Verb, WhatIfAnswer } from "./types.js" */
 
 const base = () => new URL("api/v1/", document.baseURI);
 
@@ -257,6 +257,24 @@ export const reportAddress = (run) => addressOf(run, "report");
 /** @type {(run: RunKey, name: string) => string} */
 export const fileAddress = (run, name) =>
   addressOf(run, `files/${name.split("/").map(encodeURIComponent).join("/")}`);
+
+/**
+ * A step of a run, explained.
+ * @type {(of: { run_id: string, lane: number, step: number }) => Promise<Explanation>}
+ */
+export const getExplanation = ({ run_id, lane, step }) => {
+  const query = new URLSearchParams({ step: `${step}`, lane: `${lane}` });
+  return call("GET", `runs/${encodeURIComponent(run_id)}/explain?${query}`);
+};
+
+/**
+ * The table of a training after so many steps; null is the newest.
+ * @type {(of: { training_id: string, step: number | null, first: number }) => Promise<StateTable>}
+ */
+export const getTable = ({ training_id, step, first }) => {
+  const query = new URLSearchParams({ first: `${first}`, ...(step === null ? {} : { step: `${step}` }) });
+  return call("GET", `trainings/${encodeURIComponent(training_id)}/table?${query}`);
+};
 
 // ---- the stream of server-sent events
 

@@ -515,6 +515,92 @@ export interface Scene {
   knowledge: Knowledge | null;
 }
 
+// ---- explained steps, and tables
+
+/** The leg pairs and the cells of a foot grid. */
+export interface FootCells {
+  pairs: number[][];
+  cells_m: [number, number][];
+  cell_names: string[];
+}
+
+/** Leg pair, and cell to which it moves. */
+export type Move = [number, number];
+
+/** GET /trainings/{id}/table: a row a state, a column a move. */
+export interface StateTable extends FootCells {
+  step: number;
+  /** Number of all states. */
+  states: number;
+  /** Index of the state of the first row. */
+  first: number;
+  /** Null where the feet stand already. */
+  values: (number | null)[][];
+  visits: (number | null)[][];
+  best: Move[];
+}
+
+export interface RuleTerm {
+  symbol: string;
+  value: number;
+  meaning: string;
+}
+
+export interface ValueUpdate {
+  observation: number[];
+  action: Move;
+  move: string;
+  rule: string;
+  numbers: string;
+  terms: RuleTerm[];
+  before: number;
+  after: number;
+  is_exact: boolean;
+}
+
+export interface Belief {
+  name: string;
+  unit: string;
+  before: number;
+  after: number;
+  deviation_before: number | null;
+  deviation_after: number | null;
+}
+
+/** GET /runs/{id}/explain */
+export interface Explanation extends FootCells {
+  run_id: string;
+  lane: number | null;
+  step: number;
+  agent: string;
+  observation: number[];
+  action: Move;
+  reward_m: number;
+  next_observation: number[] | null;
+  /** How often each move had been tried here before: [pair][cell]. */
+  visits: (number | null)[][] | null;
+  choice: {
+    kind: "exploited" | "explored" | "unknown";
+    criterion: string;
+    scores: (number | null)[][];
+    best: Move[];
+    runner_up: Move | null;
+    margin_m: number | null;
+    epsilon: number | null;
+    draw: number | null;
+    probability: number;
+    sentences: string[];
+  } | null;
+  update: {
+    summary: string;
+    direct: ValueUpdate | null;
+    stored: number | null;
+    others: { count: number; values_changed: number; largest: ValueUpdate[] };
+    beliefs: Belief[];
+  } | null;
+  unexplained: string | null;
+}
+
 /** Values of the pace and of live settings by name. */
 export type Rates = Record<string, SettingValue>;
 

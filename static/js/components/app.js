@@ -78,36 +78,57 @@ const RaceView = ({ isHidden }) => html`
       <${RaceChart} />
       <${LazyPanel} title="Gait analysis" style="gait-analysis" load=${loadGait} />
       <${Knowledge} />
+      <${StepsPanel} />
     </div>
   </div>
 `;
 
 const loadGait = () => import("./gait.js").then(({ Gait }) => Gait);
 
-// ---- the other views, loaded when they are first opened: most visits open none
+// ---- what is loaded when it is first opened: most visits do not
 
-const LOADERS = {
+/** What was loaded, by its name on the page. @type {Signal<Record<string, any>>} */
+const loaded = signal({});
+
+/** `load`: imports the module and returns its component. */
+function Loaded({ name, load }) {
+  const [hasFailed, setFailed] = useState(false);
+  const state = connection.value;
+  useEffect(() => {
+    if (loaded.value[name] || state !== "live") return;
+    load().then((component) => setEntry(loaded, name, component), () => setFailed(true));
+  }, [state]);
+  const View = loaded.value[name];
+  if (View) return html`<${View} />`;
+  return hasFailed
+    ? html`<p role="alert">The ${name} could not be loaded. Load the page again.</p>`
+    : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the ${name}…</p>`;
+}
+
+const VIEWS = {
   experiments: () => import("./experiments/experiments.js").then(({ Experiments }) => Experiments),
   runs: () => import("./runs/runs.js").then(({ Runs }) => Runs),
 };
 
-/** View → its component, once it is loaded. @type {Signal<Record<string, any>>} */
-const loadedViews = signal({});
-
 function LoadedView({ name }) {
-  const [hasFailed, setFailed] = useState(false);
-  const state = connection.value;
-  useEffect(() => {
-    if (loadedViews.value[name] || state !== "live") return;
-    LOADERS[name]().then((component) => setEntry(loadedViews, name, component), () => setFailed(true));
-  }, [state]);
-  const View = loadedViews.value[name];
-  if (View) return html`<${View} />`;
+  const shown = html`<${Loaded} name=${name} load=${VIEWS[name]} />`;
+  return loaded.value[name] ? shown : html`<section class="panel locked">${shown}</section>`;
+}
+
+const loadSteps = () => import("./steps/steps.js").then(({ Steps }) => Steps);
+const stepsAreOpen = signal(false);
+
+function StepsPanel() {
+  const isOpen = stepsAreOpen.value;
   return html`
-    <section class="panel locked">
-      ${hasFailed
-        ? html`<p role="alert">The ${name} could not be loaded. Load the page again.</p>`
-        : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the ${name}…</p>`}
+    <section class="panel steps" aria-labelledby="steps-title">
+      <div class="steps-head">
+        <h2 id="steps-title">Step by step</h2>
+        <p class="dim">Why it took each step, how its values changed, and its whole table</p>
+        <button class="secondary compact" aria-expanded=${isOpen ? "true" : "false"}
+          onClick=${() => (stepsAreOpen.value = !isOpen)}>${isOpen ? "Close" : "Explain this step"}</button>
+      </div>
+      ${isOpen && html`<${Loaded} name="steps" load=${loadSteps} />`}
     </section>
   `;
 }

@@ -109,7 +109,7 @@ function optionsOf(host, newest) {
 const tickText = (value) => (Number.isInteger(value) ? whole(value) : String(Number(value.toFixed(3))));
 
 /** A function that resolves custom properties, which a canvas does not. */
-function coloursOf(host) {
+export function coloursOf(host) {
   const probe = document.createElement("span");
   return (name) => {
     host.append(probe);

@@ -1,0 +1,180 @@
+// An explained step: what happened, why this move, and how the values changed, as the rule with its numbers.
+import { agentOf } from "../../settings.js";
+import { count } from "../../format.js";
+import { comparedNumber, fineMillimetres, moveInWords, ruleNumber, stateInWords } from "../../steps.js";
+import { percent, shareOf, valueColours } from "../../scale.js";
+import { html } from "../elements.js";
+
+/** Products are not broken over two lines. @param {string} text */
+const unbroken = (text) => text.replaceAll(" · ", "\u00a0·\u00a0");
+
+const MOST_MOVES = 6;
+const SHORTEST_BAR = 0.02;
+
+export function ExplainedStep({ told }) {
+  return html`
+    <div class="told">
+      <${Happened} told=${told} />
+      <${Choice} told=${told} />
+      <${Update} told=${told} />
+    </div>
+  `;
+}
+
+function Happened({ told }) {
+  const { reward_m } = told;
+  const visits = triesOf(told, told.action);
+  const tried = visits === null ? "" : visits === 0 ? ", for the first time here" : `, here ${times(visits)} before`;
+  const went = reward_m < 0 ? "back" : "forward";
+  return html`
+    <p>
+      <b>${agentOf(told.agent).title} moved ${moveInWords(told.action, told)}</b>${tried}. That brought it
+      ${" "}<b>${fineMillimetres(Math.abs(reward_m))} ${went}</b>.
+      <span class="dim told-state">Before the step: ${stateInWords(told.observation, told)}.</span>
+    </p>
+  `;
+}
+
+/** How often a move had been tried there; null where that is not counted. */
+const triesOf = ({ visits }, [pair, cell]) => visits?.[pair]?.[cell] ?? null;
+
+const times = (visits) => (visits === 1 ? "once" : count(visits, "time"));
+
+// ---- why this move
+
+function Choice({ told }) {
+  const { choice, unexplained } = told;
+  if (!choice) {
+    return html`
+      <section>
+        <h4>Why this move</h4>
+        <p class="dim">${sentenceOf(unexplained ?? "Its agent does not explain it")}</p>
+      </section>
+    `;
+  }
+  return html`
+    <section>
+      <h4>Why this move</h4>
+      ${choice.sentences.map((one) => html`<p>${one}</p>`)}
+      <${Scores} told=${told} />
+    </section>
+  `;
+}
+
+const sentenceOf = (text) => `${text.charAt(0).toUpperCase()}${text.slice(1)}${/[.!]$/.test(text) ? "" : "."}`;
+
+/** The moves with the highest scores, and the one that was made. */
+function Scores({ told }) {
+  const { scores, criterion } = told.choice;
+  const all = scores
+    .flatMap((row, pair) => row.map((score, cell) => ({ move: [pair, cell], score })))
+    .filter(({ score }) => score !== null)
+    .sort((a, b) => b.score - a.score);
+  const isMade = ({ move }) => move[0] === told.action[0] && move[1] === told.action[1];
+  const first = all.slice(0, MOST_MOVES);
+  const shown = first.some(isMade) ? first : [...first.slice(0, -1), ...all.filter(isMade)];
+  const [high, low] = [all[0].score, all.at(-1).score];
+  return html`
+    <table class="scores">
+      <caption class="dim">${sentenceOf(criterion)}</caption>
+      <tbody>
+        ${shown.map((one) => html`
+          <tr class=${isMade(one) ? "made" : ""}>
+            <th scope="row">
+              ${moveInWords(one.move, told)}${isMade(one) && html`<span class="sr-only">, made</span>`}
+            </th>
+            <td class="score-bar" aria-hidden="true"><i style=${barOf(one.score, low, high)}></i></td>
+            <td>${triesOf(told, one.move) === 0 && html`<span class="dim">never tried</span> `}
+              ${fineMillimetres(one.score)}</td>
+          </tr>
+        `)}
+      </tbody>
+    </table>
+    ${all.length > shown.length && html`<p class="dim">and ${count(all.length - shown.length, "other move")}.</p>`}
+  `;
+}
+
+const barOf = (score, low, high) => ({
+  width: percent(Math.max(SHORTEST_BAR, shareOf(score, low, high))),
+  background: valueColours(score, low, high).background,
+});
+
+// ---- what it learned
+
+function Update({ told }) {
+  const { update } = told;
+  if (!update && !told.choice) return null;
+  if (!update) {
+    return html`<section><h4>What it learned</h4><p class="dim">Nothing: it does not learn here.</p></section>`;
+  }
+  return html`
+    <section>
+      <h4>What it learned</h4>
+      <p>${update.summary}</p>
+      ${update.direct && html`<${Rule} update=${update.direct} stored=${update.stored} />`}
+      ${update.beliefs.length > 0 && html`<${Beliefs} beliefs=${update.beliefs} />`}
+      ${update.others.count > 0 && html`<${Others} others=${update.others} grid=${told} />`}
+    </section>
+  `;
+}
+
+function Rule({ update, stored }) {
+  const { rule, numbers, terms, before, after, is_exact } = update;
+  return html`
+    <div class="rule">
+      <p class="formula"><span class="dim">new value =</span> ${unbroken(rule)}</p>
+      <p class="formula"><span class="dim">=</span> ${unbroken(numbers)}</p>
+      <p class="formula"><span class="dim">=</span> <b title=${`${after}`}>${comparedNumber(after, before)}</b>
+        <span class="dim">, before ${comparedNumber(before, after)}</span></p>
+      <dl class="terms">
+        ${terms.map(({ symbol, value, meaning }) => html`
+          <div>
+            <dt>${symbol} = <span title=${`${value}`}>${ruleNumber(value)}</span></dt>
+            <dd class="dim">${meaning}</dd>
+          </div>
+        `)}
+      </dl>
+      <p class="dim">${is_exact
+        ? "Computed again from these numbers, it is the stored value to the last bit."
+        : "Computed again from these numbers, it is not the stored value."}
+        ${stored !== null && stored !== after && ` Planning changed it further, to ${comparedNumber(stored, after)}.`}
+      </p>
+    </div>
+  `;
+}
+
+const withDeviation = (value, deviation, unit) => {
+  const text = unit === "m" ? fineMillimetres(value) : ruleNumber(value);
+  return deviation === null ? text : `${text} ± ${fineMillimetres(deviation)}`;
+};
+
+const Beliefs = ({ beliefs }) => html`
+  <table class="beliefs">
+    <caption class="dim">What its model believes of this step</caption>
+    <thead><tr><td></td><th scope="col">before</th><th scope="col">after</th></tr></thead>
+    <tbody>
+      ${beliefs.map(({ name, unit, before, after, deviation_before, deviation_after }) => html`
+        <tr>
+          <th scope="row">${name}</th>
+          <td>${withDeviation(before, deviation_before, unit)}</td>
+          <td>${withDeviation(after, deviation_after, unit)}</td>
+        </tr>
+      `)}
+    </tbody>
+  </table>
+`;
+
+const Others = ({ others, grid }) => html`
+  <details class="fold">
+    <summary>${count(others.count, "further update")} of ${count(others.values_changed, "value")}</summary>
+    <ul class="others">
+      ${others.largest.map((one) => html`
+        <li>
+          <span>${one.move}</span> <span class="dim">where ${stateInWords(one.observation, grid)}</span>
+          <p class="formula">${unbroken(one.numbers)} = <b>${comparedNumber(one.after, one.before)}</b></p>
+        </li>
+      `)}
+    </ul>
+    ${others.largest.length < others.count && html`<p class="dim">The largest changes are shown.</p>`}
+  </details>
+`;

@@ -1,0 +1,243 @@
+// The table as a heatmap: a row a state, a column a move. Read by pointer, finger and keys, one cell at a time.
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
+import { valueColours } from "../../scale.js";
+import {
+  cellInWords, cellKind, columnOf, fineMillimetres, stateIndex, triedMoves, valueRange,
+} from "../../steps.js";
+import { percentage, sentence, whole } from "../../format.js";
+import { theme } from "../../page.js";
+import { coloursOf } from "../charts.js";
+import { html } from "../elements.js";
+
+const ROW_PX = 12;
+const GAP_PX = 2;
+const HATCH_PX = 6;
+const DOT_PX = 2;
+const PAGE_ROWS = 10;
+
+/** @typedef {{ row: number, column: number }} Place */
+
+/** @type {Record<string, (place: Place, last: Place) => Partial<Place>>} */
+const KEYS = {
+  ArrowLeft: ({ column }) => ({ column: column - 1 }),
+  ArrowRight: ({ column }) => ({ column: column + 1 }),
+  ArrowUp: ({ row }) => ({ row: row - 1 }),
+  ArrowDown: ({ row }) => ({ row: row + 1 }),
+  PageUp: ({ row }) => ({ row: row - PAGE_ROWS }),
+  PageDown: ({ row }) => ({ row: row + PAGE_ROWS }),
+  Home: () => ({ column: 0 }),
+  End: (_, last) => ({ column: last.column }),
+};
+
+const clamped = (value, last) => Math.min(Math.max(value, 0), last);
+
+/**
+ * @param {object} props
+ * @param {import("../../types.js").StateTable} props.shown
+ * @param {number[] | null} props.cells the state that is looked at: the cell of each pair
+ * @param {import("../../types.js").Move | null} props.move the move that was made there
+ */
+export function Heatmap({ shown, cells, move }) {
+  const [chosen, setChosen] = useState(/** @type {Place | null} */ (null));
+  const last = { row: shown.values.length - 1, column: shown.values[0].length - 1 };
+  const row = cells === null ? -1 : stateIndex(cells, shown.cell_names.length) - shown.first;
+  const marked = row >= 0 && row <= last.row ? row : null;
+  const column = move && marked !== null ? columnOf(move, shown) : null;
+  const at = chosen ?? { row: marked ?? 0, column: column ?? 0 };
+  const place = { row: clamped(at.row, last.row), column: clamped(at.column, last.column) };
+  const words = cellInWords(shown, place.row, place.column);
+  return html`
+    <div class="heat">
+      <p class="heat-read" data-testid="heat-read">
+        <b>${sentence(words.move)}: ${words.worth}</b><span class="dim">, ${words.about}</span>
+        <span class="dim heat-state">where ${words.state}</span>
+      </p>
+      <${Columns} shown=${shown} />
+      <${Grid} shown=${shown} last=${last} place=${place} words=${words} marked=${marked} column=${column}
+        onPlace=${setChosen} isChosen=${chosen !== null} />
+      <${Key} shown=${shown} />
+    </div>
+  `;
+}
+
+/** The cells, with frames around the state that is looked at, the move made there, and the cell that is read. */
+function Grid({ shown, last, place, words, onPlace, isChosen, marked, column }) {
+  const scroller = useRef(/** @type {HTMLElement | null} */ (null));
+  useLayoutEffect(() => {
+    if (marked !== null && !isChosen) scrollTo(scroller.current, marked);
+  }, [marked, shown.first, isChosen]);
+  const onKeyDown = (event) => {
+    const next = placeByKey(event, place, last);
+    if (next === undefined) return;
+    event.preventDefault();
+    event.stopPropagation();
+    onPlace(next);
+    if (next) scrollTo(scroller.current, next.row);
+  };
+  const label = `Values of ${whole(shown.values.length)} states; arrow keys read other cells`;
+  return html`
+    <div class="heat-scroll" ref=${scroller}>
+      <div class="heat-body" role="grid" tabindex="0" aria-label=${label}
+        aria-rowcount=${shown.states} aria-colcount=${last.column + 1} aria-activedescendant=${idOf(place)}
+        style=${{ height: `${ROW_PX * (last.row + 1)}px` }} onKeyDown=${onKeyDown} onBlur=${() => onPlace(null)}
+        ...${pointerHandlers(last, onPlace)}>
+        <${Cells} shown=${shown} />
+        ${marked !== null && html`<${Frame} name="heat-row" row=${marked} last=${last} />`}
+        ${column !== null && html`<${Frame} name="heat-move" row=${marked} column=${column} last=${last} />`}
+        ${isChosen && html`<${Frame} name="heat-cell" ...${place} last=${last} />`}
+        <div role="row" class="sr-only" aria-rowindex=${shown.first + place.row + 1}>
+          <div role="gridcell" id=${idOf(place)} key=${idOf(place)} aria-colindex=${place.column + 1}>
+            ${words.move} where ${words.state}: ${words.worth}, ${words.about}
+          </div>
+        </div>
+      </div>
+    </div>
+  `;
+}
+
+/** The place that a key goes to; null gives the choice up, and undefined is for another key. */
+function placeByKey({ key, ctrlKey, altKey, metaKey }, place, last) {
+  if (ctrlKey || altKey || metaKey) return undefined;
+  if (key === "Escape") return null;
+  const go = KEYS[key];
+  if (!go) return undefined;
+  const next = { ...place, ...go(place, last) };
+  return { row: clamped(next.row, last.row), column: clamped(next.column, last.column) };
+}
+
+function pointerHandlers(last, onPlace) {
+  const read = ({ currentTarget, clientX, clientY }) => {
+    const { left, top, width, height } = currentTarget.getBoundingClientRect();
+    if (!(width > 0 && height > 0)) return;
+    onPlace({
+      row: clamped(Math.floor(((clientY - top) / height) * (last.row + 1)), last.row),
+      column: clamped(Math.floor(((clientX - left) / width) * (last.column + 1)), last.column),
+    });
+  };
+  const leave = ({ pointerType, currentTarget }) => {
+    // A finger that is lifted leaves the cell until another is touched.
+    if (pointerType === "mouse" && document.activeElement !== currentTarget) onPlace(null);
+  };
+  return { onPointerMove: read, onPointerDown: read, onPointerLeave: leave };
+}
+
+const idOf = ({ row, column }) => `heat-${row}-${column}`;
+
+function scrollTo(scroller, row) {
+  if (!scroller) return;
+  const top = row * ROW_PX;
+  const room = scroller.clientHeight;
+  if (top < scroller.scrollTop || top + ROW_PX > scroller.scrollTop + room) {
+    scroller.scrollTop = top - room / 2;
+  }
+}
+
+/** A frame around a cell, or without a column around a row. */
+function Frame({ name, row, column = null, last }) {
+  const share = (part, all) => `${(100 * part) / (all + 1)}%`;
+  const across = column === null
+    ? { left: 0, width: "100%" }
+    : { left: share(column, last.column), width: share(1, last.column) };
+  return html`<i class=${name} style=${{ top: `${row * ROW_PX}px`, height: `${ROW_PX}px`, ...across }}></i>`;
+}
+
+const Columns = ({ shown }) => html`
+  <div class="heat-columns dim" aria-hidden="true">
+    ${shown.pairs.map((legs) => html`<span>Legs ${legs.join(" + ")}</span>`)}
+  </div>
+`;
+
+function Cells({ shown }) {
+  const canvas = useRef(/** @type {HTMLCanvasElement | null} */ (null));
+  const [width, setWidth] = useState(0);
+  useLayoutEffect(() => {
+    const host = /** @type {HTMLElement} */ (canvas.current?.parentElement);
+    setWidth(host.clientWidth);
+    const observer = new ResizeObserver(() => setWidth(host.clientWidth));
+    observer.observe(host);
+    return () => observer.disconnect();
+  }, []);
+  const mode = theme.value;
+  useEffect(() => {
+    const redraw = () => canvas.current && draw(canvas.current, shown, width);
+    redraw();
+    const media = matchMedia("(prefers-color-scheme: dark)");
+    media.addEventListener("change", redraw);
+    return () => media.removeEventListener("change", redraw);
+  }, [shown, width, mode]);
+  return html`<canvas ref=${canvas} aria-hidden="true"></canvas>`;
+}
+
+/** What was never tried is hatched, as in the table of one state; the best move of a state has a dot. */
+function draw(canvas, shown, width) {
+  const rows = shown.values.length;
+  const columns = shown.values[0].length;
+  const scale = Math.min(devicePixelRatio || 1, 2);
+  Object.assign(canvas, { width: Math.max(1, Math.round(width * scale)), height: Math.round(rows * ROW_PX * scale) });
+  const context = canvas.getContext("2d");
+  if (!context || !width) return;
+  context.scale(scale, scale);
+  const colour = coloursOf(canvas.parentElement);
+  const [sunk, line, dim] = [colour("--sunk"), colour("--line"), colour("--dim")];
+  const hatch = hatched(context, sunk, line);
+  const { low, high } = valueRange(shown);
+  const cellsOfPair = shown.cell_names.length;
+  for (let row = 0; row < rows; row += 1) {
+    const best = columnOf(shown.best[row], shown);
+    for (let column = 0; column < columns; column += 1) {
+      const left = (column * width) / columns;
+      const right = ((column + 1) * width) / columns - (column % cellsOfPair === cellsOfPair - 1 ? GAP_PX : 0.5);
+      const box = [left, row * ROW_PX, right - left, ROW_PX - 1];
+      const kind = cellKind(shown, row, column);
+      if (kind === "stays") {
+        context.fillStyle = dim;
+        context.fillRect((left + right) / 2 - 2, row * ROW_PX + ROW_PX / 2 - 1, 4, 1);
+        continue;
+      }
+      const colours = valueColours(shown.values[row][column] ?? 0, low, high);
+      context.fillStyle = kind === "tried" ? colours.background : hatch;
+      context.fillRect(...box);
+      if (kind !== "tried" || column !== best) continue;
+      context.fillStyle = colours.color;
+      context.beginPath();
+      context.arc((left + right) / 2, row * ROW_PX + (ROW_PX - 1) / 2, DOT_PX, 0, 2 * Math.PI);
+      context.fill();
+    }
+  }
+}
+
+function hatched(context, ground, stroke) {
+  const tile = document.createElement("canvas");
+  Object.assign(tile, { width: HATCH_PX, height: HATCH_PX });
+  const pen = tile.getContext("2d");
+  if (!pen) return ground;
+  pen.fillStyle = ground;
+  pen.fillRect(0, 0, HATCH_PX, HATCH_PX);
+  pen.strokeStyle = stroke;
+  pen.lineWidth = 1.5;
+  pen.beginPath();
+  for (const shift of [-HATCH_PX, 0, HATCH_PX]) {
+    pen.moveTo(shift, HATCH_PX);
+    pen.lineTo(shift + HATCH_PX, 0);
+  }
+  pen.stroke();
+  return context.createPattern(tile, "repeat") ?? ground;
+}
+
+function Key({ shown }) {
+  const { low, high } = valueRange(shown);
+  const { tried, all } = triedMoves(shown);
+  const steps = [0, 0.25, 0.5, 0.75, 1];
+  const stops = steps.map((share) => valueColours(share, 0, 1).background);
+  return html`
+    <p class="values-key dim">
+      <span><i class="untried" aria-hidden="true"></i>never tried</span>
+      <span>${fineMillimetres(low)}
+        <i class="heat-scale" aria-hidden="true" style=${{ background: `linear-gradient(90deg, ${stops})` }}></i>
+        ${fineMillimetres(high)}</span>
+      <span>• best move of its state</span>
+      <span>– where they stand</span>
+      <span>${percentage(tried / all)} of ${whole(all)} moves tried</span>
+    </p>
+  `;
+}

@@ -1,0 +1,308 @@
+// One step of a run and its table: which step is looked at, its explanation, and how the table is drawn and read.
+import { computed, effect, signal } from "@preact/signals";
+import { getExplanation, getTable } from "./api.js";
+import { count, THIN_SPACE } from "./format.js";
+import { isPlaying, shownRun } from "./selectors.js";
+import { connection, scene } from "./store.js";
+import { placeName } from "./training.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { Explanation, FootCells, Move, Run, StateTable } from "./types.js" */
+
+/**
+ * A step to look at: counted from 1; 0 is before the first.
+ * @typedef {{ run_id: string, lane: number, step: number }} Moment
+ */
+/**
+ * What the server answered to a moment. `again`: the server needs longer, and is asked again.
+ * @template Answer
+ * @typedef {{ answer: Answer | null, error: Error | null, again: boolean }} Reply
+ */
+
+/** While the stage plays, answers are asked for at most so often [ms]. */
+const EVERY_MS = 500;
+const AGAIN_MS = 1000;
+const TOO_EARLY = 429;
+
+// ---- the step that is looked at: that of the stage, or one that was chosen
+
+/** The step that was chosen here; null follows the stage. @type {Signal<Moment | null>} */
+export const chosenMoment = signal(null);
+/** The lane that was chosen; null is the first that has learned something. @type {Signal<number | null>} */
+export const chosenLane = signal(null);
+
+/** The moment on stage; null where no run with steps is on it. @type {Signal<Moment | null>} */
+export const stageMoment = computed(() => {
+  const { run_id = null, kind = "idle", lanes = [], knowledge = null } = scene.value ?? {};
+  if (run_id === null || kind === "idle" || shownRun.value?.id !== run_id || !lanes.length) return null;
+  const lane = Math.min(chosenLane.value ?? knowledge?.lane ?? 0, lanes.length - 1);
+  return { run_id, lane, step: lanes[lane].step };
+});
+
+/** The moment that is looked at. @type {Signal<Moment | null>} */
+export const moment = computed(() => {
+  const shown = stageMoment.value;
+  const chosen = chosenMoment.value;
+  return chosen && chosen.run_id === shown?.run_id ? { ...chosen, lane: shown.lane } : shown;
+});
+
+/** How many steps of the run there are to look at. */
+export const lastStep = computed(() => {
+  const run = shownRun.value;
+  const at = moment.value;
+  if (!run || !at) return 0;
+  return run.kind === "race" ? scene.value?.lanes[at.lane]?.steps ?? 0 : run.progress.done;
+});
+
+export const isFollowing = computed(() => chosenMoment.value === null);
+
+/** Look at a step, whatever the stage shows. @param {number} step */
+export function chooseStep(step) {
+  const at = moment.value;
+  if (at) chosenMoment.value = { ...at, step: Math.min(Math.max(Math.round(step), 1), Math.max(lastStep.value, 1)) };
+}
+
+export const followStage = () => (chosenMoment.value = null);
+
+// ---- the answers
+
+/** @type {Signal<Reply<Explanation>>} */
+export const explanation = signal({ answer: null, error: null, again: false });
+/** @type {Signal<Reply<StateTable>>} */
+export const table = signal({ answer: null, error: null, again: false });
+/** Index of the first state of the part of a large table that is shown. */
+export const firstState = signal(0);
+
+/**
+ * The table of a moment: as the learner had it when it chose the step. A lane has that of its training at its end.
+ * @type {Signal<{ training_id: string, step: number | null } | null>}
+ */
+export const tableMoment = computed(() => {
+  const run = shownRun.value;
+  const at = moment.value;
+  if (!run || !at) return null;
+  if (run.kind === "training") return { training_id: run.id, step: Math.max(at.step - 1, 0) };
+  const training_id = run.config.lanes?.[at.lane]?.training_id;
+  return training_id ? { training_id, step: null } : null;
+});
+
+/**
+ * Ask for what a key stands for, one request at a time, always for the newest key, and keep the answer in a signal.
+ * @template Answer
+ * @param {() => string | null} keyOf null: there is nothing to ask for
+ * @param {(key: string) => Promise<Answer>} ask
+ * @param {Signal<Reply<Answer>>} reply
+ */
+export function keepAnswer(keyOf, ask, reply) {
+  let isBusy = false;
+  /** @type {string | null} */
+  let known = null;
+  let isOver = false;
+
+  /** @param {string} key */
+  async function answer(key) {
+    isBusy = true;
+    let wait = isPlaying.value && isFollowing.value ? EVERY_MS : 0;
+    try {
+      reply.value = { answer: await ask(key), error: null, again: false };
+      known = key;
+    } catch (failure) {
+      const error = /** @type {Error & { status?: number }} */ (failure);
+      const again = error.status === TOO_EARLY;
+      reply.value = { answer: again ? reply.value.answer : null, error, again };
+      if (again) wait = AGAIN_MS;
+      else known = key;
+    }
+    setTimeout(() => {
+      isBusy = false;
+      look();
+    }, wait);
+  }
+
+  function look() {
+    if (isBusy || isOver) return;
+    const key = keyOf();
+    if (key === null) {
+      if (known !== null) reply.value = { answer: null, error: null, again: false };
+      known = null;
+    } else if (key !== known) answer(key);
+  }
+
+  const stop = effect(() => {
+    keyOf();
+    look();
+  });
+  return () => {
+    isOver = true;
+    stop();
+  };
+}
+
+/** Keep the explanation and the table of the moment, until the function that is returned is called. */
+export function followMoment() {
+  const isLive = () => connection.value === "live";
+  const stops = [
+    keepAnswer(
+      () => (isLive() && moment.value && moment.value.step > 0 ? JSON.stringify(moment.value) : null),
+      (key) => getExplanation(JSON.parse(key)),
+      explanation,
+    ),
+    keepAnswer(
+      () => (isLive() && tableMoment.value
+        ? JSON.stringify({ ...tableMoment.value, first: firstState.value, done: doneWhereNewest() })
+        : null),
+      (key) => getTable(JSON.parse(key)),
+      table,
+    ),
+  ];
+  return () => stops.forEach((stop) => stop());
+}
+
+/** A table of a training at its end grows with it. */
+const doneWhereNewest = () => (tableMoment.value?.step === null ? shownRun.value?.progress.done : null);
+
+// ---- states and moves
+
+/**
+ * The index of a state: the number whose digits are its cells.
+ * @param {number[]} cells the cell of each pair
+ * @param {number} base number of cells of the foot grid
+ */
+export const stateIndex = (cells, base) => cells.reduce((index, cell) => index * base + cell, 0);
+
+/**
+ * The cell of each pair in a state.
+ * @param {number} index
+ * @param {FootCells} grid
+ */
+export function stateCells(index, { pairs, cell_names }) {
+  const base = cell_names.length;
+  return pairs.map((_, pair) => Math.floor(index / base ** (pairs.length - 1 - pair)) % base);
+}
+
+/** @param {number[]} legs */
+const legsInWords = (legs) => `legs ${legs.join("+")}`;
+
+/**
+ * Where the feet are: "legs 1+4 home, legs 2+5 front left".
+ * @param {number[]} cells
+ * @param {FootCells} grid
+ */
+export const stateInWords = (cells, grid) =>
+  cells.map((cell, pair) => `${legsInWords(grid.pairs[pair])} ${placeName(grid, cell, " mm")}`).join(", ");
+
+/**
+ * A move: "legs 1+4 to front left".
+ * @param {Move} move
+ * @param {FootCells} grid
+ */
+export const moveInWords = ([pair, cell], grid) =>
+  `${legsInWords(grid.pairs[pair])} to ${placeName(grid, cell, " mm")}`;
+
+/** The column of a move in a table. @type {(move: Move, grid: FootCells) => number} */
+export const columnOf = ([pair, cell], { cell_names }) => pair * cell_names.length + cell;
+
+/** The move of a column of a table. @type {(column: number, grid: FootCells) => Move} */
+export const moveOf = (column, { cell_names }) =>
+  [Math.floor(column / cell_names.length), column % cell_names.length];
+
+// ---- the table
+
+/** What a cell of the table is. @typedef {"stays" | "untried" | "tried"} CellKind */
+
+/**
+ * @param {StateTable} shown
+ * @param {number} row
+ * @param {number} column
+ * @returns {CellKind}
+ */
+export function cellKind({ values, visits }, row, column) {
+  if (values[row][column] === null) return "stays";
+  return visits[row][column] ? "tried" : "untried";
+}
+
+/**
+ * The lowest and the highest value of what was tried; zeros where nothing was.
+ * @param {StateTable} shown
+ */
+export function valueRange(shown) {
+  let [low, high] = [Infinity, -Infinity];
+  shown.values.forEach((row, at) =>
+    row.forEach((value, column) => {
+      if (value === null || cellKind(shown, at, column) !== "tried") return;
+      low = Math.min(low, value);
+      high = Math.max(high, value);
+    }),
+  );
+  return low > high ? { low: 0, high: 0 } : { low, high };
+}
+
+/** How many of the moves that there are were tried. @param {StateTable} shown */
+export function triedMoves(shown) {
+  let [tried, all] = [0, 0];
+  shown.values.forEach((row, at) =>
+    row.forEach((_, column) => {
+      const kind = cellKind(shown, at, column);
+      all += Number(kind !== "stays");
+      tried += Number(kind === "tried");
+    }),
+  );
+  return { tried, all };
+}
+
+/**
+ * Millimetres with two decimals: "12.34 mm".
+ * @param {number} metres
+ */
+export function fineMillimetres(metres) {
+  const text = Math.abs(1000 * metres).toFixed(2);
+  return `${metres < 0 && Number(text) !== 0 ? "−" : ""}${text} mm`;
+}
+
+/**
+ * A cell of the table in words: state, move, value, visits, best move.
+ * @param {StateTable} shown
+ * @param {number} row
+ * @param {number} column
+ */
+export function cellInWords(shown, row, column) {
+  const cells = stateCells(shown.first + row, shown);
+  const move = moveOf(column, shown);
+  const best = moveInWords(shown.best[row], shown);
+  const kind = cellKind(shown, row, column);
+  const value = shown.values[row][column] ?? 0;
+  const visits = shown.visits[row][column] ?? 0;
+  const isBest = columnOf(shown.best[row], shown) === column;
+  const worth = {
+    stays: "no move: they stand there",
+    untried: value === 0 ? "never tried" : `never tried; taken for ${fineMillimetres(value)}`,
+    tried: `${fineMillimetres(value)}, tried ${visits === 1 ? "once" : count(visits, "time")}`,
+  }[kind];
+  const isKnown = shown.visits[row].some((one) => Boolean(one));
+  const others = isKnown ? `best here: ${best}` : "nothing tried here";
+  const about = isBest && kind === "tried" ? "the best move here" : others;
+  return { state: stateInWords(cells, shown), move: moveInWords(move, shown), worth, about };
+}
+
+// ---- rules with numbers
+
+/**
+ * A number of a rule with six significant digits: "0.0123457", "−2.5".
+ * @param {number} value
+ */
+export function ruleNumber(value) {
+  const text = Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(6)));
+  return text.replace("-", "−").replace(/e−?/, (mark) => ` · 10^${mark.length > 1 ? "−" : ""}`);
+}
+
+/** A value of the table, to the digit at which another one differs. @type {(value: number, other: number) => string} */
+export function comparedNumber(value, other) {
+  for (let digits = 5; digits <= 17; digits += 1) {
+    const [one, two] = [value, other].map((number) => number.toPrecision(digits));
+    if (one !== two || digits === 17) return `${one.replace("-", "−")}${THIN_SPACE}m`;
+  }
+  return String(value);
+}
+
+/** @param {Run | null} run */
+export const canBeExplained = (run) => run?.kind === "training" || run?.kind === "race";
