@@ -86,6 +86,7 @@ VALID: Mapping[str, str] = {
     "limit": f"a whole number from 1 to {MAX_PAGE}",
     "cursor": "the next_cursor of the page before",
     "idempotency-key": "1 to 200 printable ASCII characters without spaces",
+    "key": "the key of a trial, as GET …/trials has it: the setting and the seed's number",
     "format": "a format that the description of the route names",
 }
 
