@@ -11,7 +11,15 @@ from app.agents.registry import learns
 from app.api.descriptions import VALID
 from app.api.experiment_body import ExperimentBody, one_or_more
 from app.api.fields import Declared, TaggedUnion
-from app.api.schemas import BranchBody, ChangeBody, LaneBody, PracticeBody, RaceBody, TrainingBody
+from app.api.schemas import (
+    BranchBody,
+    ChangeBody,
+    LaneBody,
+    PracticeBody,
+    RaceBody,
+    TrainingBody,
+    one_given,
+)
 from app.domain.settings import REQUIRED, DeclaredSetting
 from app.experiments.config import settings_by_name
 from app.runs.config import TrainingConfig, agent_settings, changeable_settings
@@ -147,11 +155,7 @@ def _change_body(agents: Sequence[str]) -> type[ChangeBody]:
     model: type[ChangeBody] = create_model(
         "ChangeBody", __base__=ChangeBody, __doc__=ChangeBody.__doc__, **fields
     )
-    model.model_config["json_schema_extra"] = {
-        "anyOf": [
-            {"required": [name], "properties": {name: {"not": {"type": "null"}}}} for name in fields
-        ]
-    }
+    model.model_config["json_schema_extra"] = one_given(fields)
     return model
 
 

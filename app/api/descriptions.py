@@ -96,6 +96,7 @@ VALID: Mapping[str, str] = {
         "default the end of the walk"
     ),
     "part": "practice, or evaluation for the newest one; of a training",
+    "key": "the key of a trial, as GET …/trials has it: the setting and the seed's number",
     "format": "a format that the description of the route names",
 }
 

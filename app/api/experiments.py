@@ -5,11 +5,13 @@ from typing import Annotated, Any, Literal
 from fastapi import Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
-from app.api.contract import ATTACHMENT, BINARY, TEXT, answers
-from app.api.deps import ServicesDep
+from app.api.answers import RaceView, TrainingView
+from app.api.contract import ATTACHMENT, BINARY, LOCATION, TEXT, answers
+from app.api.deps import ServicesDep, StartRequestDep
 from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.formats import attachment, file_response, negotiated
-from app.api.runs import RunPath, find, run_routes
+from app.api.runs import RunPath, accepted, find, run_routes
+from app.api.schemas import TrialBody
 from app.experiments.config import ExperimentConfig
 from app.storage.artifact_file import ArtifactFile
 from app.storage.errors import Conflict, NotFound
@@ -97,6 +99,30 @@ def get_trials(
         table = trials_as_csv(config, rows)
         return attachment(table, "text/csv; charset=utf-8", f"trials-{run_id}.csv")
     return JSONResponse(finite({"trials": list(rows)}))
+
+
+@router.post(
+    "/{run_id}/trials/run",
+    status_code=202,
+    summary="Run one of its trials here",
+    response_model=TrainingView | RaceView,
+    responses=answers(202, headers=LOCATION),
+)
+def run_trial(
+    services: ServicesDep,
+    request: Request,
+    run_id: RunPath,
+    start_request: StartRequestDep,
+    body: TrialBody,
+) -> Response:
+    """Queue a run with the config and the seed of a trial, and so with its outcome.
+
+    It is a race of one lane after its practice; of a league or recovery, the practice.
+    """
+    find(services, "experiment", run_id)
+    jobs = services.jobs
+    run = start_request.start(services, lambda once: jobs.run_trial(run_id, body.key, once))
+    return accepted(request, jobs.view(run))
 
 
 def _config(run: Run) -> ExperimentConfig:

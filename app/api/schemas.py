@@ -1,5 +1,6 @@
 """Request bodies as Pydantic models, each converted to the dataclass that a service takes."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Annotated, Any, Literal
 
@@ -45,6 +46,7 @@ from app.runs.config import (
     training_config,
 )
 from app.runs.race_config import MAX_RACE_STEPS, Branch
+from app.storage.run import ANNOTATIONS
 
 WorldName = Annotated[
     str,
@@ -251,6 +253,15 @@ class BranchBody(Body):
         return BranchStart(branch, disturbances, self.name or None)
 
 
+def one_given(names: Iterable[str]) -> dict[str, Any]:
+    """Return the part of a schema that requires at least one of these fields."""
+    return {
+        "anyOf": [
+            {"required": [name], "properties": {name: {"not": {"type": "null"}}}} for name in names
+        ]
+    }
+
+
 class PatchBody(Body):
     """Changes, of which at least one is given."""
 
@@ -273,9 +284,17 @@ class ChangeBody(PatchBody):
 class AnnotationBody(PatchBody):
     """Changes to what users say of a run."""
 
+    model_config = ConfigDict(json_schema_extra=one_given(ANNOTATIONS))
+
     name: Name | None = None
     tags: Tags | None = None
     notes: Notes | None = None
+
+
+class TrialBody(Body):
+    """A trial of an experiment."""
+
+    key: Annotated[str, Field(min_length=1, max_length=1000, description=VALID["key"])]
 
 
 class StageBody(Body):

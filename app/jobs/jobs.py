@@ -11,6 +11,7 @@ from app.domain.errors import HexapodError, InvalidInput, UnknownName
 from app.domain.world import check_ends
 from app.events.bus import EventBus
 from app.events.run_view import run_view
+from app.experiments.config import ExperimentConfig
 from app.jobs.job import Job
 from app.jobs.messages import Changed
 from app.jobs.queue import RunQueue
@@ -27,9 +28,10 @@ from app.jobs.submissions import (
 )
 from app.jobs.supervisor import STUCK_S, Supervisor
 from app.jobs.tasks import resumed_runs
+from app.jobs.trial_runs import trial_start
 from app.runs.config import TrainingConfig, changeable_settings
 from app.storage.database.store import RunStore
-from app.storage.errors import Busy, Conflict, NotAnswering, StorageFailed
+from app.storage.errors import Busy, Conflict, NotAnswering, NotFound, StorageFailed
 from app.storage.recordings import Recordings
 from app.storage.run import (
     ANNOTATIONS,
@@ -187,6 +189,29 @@ class Jobs:
             Busy: if the queue is full.
         """
         return self._enqueue([new_copy(self._store.get(run_id), self._store, self.new_id)], key)
+
+    def run_trial(self, experiment_id: str, key: str, once: IdempotencyKey | None = None) -> Run:
+        """Queue a trial of an experiment as a run of its own, whose notes name the trial.
+
+        Args:
+            experiment_id: id of the experiment.
+            key: of the trial.
+            once: idempotency key of the request, stored with the run.
+
+        Raises:
+            NotFound: if there is no such experiment.
+            InvalidInput: if it has no such trial, or no single run is the same.
+            Busy: if the queue is full.
+        """
+        config = self._store.get(experiment_id).config
+        if not isinstance(config, ExperimentConfig):
+            raise NotFound(f"there is no experiment {experiment_id!r}")
+        start, notes = trial_start(config, experiment_id, key)
+        if isinstance(start, RaceStart):
+            runs = new_race(start, self._store, self.new_id)
+        else:
+            runs = [new_training(start, self._store, self.new_id)]
+        return self._enqueue([*runs[:-1], replace(runs[-1], notes=notes)], once)
 
     def keep(self, run: Run, table: bytes, key: IdempotencyKey | None = None) -> Run:
         """Store an imported training, which ended elsewhere, and publish it.

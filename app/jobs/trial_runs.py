@@ -1,0 +1,72 @@
+"""A trial of an experiment as a run of its own, with the same outcome."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from app.domain.errors import InvalidInput
+from app.domain.text import MAX_NAME
+from app.experiments.config import ExperimentConfig
+from app.experiments.plan import Trial
+from app.jobs.submissions import LaneStart, RaceStart, TrainingStart, plan_of
+from app.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem
+
+
+class TrialStart(NamedTuple):
+    """Request to run a trial: a training, or a race after it, and what its notes say."""
+
+    start: TrainingStart | RaceStart
+    notes: str
+
+
+def trial_start(config: ExperimentConfig, experiment_id: str, key: str) -> TrialStart:
+    """Return the request that runs a trial as the experiment did.
+
+    The distance of a trial is that of its race; in a league or recovery that of its training.
+
+    Args:
+        config: the experiment.
+        experiment_id: id of its run, for the notes.
+        key: of the trial, `<setting key>#<seed number>`.
+
+    Raises:
+        InvalidInput: if the experiment has no such trial, or no single run is the same.
+    """
+    trial = next((one for one in plan_of(config).trials() if one.key == key), None)
+    if trial is None:
+        raise InvalidInput(
+            f"the experiment has no trial {key[:200]!r}; GET …/trials lists those that it has done"
+        )
+    if trial.config.blocks > 1:
+        raise InvalidInput(
+            f"the trial {key} practises in {trial.config.blocks} blocks, which no single run does"
+        )
+    if trial.config.rivals:
+        raise InvalidInput(f"the trial {key} measures wall times, which no other run repeats")
+    name = _name(trial)
+    notes = f"Trial {key} of experiment {experiment_id}."
+    return TrialStart(_start(trial, name), notes)
+
+
+def _start(trial: Trial, name: str) -> TrainingStart | RaceStart:
+    # Evaluations change nothing in what is learned, and give the run a learning curve.
+    config = replace(trial.config.training, evaluate_every=TrainingConfig.evaluate_every)
+    if trial.config.evaluations:
+        return TrainingStart(config, name)
+    walk = WalkingProblem(
+        **{field: getattr(config, field) for field in WalkingProblem.__dataclass_fields__}
+    )
+    is_practised = trial.config.blocks > 0
+    lane = LaneStart(
+        config.agent,
+        training=TrainingStart(config, name) if is_practised else None,
+        keep_learning=False,
+        plans_with=trial.config.plans_with,
+        settings={} if is_practised else config.settings,
+        observation=config.observation,
+    )
+    return RaceStart(walk, [lane], RACE_STEPS, config.seed, name)
+
+
+def _name(trial: Trial) -> str:
+    """Return the end of the trial's key, which tells most, as a name."""
+    return trial.key if len(trial.key) <= MAX_NAME else f"…{trial.key[1 - MAX_NAME :]}"
