@@ -105,13 +105,13 @@ function Loaded({ name, load }) {
     : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the ${name}…</p>`;
 }
 
-const VIEWS = {
+const LOADERS = {
   experiments: () => import("./experiments/experiments.js").then(({ Experiments }) => Experiments),
   runs: () => import("./runs/runs.js").then(({ Runs }) => Runs),
 };
 
 function LoadedView({ name }) {
-  const shown = html`<${Loaded} name=${name} load=${VIEWS[name]} />`;
+  const shown = html`<${Loaded} name=${name} load=${LOADERS[name]} />`;
   return loaded.value[name] ? shown : html`<section class="panel locked">${shown}</section>`;
 }
 
@@ -234,6 +234,14 @@ const KEYS = [
   ["?", "show this list"],
 ];
 
+/** Of a chart that has the focus. */
+const CHART_KEYS = [
+  ["← →", "read the values, in all charts over the same axis"],
+  ["Enter, or a click", "show that moment on stage, for those who may"],
+  ["+ −, or a drag", "zoom in and out; by touch with two fingers"],
+  ["0, or a double click", "show all"],
+];
+
 const TEXT = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable]";
 const PRESSED_BY_SPACE = "button:not([aria-disabled=true]), a, summary, input:not([type=range])";
 
@@ -316,6 +324,10 @@ function HelpDialog() {
           <input type="checkbox" checked=${shortcuts.value} onChange=${(e) => setShortcuts(e.target.checked)} />
           Use single keys
         </label>
+        <h2>Charts</h2>
+        <dl class="keys of-charts">
+          ${CHART_KEYS.map(([key, does]) => html`<div><dt><kbd>${key}</kbd></dt><dd>${does}</dd></div>`)}
+        </dl>
         <h2>What you see</h2>
         <p>
           A hexapod learns by trial and error: it moves two legs at a time, measures how far that took it, and

@@ -6,7 +6,6 @@ import {
 } from "../../steps.js";
 import { percentage, sentence, whole } from "../../format.js";
 import { theme } from "../../page.js";
-import { coloursOf } from "../charts.js";
 import { html } from "../elements.js";
 
 const ROW_PX = 12;
@@ -240,4 +239,16 @@ function Key({ shown }) {
       <span>${percentage(tried / all)} of ${whole(all)} moves tried</span>
     </p>
   `;
+}
+
+/** A function that resolves custom properties, which a canvas does not. */
+function coloursOf(host) {
+  const probe = document.createElement("span");
+  return (name) => {
+    host.append(probe);
+    probe.style.color = `var(${name})`;
+    const found = getComputedStyle(probe).color;
+    probe.remove();
+    return found;
+  };
 }

@@ -2,7 +2,7 @@
 import { useEffect } from "preact/hooks";
 import { setStage } from "../../actions.js";
 import { whole } from "../../format.js";
-import { isOperator, shownRun } from "../../selectors.js";
+import { canPlay, shownRun } from "../../selectors.js";
 import { scene } from "../../store.js";
 import {
   chosenLane, chooseStep, explanation, firstState, followMoment, followStage, isFollowing, lastStep, moment, stateIndex,
@@ -55,7 +55,7 @@ function Navigator({ at }) {
         ? html`<span class="dim">It follows the stage.</span>`
         : html`
           <button class="secondary compact" onClick=${followStage}>Follow the stage</button>
-          ${isOperator.value && shownRun.value?.kind === "training" && html`<${ShowOnStage} step=${step} />`}
+          ${canPlay.value && shownRun.value?.kind === "training" && html`<${ShowOnStage} step=${step} />`}
         `}
     </div>
   `;
