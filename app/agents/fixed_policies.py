@@ -21,6 +21,7 @@ Direction = Annotated[
         title="Direction of the wave",
         help="Direct: from back to front, as insects walk; retrograde: from front to back.",
         choice_titles=("direct", "retrograde"),
+        phrase="{}",
     ),
 ]
 

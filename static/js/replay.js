@@ -331,7 +331,7 @@ function tell(frame, now) {
   if (!frame.scene || now - sceneSentAt < 1000 / SCENES_PER_S) return;
   sceneSentAt = now;
   const told = /** @type {Scene} */ (frame.scene);
-  ownScene.value = { ...told, time_s: replayTime.peek(), duration_s: endTime.peek(), shown_speed: speed.peek() };
+  ownScene.value = { ...told, time_s: replayTime.peek(), shown_speed: speed.peek() };
 }
 
 // ---- the page's stage, and its address

@@ -205,12 +205,16 @@ export function laneTitle(lane) {
   const told = Object.entries(settings).filter(
     ([name, setting]) => name in lane && (!isLearner || lane[name] !== setting.default),
   );
-  const words = told.map(([name, setting]) => `${setting.symbol ?? setting.title.toLowerCase()}\u00a0${lane[name]}`);
+  const words = told.map(([name, setting]) => settingInWords(setting, lane[name]));
   if ((lane.keep_learning ?? keeps_learning) !== keeps_learning) {
     words.push(lane.keep_learning ? "keeps learning" : "frozen");
   }
   return [title, ...words].join(", ");
 }
+
+/** A choice says by itself what it is of. @type {(setting: Setting, value: unknown) => string} */
+const settingInWords = (setting, value) =>
+  kindOf(setting) === "choice" ? String(value) : `${setting.symbol ?? setting.title.toLowerCase()}\u00a0${value}`;
 
 /**
  * The settings that an agent shows first: those that may change while it learns, those with which such a one
