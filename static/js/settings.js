@@ -212,7 +212,7 @@ export function laneTitle(lane) {
   return [title, ...words].join(", ");
 }
 
-/** A choice says by itself what it is of. @type {(setting: Setting, value: unknown) => string} */
+/** A choice says by itself what it is of. @type {(setting: SettingOption, value: unknown) => string} */
 const settingInWords = (setting, value) =>
   kindOf(setting) === "choice" ? String(value) : `${setting.symbol ?? setting.title.toLowerCase()}\u00a0${value}`;
 
