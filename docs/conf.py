@@ -1,0 +1,101 @@
+"""Builds `docs/` as a site: `make docs`. The references are written from the code at each build."""
+
+import contextlib
+import io
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from sphinx.application import Sphinx
+
+import app
+from app.cli import COMMANDS, main
+from app.server import create_app
+from app.settings import Settings
+from app.storage.database.opening import open_store
+
+project = "Racing Hexapods"
+release = version = app.__version__
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+html_theme = "furo"
+html_title = f"Racing Hexapods {version}"
+html_static_path: list[str] = []
+exclude_patterns = ["reproduction", "examples", "notebooks"]
+source_suffix = {".md": "markdown"}
+myst_heading_anchors = 3
+myst_enable_extensions = ["colon_fence"]
+autodoc_typehints = "description"
+autodoc_member_order = "bysource"
+napoleon_google_docstring = True
+# Links to files of the repository stand for its readers; the site has no copy of them.
+suppress_warnings = ["myst.xref_missing"]
+
+_GENERATED = Path(__file__).parent / "_generated"
+
+
+def setup(site: Sphinx) -> None:
+    """Write the references before the site is read."""
+    site.connect("builder-inited", lambda _: _write_references())
+
+
+def _write_references() -> None:
+    _write("rest.md", _rest())
+    _write("commands.md", _commands())
+
+
+def _write(name: str, lines: Iterator[str]) -> None:
+    text = "\n".join(lines) + "\n"
+    path = _GENERATED / name
+    path.parent.mkdir(exist_ok=True)
+    # Unchanged, so that the next build reads it again only if the code has changed.
+    if not path.exists() or path.read_text("utf-8") != text:
+        path.write_text(text, "utf-8")
+
+
+def _rest() -> Iterator[str]:
+    yield "# REST"
+    yield ""
+    yield (
+        "All addresses are below that of the server, which describes itself at `/docs` and "
+        "`/openapi.json`. Errors are problem documents (RFC 9457), and each says what is valid."
+    )
+    with TemporaryDirectory() as folder:
+        settings = Settings(data=Path(folder))
+        with open_store(settings) as store:
+            document: dict[str, Any] = create_app(settings, store).openapi()
+    by_tag: dict[str, list[tuple[str, str, dict[str, Any]]]] = {}
+    for path, methods in document["paths"].items():
+        for method, operation in methods.items():
+            if "summary" in operation:
+                tag = operation.get("tags", ["server"])[0]
+                by_tag.setdefault(tag, []).append((method, path, operation))
+    for tag, operations in by_tag.items():
+        yield f"\n## {tag.capitalize()}"
+        for method, path, operation in operations:
+            yield from _operation(method, path, operation)
+
+
+def _operation(method: str, path: str, operation: dict[str, Any]) -> Iterator[str]:
+    yield f"\n### {operation['summary']}\n"
+    yield f"`{method.upper()} {path}`\n"
+    yield operation.get("description", "")
+    parameters = [one for one in operation.get("parameters", ()) if "name" in one]
+    if parameters:
+        yield "\n| parameter | in | |\n|---|---|---|"
+        for one in parameters:
+            yield f"| `{one['name']}` | {one['in']} | {_cell(one.get('description', ''))} |"
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|").replace("\n", " ")
+
+
+def _commands() -> Iterator[str]:
+    yield "# Commands"
+    for name in COMMANDS:
+        shown = io.StringIO()
+        with contextlib.redirect_stdout(shown), contextlib.suppress(SystemExit):
+            main([name, "--help"])
+        yield f"\n## {name}\n"
+        yield f"```text\n{shown.getvalue().rstrip()}\n```"

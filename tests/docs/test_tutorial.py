@@ -1,0 +1,32 @@
+"""The tutorial's commands run as they stand, one after another in one folder."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.cli.running import ROOT
+
+_BLOCK = re.compile(r"^```(sh|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+@pytest.mark.timeout(300)
+def test_every_command_of_the_tutorial_runs(tmp_path: Path) -> None:
+    blocks = _BLOCK.findall((ROOT / "docs" / "tutorial.md").read_text("utf-8"))
+    commands = [content for language, content in blocks if language == "sh"]
+    assert len(commands) == 6
+    for language, content in blocks:
+        if language == "python":
+            name = content.split("\n", 1)[0].removeprefix("# ")
+            (tmp_path / name).write_text(content, "utf-8")
+            continue
+        subprocess.run(
+            ["sh", "-ec", content],
+            check=True,
+            cwd=tmp_path,
+            env={**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"},
+        )
+    assert (tmp_path / "figure4" / "report.html").exists()
