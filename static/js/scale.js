@@ -16,15 +16,16 @@ export const shareOf = (value, low, high) =>
 export const percent = (share) => `${(100 * share).toFixed(2)}%`;
 
 /**
- * Round numbers from 0 up to `high`, about `count` of them.
+ * Round numbers from `low` up to `high`, about `count` of them.
  * @param {number} high
  */
-export function ticks(high, count = 5) {
-  if (!(high > 0)) return [0];
-  const rough = high / count;
+export function ticks(high, count = 5, low = 0) {
+  if (!(high > low)) return [low];
+  const rough = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 2.5, 5].map((n) => n * power).find((one) => one >= rough) ?? 10 * power;
-  return Array.from({ length: Math.floor(high / step + 1e-9) + 1 }, (_, n) => n * step);
+  const first = Math.ceil(low / step - 1e-9);
+  return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, n) => (first + n) * step);
 }
 
 /**

@@ -50,3 +50,8 @@ test("the text of every value has the contrast that WCAG asks for", () => {
 
 /** A channel of sRGB, 0 to 255, as WCAG makes it linear. @param {number} channel */
 const linear = (channel) => (channel <= 10 ? channel / 255 / 12.92 : ((channel / 255 + 0.055) / 1.055) ** 2.4);
+
+test("ticks of a part of an axis are round too", () => {
+  assert.deepEqual(ticks(55, 4, 27), [30, 40, 50]);
+  assert.deepEqual(ticks(0.2, 4, -0.2).map((tick) => Number(tick.toFixed(2))), [-0.2, -0.1, 0, 0.1, 0.2]);
+});

@@ -204,6 +204,14 @@ const KEYS = [
   ["?", "show this list"],
 ];
 
+/** Of a chart that has the focus. */
+const CHART_KEYS = [
+  ["← →", "read the values, in all charts over the same axis"],
+  ["Enter, or a click", "show that moment on stage, for those who may"],
+  ["+ −, or a drag", "zoom in and out; by touch with two fingers"],
+  ["0, or a double click", "show all"],
+];
+
 const TEXT = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable]";
 const PRESSED_BY_SPACE = "button:not([aria-disabled=true]), a, summary, input:not([type=range])";
 
@@ -285,6 +293,10 @@ function HelpDialog() {
           <input type="checkbox" checked=${shortcuts.value} onChange=${(e) => setShortcuts(e.target.checked)} />
           Use single keys
         </label>
+        <h2>Charts</h2>
+        <dl class="keys of-charts">
+          ${CHART_KEYS.map(([key, does]) => html`<div><dt><kbd>${key}</kbd></dt><dd>${does}</dd></div>`)}
+        </dl>
         <h2>What you see</h2>
         <p>
           A hexapod learns by trial and error: it moves two legs at a time, measures how far that took it, and

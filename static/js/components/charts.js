@@ -1,128 +1,184 @@
-// Charts: lines drawn by uPlot with a crosshair, dots on one axis, their numbers as a table, and the placeholder
-// without data.
-import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
-import uPlot from "uplot";
-import { metres, whole } from "../format.js";
-import { shownTheme } from "../page.js";
-import { largest, percent, shareOf, swarm, thinned, ticks } from "../scale.js";
+// Charts: lines over an axis with a crosshair, zoom, table and files, and the placeholder of a chart without data.
+import { useLayoutEffect, useRef, useState } from "preact/hooks";
+import { crosshair, fileNameOf, tableOf, thinnedPath, valuesIn, within, zoomOf } from "../chart.js";
+import { metres, sentence, whole as wholeNumber } from "../format.js";
+import { placeCaptions } from "../labels.js";
+import { thinned, ticks } from "../scale.js";
+import { Crosshair, readIndex, zoomBy } from "./crosshair.js";
 import { html } from "./elements.js";
-import { FONT, lineLabels, roomFor } from "./line-labels.js";
+import { cssColour, LineLabels, MarkLines, roomFor, widthOf } from "./line-labels.js";
 
-/** @import { EndLabel, Mark } from "./line-labels.js" */
+/** @import { Line, Mark } from "../chart.js" */
+/** @import { Frame } from "./line-labels.js" */
 
 // ---- lines
 
 const HEIGHT = 216;
-const X_AXIS = { size: 26, labelSize: 18 };
-const Y_AXIS_PX = 44;
 const TOP_PX = 20;
-/** Of the plotting area in the chart, without the right side. */
-const INSET = { left: Y_AXIS_PX, top: TOP_PX, bottom: X_AXIS.size + X_AXIS.labelSize };
+const BOTTOM_PX = 38;
+const TICK_GAP_PX = 8;
+const TICK_PX = 14;
+const REGULAR = 400;
+/** Narrower charts have fewer ticks. */
+const WIDE_PX = 300;
+/** More lines of seeds cannot be told apart. */
+const MOST_SEEDS = 200;
 
 /**
- * A uPlot chart that is redrawn when its size, the theme or its data change.
+ * Lines over an axis, in a picture that follows the width, the theme and the data. Charts with the same `x.axis`
+ * are read and zoomed together.
  * @param {object} props
+ * @param {string} props.name "the learning curve"
  * @param {string} props.label what the chart shows, in a sentence
- * @param {uPlot.AlignedData} props.data [xs, ys…]
- * @param {{ color: string, dash?: number[], width?: number, points?: boolean }[]} props.series one per line
- * @param {{ min?: number, max: number, unit: string }} props.x
- * @param {{ min?: number, max: number }} props.y
- * @param {EndLabel[]} props.labels at the ends of lines
- * @param {Mark[]} [props.marks] straight lines
- * @param {{ label: string, xs: number[], read: (index: number) => any }} props.values as a `Crosshair` takes them
+ * @param {{ axis: string, min?: number, max: number, unit: string, text: (x: number) => string }} props.x
+ * @param {{ min?: number, max: number, unit: string, text: (y: number) => string }} props.y
+ * @param {Line[]} props.lines
+ * @param {Mark[]} [props.marks]
+ * @param {number[]} props.xs where the crosshair stops: the rows of the table
+ * @param {number} [props.now] the index that is read first; by default the last
+ * @param {((x: number) => unknown) | null} [props.seek] shows a moment; null where there is none, or for who may not
+ * @param {any} [props.children] between the picture and the table
  */
-export function Plot(props) {
-  /** @type {{ current: any }} */
-  const host = useRef(null);
-  /** @type {{ current: any }} */
-  const plot = useRef(null);
-  const newest = useRef(props);
-  newest.current = props;
-  const room = roomFor(props.labels);
-  const shape = JSON.stringify(props.series);
-
-  useLayoutEffect(() => {
-    plot.current = new uPlot(optionsOf(host.current, newest), props.data, host.current);
-    const watcher = new ResizeObserver(([{ contentRect }]) => {
-      if (contentRect.width > 0) plot.current.setSize({ width: contentRect.width, height: HEIGHT });
-    });
-    watcher.observe(host.current);
-    return () => {
-      watcher.disconnect();
-      plot.current.destroy();
-    };
-  }, [shape, shownTheme.value]);
-
-  useEffect(() => plot.current.setData(props.data), [props.data, props.x.max, props.y.max]);
-  // New data alone would not measure the padding again.
-  useEffect(() => plot.current.redraw(true, true), [room]);
-
+export function Chart(props) {
+  const { name, label, x, y, lines, marks = [], xs, now = xs.length - 1, seek = null, children } = props;
+  const [host, width] = useWidth();
+  /** @type {[number, number]} */
+  const whole = [x.min ?? 0, x.max];
+  const zoom = zoomOf(x.axis);
+  const part = zoom ? within(zoom, whole) : whole;
+  /** @type {[number, number]} */
+  const all = [y.min ?? 0, y.max];
+  const frame = frameOf(width, { y, lines, part, values: zoom ? valuesIn(lines, part, all) : all });
+  const chart = { ...props, marks };
+  const axis = { axis: x.axis, xs, whole, part, now, seek };
+  const inset = { left: frame.left, right: width - frame.right, top: TOP_PX, bottom: BOTTOM_PX };
+  const onFocusOut = ({ relatedTarget, currentTarget }) => {
+    if (!currentTarget.contains(relatedTarget) && crosshair.peek()?.axis === x.axis) crosshair.value = null;
+  };
   return html`
-    <div class="plot-frame">
-      <div class="plot" role="img" aria-label=${props.label} ref=${host}></div>
-      <${Crosshair} ...${props.values} low=${props.x.min ?? 0} high=${props.x.max} inset=${{ ...INSET, right: room }} />
+    <div class="chart-frame" onFocusOut=${onFocusOut}>
+      <div class="chart-picture" ref=${host} style=${{ height: `${HEIGHT}px` }}>
+        ${width > 0 && html`
+          <${Picture} label=${label} x=${x} y=${y} lines=${lines} marks=${marks} frame=${frame} />
+          <${Crosshair} ...${axis} name=${name} lines=${lines} marks=${marks} x=${x} y=${y} inset=${inset} />
+        `}
+      </div>
+      ${children}
+      <div class="chart-foot">
+        <${AsTable} caption=${label} chart=${chart} />
+        <${ChartMenu} chart=${chart} axis=${axis} host=${host} />
+      </div>
     </div>
   `;
 }
 
-/** @returns {any} uPlot's options; its types want more than it does */
-function optionsOf(host, newest) {
-  const colour = coloursOf(host);
-  const axis = (more) => ({
-    stroke: colour("--dim"),
-    font: FONT,
-    grid: { stroke: colour("--line"), width: 1 },
-    ticks: { show: false },
-    ...more,
-  });
-  const range = (name) => () => [newest.current[name].min ?? 0, newest.current[name].max];
+/** @typedef {Frame & { xTicks: number[], yTicks: number[] }} TickedFrame */
+
+/** @returns {TickedFrame} */
+function frameOf(width, { y, lines, part: [from, to], values: [least, most] }) {
+  const yTicks = withOwnText(ticks(most, 4, least), y.text);
+  const left = Math.ceil(Math.max(0, ...yTicks.map((one) => widthOf(y.text(one), REGULAR)))) + TICK_GAP_PX + 2;
+  const right = Math.max(left + 1, width - roomFor(lines));
+  const bottom = HEIGHT - BOTTOM_PX;
   return {
-    width: host.clientWidth || 300,
-    height: HEIGHT,
-    padding: [TOP_PX, () => roomFor(newest.current.labels), 0, 0],
-    legend: { show: false },
-    cursor: { show: false },
-    select: { show: false },
-    scales: { x: { time: false, range: range("x") }, y: { range: range("y") } },
-    axes: [
-      axis({
-        ...X_AXIS, gap: 6, space: 56, grid: { show: false }, values: (_, splits) => splits.map(tickText),
-        label: newest.current.x.unit, labelFont: FONT, labelGap: 0,
-      }),
-      axis({ size: Y_AXIS_PX, gap: 8, space: 30, values: (_, splits) => splits.map((v) => `${v.toFixed(1)} m`) }),
-    ],
-    series: [
-      {},
-      ...newest.current.series.map(({ color, dash, width = 2.5, points }) => ({
-        stroke: color.startsWith("--") ? colour(color) : color,
-        width,
-        dash,
-        spanGaps: true,
-        points: { show: Boolean(points), size: 6, fill: color, stroke: color },
-      })),
-    ],
-    plugins: [lineLabels(() => newest.current.labels, () => newest.current.marks ?? [], colour)],
+    width, height: HEIGHT, left, right, top: TOP_PX, bottom, yTicks,
+    xTicks: ticks(to, width > WIDE_PX ? 4 : 2, from),
+    x: (value) => left + ((right - left) * (value - from)) / (to - from || 1),
+    y: (value) => bottom - ((bottom - TOP_PX) * (value - least)) / (most - least || 1),
   };
+}
+
+/** Numbers that do not read like one before. */
+const withOwnText = (numbers, text) =>
+  numbers.filter((one, n) => numbers.findIndex((other) => text(other) === text(one)) === n);
+
+let pictures = 0;
+
+function Picture({ label, x, y, lines, marks, frame }) {
+  const { current: id } = useRef(`chart-${(pictures += 1)}`);
+  const { left, right, top, bottom, width, height } = frame;
+  const isAcross = (at) => at >= left - 1 && at <= right + 1;
+  const isUp = (at) => at >= top - 1 && at <= bottom + 1;
+  const inView = marks.filter((mark) => (mark.x === undefined ? isUp(frame.y(mark.y)) : isAcross(frame.x(mark.x))));
+  const ended = lines.filter(({ xs, ys }) => isAcross(frame.x(xs.at(-1))) && isUp(frame.y(ys.at(-1))));
+  return html`
+    <svg class="chart-lines" width=${width} height=${height} role="img" aria-label=${label}>
+      <clipPath id=${id}>
+        <rect x=${left} y=${top - 4} width=${right - left} height=${bottom - top + 8} />
+      </clipPath>
+      <${Axes} x=${x} y=${y} frame=${frame} />
+      <g clip-path=${`url(#${id})`}>
+        ${lines.map((line) => html`<${Curve} key=${line.name} line=${line} frame=${frame} />`)}
+      </g>
+      <${MarkLines} marks=${inView} frame=${frame} />
+      <${LineLabels} marks=${inView} lines=${ended} frame=${frame} />
+    </svg>
+  `;
+}
+
+function Axes({ x, y, frame }) {
+  const { left, right, bottom, height, xTicks, yTicks } = frame;
+  const boxes = xTicks.map((one) => {
+    const width = widthOf(tickText(one), REGULAR);
+    const middle = frame.x(one) - width / 2;
+    return { left: Math.min(middle, right - width), top: bottom + 4, width: width + TICK_GAP_PX, height: TICK_PX };
+  });
+  const placed = placeCaptions(boxes, { left: 0, top: 0, width: frame.width + TICK_GAP_PX, height });
+  return html`
+    ${yTicks.map((one) => html`
+      <line class="rule" x1=${left} x2=${right} y1=${frame.y(one)} y2=${frame.y(one)} />
+      <text x=${left - TICK_GAP_PX} y=${frame.y(one) + 4} text-anchor="end">${y.text(one)}</text>
+    `)}
+    ${placed.map((box, n) => box && html`<text x=${box.left} y=${bottom + 16}>${tickText(xTicks[n])}</text>`)}
+    <text x=${right} y=${height - 4} text-anchor="end">${x.unit}</text>
+  `;
 }
 
 /** @type {(value: number) => string} */
-const tickText = (value) => (Number.isInteger(value) ? whole(value) : String(Number(value.toFixed(3))));
+const tickText = (value) => (Number.isInteger(value) ? wholeNumber(value) : String(Number(value.toFixed(3))));
 
-/** A function that resolves custom properties, which a canvas does not. */
-function coloursOf(host) {
-  const probe = document.createElement("span");
-  return (name) => {
-    host.append(probe);
-    probe.style.color = `var(${name})`;
-    const found = getComputedStyle(probe).color;
-    probe.remove();
-    return found;
-  };
+function Curve({ line: { color, xs, ys, low, high, seeds = [], dots }, frame }) {
+  const at = (values) => thinnedPath(
+    values.flatMap((value, n) => (value === null || value === undefined ? [] : [[frame.x(xs[n]), frame.y(value)]])),
+    Math.max(1, frame.right - frame.left),
+  ).map(([left, top]) => `${left.toFixed(1)} ${top.toFixed(1)}`);
+  const path = (values) => (values.length ? `M${at(values).join("L")}` : "");
+  const each = (seeds[0] ?? []).map((_, seed) => seeds.map((block) => block[seed]));
+  const hasBand = low?.length && low.every((value) => value !== null);
+  return html`
+    <g style=${{ "--agent": cssColour(color) }} class=${low ? "with-band" : ""}>
+      ${thinned(each, MOST_SEEDS).map((values) => html`<path class="seed-line" d=${path(values)} />`)}
+      ${hasBand && html`<path class="band" d=${`${path(low)}L${at(high).reverse().join("L")}Z`} />`}
+      <path class="curve" d=${path(ys)} />
+      ${dots && ys.map((value, n) => html`
+        <circle class="curve-dot" cx=${frame.x(xs[n])} cy=${frame.y(value)} r="3" />
+      `)}
+    </g>
+  `;
+}
+
+/** [ref, width in px], 0 until it is measured. @returns {[{ current: any }, number]} */
+function useWidth() {
+  /** @type {{ current: any }} */
+  const host = useRef(null);
+  const [width, setWidth] = useState(0);
+  useLayoutEffect(() => {
+    const measure = () => {
+      const { width: now } = host.current.getBoundingClientRect();
+      // While it is hidden it has none.
+      if (now > 0) setWidth(Math.round(now));
+    };
+    measure();
+    const watcher = new ResizeObserver(measure);
+    watcher.observe(host.current);
+    return () => watcher.disconnect();
+  }, []);
+  return [host, width];
 }
 
 /** The line of the best known walk, thin; its caption stands where those of other lines do not begin. */
-export const bestKnownMark = (y) => ({
-  y, color: "--ink", ink: "--dim", width: 0.75, share: 0.62, text: `best known: ${metres(y)}`,
+export const bestKnownMark = (y, more = {}) => ({
+  y, name: "Best known", kind: "best-known", ink: "--dim", share: 0.62, text: `best known: ${metres(y)}`, ...more,
 });
 
 /** What the thin line is, where its caption has no room. */
@@ -133,191 +189,74 @@ export const BestKnownKey = ({ distance }) => html`
   </p>
 `;
 
-// ---- the values at a crosshair, which follows the pointer, a finger, or the arrow keys
+// ---- the menu: what the keys do, and the chart as a file
 
-/** A line's value at the crosshair. @typedef {{ name: string, color?: string, value: string }} ReadValue */
+const FILES = [["png", "Download as PNG"], ["svg", "Download as SVG"], ["csv", "Download its numbers as CSV"]];
+const MENU_FACTOR = 2;
 
-const PAGE_KEY_STEP = 10;
-/** From this share of the width on, the values stand on the left of the crosshair. */
-const FLIP_SHARE = 0.5;
-
-/** @type {Record<string, (at: number, last: number) => number>} */
-const KEYS = {
-  ArrowLeft: (at) => at - 1,
-  ArrowRight: (at) => at + 1,
-  ArrowDown: (at) => at - 1,
-  ArrowUp: (at) => at + 1,
-  PageDown: (at) => at - PAGE_KEY_STEP,
-  PageUp: (at) => at + PAGE_KEY_STEP,
-  Home: () => 0,
-  End: (_, last) => last,
-};
-
-/**
- * The index of the nearest of ascending positions.
- * @param {number[]} xs
- * @param {number} x
- */
-export const nearestIndex = (xs, x) =>
-  xs.reduce((best, one, n) => (Math.abs(one - x) < Math.abs(xs[best] - x) ? n : best), 0);
-
-/**
- * Covers the plotting area of a chart whose frame is positioned.
- * @param {object} props
- * @param {string} props.label
- * @param {number[]} props.xs where there are values, ascending
- * @param {number} props.low where the axis begins
- * @param {number} props.high where it ends
- * @param {{ left: number, right: number, top: number, bottom: number }} props.inset of the area in the frame [px]
- * @param {(index: number) => { at: string, values: ReadValue[] }} props.read
- */
-export function Crosshair({ label, xs, low, high, inset, read }) {
-  const [chosen, setChosen] = useState(/** @type {number | null} */ (null));
-  const last = xs.length - 1;
-  if (last < 0) return null;
-  const index = Math.min(chosen ?? last, last);
-  const { at, values } = read(index);
-
-  const onPointer = ({ clientX, currentTarget }) => {
-    const { left, width } = currentTarget.getBoundingClientRect();
-    if (width > 0) setChosen(nearestIndex(xs, low + ((high - low) * (clientX - left)) / width));
+function ChartMenu({ chart, axis, host }) {
+  const [problem, setProblem] = useState("");
+  const index = readIndex(axis);
+  const x = index === null ? null : axis.xs[index];
+  const save = async (kind) => {
+    setProblem("");
+    try {
+      const { saveChart } = await import("./chart-files.js");
+      await saveChart(kind, { ...chart, svg: host.current.querySelector("svg"), file: fileNameOf(chart.name) });
+    } catch {
+      setProblem("The file could not be made. Load the page again.");
+    }
   };
-  const onLeave = ({ pointerType, currentTarget }) => {
-    // A finger that is lifted leaves the values until something else is touched.
-    if (pointerType === "mouse" && document.activeElement !== currentTarget) setChosen(null);
-  };
-  const onKeyDown = (event) => {
-    if (event.key === "Escape") setChosen(null);
-    const move = KEYS[event.key];
-    if (!move || event.ctrlKey || event.altKey || event.metaKey) return;
-    event.preventDefault();
-    setChosen(Math.max(0, Math.min(move(index, last), last)));
-  };
-
-  const share = shareOf(xs[index], low, high);
-  const style = Object.fromEntries(Object.entries(inset).map(([side, px]) => [side, `${px}px`]));
-  const words = `${at}: ${values.map(({ name, value }) => `${name} ${value}`).join(", ")}`;
   return html`
-    <div class="crosshair" style=${style} tabindex="0" role="slider" aria-label=${label}
-      aria-valuemin="0" aria-valuemax=${last} aria-valuenow=${index} aria-valuetext=${words}
-      onPointerMove=${onPointer} onPointerDown=${onPointer} onPointerLeave=${onLeave} onKeyDown=${onKeyDown}
-      onFocus=${() => setChosen((now) => now ?? last)} onBlur=${() => setChosen(null)}>
-      ${chosen !== null && html`
-        <i style=${{ left: percent(share) }}></i>
-        <${Readout} at=${at} values=${values} share=${share} />
-      `}
-    </div>
+    <details class="menu chart-menu">
+      <summary class="quiet square small" aria-label=${`More of ${chart.name}: zoom, download`}>⋯</summary>
+      <div class="menu-body">
+        ${axis.seek && x !== null && html`
+          <button class="quiet" onClick=${() => axis.seek(x)}>Show this moment: ${chart.x.text(x)}</button>
+        `}
+        <button class="quiet" onClick=${() => zoomBy(axis, MENU_FACTOR)}>Zoom in</button>
+        ${zoomOf(axis.axis) && html`
+          <button class="quiet" onClick=${() => zoomBy(axis, 1 / MENU_FACTOR)}>Zoom out</button>
+          <button class="quiet" onClick=${() => zoomBy(axis, 0)}>Show all</button>
+        `}
+        ${FILES.map(([kind, words]) => html`<button class="quiet" onClick=${() => save(kind)}>${words}</button>`)}
+        ${problem && html`<p class="bad" role="alert">${problem}</p>`}
+      </div>
+    </details>
   `;
 }
-
-function Readout({ at, values, share }) {
-  // Beside the crosshair, on the side with more room and no wider than that.
-  const side = share < FLIP_SHARE
-    ? { left: percent(share), maxWidth: percent(1 - share) }
-    : { right: percent(1 - share), maxWidth: percent(share) };
-  return html`
-    <div class="readout num" style=${side} aria-hidden="true">
-      <p class="dim">${at}</p>
-      ${values.map(({ name, color, value }) => html`
-        <p>${color && html`<span class="swatch" style=${{ "--agent": color }}></span>`}${name} <b>${value}</b></p>
-      `)}
-    </div>
-  `;
-}
-
-// ---- dots
-
-const DOT_PX = 3;
-const APART_PX = 5;
-/** More cannot be told apart; an even selection stands for all. */
-const MOST_DOTS = 600;
-/** Height below the dots for the mean and its interval, where they hide none. */
-const LANE_PX = 12;
-/** Height of the axis' numbers, and about how many there are: strips may be narrow. */
-const AXIS_PX = 14;
-const AXIS_NUMBERS = 3;
-
-/**
- * Every seed as a dot on one axis, with the interquartile mean and reference values.
- * @param {object} props
- * @param {string} props.label the same in words
- * @param {number[]} props.points one per seed
- * @param {number} [props.low] where the axis begins
- * @param {number} props.high where the axis ends
- * @param {{ iqm: number, low?: number | null, high?: number | null } | null} [props.typical] interquartile
- *   mean and, if known, its interval
- * @param {{ value: number, kind: "greedy" | "best-known" | "half" | "published" }[]} [props.marks] lines; a diamond
- *   where published
- * @param {string} [props.color]
- * @param {number} [props.height] without the axis
- * @param {((value: number) => string) | null} [props.axis] a number of the axis in words; null: no axis
- */
-export function DotStrip({
-  label, points, low = 0, high, typical = null, marks = [], color, height = 36, axis = null,
-}) {
-  const at = (value) => percent(shareOf(value, low, high));
-  const drawn = points.length > MOST_DOTS ? thinned([...points].sort((a, b) => a - b), MOST_DOTS) : points;
-  const rows = swarm(drawn.map((value) => shareOf(value, low, high)));
-  const tallest = largest(rows.map(Math.abs), 1);
-  const middle = (height - LANE_PX) / 2;
-  const apart = Math.min(APART_PX, (middle - DOT_PX) / tallest);
-  const style = color && { "--agent": color };
-  return html`
-    <svg class="dots" width="100%" height=${height + (axis ? AXIS_PX : 0)} role="img" aria-label=${label}
-      style=${style}>
-      <line class="axis" x1="0" x2="100%" y1=${middle} y2=${middle} />
-      ${marks.filter(({ kind }) => kind !== "published").map(({ value, kind }) => html`
-        <line class=${`mark ${kind}`} x1=${at(value)} x2=${at(value)} y1="0" y2=${height} />
-      `)}
-      ${drawn.map((value, n) => html`
-        <circle class="dot-of-seed" cx=${at(value)} cy=${middle + rows[n] * apart} r=${DOT_PX} />
-      `)}
-      ${typical && html`<${Typical} typical=${typical} at=${at} y=${height - LANE_PX / 2} />`}
-      ${axis && ticks(high, AXIS_NUMBERS).map((value) => html`
-        <line class="axis" x1=${at(value)} x2=${at(value)} y1=${height} y2=${height + 3} />
-        <text class="axis-number" x=${at(value)} y=${height + AXIS_PX} text-anchor=${value ? "middle" : "start"}>
-          ${axis(value)}
-        </text>
-      `)}
-      ${marks.filter(({ kind }) => kind === "published").map(({ value }) => html`
-        <svg x=${at(value)} y=${middle} overflow="visible"><path class="mark published" d="M0-7 6 0 0 7-6 0z" /></svg>
-      `)}
-    </svg>
-  `;
-}
-
-const Typical = ({ typical, at, y }) => html`
-  ${typical.low !== null && typical.low !== undefined && html`
-    <line class="interval" x1=${at(typical.low)} x2=${at(typical.high)} y1=${y} y2=${y} />
-  `}
-  <line class="typical" x1=${at(typical.iqm)} x2=${at(typical.iqm)} y1=${y - 5} y2=${y + 5} />
-`;
 
 // ---- the numbers of a chart as a table, folded
 
 const MOST_ROWS = 100;
 
-export function AsTable({ caption, columns, rows }) {
+function AsTable({ caption, chart }) {
   const [isOpen, setOpen] = useState(false);
   return html`
     <details class="as-table" onToggle=${({ target }) => setOpen(target.open)}>
       <summary>As a table</summary>
-      ${isOpen && html`
-        <div class="scroller" tabindex="0" role="region" aria-label=${caption}>
-          <table>
-            <caption class="sr-only">${caption}</caption>
-            <thead><tr>${columns.map((title) => html`<th scope="col">${title}</th>`)}</tr></thead>
-            <tbody>${thinned(rows, MOST_ROWS).map((cells) => html`<${Row} cells=${cells} />`)}</tbody>
-          </table>
-        </div>
-      `}
+      ${isOpen && html`<${Rows} caption=${caption} chart=${chart} />`}
     </details>
   `;
 }
 
-const Row = ({ cells: [first, ...others] }) => html`
-  <tr><th scope="row">${first}</th>${others.map((one) => html`<td>${one}</td>`)}</tr>
-`;
+function Rows({ caption, chart: { x, y, lines, marks, xs } }) {
+  const { columns, rows } = tableOf({ lines, marks, xs: thinned(xs, MOST_ROWS), titles: { x: sentence(x.unit) } });
+  const words = (value) => (value === null ? "–" : y.text(value));
+  return html`
+    <div class="scroller" tabindex="0" role="region" aria-label=${caption}>
+      <table>
+        <caption class="sr-only">${caption}</caption>
+        <thead><tr>${columns.map((title) => html`<th scope="col">${title}</th>`)}</tr></thead>
+        <tbody>
+          ${rows.map(([at, ...values]) => html`
+            <tr><th scope="row">${x.text(at)}</th>${values.map((value) => html`<td>${words(value)}</td>`)}</tr>
+          `)}
+        </tbody>
+      </table>
+    </div>
+  `;
+}
 
 // ---- a chart or table without data: a sketch, and what will fill it
 

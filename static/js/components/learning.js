@@ -1,14 +1,14 @@
 // What the learner in view has learned: its learning curve, and its action values in its present state.
-import { useMemo } from "preact/hooks";
+import { setStage } from "../actions.js";
 import { changesInWords, rateInWords } from "../changes.js";
 import { inTime, inWords } from "../disturbances.js";
 import { count, metres, millimetres, whole } from "../format.js";
-import { valueColours } from "../scale.js";
-import { shownRun } from "../selectors.js";
+import { largest, valueColours } from "../scale.js";
+import { isOperator, shownRun } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { options, scene, served } from "../store.js";
 import { bestMove, curve, placeName } from "../training.js";
-import { AsTable, BestKnownKey, bestKnownMark, Empty, Plot } from "./charts.js";
+import { BestKnownKey, bestKnownMark, Chart, Empty } from "./charts.js";
 import { HexapodGlyph, html } from "./elements.js";
 
 // ---- the learning curve: distance in an evaluation against steps of practice, with greedy's distance
@@ -34,8 +34,8 @@ export function LearningChart() {
 
 /** Lines: greedy's and the best known distance, where one training continued another, what changed, what happened. */
 const marksOf = ({ greedy_m, best_known_m, blocks, changes, happenings, run }) => [
-  ...(best_known_m === null ? [] : [bestKnownMark(best_known_m)]),
   ...(greedy_m ? [greedyMark(greedy_m)] : []),
+  ...(best_known_m === null ? [] : [bestKnownMark(best_known_m)]),
   ...blocks.map((x) => ({ x, color: "--line" })),
   ...changes.map((change) => ({
     x: change.step, color: "--dim", dash: [2, 3], text: rateInWords(run.config.agent, change),
@@ -48,7 +48,8 @@ const marksOf = ({ greedy_m, best_known_m, blocks, changes, happenings, run }) =
 ];
 
 const greedyMark = (y) => ({
-  y, color: agentOf("greedy").color, ink: "--dim", dash: [5, 5], text: `greedy, the line to beat: ${metres(y)}`,
+  y, name: agentOf("greedy").title, color: agentOf("greedy").color, ink: "--dim", dash: [5, 5],
+  text: `greedy, the line to beat: ${metres(y)}`,
 });
 
 function captionOf({ points, greedy_m, best_known_m }) {
@@ -61,37 +62,37 @@ function captionOf({ points, greedy_m, best_known_m }) {
 
 function Curve({ known }) {
   const { points, to, greedy_m, best_known_m, run } = known;
-  const { color } = agentOf(run.config.agent ?? served().defaults.training.agent);
-  const last = points.at(-1);
-  const data = useMemo(() => [points.map((p) => p.step), points.map((p) => p.distance_m)], [points]);
-  const end = { text: metres(last.distance_m), color, x: last.step, y: last.distance_m };
-  const distances = points.map((p) => p.distance_m);
+  const { color, title } = agentOf(run.config.agent ?? served().defaults.training.agent);
+  const steps = points.map(({ step }) => step);
+  const distances = points.map(({ distance_m }) => distance_m);
+  const line = {
+    name: title, color, xs: steps, ys: distances, dots: points.length < MOST_MARKED_POINTS,
+    end: points.length > 1 ? metres(distances.at(-1)) : "",
+  };
   const levels = [greedy_m ?? 0, best_known_m ?? 0];
-  const caption = captionOf(known);
   const changed = changesInWords(run.config.agent, known.changes);
-  const greedy = agentOf("greedy");
-  const read = (index) => ({
-    at: count(points[index].step, "step"),
-    values: [
-      { name: agentOf(run.config.agent).title, color, value: metres(points[index].distance_m) },
-      ...(greedy_m ? [{ name: greedy.title, color: greedy.color, value: metres(greedy_m) }] : []),
-      ...(best_known_m === null ? [] : [{ name: "Best known", value: metres(best_known_m) }]),
-    ],
-  });
+  const x = { axis: `practice of ${run.id}`, max: to, unit: "steps of practice", text: (step) => count(step, "step") };
+  const y = {
+    min: -largest(distances.map((one) => -one), 0), max: HEADROOM * largest([...levels, ...distances], LEAST_TOP_M),
+    unit: "m", text: metres,
+  };
   return html`
-    <${Plot} label=${caption} data=${data} marks=${marksOf(known)} labels=${points.length > 1 ? [end] : []}
-      values=${{ label: "Values of the learning curve", xs: points.map((p) => p.step), read }}
-      series=${[{ color, points: points.length < MOST_MARKED_POINTS }]}
-      x=${{ min: 0, max: to, unit: "steps of practice" }}
-      y=${{ min: Math.min(0, ...distances), max: HEADROOM * Math.max(LEAST_TOP_M, ...levels, ...distances) }} />
-    ${best_known_m !== null && html`<${BestKnownKey} distance=${best_known_m} />`}
-    ${known.happenings.length > 0 && html`
-      <p class="changes happened">Happened: ${known.happenings.map(inTime).join("; ")}</p>
-    `}
-    ${changed.length > 0 && html`<p class="changes dim">Changed: ${changed.join(", ")}</p>`}
-    <${AsTable} caption=${caption} columns=${["Steps of practice", "Distance in 50 steps"]}
-      rows=${points.map((p) => [whole(p.step), metres(p.distance_m)])} />
+    <${Chart} name="the learning curve" label=${captionOf(known)} x=${x} y=${y} lines=${[line]} xs=${steps}
+      marks=${marksOf(known)} seek=${seekIn(known)}>
+      ${best_known_m !== null && html`<${BestKnownKey} distance=${best_known_m} />`}
+      ${known.happenings.length > 0 && html`
+        <p class="changes happened">Happened: ${known.happenings.map(inTime).join("; ")}</p>
+      `}
+      ${changed.length > 0 && html`<p class="changes dim">Changed: ${changed.join(", ")}</p>`}
+    <//>
   `;
+}
+
+/** Shows a step of the practice that is on stage; null if another run is, or for who may not. */
+function seekIn({ run, from }) {
+  const { run_id, kind, duration_s } = scene.value ?? {};
+  if (!isOperator.value || kind !== "training" || run_id !== run.id || !duration_s) return null;
+  return (step) => setStage({ time_s: (Math.max(0, step - from) * duration_s) / run.config.steps });
 }
 
 // ---- the action values: one for each pair of legs and each place on the foot grid

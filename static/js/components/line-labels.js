@@ -1,158 +1,119 @@
-// Draws a chart's straight lines with their captions, and a label at the end of each line; none over another.
+// A chart's straight lines with their captions, and a label at the end of each curve; none over another.
 import { placeCaptions, placeLabels } from "../labels.js";
+import { html } from "./elements.js";
 
 /** @import { Box } from "../labels.js" */
+/** @import { Line } from "../chart.js" */
 
 /**
- * A label at the end of a line, in the chart's units.
- * @typedef {{ text: string, color: string, x: number, y: number }} EndLabel
+ * The plotting area in pixels, and the positions of values in it.
+ * @typedef {object} Frame
+ * @property {number} width of the picture
+ * @property {number} height
+ * @property {number} left
+ * @property {number} right
+ * @property {number} top
+ * @property {number} bottom
+ * @property {(x: number) => number} x
+ * @property {(y: number) => number} y
  */
 
-/**
- * A straight line across the chart; `share` of the width is where the caption of a horizontal one begins.
- * @typedef {object} Mark
- * @property {number} [x]
- * @property {number} [y]
- * @property {string} color
- * @property {string} [ink] the caption's colour
- * @property {string} [text]
- * @property {number} [share]
- * @property {number[]} [dash]
- * @property {number} [width] of the line [px]
- */
-
-/** Of all texts of a chart. */
-export const FONT = "12px system-ui, sans-serif";
+const FONT_FAMILY = "system-ui, sans-serif";
+const FONT_PX = 12;
 const LABEL_WEIGHT = 600;
 const LINE_PX = 16;
 const CAPTION_PX = 14;
 const END_DOT_PX = 4;
 const TEXT_FROM_DOT_PX = 9;
 const TEXT_FROM_LINE_PX = 6;
-const HALO_PX = 4;
-const LEAST_ROOM_PX = 16;
+const LEAST_ROOM_PX = 12;
 /** A longer label moves back over its line. */
 const MOST_ROOM_PX = 132;
+const DEFAULT_MARK_PX = 1.5;
 
 /** @type {CanvasRenderingContext2D | null} */
 let ruler = null;
 
-/** @param {string} text */
-function widthOf(text) {
+/**
+ * The width of a chart's text [px].
+ * @param {string} text
+ */
+export function widthOf(text, weight = LABEL_WEIGHT) {
   ruler ??= document.createElement("canvas").getContext("2d");
   if (!ruler) return 0;
-  ruler.font = `${LABEL_WEIGHT} ${FONT}`;
+  ruler.font = `${weight} ${FONT_PX}px ${FONT_FAMILY}`;
   return ruler.measureText(text).width;
 }
 
 /**
- * The room that labels need on the right of the chart [px].
- * @param {EndLabel[]} labels
+ * The room that the labels at the ends of lines need on the right of a chart [px].
+ * @param {Line[]} lines
  */
-export function roomFor(labels) {
-  const widest = Math.max(0, ...labels.map(({ text }) => widthOf(text)));
-  return Math.round(Math.min(MOST_ROOM_PX, Math.max(LEAST_ROOM_PX, TEXT_FROM_DOT_PX + widest + 4)));
+export function roomFor(lines) {
+  const widest = Math.max(0, ...lines.map(({ end }) => (end ? TEXT_FROM_DOT_PX + widthOf(end) + 4 : 0)));
+  return Math.round(Math.min(MOST_ROOM_PX, Math.max(LEAST_ROOM_PX, widest)));
 }
 
-/** The font at the canvas's resolution. */
-const fontOf = (px) => `${LABEL_WEIGHT} ${FONT.replace("12px", `${12 * px}px`)}`;
+/** A colour, or the name of a custom property, as CSS has it. @param {string} color */
+export const cssColour = (color) => (color.startsWith("--") ? `var(${color})` : color);
 
-/**
- * A plugin of uPlot.
- * @param {() => EndLabel[]} labels
- * @param {() => Mark[]} marks
- * @param {(name: string) => string} resolve returns the colour of a custom property
- */
-export function lineLabels(labels, marks, resolve) {
-  const colourOf = (name) => (name.startsWith("--") ? resolve(name) : name);
-  const draw = (u) => {
-    const { ctx, bbox } = u;
-    const px = devicePixelRatio;
-    const pen = { u, ctx, px, colourOf };
-    /** Above the axis, and up to the right edge. @type {Box} */
-    const bounds = { left: bbox.left, top: 0, width: ctx.canvas.width - bbox.left, height: bbox.top + bbox.height };
-    ctx.save();
-    marks().forEach((mark) => drawMark(pen, mark));
-    ctx.setLineDash([]);
-    ctx.font = fontOf(px);
-    ctx.textAlign = "left";
-    ctx.textBaseline = "middle";
-    drawLabels(pen, labels(), drawCaptions(pen, marks(), bounds), bounds);
-    ctx.restore();
+/** The straight lines, without their captions. */
+export const MarkLines = ({ marks, frame }) => marks.map(({ x, y, kind, color, dash, width }) => {
+  const ends = x === undefined
+    ? { x1: frame.left, x2: frame.right, y1: frame.y(y), y2: frame.y(y) }
+    : { x1: frame.x(x), x2: frame.x(x), y1: frame.top, y2: frame.bottom };
+  const style = color && {
+    stroke: cssColour(color), strokeWidth: width ?? DEFAULT_MARK_PX, strokeDasharray: dash?.join(" "),
   };
-  return { hooks: { draw: [draw] } };
-}
+  return html`<line class=${`mark ${kind ?? ""}`} ...${ends} style=${style} />`;
+});
 
-/** @param {any} pen @param {Mark} mark */
-function drawMark({ u, ctx, px, colourOf }, { x, y, color, dash = [], width: line = 1.5 }) {
-  const { left, top, width, height } = u.bbox;
-  ctx.strokeStyle = colourOf(color);
-  ctx.lineWidth = line * px;
-  ctx.setLineDash(dash.map((d) => d * px));
-  ctx.beginPath();
-  if (x === undefined) {
-    const at = u.valToPos(y, "y", true);
-    ctx.moveTo(left, at);
-    ctx.lineTo(left + width, at);
-  } else {
-    const at = u.valToPos(x, "x", true);
-    ctx.moveTo(at, top);
-    ctx.lineTo(at, top + height);
-  }
-  ctx.stroke();
-}
-
-/** Draw the captions of lines, as many as have room. @returns {Box[]} where they are */
-function drawCaptions(pen, marks, bounds) {
-  // Horizontal lines before all; of vertical ones a later change tells more.
-  const captioned = marks.filter(({ text }) => text).reverse().sort((a, b) => Number("x" in a) - Number("x" in b));
-  const placed = placeCaptions(captioned.map((mark) => captionBox(pen, mark)), bounds);
-  placed.forEach((box, n) => box && write(pen, captioned[n].text, captioned[n].ink ?? captioned[n].color, box));
-  return placed.filter((box) => box !== null);
-}
-
-function drawLabels(pen, labels, captions, bounds) {
-  const { u, ctx, px, colourOf } = pen;
-  const { left, width } = u.bbox;
-  const wanted = labels.map((label) => ({
-    ...label, x: Math.min(u.valToPos(label.x, "x", true), left + width), y: u.valToPos(label.y, "y", true),
+/** Captions of straight lines, as many as have room, and the ends of curves with their labels: those in the frame. */
+export function LineLabels({ marks, lines, frame }) {
+  const { left, bottom, width } = frame;
+  /** Above the axis, and up to the right edge. @type {Box} */
+  const bounds = { left, top: 0, width: width - left, height: bottom };
+  const captioned = byImportance(marks.filter(({ text }) => text));
+  const captions = placeCaptions(captioned.map((mark) => captionBox(frame, mark)), bounds);
+  const ends = lines.filter(({ end }) => end).map((line) => ({
+    ...line, x: frame.x(line.xs.at(-1)), y: frame.y(line.ys.at(-1)),
   }));
-  const boxes = wanted.map(({ text, x, y }) => ({
-    left: x + TEXT_FROM_DOT_PX * px, top: y - (LINE_PX * px) / 2,
-    width: ctx.measureText(text).width, height: LINE_PX * px,
-  }));
-  const placed = placeLabels(boxes, captions, bounds);
-  wanted.forEach(({ text, color, x, y }, n) => {
-    ctx.fillStyle = colourOf(color);
-    ctx.beginPath();
-    ctx.arc(x, y, END_DOT_PX * px, 0, 2 * Math.PI);
-    ctx.fill();
-    // Not in the line's own colour: yellow on white cannot be read.
-    if (placed[n]) write(pen, text, "--ink", placed[n]);
-  });
+  const labels = placeLabels(ends.map(endBox), captions.filter((box) => box !== null), bounds);
+  return html`
+    ${captions.map((box, n) => box && html`
+      <${Label} text=${captioned[n].text} box=${box} color=${captioned[n].ink ?? captioned[n].color ?? "--ink"} />
+    `)}
+    ${ends.map(({ end, color, x, y }, n) => html`
+      <circle cx=${x} cy=${y} r=${END_DOT_PX} style=${{ fill: cssColour(color) }} />
+      ${/* Not in the line's own colour: yellow on white cannot be read. */
+      labels[n] && html`<${Label} text=${end} box=${labels[n]} color="--ink" />`}
+    `)}
+  `;
 }
 
-function write({ ctx, px, colourOf }, text, color, { left, top, height }) {
-  // Keeps lines that pass behind it off the text.
-  ctx.strokeStyle = colourOf("--panel");
-  ctx.lineWidth = HALO_PX * px;
-  ctx.lineJoin = "round";
-  ctx.strokeText(text, left, top + height / 2);
-  ctx.fillStyle = colourOf(color);
-  ctx.fillText(text, left, top + height / 2);
-}
+/** Horizontal lines before all, the first before the others; of vertical ones a later change tells more. */
+const byImportance = (marks) => [
+  ...marks.filter(({ x }) => x === undefined), ...marks.filter(({ x }) => x !== undefined).reverse(),
+];
+
+const Label = ({ text, box: { left, top, height }, color }) => html`
+  <text class="line-label" x=${left} y=${top + height / 2} style=${{ fill: cssColour(color) }}>${text}</text>
+`;
+
+/** Where the label of a line's end is wanted. @returns {Box} */
+const endBox = ({ end, x, y }) =>
+  ({ left: x + TEXT_FROM_DOT_PX, top: y - LINE_PX / 2, width: widthOf(end), height: LINE_PX });
 
 /** Where a caption is wanted: on its horizontal line, or above its vertical one. @returns {Box} */
-function captionBox({ u, ctx, px }, { x, y, text, share = 0 }) {
-  const { bbox } = u;
-  const { width } = ctx.measureText(text);
-  const height = CAPTION_PX * px;
+function captionBox(frame, { x, y, text, share = 0 }) {
+  const width = widthOf(text);
+  const height = CAPTION_PX;
   if (x === undefined) {
-    const left = bbox.left + share * bbox.width + TEXT_FROM_LINE_PX * px;
-    return { left, top: u.valToPos(y, "y", true) - height - 3 * px, width, height };
+    const left = frame.left + share * (frame.right - frame.left) + TEXT_FROM_LINE_PX;
+    return { left, top: frame.y(y) - height - 3, width, height };
   }
-  const at = u.valToPos(x, "x", true);
-  const isFarRight = at > bbox.left + 0.6 * bbox.width;
-  const left = isFarRight ? at + TEXT_FROM_LINE_PX * px - width : at - TEXT_FROM_LINE_PX * px;
-  return { left, top: bbox.top - height - 2 * px, width, height };
+  const at = frame.x(x);
+  const isFarRight = at > frame.left + 0.6 * (frame.right - frame.left);
+  const left = isFarRight ? at + TEXT_FROM_LINE_PX - width : at - TEXT_FROM_LINE_PX;
+  return { left, top: frame.top - height - 2, width, height };
 }

@@ -1,17 +1,19 @@
 // The race: its scoreboard, and its chart of distance against time.
-import { useMemo } from "preact/hooks";
-import uPlot from "uplot";
+import { useRef } from "preact/hooks";
+import { setStage } from "../actions.js";
 import { happeningsOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
 import { clipped, distanceAt, headline, isTimedOut, ruleOf, shownTime, standings, timeline } from "../race.js";
 import { filters } from "../runs.js";
-import { clock, isActive, originalRace, raceInView, raceScene, simulatedPerDecision } from "../selectors.js";
+import {
+  clock, isActive, isOperator, originalRace, raceInView, raceScene, simulatedPerDecision,
+} from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
-import { runs } from "../store.js";
+import { runs, scene } from "../store.js";
 import { clockTitle, flatParts, knowledgeTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
-import { AsTable, BestKnownKey, bestKnownMark, Empty, Plot } from "./charts.js";
+import { BestKnownKey, bestKnownMark, Chart, Empty } from "./charts.js";
 import { html, Icon } from "./elements.js";
 
 // ---- the scoreboard: ranks, distances, decision times and simulated transitions
@@ -211,7 +213,6 @@ function StartList() {
 // ---- the chart: distance against race time up to the moment that is shown
 
 const HEADROOM = 1.16;
-const TABLE_ROWS = 10;
 const MOST_MOMENTS = 250;
 /** The time axis shows at least so much of a race that has just begun [s]. */
 const FIRST_VIEW_S = 20;
@@ -240,42 +241,49 @@ function Lines({ known, time }) {
   const configs = raceInView.value?.config?.lanes ?? [];
   const lanes = known.lanes.map((lane, number) => {
     const shown = clipped(lane.points, until);
-    return { ...lane, ...agentOf(lane.agent), title: laneTitle(configs[number] ?? lane), shown, end: shown.at(-1) };
+    const name = laneTitle(configs[number] ?? lane);
+    return {
+      name, end: name, color: agentOf(lane.agent).color, xs: shown.map(([t]) => t), ys: shown.map(([, d]) => d),
+      at: (t) => (t > until ? null : distanceAt(lane.points, t)),
+    };
   });
-  const data = useMemo(
-    () => uPlot.join(lanes.map(({ shown }) => [shown.map(([t]) => t), shown.map(([, d]) => d)])),
-    [known, until],
-  );
   const best_m = raceInView.value?.best_known_m ?? null;
-  const far = Math.max(known.finish_line_m, best_m ?? 0, ...lanes.map(({ end }) => end[1]));
-  const ends = lanes.map(({ title, end }) => `${title} ${metres(end[1])}`).join(", ");
+  const far = Math.max(known.finish_line_m, best_m ?? 0, ...lanes.map(({ ys }) => ys.at(-1)));
+  const ends = lanes.map(({ name, ys }) => `${name} ${metres(ys.at(-1))}`).join(", ");
   const best = best_m === null ? "" : `; best known ${metres(best_m)}`;
   const caption = `The race after ${Math.round(until)} seconds: ${ends}${best}.`;
-  const moments = momentsUntil(until);
-  const read = (index) => ({
-    at: `${moments[index].toFixed(1)}\u00a0s`,
-    values: [
-      ...lanes.map(({ title, color, points }) =>
-        ({ name: title, color, value: metres(distanceAt(points, moments[index])) })),
-      ...(best_m === null ? [] : [{ name: "Best known", value: metres(best_m) }]),
-    ],
-  });
+  const last = useLatest(`${known.id} ${known.clock}`, lastMoment(known, until, longest));
+  const moments = momentsOf(until, last);
+  const x = {
+    axis: `race ${known.id}`, max: last, unit: "race time, s", text: (seconds) => `${seconds.toFixed(1)}\u00a0s`,
+  };
   return html`
-    <${Plot} label=${caption} data=${data} marks=${marksOf(known, until, best_m)}
-      series=${lanes.map(({ color }) => ({ color }))}
-      labels=${lanes.map(({ title, color, end }) => ({ text: title, color, x: end[0], y: end[1] }))}
-      x=${{ min: 0, max: lastMoment(known, until, longest), unit: "race time, s" }}
-      y=${{ min: 0, max: HEADROOM * far }} values=${{ label: "Values of the race", xs: moments, read }} />
-    ${best_m !== null && html`<${BestKnownKey} distance=${best_m} />`}
-    <${AsTable} caption=${caption} columns=${["Race time", ...lanes.map(({ title }) => title)]}
-      rows=${rowsOf(lanes, until)} />
+    <${Chart} name="the race" label=${caption} x=${x} lines=${lanes} marks=${marksOf(known, until, best_m)}
+      y=${{ min: Math.min(0, ...lanes.flatMap(({ ys }) => ys)), max: HEADROOM * far, unit: "m", text: metres }}
+      xs=${moments} now=${moments.indexOf(until)} seek=${seekIn(known)}>
+      ${best_m !== null && html`<${BestKnownKey} distance=${best_m} />`}
+    <//>
   `;
 }
 
-/** The moments at which the crosshair stops: each half second, in a long race fewer, and the last. */
-function momentsUntil(until) {
-  const step = Math.max(0.5, Math.ceil(until / MOST_MOMENTS));
-  return [...Array.from({ length: Math.ceil(until / step) }, (_, n) => n * step), until];
+/** The largest of the values that there were of a key: seeking back does not shorten the axis. */
+function useLatest(key, value) {
+  const known = useRef({ key, value });
+  if (known.current.key !== key || known.current.value < value) known.current = { key, value };
+  return known.current.value;
+}
+
+/** Shows a moment of the race on stage; null if another run is, or for who may not. */
+function seekIn({ id }) {
+  const { run_id, kind } = scene.value ?? {};
+  return isOperator.value && kind === "race" && run_id === id ? (time_s) => setStage({ time_s }) : null;
+}
+
+/** The moments at which the crosshair stops: each half second, in a long race fewer, and the one that is shown. */
+function momentsOf(until, last) {
+  const step = Math.max(0.5, Math.ceil(last / MOST_MOMENTS));
+  const even = Array.from({ length: Math.floor(last / step) + 1 }, (_, n) => n * step);
+  return [...new Set([...even, until])].sort((a, b) => a - b);
 }
 
 /** Where the time axis ends. */
@@ -290,15 +298,9 @@ function marksOf({ finish_line_m, first_finish_s }, until, best_m) {
   const share = first_finish_s && until > 1.5 * first_finish_s ? 0.55 : 0;
   /** @type {object[]} */
   const marks = [{ y: finish_line_m, color: "--finish", text: "finish line", share }];
-  if (best_m !== null) marks.unshift({ ...bestKnownMark(best_m), share });
+  if (best_m !== null) marks.push(bestKnownMark(best_m, { share }));
   if (first_finish_s && until >= first_finish_s) {
     marks.push({ x: first_finish_s, color: "--dim", dash: [2, 3], text: "time-out" });
   }
   return marks;
-}
-
-function rowsOf(lanes, until) {
-  const step = Math.max(1, Math.ceil(until / TABLE_ROWS));
-  const moments = Array.from({ length: Math.floor(until / step) + 1 }, (_, n) => n * step);
-  return moments.map((t) => [`${t} s`, ...lanes.map(({ points }) => metres(distanceAt(points, t)))]);
 }

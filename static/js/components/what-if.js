@@ -10,7 +10,7 @@ import {
   answer, error, evaluateSettings, isComputing, isCurrent, isPanelOpen, isTooLong, mostSteps, seeds,
 } from "../what-if.js";
 import { messageOf } from "../titles.js";
-import { DotStrip } from "./charts.js";
+import { DotStrip } from "./dot-strip.js";
 import { html } from "./elements.js";
 
 const HEADROOM = 1.06;

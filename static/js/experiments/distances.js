@@ -1,7 +1,10 @@
 // Distances of a report: grouped by the place in which agents are compared, and in the chosen unit.
 import { signal } from "@preact/signals";
-import { metres, THIN_SPACE } from "../format.js";
+import { count, metres, THIN_SPACE } from "../format.js";
+import { largest } from "../scale.js";
+import { chosenRun } from "./runs.js";
 
+/** @import { Line, Mark } from "../chart.js" */
 /** @import { Place, Setting } from "../types.js" */
 
 // ---- places: observation, robot and foot grid
@@ -107,3 +110,38 @@ export const UNIT_NAMES = {
   h: "half grid sides in 50 steps",
   greedy: "share of greedy’s distance",
 };
+
+// ---- axes of charts of distance against steps, in the unit that is shown; all of a report are read together
+
+const HEADROOM = 1.06;
+const LEAST_TOP = 1e-9;
+
+/**
+ * @param {Line[]} lines of all charts
+ * @param {string} words what the steps are
+ */
+export const stepsAxis = (lines, words = "steps of practice") => ({
+  axis: `report ${chosenRun.value?.id}`, max: largest(lines.flatMap(({ xs }) => xs), 1), unit: words,
+  text: (/** @type {number} */ steps) => count(steps, "step"),
+});
+
+/** @param {{ lines: Line[], marks: Mark[] }[]} charts with one axis */
+export function distanceAxis(charts) {
+  const values = charts.flatMap(({ lines, marks }) => [
+    ...lines.flatMap(({ ys, low = [], high = [], seeds = [] }) => [...ys, ...low, ...high, ...seeds.flat()]),
+    ...marks.map(({ y }) => y),
+  ]).filter((one) => typeof one === "number");
+  return {
+    min: -largest(values.map((one) => -one), 0), max: HEADROOM * largest(values, LEAST_TOP),
+    unit: UNIT_NAMES[unit.value], text: shown,
+  };
+}
+
+/**
+ * The lines of references as marks. A single one is captioned; of several a key stands over the charts.
+ * @param {{ name: string, kind: string, value: number }[]} levels
+ * @returns {Mark[]}
+ */
+export const asMarks = (levels) => levels.map(({ name, kind, value }) => ({
+  name, kind, y: value, ink: "--ink", text: levels.length > 1 ? "" : name.toLowerCase(),
+}));

@@ -6,7 +6,7 @@ import { largest } from "../../scale.js";
 import { agentOf } from "../../settings.js";
 import { served } from "../../store.js";
 import { agentTitle, fieldTitle, gaitTitle, observationTitle, robotTitle, variedFields } from "../../titles.js";
-import { DotStrip } from "../charts.js";
+import { DotStrip } from "../dot-strip.js";
 import { html } from "../elements.js";
 
 // ---- all gaits together: how near learners come to greedy, how many walk, how often they beat it at time-out

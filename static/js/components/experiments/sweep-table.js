@@ -5,7 +5,7 @@ import { count, percentage } from "../../format.js";
 import { largest } from "../../scale.js";
 import { agentOf } from "../../settings.js";
 import { fieldTitle, isNamedByValue, valueTitle, variedFields } from "../../titles.js";
-import { DotStrip } from "../charts.js";
+import { DotStrip } from "../dot-strip.js";
 import { html, Segments } from "../elements.js";
 import { BestKnownWords, StripKey, UnitSwitch } from "./report-tools.js";
 

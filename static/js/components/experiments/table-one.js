@@ -5,7 +5,7 @@ import { count, percentage, whole } from "../../format.js";
 import { largest } from "../../scale.js";
 import { agentOf } from "../../settings.js";
 import { gaitTitle } from "../../titles.js";
-import { DotStrip } from "../charts.js";
+import { DotStrip } from "../dot-strip.js";
 import { html } from "../elements.js";
 import { BestKnownWords, PlaceSwitch, PlaceWords, StripKey, UnitSwitch } from "./report-tools.js";
 

@@ -1,16 +1,17 @@
 // A league or a recovery: in each world the learners' curves with the walks of their references, and a table.
 import { useState } from "preact/hooks";
 import { worldTitle } from "../../disturbances.js";
-import { bare, factorOf, inUnit, placeOf, placesOf, shown, unit, UNIT_NAMES } from "../../experiments/distances.js";
+import {
+  asMarks, bare, distanceAxis, factorOf, inUnit, placeOf, placesOf, shown, stepsAxis, unit, UNIT_NAMES,
+} from "../../experiments/distances.js";
 import { count, percentage, whole } from "../../format.js";
 import { largest } from "../../scale.js";
 import { agentOf } from "../../settings.js";
 import { agentTitle, gaitTitle, knowledgeTitle } from "../../titles.js";
+import { Chart } from "../charts.js";
 import { html, Segments } from "../elements.js";
-import { BandChart, CurveTable } from "./band-chart.js";
 import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, UnitSwitch } from "./report-tools.js";
 
-const HEADROOM = 1.06;
 const NOMINAL = "nominal";
 
 /** What each experiment is about. */
@@ -73,8 +74,10 @@ const knownLevels = () => [
 
 /** The references that are known, in the unit that is shown. */
 const levelsOf = (entry) =>
-  knownLevels().map(([field, kind, name]) => ({ kind, name, value: inUnit(entry[field], factorOf(entry)) }))
-    .filter(({ value }) => value !== null);
+  knownLevels().flatMap(([field, kind, name]) => {
+    const value = inUnit(entry[field], factorOf(entry));
+    return value === null ? [] : [{ kind, name, value }];
+  });
 
 // ---- one chart per gait
 
@@ -87,20 +90,17 @@ const nameOf = ({ agent, plans_with, steps, role }, { config }) => [
 function Gait({ gait, entries, known }) {
   const curves = entries.filter(({ curve }) => curve).map((one) => toUnit(one, known));
   const levels = levelsOf(entries[0]);
-  const high = HEADROOM * largest([
-    ...levels.map(({ value }) => value), ...curves.flatMap(({ iqm, high: ends }) => [...iqm, ...ends]),
-  ].filter((one) => one !== null), 1e-9);
-  const ends = curves.map(({ name, iqm, steps }) =>
-    `${name} ${shown(iqm.at(-1))} after ${count(steps.at(-1), "step")}`);
+  const marks = asMarks(levels);
+  const ends = curves.map(({ name, ys, xs }) => `${name} ${shown(ys.at(-1))} after ${count(xs.at(-1), "step")}`);
   const lines = levels.map(({ name, value }) => `${name.toLowerCase()} ${shown(value)}`);
   const label = `${gaitTitle(gait)}: ${[...ends, ...lines].join(", ")}`;
   return html`
     <figure>
       <figcaption><b>${gaitTitle(gait)}</b><span class="dim num">${seedsOf(entries)}</span></figcaption>
       ${curves.length > 0 && html`
-        <${BandChart} label=${label} curves=${curves} levels=${levels} high=${high}
-          unit=${STEPS_OF[known.experiment]} />
-        <${CurveTable} label=${label} curves=${curves} levels=${levels} />
+        <${Chart} name=${gaitTitle(gait)} label=${label} lines=${curves} marks=${marks}
+          xs=${[...new Set(curves.flatMap(({ xs }) => xs))].sort((a, b) => a - b)}
+          x=${stepsAxis(curves, STEPS_OF[known.experiment])} y=${distanceAxis([{ lines: curves, marks }])} />
       `}
     </figure>
   `;
@@ -118,8 +118,8 @@ function toUnit(one, known) {
   const all = (list) => list.map((value) => inUnit(value, factor));
   const { steps, iqm_m, low_m, high_m } = one.curve;
   return {
-    key: one.key, agent: one.agent, name: nameOf(one, known), steps, points: [],
-    iqm: all(iqm_m), low: all(low_m), high: all(high_m),
+    name: nameOf(one, known), color: agentOf(one.agent).color, xs: steps, ys: all(iqm_m), low: all(low_m),
+    high: all(high_m), dots: true,
   };
 }
 

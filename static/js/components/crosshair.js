@@ -1,0 +1,227 @@
+// The crosshair of a chart: follows the pointer, a finger or the arrow keys, in all charts over the same axis. A click
+// or Enter seeks; a drag, two fingers, + and − zoom; a double click or 0 shows all.
+import { useRef, useState } from "preact/hooks";
+import {
+  crosshair, indexAfter, intervalAt, movedTo, nearestIndex, pinned, scaledAround, valueAt, zoomFactorOf, zoomOf, zoomTo,
+} from "../chart.js";
+import { percent, shareOf } from "../scale.js";
+import { html } from "./elements.js";
+import { cssColour } from "./line-labels.js";
+
+/** @import { Range } from "../chart.js" */
+
+/** From this share of the width on, the values stand on the left of the crosshair. */
+const FLIP_SHARE = 0.5;
+/** A mouse that moves further while its button is down selects a part. */
+const DRAG_PX = 6;
+/** A second click within it is a double click. */
+const DOUBLE_CLICK_MS = 250;
+
+/**
+ * What a chart's keys, pointer and menu act on.
+ * @typedef {object} Axis
+ * @property {string} axis
+ * @property {number[]} xs where there are values, ascending
+ * @property {Range} whole
+ * @property {Range} part that is shown
+ * @property {number} now the index that is read first
+ * @property {((x: number) => unknown) | null} seek
+ */
+
+/** The index at the crosshair, if it is on this axis and in view; else null. @param {Axis} axis */
+export function readIndex({ axis, xs, part: [low, high] }) {
+  const at = crosshair.value;
+  if (at?.axis !== axis) return null;
+  const index = nearestIndex(xs, at.x);
+  return index >= 0 && xs[index] >= low && xs[index] <= high ? index : null;
+}
+
+/** Zoom by a factor around the crosshair, or around the middle; 0 shows all. */
+export function zoomBy(one, factor) {
+  const { axis, whole, part, xs } = one;
+  const index = readIndex(one);
+  const middle = index === null ? (part[0] + part[1]) / 2 : xs[index];
+  zoomTo(axis, factor ? scaledAround(part, middle, factor) : null, whole);
+}
+
+/** Covers the plotting area of a chart whose frame is positioned. */
+export function Crosshair(props) {
+  const { name, inset, xs, now, part: [low, high] } = props;
+  const [selection, setSelection] = useState(/** @type {Range | null} */ (null));
+  const onPointer = usePointer(props, setSelection);
+  const index = readIndex(props);
+  const last = xs.length - 1;
+  if (last < 0) return null;
+  const shown = index ?? Math.max(0, Math.min(now, last));
+  const { at, values } = readingOf(props, xs[shown]);
+  const words = `${at}: ${values.map((one) => `${one.name} ${one.value}`).join(", ")}`;
+  const style = Object.fromEntries(Object.entries(inset).map(([side, px]) => [side, `${px}px`]));
+  const share = shareOf(xs[shown], low, high);
+  const onFocus = ({ currentTarget }) => {
+    if (index === null && currentTarget.matches(":focus-visible")) crosshair.value = { axis: props.axis, x: xs[shown] };
+  };
+  return html`
+    <div class=${`crosshair ${props.seek ? "seeks" : ""}`} style=${style} tabindex="0" role="slider"
+      aria-label=${`Values of ${name}`} aria-valuemin="0" aria-valuemax=${last} aria-valuenow=${shown}
+      aria-valuetext=${words} ...${onPointer} onKeyDown=${(event) => onKey(event, props, shown)} onFocus=${onFocus}>
+      ${selection && html`<${Selection} from=${Math.min(...selection)} to=${Math.max(...selection)} />`}
+      ${index !== null && html`
+        <i class="line" style=${{ left: percent(share) }}></i>
+        <${Readout} at=${at} values=${values} share=${share} />
+      `}
+    </div>
+  `;
+}
+
+const Selection = ({ from, to }) => html`
+  <i class="selection" style=${{ left: percent(from), right: percent(1 - to) }}></i>
+`;
+
+/** What is read at a position: each line, and each named level. */
+function readingOf({ lines, marks, x, y }, position) {
+  const valueOf = (line) => {
+    const value = valueAt(line, position);
+    const interval = intervalAt(line, position);
+    if (value === null) return "–";
+    return interval ? `${y.text(value)} (${interval.map(y.text).join(" – ")})` : y.text(value);
+  };
+  return {
+    at: x.text(position),
+    values: [
+      ...lines.map((line) => ({ name: line.name, color: line.color, value: valueOf(line) })),
+      ...marks.filter((mark) => mark.name).map((mark) => ({ ...mark, value: y.text(mark.y) })),
+    ],
+  };
+}
+
+function onKey(event, props, shown) {
+  const { axis, xs, whole, part, seek } = props;
+  const { key } = event;
+  if (event.ctrlKey || event.altKey || event.metaKey) return;
+  const next = indexAfter(key, shown, xs.length - 1);
+  const factor = zoomFactorOf(key);
+  if (next !== null) {
+    crosshair.value = { axis, x: xs[next] };
+    if (zoomOf(axis)) zoomTo(axis, movedTo(part, xs[next]), whole);
+  } else if (factor !== null) zoomBy(props, factor);
+  else if (key === "Enter" && seek) seek(xs[shown]);
+  else if (key === "Escape") crosshair.value = null;
+  else return;
+  event.preventDefault();
+  // Else the page's own keys act too.
+  event.stopPropagation();
+}
+
+/** Where a pointer is: its share of the width, the width, and the position on the axis. */
+function placeOf({ clientX, currentTarget }, [low, high]) {
+  const { left, width } = currentTarget.getBoundingClientRect();
+  const share = width > 0 ? Math.max(0, Math.min((clientX - left) / width, 1)) : 0;
+  return { share, width, x: low + (high - low) * share };
+}
+
+/** Handlers of a mouse, which reads, selects and seeks, and of fingers, of which two zoom. */
+function usePointer(props, setSelection) {
+  const mouse = useMouse(props, setSelection);
+  const finger = useFingers(props);
+  const { axis, xs, part } = props;
+  const read = (event) => {
+    const { x } = placeOf(event, part);
+    const inView = xs.filter((one) => one >= part[0] && one <= part[1]);
+    if (inView.length) crosshair.value = { axis, x: inView[nearestIndex(inView, x)] };
+  };
+  const handlersOf = ({ pointerType }) => (pointerType === "touch" ? finger : mouse);
+  return {
+    onPointerDown(event) {
+      read(event);
+      handlersOf(event).down(event);
+    },
+    onPointerMove(event) {
+      if (!handlersOf(event).move(event)) read(event);
+    },
+    onPointerUp: (event) => handlersOf(event).up(event),
+    onPointerCancel: (event) => handlersOf(event).cancel(event),
+    onPointerLeave({ pointerType, currentTarget }) {
+      // A finger that is lifted leaves the values until something else is touched.
+      if (pointerType === "mouse" && !currentTarget.matches(":focus-visible")) crosshair.value = null;
+    },
+    onDblClick: mouse.double,
+  };
+}
+
+function useMouse({ axis, whole, part, seek }, setSelection) {
+  const press = useRef(/** @type {{ x: number, share: number, isDrag: boolean } | null} */ (null));
+  const timer = useRef(/** @type {any} */ (0));
+  const click = (x) => {
+    clearTimeout(timer.current);
+    // Of what is zoomed, a double click shows all and does not seek.
+    if (seek) timer.current = setTimeout(() => seek(x), zoomOf(axis) ? DOUBLE_CLICK_MS : 0);
+  };
+  const cancel = () => {
+    press.current = null;
+    setSelection(null);
+  };
+  return {
+    cancel,
+    down(event) {
+      if (event.button !== 0) return;
+      event.currentTarget.setPointerCapture(event.pointerId);
+      press.current = { ...placeOf(event, part), isDrag: false };
+    },
+    move(event) {
+      const from = press.current;
+      if (!from) return false;
+      const { share, width } = placeOf(event, part);
+      from.isDrag ||= Math.abs(share - from.share) * width > DRAG_PX;
+      if (from.isDrag) setSelection([from.share, share]);
+      return false;
+    },
+    up(event) {
+      const from = press.current;
+      cancel();
+      if (!from) return;
+      const { x } = placeOf(event, part);
+      if (from.isDrag) zoomTo(axis, [from.x, x], whole);
+      else click(x);
+    },
+    double() {
+      clearTimeout(timer.current);
+      zoomTo(axis, null, whole);
+    },
+  };
+}
+
+function useFingers({ axis, whole, part }) {
+  const fingers = useRef(/** @type {Map<number, { x: number, share: number }>} */ (new Map()));
+  const lift = ({ pointerId }) => fingers.current.delete(pointerId);
+  return {
+    up: lift,
+    cancel: lift,
+    down: (event) => fingers.current.set(event.pointerId, placeOf(event, part)),
+    /** Whether two fingers zoom, which reads nothing. */
+    move(event) {
+      const moved = fingers.current.get(event.pointerId);
+      if (moved) moved.share = placeOf(event, part).share;
+      const [one, other] = [...fingers.current.values()];
+      if (!other) return false;
+      zoomTo(axis, pinned([one.x, other.x], [one.share, other.share]), whole);
+      return true;
+    },
+  };
+}
+
+function Readout({ at, values, share }) {
+  // Beside the crosshair, on the side with more room and no wider than that.
+  const side = share < FLIP_SHARE
+    ? { left: percent(share), maxWidth: percent(1 - share) }
+    : { right: percent(1 - share), maxWidth: percent(share) };
+  return html`
+    <div class="readout num" style=${side} aria-hidden="true">
+      <p class="dim">${at}</p>
+      ${values.map(({ name, color, value }) => html`
+        <p>
+          ${color && html`<span class="swatch" style=${{ "--agent": cssColour(color) }}></span>`}${name} <b>${value}</b>
+        </p>
+      `)}
+    </div>
+  `;
+}

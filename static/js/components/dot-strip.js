@@ -1,0 +1,69 @@
+// Every seed as a dot on one axis, with the interquartile mean and reference values.
+import { largest, percent, shareOf, swarm, thinned, ticks } from "../scale.js";
+import { html } from "./elements.js";
+
+const DOT_PX = 3;
+const APART_PX = 5;
+/** More cannot be told apart; an even selection stands for all. */
+const MOST_DOTS = 600;
+/** Height below the dots for the mean and its interval, where they hide none. */
+const LANE_PX = 12;
+/** Height of the axis' numbers, and about how many there are: strips may be narrow. */
+const AXIS_PX = 14;
+const AXIS_NUMBERS = 3;
+
+/**
+ * Every seed as a dot on one axis, with the interquartile mean and reference values.
+ * @param {object} props
+ * @param {string} props.label the same in words
+ * @param {number[]} props.points one per seed
+ * @param {number} [props.low] where the axis begins
+ * @param {number} props.high where the axis ends
+ * @param {{ iqm: number, low?: number | null, high?: number | null } | null} [props.typical] interquartile
+ *   mean and, if known, its interval
+ * @param {{ value: number, kind: "greedy" | "best-known" | "half" | "published" }[]} [props.marks] lines; a diamond
+ *   where published
+ * @param {string} [props.color]
+ * @param {number} [props.height] without the axis
+ * @param {((value: number) => string) | null} [props.axis] a number of the axis in words; null: no axis
+ */
+export function DotStrip({
+  label, points, low = 0, high, typical = null, marks = [], color, height = 36, axis = null,
+}) {
+  const at = (value) => percent(shareOf(value, low, high));
+  const drawn = points.length > MOST_DOTS ? thinned([...points].sort((a, b) => a - b), MOST_DOTS) : points;
+  const rows = swarm(drawn.map((value) => shareOf(value, low, high)));
+  const tallest = largest(rows.map(Math.abs), 1);
+  const middle = (height - LANE_PX) / 2;
+  const apart = Math.min(APART_PX, (middle - DOT_PX) / tallest);
+  const style = color && { "--agent": color };
+  return html`
+    <svg class="dots" width="100%" height=${height + (axis ? AXIS_PX : 0)} role="img" aria-label=${label}
+      style=${style}>
+      <line class="axis" x1="0" x2="100%" y1=${middle} y2=${middle} />
+      ${marks.filter(({ kind }) => kind !== "published").map(({ value, kind }) => html`
+        <line class=${`mark ${kind}`} x1=${at(value)} x2=${at(value)} y1="0" y2=${height} />
+      `)}
+      ${drawn.map((value, n) => html`
+        <circle class="dot-of-seed" cx=${at(value)} cy=${middle + rows[n] * apart} r=${DOT_PX} />
+      `)}
+      ${typical && html`<${Typical} typical=${typical} at=${at} y=${height - LANE_PX / 2} />`}
+      ${axis && ticks(high, AXIS_NUMBERS).map((value) => html`
+        <line class="axis" x1=${at(value)} x2=${at(value)} y1=${height} y2=${height + 3} />
+        <text class="axis-number" x=${at(value)} y=${height + AXIS_PX} text-anchor=${value ? "middle" : "start"}>
+          ${axis(value)}
+        </text>
+      `)}
+      ${marks.filter(({ kind }) => kind === "published").map(({ value }) => html`
+        <svg x=${at(value)} y=${middle} overflow="visible"><path class="mark published" d="M0-7 6 0 0 7-6 0z" /></svg>
+      `)}
+    </svg>
+  `;
+}
+
+const Typical = ({ typical, at, y }) => html`
+  ${typical.low !== null && typical.low !== undefined && html`
+    <line class="interval" x1=${at(typical.low)} x2=${at(typical.high)} y1=${y} y2=${y} />
+  `}
+  <line class="typical" x1=${at(typical.iqm)} x2=${at(typical.iqm)} y1=${y - 5} y2=${y + 5} />
+`;
