@@ -16,6 +16,7 @@ import { cssColour, LineLabels, MarkLines, roomFor, widthOf } from "./line-label
 const HEIGHT = 216;
 const TOP_PX = 20;
 const BOTTOM_PX = 38;
+const DOT_PX = 3;
 const TICK_GAP_PX = 8;
 const TICK_PX = 14;
 const REGULAR = 400;
@@ -104,7 +105,8 @@ function Picture({ label, x, y, lines, marks, frame }) {
   return html`
     <svg class="chart-lines" width=${width} height=${height} role="img" aria-label=${label}>
       <clipPath id=${id}>
-        <rect x=${left} y=${top - 4} width=${right - left} height=${bottom - top + 8} />
+        <rect x=${left - DOT_PX} y=${top - DOT_PX} width=${right - left + 2 * DOT_PX}
+          height=${bottom - top + 2 * DOT_PX} />
       </clipPath>
       <${Axes} x=${x} y=${y} frame=${frame} />
       <g clip-path=${`url(#${id})`}>
@@ -151,7 +153,7 @@ function Curve({ line: { color, xs, ys, low, high, seeds = [], dots }, frame }) 
       ${hasBand && html`<path class="band" d=${`${path(low)}L${at(high).reverse().join("L")}Z`} />`}
       <path class="curve" d=${path(ys)} />
       ${dots && ys.map((value, n) => html`
-        <circle class="curve-dot" cx=${frame.x(xs[n])} cy=${frame.y(value)} r="3" />
+        <circle class="curve-dot" cx=${frame.x(xs[n])} cy=${frame.y(value)} r=${DOT_PX} />
       `)}
     </g>
   `;
