@@ -125,14 +125,13 @@ def test_accepted_encodings(header: str, *, expected: bool) -> None:
     assert accepts_gzip(header) is expected
 
 
-def test_page_preloads_every_module_once_but_those_that_are_opened_later(api: Api) -> None:
+def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Api) -> None:
     page = api.client.get("/").text
     folder = assets.static_dir()
     modules = imported_modules("static/js/main.js", folder)
-    components = "static/js/components"
-    names = ("experiments/experiments", "runs/runs", "gait")
-    opened = {f"{components}/{name}.js" for name in names}
-    later = {one for first in opened for one in imported_modules(first, folder)} - {*modules}
+    names = ("experiments/experiments", "runs/runs", "steps/steps", "gait", "chart-files")
+    opened = {f"static/js/components/{name}.js" for name in names}
+    later = {path for one in opened for path in imported_modules(one, folder)} - {*modules}
 
     every = {*(folder / "js").rglob("*.js")}
     assert {folder.parent / path for path in (*modules, *later)} == every

@@ -10,7 +10,6 @@ const PACKAGES = {
   "preact-signals.js": "@preact/signals/dist/signals.module.js",
   "preact-signals-core.js": "@preact/signals-core/dist/signals-core.module.js",
   "htm.js": "htm/dist/htm.module.js",
-  "uplot.js": "uplot/dist/uPlot.esm.js",
 };
 
 /** @param {string} path */

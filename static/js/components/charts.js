@@ -16,6 +16,7 @@ import { cssColour, LineLabels, MarkLines, roomFor, widthOf } from "./line-label
 const HEIGHT = 216;
 const TOP_PX = 20;
 const BOTTOM_PX = 38;
+const DOT_PX = 3;
 const TICK_GAP_PX = 8;
 const TICK_PX = 14;
 const REGULAR = 400;
@@ -65,7 +66,7 @@ export function Chart(props) {
       </div>
       ${children}
       <div class="chart-foot">
-        <${AsTable} caption=${label} chart=${chart} />
+        <${ChartAsTable} caption=${label} chart=${chart} />
         <${ChartMenu} chart=${chart} axis=${axis} host=${host} />
       </div>
     </div>
@@ -104,7 +105,8 @@ function Picture({ label, x, y, lines, marks, frame }) {
   return html`
     <svg class="chart-lines" width=${width} height=${height} role="img" aria-label=${label}>
       <clipPath id=${id}>
-        <rect x=${left} y=${top - 4} width=${right - left} height=${bottom - top + 8} />
+        <rect x=${left - DOT_PX} y=${top - DOT_PX} width=${right - left + 2 * DOT_PX}
+          height=${bottom - top + 2 * DOT_PX} />
       </clipPath>
       <${Axes} x=${x} y=${y} frame=${frame} />
       <g clip-path=${`url(#${id})`}>
@@ -151,7 +153,7 @@ function Curve({ line: { color, xs, ys, low, high, seeds = [], dots }, frame }) 
       ${hasBand && html`<path class="band" d=${`${path(low)}L${at(high).reverse().join("L")}Z`} />`}
       <path class="curve" d=${path(ys)} />
       ${dots && ys.map((value, n) => html`
-        <circle class="curve-dot" cx=${frame.x(xs[n])} cy=${frame.y(value)} r="3" />
+        <circle class="curve-dot" cx=${frame.x(xs[n])} cy=${frame.y(value)} r=${DOT_PX} />
       `)}
     </g>
   `;
@@ -230,32 +232,34 @@ function ChartMenu({ chart, axis, host }) {
 
 const MOST_ROWS = 100;
 
-export function AsTable({ caption, chart }) {
+/** Numbers as a table, folded; `columns` and `rows` return them, and are called when it is opened. */
+export function AsTable({ caption, columns, rows }) {
   const [isOpen, setOpen] = useState(false);
   return html`
     <details class="as-table" onToggle=${({ target }) => setOpen(target.open)}>
       <summary>As a table</summary>
-      ${isOpen && html`<${Rows} caption=${caption} chart=${chart} />`}
+      ${isOpen && html`
+        <div class="scroller" tabindex="0" role="region" aria-label=${caption}>
+          <table>
+            <caption class="sr-only">${caption}</caption>
+            <thead><tr>${columns().map((title) => html`<th scope="col">${title}</th>`)}</tr></thead>
+            <tbody>
+              ${rows().map(([first, ...others]) => html`
+                <tr><th scope="row">${first}</th>${others.map((one) => html`<td>${one}</td>`)}</tr>
+              `)}
+            </tbody>
+          </table>
+        </div>
+      `}
     </details>
   `;
 }
 
-function Rows({ caption, chart: { x, y, lines, marks, xs } }) {
-  const { columns, rows } = tableOf({ lines, marks, xs: thinned(xs, MOST_ROWS), titles: { x: sentence(x.unit) } });
+function ChartAsTable({ caption, chart: { x, y, lines, marks, xs } }) {
+  const table = () => tableOf({ lines, marks, xs: thinned(xs, MOST_ROWS), titles: { x: sentence(x.unit) } });
   const words = (value) => (value === null ? "–" : y.text(value));
-  return html`
-    <div class="scroller" tabindex="0" role="region" aria-label=${caption}>
-      <table>
-        <caption class="sr-only">${caption}</caption>
-        <thead><tr>${columns.map((title) => html`<th scope="col">${title}</th>`)}</tr></thead>
-        <tbody>
-          ${rows.map(([at, ...values]) => html`
-            <tr><th scope="row">${x.text(at)}</th>${values.map((value) => html`<td>${words(value)}</td>`)}</tr>
-          `)}
-        </tbody>
-      </table>
-    </div>
-  `;
+  const rows = () => table().rows.map(([at, ...values]) => [x.text(at), ...values.map(words)]);
+  return html`<${AsTable} caption=${caption} columns=${() => table().columns} rows=${rows} />`;
 }
 
 // ---- a chart or table without data: a sketch, and what will fill it

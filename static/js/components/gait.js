@@ -56,7 +56,8 @@ function Figures({ lanes, known }) {
     `)}
     ${missing.map((words) => html`<p class="dim">${words}</p>`)}
     <${Numbers} lanes=${lanes} from=${from} to=${to} />
-    <${AsTable} caption="Footfalls" columns=${["Leg", "Duty factor", "In the air, s"]} rows=${rowsOf(lanes)} />
+    <${AsTable} caption="Footfalls" columns=${() => ["Leg", "Duty factor", "In the air, s"]}
+      rows=${() => rowsOf(lanes)} />
   `;
 }
 

@@ -1,5 +1,4 @@
 // The race: its scoreboard, and its chart of distance against time.
-import { useRef } from "preact/hooks";
 import { setStage } from "../actions.js";
 import { happeningsOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
@@ -250,7 +249,7 @@ function Lines({ known, time }) {
   const ends = lanes.map(({ name, ys }) => `${name} ${metres(ys.at(-1))}`).join(", ");
   const best = best_m === null ? "" : `; best known ${metres(best_m)}`;
   const caption = `The race after ${Math.round(until)} seconds: ${ends}${best}.`;
-  const last = useLatest(`${known.id} ${known.clock}`, lastMoment(known, until, longest));
+  const last = keptEnd(`${known.id} ${known.clock}`, lastMoment(known, until, longest));
   const moments = momentsOf(until, last);
   const x = {
     axis: `race ${known.id}`, max: last, unit: "race time, s", text: (seconds) => `${seconds.toFixed(1)}\u00a0s`,
@@ -264,11 +263,13 @@ function Lines({ known, time }) {
   `;
 }
 
-/** The largest of the values that there were of a key: seeking back does not shorten the axis. */
-function useLatest(key, value) {
-  const known = useRef({ key, value });
-  if (known.current.key !== key || known.current.value < value) known.current = { key, value };
-  return known.current.value;
+/** The end of the time axis, of one race under one clock. */
+let longestAxis = { key: "", until: 0 };
+
+/** The largest end that an axis had: seeking back does not shorten it. */
+function keptEnd(key, until) {
+  if (longestAxis.key !== key || longestAxis.until < until) longestAxis = { key, until };
+  return longestAxis.until;
 }
 
 /** Shows a moment of the race on stage; null if another run is, or for who may not. */

@@ -1,0 +1,218 @@
+"""Charts answer: read, seek, zoom and save them, by pointer, keys and touch."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from urllib.parse import urlencode
+from xml.etree import ElementTree
+
+import pytest
+from playwright.sync_api import Browser, FloatRect, Locator, Page, ViewportSize, expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import Serving, serving
+
+pytestmark = pytest.mark.timeout(300)
+
+SHORT = {
+    "steps": 20,
+    "evaluate_every": 5,
+    "race_steps": 5,
+    "simulator": "kinematic",
+    "lanes": "q-learning,greedy",
+}
+PHONE: ViewportSize = {"width": 390, "height": 844}
+PNG = b"\x89PNG"
+
+
+def test_charts_answer(dashboard: Dashboard, browser: Browser, tmp_path: Path) -> None:
+    with serving(tmp_path / "data", token="for-the-operator") as server:
+        dashboard.open(f"{server.address}?{urlencode({'token': 'for-the-operator', **SHORT})}")
+        dashboard.primary.click()
+        expect(dashboard.page.locator(".headline")).to_contain_text("had used")
+        expect(dashboard.button("Play again for everyone")).to_be_visible()
+        race = values_of(dashboard.page, "the race")
+        reads_and_seeks(dashboard, race)
+        zooms(dashboard, race)
+        answers_keys(dashboard, race)
+        is_saved(dashboard, tmp_path)
+        assert dashboard.violations() == []
+        on_a_spectators_phone(browser, server)
+        seeks_in_the_practice_on_stage(dashboard)
+
+
+def values_of(page: Page, name: str) -> Locator:
+    return page.get_by_role("slider", name=f"Values of {name}")
+
+
+def box_of(chart: Locator) -> FloatRect:
+    chart.scroll_into_view_if_needed()
+    box = chart.bounding_box()
+    assert box is not None
+    return box
+
+
+def position(chart: Locator) -> float:
+    """Where the crosshair is, or would be first: seconds or steps."""
+    words = chart.get_attribute("aria-valuetext") or ""
+    return float(words.split("\u00a0")[0].split(" ")[0])
+
+
+def numbers_of_axis(chart: Locator) -> list[str]:
+    ticks = chart.locator("..").locator("svg > text:not([text-anchor], .line-label)")
+    return ticks.all_text_contents()
+
+
+def sought(page: Page, act: Callable[[], object]) -> float:
+    """Return the moment that an action asks the stage for [s]."""
+    with page.expect_request(lambda one: one.method == "PUT" and "/stage" in one.url) as asked:
+        act()
+    body = asked.value.post_data_json or {}
+    assert list(body) == ["time_s"]
+    return float(body["time_s"])
+
+
+def reads_and_seeks(dashboard: Dashboard, race: Locator) -> None:
+    page, box = dashboard.page, box_of(race)
+    dashboard.button("Pause replay for everyone").or_(
+        dashboard.button("Play again for everyone")
+    ).wait_for()
+    end = position(race)
+    race.hover(position={"x": box["width"] / 2, "y": 40})
+    expect(race.locator(".readout")).to_contain_text(
+        re.compile(r"^\d+\.\d\ss\s*Q-learning −?\d\.\d\d\sm\s*Greedy \d\.\d\d\sm")
+    )
+    assert 0 < position(race) < end
+    time_s = sought(page, lambda: race.click(position={"x": box["width"] / 4, "y": 40}))
+    assert time_s == pytest.approx(end / 4, rel=0.2)
+    page.mouse.move(0, 0)
+    expect(race.locator(".readout")).to_have_count(0)
+    dashboard.button("Pause replay for everyone").click()
+    # The axis keeps its length, so that one can go on from here as well.
+    later_s = sought(page, lambda: race.click(position={"x": 0.9 * box["width"], "y": 40}))
+    assert later_s == pytest.approx(0.9 * end, rel=0.1)
+
+    # The practice is not on stage: its curve is read, and does not seek.
+    curve = values_of(page, "the learning curve")
+    expect(curve).not_to_have_class(re.compile("seeks"))
+    expect(race).to_have_class(re.compile("seeks"))
+
+
+def zooms(dashboard: Dashboard, race: Locator) -> None:
+    page, box = dashboard.page, box_of(race)
+    before = numbers_of_axis(race)
+    y = box["y"] + 40
+    page.mouse.move(box["x"] + 0.2 * box["width"], y)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.4 * box["width"], y, steps=3)
+    expect(race.locator(".selection")).to_be_visible()
+    page.mouse.up()
+    expect(race.locator(".selection")).to_have_count(0)
+    dashboard.eventually(lambda: numbers_of_axis(race) != before, "the axis shows a part")
+    asked: list[str] = []
+    page.on("request", lambda one: asked.append(one.method))
+    race.dblclick(position={"x": box["width"] / 2, "y": 40})
+    dashboard.eventually(lambda: numbers_of_axis(race) == before, "the axis shows all")
+    page.wait_for_timeout(500)  # longer than the first click of two waits for the second
+    assert "PUT" not in asked
+
+
+def answers_keys(dashboard: Dashboard, race: Locator) -> None:
+    page = dashboard.page
+    before = numbers_of_axis(race)
+    race.press("Home")
+    assert position(race) == 0
+    race.press("ArrowRight")
+    assert position(race) > 0
+    at = position(race)
+    assert sought(page, lambda: race.press("Enter")) == pytest.approx(at, abs=0.05)
+    race.press("+")
+    dashboard.eventually(lambda: numbers_of_axis(race) != before, "the axis shows a part")
+    follow = page.get_by_label("Follow")
+    followed = follow.input_value()
+    race.press("0")
+    dashboard.eventually(lambda: numbers_of_axis(race) == before, "the axis shows all")
+    assert follow.input_value() == followed  # the page's own key 0 frees the camera
+    race.press("Escape")
+    expect(race.locator(".readout")).to_have_count(0)
+    page.keyboard.press("?")
+    help_dialog = page.get_by_role("dialog", name="Keys")
+    expect(help_dialog).to_contain_text("Enter, or a click")
+    assert dashboard.violations() == []
+    page.keyboard.press("Escape")
+
+
+def is_saved(dashboard: Dashboard, folder: Path) -> None:
+    page = dashboard.page
+    page.get_by_label("More of the race: zoom, download").click()
+    assert dashboard.violations() == []
+    files = {}
+    for kind, words in (("PNG", "as PNG"), ("SVG", "as SVG"), ("CSV", "its numbers as CSV")):
+        with page.expect_download() as saved:
+            dashboard.button(f"Download {words}").click()
+        assert saved.value.suggested_filename == f"the-race.{kind.lower()}"
+        saved.value.save_as(folder / kind)
+        files[kind] = (folder / kind).read_bytes()
+    assert files["PNG"].startswith(PNG)
+    drawing = files["SVG"].decode()
+    title, *_ = ElementTree.fromstring(drawing).itertext()
+    assert title.startswith("The race after")
+    assert "Greedy" in drawing
+    assert not re.search(r"var\(|oklab|color\(|class=", drawing)  # any program can draw it
+    head, first, *_ = files["CSV"].decode().splitlines()
+    assert head == '"Race time, s",Q-learning (m),Greedy (m)'
+    assert first == "0,0,0"
+    page.keyboard.press("Escape")
+
+
+def on_a_spectators_phone(browser: Browser, server: Serving) -> None:
+    with browser.new_context(viewport=PHONE, has_touch=True, color_scheme="dark") as context:
+        dashboard = Dashboard(context.new_page(), has_3d=False)
+        page = dashboard.page
+        dashboard.open(server.address)
+        race = values_of(page, "the race")
+        expect(race).to_be_visible()
+        expect(race).not_to_have_class(re.compile("seeks"))
+        box = box_of(race)
+        page.touchscreen.tap(box["x"] + box["width"] / 2, box["y"] + 40)
+        expect(race.locator(".readout")).to_contain_text("Greedy")
+        # Two fingers move apart.
+        before = numbers_of_axis(race)
+        for number, share in ((1, 0.4), (2, 0.6)):
+            finger(race, "pointerdown", number, share, box)
+        for number, share in ((1, 0.1), (2, 0.9)):
+            finger(race, "pointermove", number, share, box)
+            finger(race, "pointerup", number, share, box)
+        dashboard.eventually(lambda: numbers_of_axis(race) != before, "the axis shows a part")
+        page.get_by_label("More of the race: zoom, download").tap()
+        expect(page.get_by_role("button", name=re.compile("^Show this moment"))).to_have_count(0)
+        dashboard.button("Show all").tap()
+        dashboard.eventually(lambda: numbers_of_axis(race) == before, "the axis shows all")
+        assert dashboard.scroll_width() == PHONE["width"]
+        assert dashboard.violations() == []
+        assert dashboard.complaints == []
+
+
+def finger(chart: Locator, event: str, number: int, share: float, box: FloatRect) -> None:
+    chart.dispatch_event(
+        event,
+        {"pointerId": number, "pointerType": "touch", "clientX": box["x"] + share * box["width"]},
+    )
+
+
+def seeks_in_the_practice_on_stage(dashboard: Dashboard) -> None:
+    page = dashboard.page
+    [training] = dashboard.get("/api/v1/trainings")["items"]
+    page.evaluate(
+        """run_id => fetch("/api/v1/stage", {
+            method: "PUT", headers: {"Content-Type": "application/json"},
+            body: JSON.stringify({run_id, time_s: 0, playing: false}),
+        })""",
+        training["id"],
+    )
+    curve = values_of(page, "the learning curve")
+    expect(curve).to_have_class(re.compile("seeks"))
+    box = box_of(curve)
+    duration_s = float(page.locator(".seek input").get_attribute("max") or 0)
+    time_s = sought(page, lambda: curve.click(position={"x": box["width"] / 2, "y": 40}))
+    assert time_s == pytest.approx(duration_s / 2, rel=0.1)
