@@ -1,7 +1,7 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
 
 /** @import { Annotations, Curve, Disturbance, Kind, Options, Page, Rates, Run } from "./types.js" */
-/** @import { Stage, Summary, Timeline, Verb, WhatIfAnswer } from "./types.js" */
+/** @import { Stage, Summary, Timeline, Trial, Verb, WhatIfAnswer } from "./types.js" */
 
 const base = () => new URL("api/v1/", document.baseURI);
 
@@ -191,6 +191,10 @@ export const getCurve = (id) => call("GET", `${pathOf({ kind: "training", id })}
 /** @type {(id: string, clock: string) => Promise<Omit<Timeline, "id">>} */
 export const getTimeline = (id, clock) =>
   call("GET", `${pathOf({ kind: "race", id })}/timeline?clock=${clock}`);
+/** @type {(id: string) => Promise<{ trials: Trial[] }>} */
+export const getTrials = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/trials`);
+/** Run a trial of an experiment here. @type {(id: string, key: string) => Promise<Run>} */
+export const startTrial = (id, key) => start(`${pathOf({ kind: "experiment", id })}/trials/run`, { key });
 /** @type {(id: string) => Promise<Summary>} */
 export const getSummary = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/summary`);
 

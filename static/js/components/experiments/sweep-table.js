@@ -1,6 +1,7 @@
 // The settings of a sweep with every seed: the fields that vary, distances, share that walks.
 import { useState } from "preact/hooks";
 import { bare, factorOf, greedyTotals, inUnit, shown } from "../../experiments/distances.js";
+import { showSeed } from "../../experiments/seeds.js";
 import { count, percentage } from "../../format.js";
 import { largest } from "../../scale.js";
 import { agentOf } from "../../settings.js";
@@ -101,7 +102,7 @@ function Row({ row: { setting, points, typical, line }, columns, high }) {
       <th role="rowheader" scope="row" class="num">${nameOf(setting, columns)}</th>
       <td role="cell" class="wide-cell" data-label=${STRIP_TITLE}>
         ${typical
-          ? html`<${Strip} agent=${setting.agent} points=${points} typical=${typical} line=${line} high=${high} />`
+          ? html`<${Strip} setting=${setting} points=${points} typical=${typical} line=${line} high=${high} />`
           : html`<span class="dim">waiting for its first seed</span>`}
       </td>
       <td role="cell" data-label="Typical" class="num"><${Typical} typical=${typical} /></td>
@@ -110,12 +111,13 @@ function Row({ row: { setting, points, typical, line }, columns, high }) {
   `;
 }
 
-function Strip({ agent, points, typical, line, high }) {
+function Strip({ setting, points, typical, line, high }) {
   const label = `${count(points.length, "seed")}, typically ${shown(typical.iqm)}, greedy ${shown(line)}`;
   const marks = line === null ? [] : [{ value: line, kind: "greedy" }];
   return html`
     <${DotStrip} label=${label} points=${points} high=${high} typical=${typical} marks=${marks}
-      color=${agentOf(agent).color} axis=${shown} />
+      color=${agentOf(setting.agent).color} axis=${shown}
+      onDot=${(n) => showSeed(setting, setting.total.points_m[n])} />
   `;
 }
 
