@@ -59,6 +59,7 @@ from app.storage.server_lock import write_address_file
 from app.storage.sessions import Sessions
 from app.viewer.service import ViewerService, viewer_routes
 from app.viewer.session import websocket_options
+from app.what_if.estimate import Estimates
 from app.what_if.trial_pool import TrialPool
 from app.what_if.what_if import WhatIf
 
@@ -113,6 +114,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         ready=lambda: _unready_reason(jobs, store),
         film=viewer.recorded_stream,
         what_if=WhatIf(TrialPool()),
+        estimates=Estimates(TrialPool(count=1), jobs.cores),
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
     app.state.metrics = metrics.registry_of(app.state.services)
@@ -169,6 +171,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         finally:
             services.bus.close()
             await asyncio.to_thread(services.what_if.close)
+            await asyncio.to_thread(services.estimates.close)
             await asyncio.to_thread(services.jobs.close)
 
 

@@ -22,6 +22,7 @@ from app.storage.database.store import RunStore
 from app.storage.idempotency import Idempotency, Start
 from app.storage.recordings import Recordings
 from app.storage.run import Run
+from app.what_if.estimate import Estimates
 from app.what_if.what_if import WhatIf
 
 StreamEncoder = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock, Original | None], bytes]
@@ -47,6 +48,7 @@ class Services:
         audience: returns the counters of the viewer hub.
         ready: returns why runs cannot be started, in a sentence; None if they can.
         what_if: computes what-ifs.
+        estimates: estimates how long runs would take.
         film: encodes a race's recording as a recorded stream for viser.
         listeners: slots of event streams.
         exports: memory budget of exports that clients are still reading.
@@ -63,6 +65,7 @@ class Services:
     ready: Callable[[], str | None]
     film: StreamEncoder
     what_if: WhatIf
+    estimates: Estimates
     listeners: ClientSlots["Listener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
 

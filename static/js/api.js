@@ -138,6 +138,12 @@ async function start(path, body) {
 const randomKey = () =>
   Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join("-");
 
+/**
+ * How long a run would take that is started by this body.
+ * @type {(path: string, body: object) => Promise<{ seconds: number }>}
+ */
+export const estimate = (path, body) => call("POST", `${path}/estimate`, body);
+
 /** @param {object} body */
 export const startTraining = (body) => start("trainings", body);
 /** @param {object} body */

@@ -112,6 +112,7 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
     # It computes for as long as it is looked at, and leaves the machine to other tests.
     with serving(tmp_path, job_niceness=15) as server:
         visit(dashboard, server, **ENDLESS)
+        expect(page.get_by_text(re.compile(r"^Takes about .* on this machine\.$"))).to_be_visible()
         dashboard.button("Run Sweep: 5001 trials").click()
         expect(head(dashboard)).to_contain_text("a second")
         expect(head(dashboard)).to_be_in_viewport(ratio=1)
