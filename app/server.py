@@ -64,6 +64,7 @@ from app.storage.sessions import Sessions
 from app.viewer.replay_frames import ReplayFrames
 from app.viewer.service import ViewerService, viewer_routes
 from app.viewer.session import websocket_options
+from app.what_if.estimate import Estimates
 from app.what_if.trial_pool import TrialPool
 from app.what_if.what_if import WhatIf
 
@@ -120,6 +121,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         replays=ReplayFrames(Replays(store, recordings)),
         what_if=WhatIf(TrialPool()),
         explanations=Explanations(store, recordings),
+        estimates=Estimates(TrialPool(count=1), jobs.cores),
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
     app.state.metrics = metrics.registry_of(app.state.services)
@@ -177,6 +179,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         finally:
             services.bus.close()
             await asyncio.to_thread(services.what_if.close)
+            await asyncio.to_thread(services.estimates.close)
             await asyncio.to_thread(services.jobs.close)
 
 

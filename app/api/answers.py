@@ -501,6 +501,12 @@ class StageView(Answer):
     holder: str | None
 
 
+class EstimateView(Answer):
+    """How long a run would take here once it has a core [s]."""
+
+    seconds: Annotated[float, Field(ge=0)]
+
+
 class WhatIfHalf(BaseModel):
     """Result of 30 seeds with these settings: their distances [m] and interquartile mean."""
 

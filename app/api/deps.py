@@ -23,6 +23,7 @@ from app.storage.database.store import RunStore
 from app.storage.idempotency import Idempotency, Start
 from app.storage.recordings import Recordings
 from app.storage.run import Run
+from app.what_if.estimate import Estimates
 from app.what_if.what_if import WhatIf
 
 StreamEncoder = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock, Original | None], bytes]
@@ -65,6 +66,7 @@ class Services:
         ready: returns why runs cannot be started, in a sentence; None if they can.
         what_if: computes what-ifs.
         explanations: explains steps, and shows tables of any moment.
+        estimates: estimates how long runs would take.
         film: encodes a race's recording as a recorded stream for viser.
         replays: encodes frames of runs for pages that play them by themselves.
         listeners: slots of event streams.
@@ -84,6 +86,7 @@ class Services:
     replays: ReplayFrames
     what_if: WhatIf
     explanations: Explanations
+    estimates: Estimates
     listeners: ClientSlots["Listener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
 

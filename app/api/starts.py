@@ -10,6 +10,7 @@ from app.api.agent_bodies import AgentBodies
 from app.api.answers import ExperimentView, RaceView, TrainingView, WhatIfView
 from app.api.contract import LOCATION, answers
 from app.api.deps import ServicesDep, StartRequestDep
+from app.api.estimates import estimate_routes
 from app.api.experiment_body import ExperimentBody
 from app.api.runs import RunPath, accepted, find
 from app.api.schemas import BranchBody, ChangeBody, RaceBody, TrainingBody
@@ -24,6 +25,7 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
         agents: names of the registered agents.
     """
     router, bodies = APIRouter(), AgentBodies(agents)
+    router.include_router(estimate_routes(bodies))
 
     @router.post(
         "/trainings",

@@ -4,11 +4,12 @@ import multiprocessing
 import os
 import queue
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
-from typing import NamedTuple
+from functools import partial
+from typing import Any, NamedTuple, TypeVar
 
 from app.domain.errors import HexapodError, InvalidInput
 from app.experiments.trial import TrialConfig, TrialResult, run_trial
@@ -21,11 +22,14 @@ NICENESS = 10
 """Less than that of jobs, since a user waits for the reply."""
 _CHUNK_SIZE = 3
 _CLOSE_S = 3.0
+T = TypeVar("T")
+R = TypeVar("R")
 
 
 class _Request(NamedTuple):
-    configs: Sequence[TrialConfig]
-    future: "Future[list[TrialResult]]"
+    function: Callable[[Any], Any]
+    arguments: Sequence[Any]
+    future: "Future[list[Any]]"
 
 
 class TrialPool:
@@ -70,7 +74,11 @@ class TrialPool:
             InvalidInput: if a trial is invalid.
             Busy: if a worker exits, the timeout passes, or the pool is closed.
         """
-        request = _Request(configs, Future())
+        return self.map(run_trial, configs)
+
+    def map(self, function: Callable[[T], R], arguments: Sequence[T]) -> list[R]:
+        """Call a function of a module with each of some arguments; raises as `run`."""
+        request = _Request(function, arguments, Future())
         with self._lock:
             if self._closed:
                 raise Busy("the server is stopping; try again later", 1)
@@ -101,7 +109,7 @@ class TrialPool:
                 self._stop_workers()
                 return
             try:
-                request.future.set_result(self._run(request.configs))
+                request.future.set_result(self._run(request.function, request.arguments))
             except HexapodError as error:
                 request.future.set_exception(error)
             except (BrokenProcessPool, TimeoutError, OSError) as error:
@@ -111,13 +119,16 @@ class TrialPool:
                 message = f"the processes that try it are gone ({reason}); try again"
                 request.future.set_exception(Busy(message, 1))
 
-    def _run(self, configs: Sequence[TrialConfig]) -> list[TrialResult]:
+    def _run(self, function: Callable[[Any], Any], arguments: Sequence[Any]) -> list[Any]:
         if self._executor is None:
             self._executor = ProcessPoolExecutor(
                 self._count, multiprocessing.get_context("spawn"), initializer=_set_up_worker
             )
         results = []
-        for reply in self._executor.map(_run, configs, timeout=TIMEOUT_S, chunksize=_CHUNK_SIZE):
+        guarded = partial(_guarded, function)
+        for reply in self._executor.map(
+            guarded, arguments, timeout=TIMEOUT_S, chunksize=_CHUNK_SIZE
+        ):
             if isinstance(reply, str):
                 # All trials of a request share it; leaving the iteration cancels the others.
                 raise InvalidInput(reply)
@@ -150,10 +161,10 @@ def _exit_with_parent() -> None:
         os._exit(1)
 
 
-def _run(config: TrialConfig) -> TrialResult | str:
-    """Run a trial in a worker; return a sentence if it fails, since not all errors unpickle."""
+def _guarded(function: Callable[[Any], Any], argument: Any) -> Any:
+    """Call a function in a worker; return a sentence if it fails, since not all errors unpickle."""
     try:
-        return run_trial(config)
+        return function(argument)
     except HexapodError as error:
         return str(error)
     # User-supplied agents are untrusted code: they may raise anything, and call `sys.exit`.

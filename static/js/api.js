@@ -1,7 +1,8 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
 
 /** @import { Annotations, Curve, Disturbance, Explanation, GaitAnalysis, Kind, Options, Page } from "./types.js" */
-/** @import { Rates, ReplayPlan, Run, Stage, StateTable, Summary, Timeline, Verb, WhatIfAnswer } from "./types.js" */
+/** @import { Rates, ReplayPlan, Run, Stage, StateTable, Summary, Timeline, Trial, Verb } from "./types.js" */
+/** @import { WhatIfAnswer } from "./types.js" */
 
 const base = () => new URL("api/v1/", document.baseURI);
 
@@ -138,6 +139,12 @@ async function start(path, body) {
 const randomKey = () =>
   Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join("-");
 
+/**
+ * How long a run would take that is started by this body.
+ * @type {(path: string, body: object) => Promise<{ seconds: number }>}
+ */
+export const estimate = (path, body) => call("POST", `${path}/estimate`, body);
+
 /** @param {object} body */
 export const startTraining = (body) => start("trainings", body);
 /** @param {object} body */
@@ -217,6 +224,10 @@ export const getGait = (id, part, from_s) => {
   if (from_s !== null) query.set("from_s", String(from_s));
   return call("GET", `runs/${encodeURIComponent(id)}/gait?${query}`);
 };
+/** @type {(id: string) => Promise<{ trials: Trial[] }>} */
+export const getTrials = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/trials`);
+/** Run a trial of an experiment here. @type {(id: string, key: string) => Promise<Run>} */
+export const startTrial = (id, key) => start(`${pathOf({ kind: "experiment", id })}/trials/run`, { key });
 /** @type {(id: string) => Promise<Summary>} */
 export const getSummary = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/summary`);
 

@@ -604,6 +604,14 @@ export interface Explanation extends FootCells {
 /** Values of the pace and of live settings by name. */
 export type Rates = Record<string, SettingValue>;
 
+// ---- GET /experiments/{id}/trials
+
+export interface Trial {
+  /** The setting, and the number of the seed: "…#12". */
+  key: string;
+  result: { distances_m?: number[]; [field: string]: any } | null;
+}
+
 // ---- GET /experiments/{id}/summary
 
 export interface Interval {

@@ -66,6 +66,7 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
         re.compile(r"Holds|Does not hold|Not established")
     )
     expect(page.get_by_role("heading", name="Under the real clock")).to_be_visible()
+    run_a_seed(dashboard)
     assert dashboard.violations() == []
     page.set_viewport_size(PHONE)
     assert dashboard.scroll_width() == PHONE["width"]
@@ -82,11 +83,30 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
     assert len(Path(download.value.path()).read_text("utf-8").splitlines()) >= 9
 
     page.get_by_role("link", name="Runs").click()
-    expect(page.locator(".run")).to_contain_text("finished")
+    expect(page.locator(".run", has_text="Table 1, 3 seeds")).to_contain_text("finished")
     page.get_by_role("link", name="Report").click()
     dashboard.button("Delete").click()
     dashboard.button("Delete for good?").click()
     expect(page.get_by_role("heading", name="One seed misleads")).to_be_visible()
+
+
+def run_a_seed(dashboard: Dashboard) -> None:
+    """Click a dot of Table 1, run its seed, and come back to its replay."""
+    page = dashboard.page
+    page.locator(".to-seed").first.dispatch_event("click")
+    row = page.locator(".seed-list tr[aria-current]")
+    expect(row).to_be_in_viewport()
+    told = row.locator("td").first.inner_text()
+    row.get_by_role("button", name="Run this seed here").click()
+    expect(page.locator(".board")).to_be_visible()
+    dashboard.eventually(
+        lambda: dashboard.get("/api/v1/races")["items"][0]["state"] == "finished", "the seed's race"
+    )
+    race = dashboard.get("/api/v1/races")["items"][0]
+    assert f"{race['result']['lanes'][0]['total_distance_m']:.2f}\u00a0m" == told
+    page.get_by_role("link", name="Experiments").click()
+    replay = row.get_by_role("link", name="Replay")
+    expect(replay).to_have_attribute("href", f"?run={race['id']}")
 
 
 def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
@@ -96,6 +116,7 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
     # It computes for as long as it is looked at, and leaves the machine to other tests.
     with serving(tmp_path, job_niceness=15) as server:
         visit(dashboard, server, **ENDLESS)
+        expect(page.get_by_text(re.compile(r"^Takes about .* on this machine\.$"))).to_be_visible()
         dashboard.button("Run Sweep: 5001 trials").click()
         expect(head(dashboard)).to_contain_text("a second")
         expect(head(dashboard)).to_be_in_viewport(ratio=1)

@@ -53,7 +53,11 @@ expected-statuses = ["2xx", "3xx", "4xx", "503"]
 """
 FEWER = """
 [[operations]]
-include-name = ["POST /api/v1/what-if", "POST /api/v1/races", "POST /api/v1/experiments"]
+include-name = [
+  "POST /api/v1/what-if", "POST /api/v1/races", "POST /api/v1/experiments",
+  "POST /api/v1/trainings/estimate", "POST /api/v1/races/estimate",
+  "POST /api/v1/experiments/estimate",
+]
 phases.coverage.enabled = false
 """
 

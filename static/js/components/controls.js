@@ -4,6 +4,7 @@ import {
   canStart, missingLane, pause, pending, primaryAction, resume, resumeRun, runPrimaryAction, secondaryActions,
   showOnStage, stop,
 } from "../actions.js";
+import { raceEstimate } from "../estimate.js";
 import { chooseLearner, form, mistakes, unknownParts } from "../form.js";
 import { count, listed, sentence, whole } from "../format.js";
 import { isNarrow } from "../page.js";
@@ -11,7 +12,7 @@ import { interruptedRun, isOperator, myWork, offStage, progress, shownRun, work 
 import { agentOf, laneTitle, learners, ratesInWords } from "../settings.js";
 import { scene } from "../store.js";
 import { gaitTitle, inFormWords, labelOf } from "../titles.js";
-import { goToField, Held, html, Icon, Problem, ProgressBar, UnknownParts } from "./elements.js";
+import { EstimateNote, goToField, Held, html, Icon, Problem, ProgressBar, UnknownParts } from "./elements.js";
 import { Settings } from "./settings.js";
 import { Branch, LiveWorld } from "./what-happens.js";
 
@@ -59,6 +60,7 @@ function Actions() {
         ${!isBusy && html`<${Icon} name="play" />`}${label}
       </button>
       ${isHeld && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
+      ${!isBusy && html`<${EstimateNote} words=${raceEstimate} />`}
       <${UnknownParts} parts=${unknownParts} />
       <${Problem} at="start" />
       ${!isBusy && html`<${MissingLane} />`}

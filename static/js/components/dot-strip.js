@@ -26,9 +26,10 @@ const AXIS_NUMBERS = 3;
  * @param {string} [props.color]
  * @param {number} [props.height] without the axis
  * @param {((value: number) => string) | null} [props.axis] a number of the axis in words; null: no axis
+ * @param {((n: number) => unknown) | null} [props.onDot] called with the number of a point whose dot is clicked
  */
 export function DotStrip({
-  label, points, low = 0, high, typical = null, marks = [], color, height = 36, axis = null,
+  label, points, low = 0, high, typical = null, marks = [], color, height = 36, axis = null, onDot = null,
 }) {
   const at = (value) => percent(shareOf(value, low, high));
   const drawn = points.length > MOST_DOTS ? thinned([...points].sort((a, b) => a - b), MOST_DOTS) : points;
@@ -45,7 +46,8 @@ export function DotStrip({
         <line class=${`mark ${kind}`} x1=${at(value)} x2=${at(value)} y1="0" y2=${height} />
       `)}
       ${drawn.map((value, n) => html`
-        <circle class="dot-of-seed" cx=${at(value)} cy=${middle + rows[n] * apart} r=${DOT_PX} />
+        <circle class=${`dot-of-seed ${onDot ? "to-seed" : ""}`} cx=${at(value)} cy=${middle + rows[n] * apart}
+          r=${DOT_PX} onClick=${onDot && (() => onDot(points.indexOf(value)))} />
       `)}
       ${typical && html`<${Typical} typical=${typical} at=${at} y=${height - LANE_PX / 2} />`}
       ${axis && ticks(high, AXIS_NUMBERS).map((value) => html`

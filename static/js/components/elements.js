@@ -122,6 +122,9 @@ export const Held = ({ id, mistakes, onField, nameOf = labelOf }) => html`
   </ul>
 `;
 
+/** How long a start takes, if that is long. `words`: signal. */
+export const EstimateNote = ({ words }) => html`<p class="estimate dim" role="status">${words}</p>`;
+
 /** Focus a field, in whatever is folded around it. @param {string} id */
 export function goToField(id) {
   const field = document.getElementById(id);

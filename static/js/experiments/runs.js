@@ -3,12 +3,13 @@ import { computed, effect, signal } from "@preact/signals";
 import { attempt, deleteRun } from "../actions.js";
 import * as api from "../api.js";
 import { getSummary } from "../api.js";
+import { makeEstimate } from "../estimate.js";
 import { count, duration, whole } from "../format.js";
 import { followQuery, place } from "../page.js";
 import { announcement } from "../race.js";
 import { absentIds, followRuns, makeList, NO_FILTERS } from "../runs.js";
 import { everyRun, isActive, isOperator } from "../selectors.js";
-import { connection, isDeleted, requestRun, runs, setEntry, summarised } from "../store.js";
+import { connection, isDeleted, options, requestRun, runs, setEntry, summarised } from "../store.js";
 import { runTitle } from "../titles.js";
 import { chosenExperiment, mistakes, readQuery, requestBody, toQuery, trials } from "./form.js";
 
@@ -164,6 +165,16 @@ export function startLabel() {
 
 export const canStart = () =>
   isOperator.value && !hasMistakes() && trials.value > 0;
+
+/** Fewer trials are surely done soon. */
+const SHORT_TRIALS = 100;
+
+/** How long the form's experiment takes, in words. */
+export const experimentEstimate = makeEstimate(computed(() =>
+  place.value === "experiments" && options.value && canStart() && trials.value > SHORT_TRIALS
+    ? { path: "experiments", body: requestBody() }
+    : null,
+));
 
 /** Start an experiment and choose it; its id, or null if it was refused. */
 export const start = () =>

@@ -6,7 +6,7 @@ import {
   agentSettings, chooseExperiment, chosenExperiment, defaults, enter, experiments, mistakes, offeredAgents, parse,
   setField, takesField, unknownParts, values, wrong,
 } from "../../experiments/form.js";
-import { canStart, start, startLabel } from "../../experiments/runs.js";
+import { canStart, experimentEstimate, start, startLabel } from "../../experiments/runs.js";
 import { listed, sentence, whole } from "../../format.js";
 import { isNarrow } from "../../page.js";
 import { fullTitle, settingOf, shortTitle } from "../../settings.js";
@@ -14,7 +14,7 @@ import { options, served } from "../../store.js";
 import {
   agentTitle, choicesOf, fieldTitle, gaitTitle, observationTitle, robotTitle, simulatorTitle,
 } from "../../titles.js";
-import { goToField, Held, html, Icon, Mistake, Problem, UnknownParts } from "../elements.js";
+import { EstimateNote, goToField, Held, html, Icon, Mistake, Problem, UnknownParts } from "../elements.js";
 import { helpFor } from "../fields.js";
 import { WorldPicture } from "../world.js";
 
@@ -82,6 +82,7 @@ function StartButton() {
       aria-describedby=${isHeld ? "held-experiment" : undefined}>
       ${pending.value.experiment ? "Starting…" : html`<${Icon} name="play" />${startLabel()}`}
     </button>
+    <${EstimateNote} words=${experimentEstimate} />
     ${isHeld && html`
       <${Held} id="held-experiment" mistakes=${mistakes.value} nameOf=${nameOf}
         onField=${(field) => goToField(`experiment-${field}`)} />

@@ -9,6 +9,7 @@ import { describeRun, runTitle, simulatorTitle } from "../../titles.js";
 import { html, Icon, Problem, ProgressBar } from "../elements.js";
 import { FigureFour } from "./figure-four.js";
 import { AtAGlance, Claims, FairClocks, Story, Versus } from "./findings.js";
+import { Seeds } from "./seeds.js";
 import { SweepTable } from "./sweep-table.js";
 import { TableOne } from "./table-one.js";
 import { Worlds } from "./worlds.js";
@@ -34,6 +35,7 @@ function Findings({ known }) {
   return html`
     <${LeftOut} trials=${known.trials} />
     ${Figure && html`<${Figure} known=${known} />`}
+    <${Seeds} known=${known} />
     ${!known.worlds?.length && html`<${AtAGlance} known=${known} />`}
     <${Versus} known=${known} />
     <${Claims} claims=${known.claims ?? []} isComplete=${known.trials.done >= known.trials.total} />

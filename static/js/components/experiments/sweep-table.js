@@ -1,6 +1,7 @@
 // The settings of a sweep with every seed: the fields that vary, distances, share that walks.
 import { useState } from "preact/hooks";
 import { bare, factorOf, greedyTotals, inUnit, shown } from "../../experiments/distances.js";
+import { showSeed } from "../../experiments/seeds.js";
 import { count, percentage } from "../../format.js";
 import { largest } from "../../scale.js";
 import { agentOf } from "../../settings.js";
@@ -115,14 +116,15 @@ function Row({ row, columns, high }) {
   `;
 }
 
-function Strip({ row: { setting: { agent }, points, typical, line, best }, high }) {
+function Strip({ row: { setting, points, typical, line, best }, high }) {
   const known = best === null ? "" : `, best known ${shown(best)}`;
   const label = `${count(points.length, "seed")}, typically ${shown(typical.iqm)}, greedy ${shown(line)}${known}`;
   const marks = [{ value: line, kind: "greedy" }, { value: best, kind: "best-known" }]
     .filter(({ value }) => value !== null);
   return html`
     <${DotStrip} label=${label} points=${points} high=${high} typical=${typical} marks=${marks}
-      color=${agentOf(agent).color} axis=${shown} />
+      color=${agentOf(setting.agent).color} axis=${shown}
+      onDot=${(n) => showSeed(setting, setting.total.points_m[n])} />
   `;
 }
 

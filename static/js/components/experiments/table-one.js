@@ -1,6 +1,7 @@
 // Table 1 in the paper's layout, with every seed of this run.
 import { useState } from "preact/hooks";
 import { bare, factorOf, gaitsOf, inUnit, placesOf, shown, unit } from "../../experiments/distances.js";
+import { showSeed } from "../../experiments/seeds.js";
 import { count, percentage, whole } from "../../format.js";
 import { largest } from "../../scale.js";
 import { agentOf } from "../../settings.js";
@@ -129,7 +130,8 @@ function LearnerCell({ setting, distance, greedy, measure }) {
     <td role="cell" class="learner" data-label=${label}>
       <p class="cell-words num"><b>${shown(typical.iqm)}</b> <span class="dim">${intervalOf(typical)}</span></p>
       <${DotStrip} label=${captionOf(shares)} points=${points} high=${measure.high} typical=${typical} marks=${marks}
-        color=${agentOf(setting.agent).color} axis=${shown} />
+        color=${agentOf(setting.agent).color} axis=${shown}
+        onDot=${distance === "total" ? (n) => showSeed(setting, setting.total.points_m[n]) : null} />
       <${Published} value=${printed} quantile=${setting.published?.[`${distance}_quantile`] ?? null} />
     </td>
   `;

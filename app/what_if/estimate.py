@@ -1,0 +1,182 @@
+"""How long a training, race or experiment would take here: its steps times their measured time."""
+
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from app.agents.registry import learns
+from app.assembly import build_learner, build_walkers
+from app.experiments.config import ExperimentConfig
+from app.experiments.plan import Plan
+from app.jobs.submissions import (
+    ExperimentStart,
+    LaneStart,
+    RaceStart,
+    TrainingStart,
+    check_training,
+    check_walk,
+    plan_of,
+)
+from app.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem, training_config
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
+from app.runs.racing import race
+from app.runs.records import StepTaken
+from app.runs.training import train
+from app.what_if.trial_pool import TrialPool
+
+MEASURE_S = 0.25
+"""For how long the steps of an agent are timed [s]."""
+MAX_MEASURED = 12
+"""Agents and walking problems of an experiment that are timed; others count as their mean."""
+MAX_CACHED = 256
+CACHED_S = 600.0
+"""After this time the machine may be busier, or less."""
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Steps of one kind, whose time is measured once.
+
+    Attributes:
+        training: agent, settings and walking problem.
+        practises: whether the agent learns; else it walks as in a race.
+    """
+
+    training: TrainingConfig
+    practises: bool
+
+
+class _Part(NamedTuple):
+    """A number of steps of one kind."""
+
+    steps: Steps
+    number: int
+    paced_s: float = 0.0
+    """How long each takes at least, by the pace [s]."""
+
+
+class Estimates:
+    """Estimates durations from timed steps, which are cached for a while. Thread-safe."""
+
+    def __init__(self, pool: TrialPool, cores: int) -> None:
+        """Create the service with an empty cache.
+
+        Args:
+            pool: times the steps.
+            cores: how many jobs or trials run at once.
+        """
+        self._pool, self._cores = pool, cores
+        self._cache: OrderedDict[Steps, tuple[float, float]] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def of(self, start: TrainingStart | RaceStart | ExperimentStart) -> float:
+        """Return how long a run would take once it has a core [s].
+
+        Raises:
+            InvalidInput: if an agent fails at once.
+            Busy: if its first step takes too long to be timed, or the pool is closed.
+        """
+        if isinstance(start, ExperimentStart):
+            return self._experiment_s(start.config, start.workers or self._cores)
+        if isinstance(start, TrainingStart):
+            check_training(start.config)
+            return self._seconds([*_practice(start.config)])
+        check_walk(start.walk)
+        practices = [one.training.config for one in start.lanes if one.training is not None]
+        alone = [self._seconds([*_practice(config)]) for config in practices]
+        at_once = max([*alone, sum(alone) / self._cores], default=0.0)
+        return at_once + self._seconds([_lane(one, start) for one in start.lanes])
+
+    def close(self) -> None:
+        """Shut down the pool."""
+        self._pool.close()
+
+    def _experiment_s(self, config: ExperimentConfig, workers: int) -> float:
+        plan = plan_of(config)
+        parts = [*_trials(plan)]
+        measured = self._measured(dict.fromkeys(one.steps for one in parts))
+        mean = sum(measured.values()) / max(len(measured), 1)
+        total = sum(one.number * measured.get(one.steps, mean) for one in parts)
+        return total / max(1, min(workers, plan.total))
+
+    def _seconds(self, parts: list[_Part]) -> float:
+        measured = self._measured(dict.fromkeys(one.steps for one in parts))
+        return sum(one.number * max(one.paced_s, measured[one.steps]) for one in parts)
+
+    def _measured(self, wanted: Iterable[Steps]) -> dict[Steps, float]:
+        """Return the time of a step of each kind [s], of the first `MAX_MEASURED` kinds."""
+        kinds, now = list(wanted)[:MAX_MEASURED], time.monotonic()
+        with self._lock:
+            known = {
+                kind: step_s
+                for kind, (step_s, measured_s) in self._cache.items()
+                if now - measured_s < CACHED_S
+            }
+        missing = [kind for kind in kinds if kind not in known]
+        if missing:
+            timed = dict(zip(missing, self._pool.map(step_s_of, missing), strict=True))
+            known |= timed
+            with self._lock:
+                self._cache |= {kind: (step_s, now) for kind, step_s in timed.items()}
+                while len(self._cache) > MAX_CACHED:
+                    self._cache.popitem(last=False)
+        return {kind: known[kind] for kind in kinds}
+
+
+def step_s_of(steps: Steps) -> float:
+    """Time the steps of a kind, without the first one, and return the mean [s]."""
+    records = _practised(steps.training) if steps.practises else _raced(steps.training)
+    next(records)  # compiles, and fills caches
+    began_s, count = time.perf_counter(), 0
+    for _ in records:
+        count += 1
+        if time.perf_counter() - began_s > MEASURE_S:
+            break
+    return (time.perf_counter() - began_s) / max(count, 1)
+
+
+def _practised(config: TrainingConfig) -> Iterator[object]:
+    records = train(build_learner(config), config)
+    return (record for record in records if isinstance(record, StepTaken))
+
+
+def _raced(config: TrainingConfig) -> Iterator[object]:
+    lane = LaneConfig(agent=config.agent, settings=config.settings)
+    walk = {name: getattr(config, name) for name in WalkingProblem.__dataclass_fields__}
+    problem = RaceConfig(**walk, lanes=(lane,))
+    return race(build_walkers(problem, [None]), problem.steps, time.perf_counter)
+
+
+def _kind(config: TrainingConfig) -> Steps:
+    """Return the kind of a config's steps, without what their time does not depend on."""
+    common = replace(config, seed=0, evaluate_every=0, pace="max", tolerance=0.0)
+    practises = learns(config.agent)
+    return Steps(replace(common, world=config.world.at_start, steps=200), practises)
+
+
+def _practice(config: TrainingConfig) -> Iterator[_Part]:
+    kind = _kind(config)
+    pace = config.pace
+    paced_s = 0.0 if pace == "max" else config.robot.step_s / pace
+    yield _Part(kind, config.steps, paced_s)
+    evaluations = 1 + (config.steps // config.evaluate_every if config.evaluate_every else 0)
+    yield _Part(kind, evaluations * RACE_STEPS)
+
+
+def _lane(lane: LaneStart, start: RaceStart) -> _Part:
+    walk = vars(start.walk)
+    if lane.training is not None:
+        return _Part(_kind(lane.training.config), start.steps)
+    return _Part(_kind(training_config(lane.agent, **walk, **lane.settings)), start.steps)
+
+
+def _trials(plan: Plan) -> Iterator[_Part]:
+    for setting in plan.settings:
+        trial, count = setting.trial, plan.count(setting)
+        practised = trial.blocks * trial.training.steps
+        walks = len(trial.evaluations) or max(trial.blocks, 1)
+        yield _Part(_kind(trial.training), count * (practised + walks * RACE_STEPS))

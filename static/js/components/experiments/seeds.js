@@ -1,0 +1,108 @@
+// Every seed of a setting: its distance, and the run that repeats it here.
+import { useEffect, useRef } from "preact/hooks";
+import { pending } from "../../actions.js";
+import { chosenRun } from "../../experiments/runs.js";
+import {
+  chosen, hasReplay, isOpen, loadTrials, repeatable, runTrial, seedsOf,
+} from "../../experiments/seeds.js";
+import { count, metres } from "../../format.js";
+import { isOperator } from "../../selectors.js";
+import { fieldTitle, isNamedByValue, valueTitle, variedFields } from "../../titles.js";
+import { html, Problem } from "../elements.js";
+
+export function Seeds({ known }) {
+  const settings = repeatable(known.settings);
+  if (settings.length === 0) return null;
+  return html`
+    <section class="panel seeds" id="seeds" aria-labelledby="seeds-title">
+      <details open=${isOpen.value} onToggle=${({ target }) => (isOpen.value = target.open)}>
+        <summary><h2 id="seeds-title">One seed, run here</h2></summary>
+        ${isOpen.value && html`
+          <${Chosen} settings=${settings} parameters=${known.parameters} trials=${known.trials.done} />
+        `}
+      </details>
+    </section>
+  `;
+}
+
+/** The agent, and the other fields in which settings differ: "Q-learning, 500 steps". */
+const nameOf = (setting, varied) => {
+  const others = varied.filter((field) => field !== "agent" && setting[field] !== null);
+  const words = others.map((field) => {
+    const value = valueTitle(field, setting[field]);
+    return isNamedByValue(field) || field === "world" ? value : `${fieldTitle(field)} ${value}`;
+  });
+  return [valueTitle("agent", setting.agent), ...words].join(", ");
+};
+
+function Chosen({ settings, parameters, trials }) {
+  const run = chosenRun.value;
+  useEffect(() => {
+    if (run) loadTrials(run);
+  }, [run?.id, trials]);
+  const { setting, distance_m } = chosen.value;
+  const first = settings.find(({ role }) => role === "learner") ?? settings[0];
+  const { key } = settings.find((one) => one.key === setting) ?? first;
+  const varied = variedFields(settings, ["gait", "agent", "observation", "robot", "world", ...parameters]);
+  const seeds = run && seedsOf(run.id, key);
+  return html`
+    <p class="dim">
+      A trial is repeated as a run of its own, to the last bit: with its learning curve, its table and its replay.
+      A click on a dot above comes here too.
+    </p>
+    <label class="choice">
+      <span>Setting</span>
+      <select onChange=${({ target }) => (chosen.value = { setting: target.value, distance_m: null })}>
+        ${settings.map((one) => html`
+          <option value=${one.key} selected=${one.key === key}>${nameOf(one, varied)}</option>
+        `)}
+      </select>
+    </label>
+    <${Problem} at="trials" />
+    ${seeds
+      ? html`<${Table} experiment=${run} seeds=${seeds} distance_m=${distance_m} />`
+      : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the trials…</p>`}
+  `;
+}
+
+function Table({ experiment, seeds, distance_m }) {
+  if (seeds.length === 0) return html`<p class="dim">It waits for its first seed.</p>`;
+  return html`
+    <div class="scroller seed-list" tabindex="0" role="region" aria-label=${count(seeds.length, "seed")}>
+      <table class="facts-table">
+        <thead><tr><th scope="col">Seed</th><th scope="col">Distance</th><th scope="col">Run</th></tr></thead>
+        <tbody>
+          ${seeds.map((one) => html`
+            <${Seed} key=${one.key} experiment=${experiment} seed=${one} isChosen=${one.distance_m === distance_m} />
+          `)}
+        </tbody>
+      </table>
+    </div>
+  `;
+}
+
+function Seed({ experiment, seed, isChosen }) {
+  const { key, number, distance_m, run } = seed;
+  const row = useRef(/** @type {HTMLElement | null} */ (null));
+  useEffect(() => {
+    if (isChosen) row.current?.scrollIntoView({ block: "nearest" });
+  }, [isChosen]);
+  return html`
+    <tr ref=${row} class=${isChosen ? "chosen" : ""} aria-current=${isChosen ? "true" : undefined}>
+      <th scope="row" class="num">#${number}</th>
+      <td class="num">${metres(distance_m)}</td>
+      <td>
+        <span class="row-actions">
+          ${hasReplay(run) && html`<a href=${`?run=${encodeURIComponent(run.id)}`}>Replay</a>`}
+          ${run && html`<a href=${`#runs?search=${encodeURIComponent(run.id)}`}>${run.state}</a>`}
+          ${isOperator.value && html`
+            <button class="secondary compact" disabled=${pending.value.trials}
+              onClick=${() => runTrial(experiment, key)}>
+              ${run ? "Run it again" : "Run this seed here"}
+            </button>
+          `}
+        </span>
+      </td>
+    </tr>
+  `;
+}

@@ -1,0 +1,61 @@
+// How long the run that the form would start takes on the server, told before a long start.
+import { computed, effect, signal } from "@preact/signals";
+import * as api from "./api.js";
+import { form, mistakes, raceBody } from "./form.js";
+import { duration } from "./format.js";
+import { isOperator } from "./selectors.js";
+import { learns } from "./settings.js";
+import { connection } from "./store.js";
+
+/** @import { ReadonlySignal, Signal } from "@preact/signals" */
+
+/** A start that takes longer is told of. */
+const LONG_S = 20;
+/** A form that has not changed for so long is asked about. */
+const QUIET_MS = 600;
+
+/** What would be started. @typedef {{ path: string, body: object }} Start */
+
+/**
+ * Ask how long a start takes, each time it has come to rest as another one.
+ * @param {ReadonlySignal<Start | null>} start null while it cannot be, or is surely short
+ * @returns {ReadonlySignal<string>} in words; empty while it is short or not known
+ */
+export function makeEstimate(start) {
+  const key = computed(() => (connection.value === "live" && start.value ? JSON.stringify(start.value) : ""));
+  /** @type {Signal<{ key: string, seconds: number }>} */
+  const answer = signal({ key: "", seconds: 0 });
+  effect(() => {
+    const asked = key.value;
+    if (!asked) return undefined;
+    const timer = setTimeout(async () => {
+      const { path, body } = JSON.parse(asked);
+      // Without an answer nothing is told: the start itself says what is wrong.
+      const seconds = await api.estimate(path, body).then((told) => told.seconds, () => 0);
+      if (asked === key.peek()) answer.value = { key: asked, seconds };
+    }, QUIET_MS);
+    return () => clearTimeout(timer);
+  });
+  return computed(() => {
+    const { key: asked, seconds } = answer.value;
+    return asked === key.value && seconds > LONG_S ? `Takes about ${duration(seconds)} on this machine.` : "";
+  });
+}
+
+/** Steps below which a start is surely short: of learners together, and of lanes that look ahead. */
+const SHORT_PRACTICE = 2000;
+const SHORT_RACE = 200;
+
+/** Whether the form's race may take long. */
+const mayBeLong = computed(() => {
+  const { steps, lanes, race_steps, divisions, pace } = form.value;
+  const learners = lanes.filter(learns).length;
+  const isFine = divisions > 2 && learners < lanes.length;
+  return learners * steps > SHORT_PRACTICE || race_steps > SHORT_RACE || isFine || pace !== "max";
+});
+
+/** How long the form's practice and race take, in words. */
+export const raceEstimate = makeEstimate(computed(() => {
+  const isValid = Object.keys(form.value).length > 0 && Object.keys(mistakes.value).length === 0;
+  return isValid && isOperator.value && mayBeLong.value ? { path: "races", body: raceBody() } : null;
+}));

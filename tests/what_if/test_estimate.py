@@ -1,0 +1,90 @@
+"""Estimates of how long runs take: steps of each kind are timed once, and added up."""
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import pytest
+
+from app.assembly import build_learner
+from app.domain.errors import InvalidInput
+from app.experiments.config import experiment_config
+from app.jobs.submissions import ExperimentStart, LaneStart, RaceStart, TrainingStart
+from app.runs.config import WalkingProblem, training_config
+from app.runs.training import train
+from app.what_if.estimate import Estimates, Steps
+from app.what_if.trial_pool import TrialPool
+
+WALK = WalkingProblem(gait="left-right-origin", simulator="kinematic")
+
+
+class TimedPool(TrialPool):
+    """A pool in which a step takes 0.1 s, with look-ahead 1 s; it remembers what it timed."""
+
+    def __init__(self) -> None:
+        super().__init__(count=1)
+        self.timed: list[str] = []
+
+    def map(self, function: Callable[[Any], Any], arguments: Sequence[Any]) -> list[Any]:
+        kinds: Sequence[Steps] = arguments
+        self.timed += [one.training.agent for one in kinds]
+        return [0.1 if one.practises else 1.0 for one in kinds]
+
+
+def training(**fields: Any) -> TrainingStart:
+    return TrainingStart(training_config(**vars(WALK), **{"evaluate_every": 0, **fields}))
+
+
+def test_steps_and_evaluations_are_added_up_and_timed_once() -> None:
+    pool = TimedPool()
+    estimates = Estimates(pool, cores=2)
+    assert estimates.of(training(steps=100)) == pytest.approx((100 + 50) * 0.1)
+    evaluated = training(steps=100, evaluate_every=25, seed=3)
+    assert estimates.of(evaluated) == pytest.approx((100 + 5 * 50) * 0.1)
+    paced = training(steps=100, pace=1)
+    step_s = WALK.robot.step_s
+    assert estimates.of(paced) == pytest.approx(100 * max(step_s, 0.1) + 50 * 0.1)
+    assert pool.timed == ["q-learning"]
+
+    lanes = [
+        LaneStart("q-learning", training=training(steps=100)),
+        LaneStart("sarsa", training=training(steps=200, agent="sarsa")),
+        LaneStart("greedy"),
+    ]
+    practice_s = (200 + 50) * 0.1  # beside the other one, which is shorter
+    assert estimates.of(RaceStart(WALK, lanes, 10, 0)) == pytest.approx(
+        practice_s + 10 * (0.1 + 0.1 + 1.0)
+    )
+
+
+def test_trials_are_divided_among_the_workers() -> None:
+    config = experiment_config(
+        "sweep", {"seeds": 6, "steps": (100,), "gaits": ("left-right-origin",)}
+    )
+    greedy_s, learners_s = 50 * 1.0, 6 * (100 + 50) * 0.1
+    assert Estimates(TimedPool(), cores=2).of(ExperimentStart(config)) == pytest.approx(
+        (greedy_s + learners_s) / 2
+    )
+
+
+@pytest.fixture(scope="module")
+def estimates() -> Iterator[Estimates]:
+    made = Estimates(TrialPool(count=1), cores=1)
+    yield made
+    made.close()
+
+
+def test_a_measured_estimate_is_near_the_truth(estimates: Estimates) -> None:
+    start = training(steps=4000)
+    config = start.config
+    began_s = time.perf_counter()
+    for _ in train(build_learner(config), config):
+        pass
+    took_s = time.perf_counter() - began_s
+    assert took_s / 20 < estimates.of(start) < 20 * took_s, "other tests run meanwhile"
+
+
+def test_what_cannot_be_started_is_not_estimated(estimates: Estimates) -> None:
+    large = WalkingProblem(gait="left-right-origin", divisions=8, grid_side_m=0.03)
+    with pytest.raises(InvalidInput, match="choose fewer"):
+        estimates.of(TrainingStart(training_config(**vars(large), agent="posterior-sampling")))
