@@ -18,8 +18,9 @@ from app.domain.types import Action, Cells
 Direction = Annotated[
     Literal["direct", "retrograde"],
     Setting(
-        title="Direction of the wave",
-        help="Direct: from back to front, as insects walk; retrograde: from front to back.",
+        title="Direction",
+        help="Of the wave. Direct: from back to front, as insects walk; retrograde: from front to "
+        "back.",
         choice_titles=("direct", "retrograde"),
         phrase="{}",
     ),

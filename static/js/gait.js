@@ -60,6 +60,9 @@ export function momentOf(number) {
   return about?.part === "practice" && scene.value?.run_id === about.run.id ? scene.value.time_s : null;
 }
 
+/** The colour of a race's lane, which differs from its agent's if another lane has that. @param {number} number */
+export const colorOf = (number) => timeline.value?.lanes[number]?.color;
+
 /**
  * The race time at which a lane has walked for so long [s]; where it then thinks, the end of that.
  * @param {Pick<TimelineLane, "thinking">} lane

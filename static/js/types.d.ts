@@ -341,6 +341,7 @@ export type TimelinePoint = [number, number];
 
 export interface TimelineLane {
   agent: string;
+  color: string;
   points: TimelinePoint[];
   /** Intervals [from, to] of the race time [s]. */
   thinking: [number, number][];

@@ -2,8 +2,8 @@
 import { useEffect, useMemo } from "preact/hooks";
 import { count } from "../format.js";
 import {
-  AFTER_S, analysis, BEFORE_S, canSeek, cycleSentence, extentOf, FIGURES, followGait, isWatched, isWhole, legsInOrder,
-  legsInTheAir, lineOf, momentOf, part, rangeInWords, seek, SERIES, subject, swingsOf,
+  AFTER_S, analysis, BEFORE_S, canSeek, colorOf, cycleSentence, extentOf, FIGURES, followGait, isWatched, isWhole,
+  legsInOrder, legsInTheAir, lineOf, momentOf, part, rangeInWords, seek, SERIES, subject, swingsOf,
 } from "../gait.js";
 import { percent, shareOf, ticks } from "../scale.js";
 import { agentOf, laneTitle } from "../settings.js";
@@ -19,7 +19,8 @@ export function Gait({ isNear }) {
   }, [isNear]);
   useEffect(followGait, []);
   const known = analysis.value;
-  const lanes = known && lanesOf(known, subject.value?.run);
+  const run = subject.value?.run;
+  const lanes = useMemo(() => known && lanesOf(known, run), [known, run?.config, colorOf(0)]);
   return html`
     <p class="dim">When each foot is on the ground, in robot time: without the time that decisions take</p>
     ${lanes?.length ? html`<${Figures} lanes=${lanes} known=${known} />` : html`<${Empty} words=${INVITATION} />`}
@@ -32,32 +33,42 @@ function lanesOf(known, run) {
     const config = run.config.lanes?.[number] ?? lane;
     const { color, title } = agentOf(lane.agent);
     if (!lane.figures) return [];
-    return [{ ...lane, number, color, title: run.kind === "race" ? laneTitle(config) : title, run }];
+    const own = run.kind === "race" ? { title: laneTitle(config), color: colorOf(number) ?? color } : { title, color };
+    return [{ ...lane, ...own, number, legs: legsInOrder(run, lane.figures.legs.length) }];
   });
 }
 
+/** The moment of a lane that is shown, and the time that is drawn around it. */
+function viewOf(lane, isAround, { from, to }) {
+  const now = momentOf(lane.number);
+  if (!isAround) return { now, low: from, high: to };
+  const middle = Math.min(now ?? lane.figures.to_s, lane.recorded_to_s);
+  return { now, low: middle - BEFORE_S, high: middle + AFTER_S };
+}
+
+/** What does not depend on the moment is kept: the moment changes several times a second. */
 function Figures({ lanes, known }) {
   const isAround = !isWhole.value && known.part !== "evaluation";
-  const to = Math.max(...lanes.map(({ figures }) => figures.to_s));
   const from = Math.min(...lanes.map(({ figures }) => figures.from_s));
-  const drawn = lanes.map((lane) => {
-    const now = momentOf(lane.number);
-    const middle = Math.min(now ?? lane.figures.to_s, lane.recorded_to_s);
-    const [low, high] = isAround ? [middle - BEFORE_S, middle + AFTER_S] : [from, to];
-    return { ...lane, now, low, high };
-  });
-  const missing = [...new Set(lanes.map(({ no_effort }) => no_effort).filter(Boolean))];
-  return html`
-    <${Choices} known=${known} />
-    ${drawn.map((lane) => html`<${Footfalls} key=${lane.number} lane=${lane} step_s=${known.step_s} />`)}
-    <${TimeAxis} isAround=${isAround} low=${from} high=${to} />
-    ${SERIES.map((series) => html`
-      <${Line} key=${series.values} series=${series} lanes=${drawn} isAround=${isAround} />
-    `)}
-    ${missing.map((words) => html`<p class="dim">${words}</p>`)}
+  const to = Math.max(...lanes.map(({ figures }) => figures.to_s));
+  const views = lanes.map((lane) => viewOf(lane, isAround, { from, to }));
+  const lines = useMemo(() => SERIES.map((series) => linesOf(lanes, series)), [lanes]);
+  const words = useMemo(() => html`
+    ${[...new Set(lanes.map(({ no_effort }) => no_effort))].map((why) => why && html`<p class="dim">${why}</p>`)}
     <${Numbers} lanes=${lanes} from=${from} to=${to} />
     <${AsTable} caption="Footfalls" columns=${() => ["Leg", "Duty factor", "In the air, s"]}
       rows=${() => rowsOf(lanes)} />
+  `, [lanes]);
+  return html`
+    <${Choices} known=${known} />
+    ${lanes.map((lane, n) => html`
+      <${Footfalls} key=${lane.number} lane=${lane} view=${views[n]} step_s=${known.step_s} />
+    `)}
+    <${TimeAxis} isAround=${isAround} low=${from} high=${to} />
+    ${SERIES.map((series, n) => lines[n] && html`
+      <${Line} key=${series.values} series=${series} lines=${lines[n]} views=${views} isAround=${isAround} />
+    `)}
+    ${words}
   `;
 }
 
@@ -82,24 +93,31 @@ const BAR = 0.72;
 const barsOf = ({ stance }, row) =>
   stance.map(([from, to]) => `M${from} ${row + (1 - BAR) / 2}H${to}v${BAR}H${from}z`).join("");
 
-function Footfalls({ lane, step_s }) {
-  const { figures, title, color, run, now, low, high } = lane;
-  const legs = useMemo(() => legsInOrder(run, figures.legs.length), [run.config, figures]);
-  const paths = useMemo(() => legs.map(([leg], row) => barsOf(figures.legs[leg - 1], row)), [figures, legs]);
+function Footfalls({ lane, view, step_s }) {
+  const { figures, title, color, legs } = lane;
+  const { now, low, high } = view;
+  const bars = useMemo(() => legs.map(([leg], row) => html`
+    <path class="stance" d=${barsOf(figures.legs[leg - 1], row)} />
+  `), [lane]);
+  const head = useMemo(() => html`
+    <p class="walk-title">
+      <span class="swatch"></span><b>${title}</b><span class="dim">${cycleSentence(figures, legs)}</span>
+    </p>
+  `, [lane]);
+  const names = useMemo(() => html`
+    <ol class="leg-names" aria-hidden="true">
+      ${legs.map(([leg, pair]) => html`<li><i class=${pair ? `pair-${pair}` : "pair-none"}></i>${leg}</li>`)}
+    </ol>
+  `, [lane]);
   return html`
     <div class="walk-lane" style=${{ "--agent": color }}>
-      <p class="walk-title">
-        <span class="swatch"></span><b>${title}</b>
-        <span class="dim">${cycleSentence(figures, legs)}</span>
-      </p>
+      ${head}
       <div class="walk-row" style=${{ "--legs": legs.length }}>
-        <ol class="leg-names" aria-hidden="true">
-          ${legs.map(([leg, pair]) => html`<li><i class=${pair ? `pair-${pair}` : "pair-none"}></i>${leg}</li>`)}
-        </ol>
-        <${Timeline} lane=${lane} step_s=${step_s}>
+        ${names}
+        <${Timeline} lane=${lane} view=${view} step_s=${step_s}>
           <svg viewBox=${`${low} 0 ${high - low} ${legs.length}`} preserveAspectRatio="none" aria-hidden="true">
             ${legs.map((_, row) => html`<path class="swing" d=${`M${low} ${row + 0.5}H${high}`} />`)}
-            ${paths.map((d) => html`<path class="stance" d=${d} />`)}
+            ${bars}
           </svg>
           ${now !== null && html`<i class="now" style=${{ left: percent(shareOf(now, low, high)) }}></i>`}
         <//>
@@ -111,8 +129,9 @@ function Footfalls({ lane, step_s }) {
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 };
 
 /** What is drawn over time; a click, or an arrow key for a step, seeks where that is allowed. */
-function Timeline({ lane, step_s, children }) {
-  const { number, title, figures, now, low, high, recorded_to_s } = lane;
+function Timeline({ lane, view, step_s, children }) {
+  const { number, title, figures, recorded_to_s } = lane;
+  const { now, low, high } = view;
   const words = wordsAt(figures, now ?? figures.to_s, step_s);
   const label = `Footfalls of ${title}`;
   if (!canSeek.value || now === null) {
@@ -159,50 +178,51 @@ function TimeAxis({ isAround, low, high }) {
 
 // ---- the body and the servos over time, all lanes in one strip
 
-function Line({ series, lanes, isAround }) {
-  const lines = lanes.flatMap((lane) => {
-    const line = lineOf(lane.figures, series);
-    return line ? [{ ...lane, ...line }] : [];
+/** The lines of a strip with their values in words; null where nothing of it was recorded. */
+function linesOf(lanes, series) {
+  const { unit, decimals = 1 } = series;
+  const lines = lanes.flatMap(({ figures, title, color }, index) => {
+    const line = lineOf(figures, series);
+    if (!line) return [];
+    const { low, high } = extentOf([line.values], { least: 0 });
+    const d = `M${line.times.map((time, n) => `${time} ${(-line.values[n]).toFixed(4)}`).join("L")}`;
+    const words = `${title} ${rangeInWords([low, high], decimals, unit)}`;
+    return [{ index, color, words, values: line.values, path: html`<path class="curve" d=${d} />` }];
   });
   if (!lines.length) return null;
   const { low, high } = extentOf(lines.map(({ values }) => values), series);
-  const { name, unit, decimals = 1 } = series;
+  return { lines, low, high, range: rangeInWords([low, high], decimals, unit) };
+}
+
+function Line({ series: { name }, lines: { lines, low, high, range }, views, isAround }) {
+  const shown = lines.map((line) => ({ ...line, view: views[line.index] }));
   // Around the present moment all lanes have theirs at one place.
-  const cursors = lines.filter(({ now }) => now !== null).slice(0, isAround ? 1 : lines.length);
-  const words = lines.map(({ title, values }) => {
-    const own = extentOf([values], { least: 0 });
-    return `${title} ${rangeInWords([own.low, own.high], decimals, unit)}`;
-  });
+  const cursors = shown.filter(({ view }) => view.now !== null).slice(0, isAround ? 1 : shown.length);
   return html`
     <div class="walk-row">
-      <p class="walk-name">
-        ${name}<br /><span class="dim">${rangeInWords([low, high], decimals, unit)}</span>
-      </p>
-      <div class="walk-plot line" role="img" aria-label=${`${name}: ${words.join(", ")}`}>
-        ${lines.map((line) => html`
-          <svg key=${line.number} viewBox=${`${line.low} ${-high} ${line.high - line.low} ${high - low}`}
-            preserveAspectRatio="none" style=${{ "--agent": line.color }} aria-hidden="true">
-            <${Path} times=${line.times} values=${line.values} figures=${line.figures} />
-          </svg>
+      <p class="walk-name">${name}<br /><span class="dim">${range}</span></p>
+      <div class="walk-plot line" role="img" aria-label=${`${name}: ${lines.map(({ words }) => words).join(", ")}`}>
+        ${shown.map(({ index, color, view, path }) => html`
+          <svg key=${index} viewBox=${`${view.low} ${-high} ${view.high - view.low} ${high - low}`}
+            preserveAspectRatio="none" style=${{ "--agent": color }} aria-hidden="true">${path}</svg>
         `)}
-        ${cursors.map((line) => html`
-          <i key=${line.number} class=${isAround ? "now" : "now own"}
-            style=${{ left: percent(shareOf(line.now, line.low, line.high)), "--agent": line.color }}></i>
+        ${cursors.map(({ index, color, view }) => html`
+          <i key=${index} class=${isAround ? "now" : "now own"}
+            style=${{ left: percent(shareOf(view.now, view.low, view.high)), "--agent": color }}></i>
         `)}
       </div>
     </div>
   `;
 }
 
-function Path({ times, values, figures }) {
-  const d = useMemo(() => `M${times.map((time, n) => `${time} ${(-values[n]).toFixed(4)}`).join("L")}`, [figures]);
-  return html`<path class="curve" d=${d} />`;
-}
-
 // ---- the figures, and the footfalls as a table
 
+/** With more lanes there is no room beside the figures for what they mean. */
+const MOST_EXPLAINED = 3;
+
 const Numbers = ({ lanes, from, to }) => html`
-  <div class="scroller walk-figures" tabindex="0" role="region" aria-label="Figures of the gait">
+  <div class=${`scroller walk-figures ${lanes.length > MOST_EXPLAINED ? "many" : ""}`}
+    tabindex="0" role="region" aria-label="Figures of the gait">
     <table>
       <caption class="dim">From ${from.toFixed(1)} to ${to.toFixed(1)} s of robot time</caption>
       <thead>
@@ -225,7 +245,7 @@ const Numbers = ({ lanes, from, to }) => html`
       </tbody>
     </table>
   </div>
-  <details class="as-table narrow-only">
+  <details class=${`as-table ${lanes.length > MOST_EXPLAINED ? "" : "narrow-only"}`}>
     <summary>What the figures mean</summary>
     <dl class="walk-help">${FIGURES.map(([name, help]) => html`<dt>${name}</dt><dd>${help}</dd>`)}</dl>
   </details>
