@@ -125,16 +125,16 @@ def test_accepted_encodings(header: str, *, expected: bool) -> None:
     assert accepts_gzip(header) is expected
 
 
-def test_page_preloads_every_module_once_but_those_of_the_experiments(api: Api) -> None:
+def test_page_preloads_every_module_once_but_those_that_are_opened_later(api: Api) -> None:
     page = api.client.get("/").text
     folder = assets.static_dir()
     modules = imported_modules("static/js/main.js", folder)
-    opened = "static/js/components/experiments/experiments.js"
-    later = {*imported_modules(opened, folder)} - {*modules}
+    opened = [f"static/js/components/{one}/{one}.js" for one in ("experiments", "steps")]
+    later = {path for one in opened for path in imported_modules(one, folder)} - {*modules}
 
     every = {*(folder / "js").rglob("*.js")}
     assert {folder.parent / path for path in (*modules, *later)} == every
-    assert opened in later
+    assert {*opened} <= later
     assert not [module for module in later if module in page]
     for module in [*modules, *(f"static/vendor/{p.name}" for p in folder.glob("vendor/*.js"))]:
         assert page.count(f'<link rel="modulepreload" href="{module}">') == 1
