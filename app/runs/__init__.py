@@ -5,6 +5,8 @@ those of races; `config_json` converts them to JSON and back.
 `training` is the training loop with its evaluations, `racing` the race loop; both yield `records`.
 `walker` combines a simulator, its current state and an agent.
 `recording` stores motion for playback; `stored_practice` encodes a training's recording as arrays.
+`transition_log` keeps what a learner observed, did and earned; `rebuilding` builds a learner again
+from it, at any step, and explains its steps.
 `clocks` computes decision and motion times of a race, `results` its distances, times and ranks.
 `tables` takes, restores, encodes and validates checkpoints; `table_file` reads a Q-table from its
 file row by row.
