@@ -179,7 +179,9 @@ def _agent_without_robot(
 ) -> Agent:
     agent_class = registry.find(agent_name)
     if registry.searches(agent_name):
-        raise InvalidInput(f"{agent_name} plans with a simulator, so it is not built again")
+        raise InvalidInput(
+            f"{agent_name} plans with a simulator, and what it simulated was not recorded"
+        )
     problem = Problem(walk.resolved_gait.pairs, walk.grid.cells)
     own = {"rng": rng, "problem": problem, "explore": explore, "observe": sensors}
     return registry.build(agent_class, {**offered, **own})

@@ -3,6 +3,8 @@
 `protocol` defines the interface of agents, built-in and user-supplied.
 `registry` finds agent classes by name, lists their settings, and creates agents.
 `appearance` has their titles, descriptions and colours.
+`explanation` has the types and protocols by which learners explain their steps, and searches tell
+what they found.
 `tabular` has the base classes of learners with a Q-table. Those that learn from each step once
 derive from it: `q_learning` (paper, Algorithm 1), `double_q`, `sarsa`, `expected_sarsa` and
 `n_step_sarsa`; by `traces` (eligibility traces) also `sarsa_lambda` and `q_lambda`.

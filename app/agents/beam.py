@@ -63,7 +63,8 @@ class Beam(Search):
         """Return the first action of the best sequence that is left at the last layer."""
         nodes: Sequence[Node] = [self._expand.here]
         sums, first = np.zeros(1), [-1]
-        for _ in range(self._depth):
+        root = self._expand.here.legal
+        for step in range(self._depth):
             branches = [node.legal for node in nodes]
             parents = [index for index, actions in enumerate(branches) for _ in actions]
             children, rewards = self._expand(
@@ -74,6 +75,7 @@ class Beam(Search):
                 number if first[parent] == -1 else first[parent]
                 for number, parent in enumerate(parents)
             ]
+            self._foresee([root[number] for number in first], sums.tolist(), step + 1)
             kept = np.argsort(-sums, kind="stable")[: self._width].tolist()
             nodes, sums, first = [children[i] for i in kept], sums[kept], [first[i] for i in kept]
-        return self._expand.here.legal[first[0]]
+        return root[first[0]]

@@ -140,6 +140,31 @@ class ChoiceExplanation:
         return epsilon / count + (1 - epsilon) * (self.action in best) / len(best)
 
 
+class Future(NamedTuple):
+    """What a search found about an action of the present state."""
+
+    action: Action
+    reward_m: float
+    """Reward of the step, as simulated."""
+    return_m: float
+    """What the search compared, such as the highest sum of rewards of the sequences below."""
+    sequences: int
+    """Simulated sequences of steps that begin with it."""
+    steps: int
+    """How many steps ahead these go."""
+
+
+@runtime_checkable
+class Foreseeing(Protocol):
+    """Search that tells what it found for its newest decision.
+
+    Its class says in `compares` what `Future.return_m` is.
+    """
+
+    def futures(self) -> Sequence[Future]:
+        """Return what was found about each action that was simulated."""
+
+
 @runtime_checkable
 class Explaining(Protocol):
     """Learner that explains its steps. Other learners show their values only."""

@@ -46,6 +46,7 @@ class Informed(Search):
     title = "Informed"
     description = "Simulates only the steps that promise most by the law of a step without slip."
     color = "#2E5EAA"
+    compares = "highest sum of simulated rewards, and of one that is predicted after them"
 
     def __init__(self, expand: Expand, problem: Problem, *, budget: Budget = 3) -> None:
         super().__init__(expand)
@@ -55,13 +56,15 @@ class Informed(Search):
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         """Return the first action of the most promising sequence."""
         layer = [_Sequence(self._expand.here, 0.0, None)]
-        for share in self._shares:
+        firsts: list[Action] = []
+        for step, share in enumerate(self._shares, 1):
             layer = self._simulate(self._candidates(layer)[:share])
+            firsts = [one.first for one in layer if one.first is not None]
+            self._foresee(firsts, [one.sum_m for one in layer], step)
         after = self._model.best_rewards(np.array([one.node.offsets_m for one in layer]))
         values = [one.sum_m for one in layer] + after
-        first = layer[int(values.argmax())].first
-        assert first is not None  # noqa: S101 - every sequence has a step
-        return first
+        self._foresee(firsts, values.tolist(), len(self._shares) + 1)
+        return firsts[int(values.argmax())]
 
     def _candidates(self, layer: Sequence["_Sequence"]) -> list["_Candidate"]:
         """Return further steps of some sequences, the most promising first."""

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from app.agents.explanation import Future
 from app.agents.protocol import Expand, Node, Problem
 from app.agents.search import Depth, Search, action_count, check_depth
 from app.domain.types import Action, Cells, FloatArray
@@ -55,30 +56,27 @@ class LookAhead(Search):
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         """Return the first action of the sequence with the highest sum of rewards."""
-        best = self._best_sums([self._expand.here], self._depth)
-        return self._expand.here.legal[best.first[0]]
+        legal = self._expand.here.legal
+        rewards, sums = self._sums([self._expand.here], self._depth)
+        sequences = len(legal) ** (self._depth - 1)
+        found = zip(legal, rewards.tolist(), sums.tolist(), strict=True)
+        self._futures = {
+            action: Future(action, reward, best, sequences, self._depth)
+            for action, reward, best in found
+        }
+        return legal[int(sums.argmax())]
 
-    def _best_sums(self, nodes: Sequence[Node], depth: int) -> "_Best":
-        """Return each node's highest sum of `depth` rewards, and the index of its first action."""
+    def _sums(self, nodes: Sequence[Node], depth: int) -> tuple[FloatArray, FloatArray]:
+        """Return the reward of each node's actions, and the highest sum of `depth` rewards."""
         legal = [node.legal for node in nodes]
         parents = [node for node, actions in zip(nodes, legal, strict=True) for _ in actions]
-        children, sums = self._expand(parents, [a for actions in legal for a in actions])
-        if depth > 1:
-            sums = sums + self._best_sums(children, depth - 1).sums
-        ends = np.cumsum([len(actions) for actions in legal])
-        return _Best.of(np.split(sums, ends[:-1]))
-
-
-class _Best:
-    """Best child of each node: its sum of rewards [m], and the index of its action in `legal`."""
-
-    def __init__(self, sums: FloatArray, first: list[int]) -> None:
-        self.sums, self.first = sums, first
-
-    @classmethod
-    def of(cls, sums_by_node: Sequence[FloatArray]) -> "_Best":
-        first = [int(sums.argmax()) for sums in sums_by_node]
-        return cls(np.array([s[i] for s, i in zip(sums_by_node, first, strict=True)]), first)
+        children, rewards = self._expand(parents, [a for actions in legal for a in actions])
+        if depth == 1:
+            return rewards, rewards
+        ends = np.cumsum([len(child.legal) for child in children])
+        _, sums = self._sums(children, depth - 1)
+        best = np.array([later.max() for later in np.split(sums, ends[:-1])])
+        return rewards, rewards + best
 
 
 class Greedy(LookAhead):

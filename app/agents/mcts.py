@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from app.agents.explanation import Future
 from app.agents.protocol import Expand, Node
 from app.agents.search import Budget, Search
 from app.domain.types import Action, Cells
@@ -48,6 +49,7 @@ class Mcts(Search):
     title = "Tree search"
     description = "Simulates random sequences of steps, more of those that begin well."
     color = "#D14A00"
+    compares = "number of sequences that begin with it, then their mean sum of rewards"
 
     def __init__(self, expand: Expand, rng: np.random.Generator, *, budget: Budget = 156) -> None:
         super().__init__(expand)
@@ -64,6 +66,13 @@ class Mcts(Search):
             if self._left <= 0:
                 break
             self._simulate(root)
+        self._futures = {
+            action: Future(
+                action, child.reward_m, child.total_m / child.visits, child.visits, self._horizon
+            )
+            for action, child in root.children.items()
+            if child.visits
+        }
         return max(root.children, key=lambda one: _rank(root.children[one]))
 
     def _simulate(self, root: _Place) -> None:

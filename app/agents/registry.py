@@ -153,6 +153,12 @@ def searches(name: str) -> bool:
     return "expand" in parameter_names(find(name))
 
 
+def compares(name: str) -> str:
+    """Return what a search compares, as its class says in `compares`; no agent is imported."""
+    found = None if ":" in name else OURS.get(name) or registered().get(name)
+    return str(getattr(found, "compares", "return of its simulated sequences"))
+
+
 def keeps_learning(name: str) -> bool:
     """Whether a lane of an agent keeps learning by default: its class sets `keeps_learning = True`.
 

@@ -1,13 +1,16 @@
 """Base class of agents that search: they plan by simulated transitions, and do not learn."""
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import Annotated
 
 from annotated_types import Ge, Le
 
+from app.agents.explanation import Future
 from app.agents.protocol import AgentState, Expand, Problem, Transition
 from app.domain.errors import InvalidInput
 from app.domain.settings import Setting
+from app.domain.types import Action
 
 MAX_TRANSITIONS = 40_000
 """Maximum of transitions that a search may simulate for one decision."""
@@ -44,9 +47,34 @@ class Search:
     """
 
     learns = False
+    compares = "highest sum of the rewards of all sequences that begin with it"
 
     def __init__(self, expand: Expand) -> None:
         self._expand = expand
+        self._futures: dict[Action, Future] = {}
+
+    def futures(self) -> Sequence[Future]:
+        """Return what was found about each action that was simulated for the newest decision."""
+        return tuple(self._futures.values())
+
+    def _foresee(self, firsts: Sequence[Action], sums_m: Sequence[float], steps: int) -> None:
+        """Keep the highest sum of rewards for each first action; longer sequences count only.
+
+        Args:
+            firsts: first action of each sequence.
+            sums_m: sum of its rewards [m].
+            steps: their number of steps; with the first step what was known is forgotten.
+        """
+        if steps == 1:
+            self._futures = {}
+        best: dict[Action, float] = {}
+        counts = Counter(firsts)
+        for first, sum_m in zip(firsts, sums_m, strict=True):
+            best[first] = max(sum_m, best.get(first, sum_m))
+        for first, sum_m in best.items():
+            known = self._futures.get(first)
+            reward_m = sum_m if known is None else known.reward_m
+            self._futures[first] = Future(first, reward_m, sum_m, counts[first], steps)
 
     def learn(self, transition: Transition) -> None:
         """Do nothing: the agent plans by simulation and does not learn."""

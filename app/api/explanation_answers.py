@@ -97,6 +97,25 @@ class UpdateView(Answer):
     beliefs: list[BeliefView]
 
 
+class FutureView(Answer):
+    """What a search found about an action."""
+
+    action: Move
+    reward_m: Annotated[float, Field(description="of the step, as simulated")]
+    return_m: Annotated[float, Field(description="what the search compared")]
+    sequences: Annotated[Count, Field(description="simulated ones that begin with it")]
+    steps: Annotated[Count, Field(description="how far these look ahead")]
+
+
+class SearchView(Answer):
+    """What a search simulated, and what each future brought; its action comes first."""
+
+    compares: str
+    transitions: Count
+    futures: list[FutureView]
+    sentences: list[str]
+
+
 class ExplanationView(WalkedGrid):
     """An explained step."""
 
@@ -114,6 +133,7 @@ class ExplanationView(WalkedGrid):
     ]
     choice: ChoiceView | None
     update: Annotated[UpdateView | None, Field(description="null if it learned nothing from it")]
+    search: Annotated[SearchView | None, Field(description="null if it does not search")]
     unexplained: Annotated[str | None, Field(description="why the choice is not explained")]
 
 

@@ -147,6 +147,9 @@ def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
             msgspec.convert((step.decision_s, step.transitions), tuple[Seconds, Large])
             _check_motion(step.motion, config)
             _check_choice(step.observation, step.action, step.knowledge, config)
+            for future in step.futures:
+                _check_choice(step.observation, future.action, None, config)
+                msgspec.convert((future.reward_m, future.return_m), tuple[Metres, Metres])
 
 
 def _check_practice(config: WalkingProblem, files: Mapping[str, bytes]) -> None:

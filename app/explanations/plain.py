@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from app.agents.explanation import (
     ChoiceExplanation,
+    Future,
     Term,
     UpdateExplanation,
     ValueUpdate,
@@ -17,6 +18,7 @@ from app.agents.protocol import Valuing
 from app.domain.types import Action, Cells, FloatArray
 from app.runs.config import WalkingProblem
 from app.runs.rebuilding import ExplainedStep
+from app.runs.transition_log import Logged
 
 MAX_OTHERS = 24
 """Further updates of values that are told one by one, those with the largest changes."""
@@ -49,6 +51,7 @@ def explanation_as_json(
     explained: ExplainedStep,
     *,
     lane: int | None = None,
+    search: "Search | None" = None,
     unexplained: str | None = None,
 ) -> dict[str, Any]:
     """Return an explained step.
@@ -59,6 +62,7 @@ def explanation_as_json(
         agent: name of the agent that took the step.
         explained: the step.
         lane: of a race; None for a training.
+        search: what a search found; None for an agent that does not search.
         unexplained: why there is no explanation of its choice.
     """
     words, logged = Words(walk), explained.logged
@@ -75,8 +79,64 @@ def explanation_as_json(
         "visits": None if explained.visits is None else _rows(explained.visits),
         "choice": None if explained.choice is None else _choice(explained.choice, words),
         "update": None if explained.update is None else _update(explained.update, words),
+        "search": None if search is None else _search(search, logged, words),
         "unexplained": unexplained,
     }
+
+
+class Search(NamedTuple):
+    """What a search found before a step.
+
+    Attributes:
+        compares: what it compared.
+        transitions: number of steps that it simulated.
+        futures: what it found about each action.
+    """
+
+    compares: str
+    transitions: int
+    futures: Sequence[Future]
+
+
+def _search(search: Search, logged: Logged, words: Words) -> dict[str, Any]:
+    best_first = sorted(
+        search.futures, key=lambda one: (one.action != logged.action, -one.return_m)
+    )
+    return {
+        "compares": search.compares,
+        "transitions": search.transitions,
+        "futures": [{**one._asdict(), "action": list(one.action)} for one in best_first],
+        "sentences": _foreseen(search, best_first, logged, words),
+    }
+
+
+def _foreseen(
+    search: Search, best_first: Sequence[Future], logged: Logged, words: Words
+) -> list[str]:
+    """Return what a search foresaw, in words; the first of the futures is that of its action."""
+    chosen, *others = best_first
+    steps = "step" if search.transitions == 1 else "steps"
+    sentences = [
+        f"It simulated {search.transitions:,} {steps} before it took this one, and compared the "
+        f"{search.compares}. {words.move(chosen.action).capitalize()} came first: "
+        f"{in_millimetres(chosen.return_m)} in {chosen.steps} "
+        f"step{'s' * (chosen.steps != 1)}, of which {in_millimetres(chosen.reward_m)} at once."
+    ]
+    if others:
+        other = others[0]
+        sentences.append(
+            f"The next highest, {words.move(other.action)}, promised "
+            f"{in_millimetres(other.return_m)} in {other.steps} step{'s' * (other.steps != 1)}."
+        )
+    missed = logged.reward_m - chosen.reward_m
+    if missed == 0:
+        sentences.append(f"What came is what it foresaw: {in_millimetres(logged.reward_m)}.")
+    else:
+        sentences.append(
+            f"What came was {in_millimetres(logged.reward_m)}, {in_millimetres(abs(missed))} "
+            f"{'more' if missed > 0 else 'less'} than it foresaw."
+        )
+    return sentences
 
 
 def _choice(choice: ChoiceExplanation, words: Words) -> dict[str, Any]:

@@ -6,15 +6,17 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
+from app.agents import registry
 from app.agents.protocol import Tabular, Valuing
 from app.assembly import rebuild_lane, rebuild_learner
 from app.domain.errors import InvalidInput
-from app.explanations.plain import explanation_as_json, table_as_json
+from app.explanations.plain import Search, explanation_as_json, table_as_json
 from app.explanations.rebuilt_practice import Changes, RebuiltPractice
 from app.runs.config import TrainingConfig
 from app.runs.race_config import RaceConfig
 from app.runs.rebuilding import ExplainedStep, NotRebuilt, RebuiltLearner
 from app.runs.recording import LaneRecording
+from app.runs.records import LaneStep
 from app.runs.transition_log import Logged, TransitionLog
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict
@@ -118,14 +120,20 @@ class Explanations:
             raise InvalidInput(f"lane must be from 0 to {len(lanes) - 1}, not {lane}")
         number = _checked_step(step, len(lanes[lane].steps))
         steps, why = LaneSteps(lanes[lane], config.lanes[lane].observation == "measured"), None
-        try:
-            with self._one_at_a_time():
-                explained = self._lane_practice(run, config, lane, steps).explain(number, ())
-        except (Conflict, InvalidInput, NotRebuilt) as error:
-            why = str(error)
-            explained = ExplainedStep(number, steps.step(number - 1), None, None, None)
-        agent = config.lanes[lane].agent
-        return explanation_as_json(run.id, config, agent, explained, lane=lane, unexplained=why)
+        explained = ExplainedStep(number, steps.step(number - 1), None, None, None)
+        search = _search_of(config.lanes[lane].agent, lanes[lane].steps[number - 1])
+        if search is None:
+            try:
+                with self._one_at_a_time():
+                    explained = self._lane_practice(run, config, lane, steps).explain(number, ())
+            except (Conflict, InvalidInput, NotRebuilt) as error:
+                why = str(error)
+        return explanation_as_json(
+            *(run.id, config, config.lanes[lane].agent, explained),
+            lane=lane,
+            search=search,
+            unexplained=why,
+        )
 
     def _log(self, run: Run) -> TransitionLog:
         log = self._recordings.transitions(run.id)
@@ -250,6 +258,13 @@ class LaneSteps:
         after = rest[0].observation if rest else ()
         measured = (one.observation, after) if self._is_measured else ((), ())
         return Logged(one.observation, measured[0], one.action, one.reward_m, after, measured[1])
+
+
+def _search_of(agent: str, step: LaneStep) -> Search | None:
+    """Return what the search of a lane found; None if it does not search, or was not recorded."""
+    if not any(one.action == step.action for one in step.futures):
+        return None
+    return Search(registry.compares(agent), step.transitions, step.futures)
 
 
 def _checked_step(step: int | None, count: int) -> int:

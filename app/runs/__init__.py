@@ -7,6 +7,8 @@ those of races; `config_json` converts them to JSON and back.
 `recording` stores motion for playback; `stored_practice` encodes a training's recording as arrays.
 `gait_analysis` computes footfalls, speed, cycle, posture and energy of a recorded walk, `footfall`
 when its feet are on the ground.
+`transition_log` keeps what a learner observed, did and earned; `rebuilding` builds a learner again
+from it, at any step, and explains its steps.
 `clocks` computes decision and motion times of a race, `results` its distances, times and ranks.
 `tables` takes, restores, encodes and validates checkpoints; `table_file` reads a Q-table from its
 file row by row.

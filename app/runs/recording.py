@@ -5,19 +5,21 @@ A recording is append-only. The live view shows its tail; a replay shows it from
 
 import json
 from collections import deque
-from collections.abc import Sequence
-from dataclasses import dataclass, field
-from itertools import accumulate
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import accumulate, islice, repeat
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from app.agents.explanation import Future
 from app.domain.simulator import Motion
 from app.domain.types import Action, FloatArray
 from app.runs.records import ActionValues, Evaluated, LaneStep, StepTaken
 
 Arrays = dict[str, NDArray[Any]]
+_FUTURES = ("future_actions", "future_values", "future_counts")
 
 
 @dataclass
@@ -137,8 +139,40 @@ def race_arrays(lanes: Sequence[LaneRecording]) -> Arrays:
         if knowledge:
             arrays[key + "values"] = np.array([k.values for k in knowledge], np.float32)
             arrays[key + "visits"] = np.array([k.visits for k in knowledge], np.float32)
+        arrays |= {key + name: array for name, array in _future_arrays(lane.steps).items()}
     arrays["meta"] = np.array(json.dumps(meta))
     return arrays
+
+
+def _future_arrays(steps: Sequence[LaneStep]) -> Arrays:
+    """Encode what a search found: the number of actions of each step, and one row an action."""
+    found = [future for step in steps for future in step.futures]
+    if not found:
+        return {}
+    return {
+        "futures": np.array([len(step.futures) for step in steps]),
+        "future_actions": np.array([one.action for one in found], np.uint8),
+        "future_values": np.array([(one.reward_m, one.return_m) for one in found], float),
+        "future_counts": np.array([(one.sequences, one.steps) for one in found], np.uint32),
+    }
+
+
+def _futures(arrays: Arrays, key: str) -> Iterator[tuple[Future, ...]]:
+    """Decode the output of `_future_arrays`, step by step.
+
+    Raises:
+        ValueError: if it is inconsistent, as in an untrusted file.
+    """
+    counts: list[int] = arrays[key + "futures"].tolist()
+    columns: list[list[Any]] = [arrays[key + name].tolist() for name in _FUTURES]
+    if min(counts) < 0 or {len(column) for column in columns} != {sum(counts)}:
+        raise ValueError("what its search found is of other steps")
+    rows = zip(*columns, strict=True)
+    for count in counts:
+        yield tuple(
+            Future(Action(*action), *values, *numbers)
+            for action, values, numbers in islice(rows, count)
+        )
 
 
 def race_recording(arrays: Arrays) -> list[LaneRecording]:
@@ -152,8 +186,10 @@ def race_recording(arrays: Arrays) -> list[LaneRecording]:
             continue
         ends = list(accumulate(arrays[key + "frames"].tolist()))
         starts = [0, *ends[:-1]]
+        futures = _futures(arrays, key) if key + "futures" in arrays else repeat(())
         for step, (start, end) in enumerate(zip(starts, ends, strict=True)):
-            lane.steps.append(_lane_step(arrays, key, number, step, slice(start, end)))
+            taken = _lane_step(arrays, key, number, step, slice(start, end))
+            lane.steps.append(replace(taken, futures=next(futures)))
     return lanes
 
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from app.agents.explanation import Future
 from app.domain.simulator import Motion
 from app.domain.types import Action, Cells, FloatArray
 
@@ -88,6 +89,8 @@ class LaneStep:
     """Duration of the decision by the race's timer [s]."""
     motion: Motion
     knowledge: ActionValues | None
+    futures: tuple[Future, ...] = ()
+    """What a search found about the actions, in the order in which it did."""
 
 
 @dataclass(frozen=True)

@@ -599,6 +599,13 @@ export interface Explanation extends FootCells {
     others: { count: number; values_changed: number; largest: ValueUpdate[] };
     beliefs: Belief[];
   } | null;
+  /** What a search found; its own move comes first. */
+  search: {
+    compares: string;
+    transitions: number;
+    futures: { action: Move; reward_m: number; return_m: number; sequences: number; steps: number }[];
+    sentences: string[];
+  } | null;
   unexplained: string | null;
 }
 

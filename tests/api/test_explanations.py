@@ -159,8 +159,13 @@ def test_lanes_of_a_race_are_explained(api: Api, trained: dict[str, Any]) -> Non
     assert frozen["update"] is None
     assert learning["update"]["direct"]["is_exact"]
     assert explained(api, race["id"], lane=1, step=10)["update"] is None
-    assert search["choice"] is None
-    assert "plans with a simulator" in search["unexplained"]
+    assert search["choice"] is search["unexplained"] is None
+    assert search["search"]["transitions"] == len(search["search"]["futures"]) == 12
+    best = search["search"]["futures"][0]
+    assert best["action"] == search["action"]
+    assert best["reward_m"] == best["return_m"] == search["reward_m"]
+    assert "came first" in search["search"]["sentences"][0]
+    assert "What came is what it foresaw" in search["search"]["sentences"][-1]
 
 
 def test_steps_and_lanes_that_are_not_there_are_refused(api: Api, trained: dict[str, Any]) -> None:

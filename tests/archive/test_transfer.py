@@ -443,6 +443,11 @@ def test_invalid_recordings_are_refused(source: RunStore) -> None:
         put("lane0.action", lambda a: a * 0.5),
         put("lane0.scalars", lambda a: a * np.nan),
         put("lane0.values", lambda a: a[:, :1]),
+        put("lane1.futures", lambda a: a + 1),
+        put("lane1.future_actions", lambda a: a + 100),
+        put("lane1.future_values", lambda a: a * np.nan),
+        put("lane1.future_values", lambda a: a[:, :1]),
+        put("lane1.future_counts", lambda a: a[1:]),
         put("meta", lambda a: np.array("[]")),
         put("meta", lambda a: np.array("[" * 100_000)),
     ):

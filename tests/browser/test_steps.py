@@ -108,5 +108,7 @@ def test_lanes_of_a_race_are_explained(dashboard: Dashboard, shared_server: Serv
     expect(panel).to_contain_text("at the end of its practice")
     panel.get_by_role("group", name="Lane").get_by_role("button", name="Greedy").click()
     expect(panel.locator(".told")).to_contain_text("Greedy moved legs")
+    expect(panel.locator(".told")).to_contain_text("It simulated 12 steps before it took this one")
+    expect(panel.locator(".scores tr")).to_have_count(6)
     expect(panel).to_contain_text("This lane has no table of a training")
     assert dashboard.violations() == []

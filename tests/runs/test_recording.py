@@ -52,6 +52,16 @@ def race() -> list[LaneRecording]:
     return a_race(steps=6)
 
 
+def test_what_a_search_found_is_recorded(race: list[LaneRecording]) -> None:
+    learner, greedy, two_step = race
+    assert not any(taken.futures for taken in learner.steps)
+    for taken in (*greedy.steps, *two_step.steps):
+        assert taken.action in [one.action for one in taken.futures]
+        assert len(taken.futures) == 12
+    for taken in greedy.steps:
+        assert max(one.reward_m for one in taken.futures) == taken.reward_m
+
+
 def as_file(lanes: list[LaneRecording]) -> bytes:
     buffer = io.BytesIO()
     np.savez(buffer, **race_arrays(lanes))  # type: ignore[arg-type]
@@ -67,6 +77,7 @@ def assert_same(one: LaneStep, other: LaneStep) -> None:
         if array is not None and again is not None:
             assert array.dtype == again.dtype
             assert np.array_equal(array, again)
+    assert one.futures == other.futures
     assert (one.knowledge is None) == (other.knowledge is None)
     if one.knowledge and other.knowledge:
         assert np.allclose(one.knowledge.values, other.knowledge.values, equal_nan=True)

@@ -43,7 +43,8 @@ const times = (visits) => (visits === 1 ? "once" : count(visits, "time"));
 // ---- why this move
 
 function Choice({ told }) {
-  const { choice, unexplained } = told;
+  const { choice, search, unexplained } = told;
+  if (search) return html`<${Search} told=${told} />`;
   if (!choice) {
     return html`
       <section>
@@ -63,29 +64,47 @@ function Choice({ told }) {
 
 const sentenceOf = (text) => `${text.charAt(0).toUpperCase()}${text.slice(1)}${/[.!]$/.test(text) ? "" : "."}`;
 
+function Search({ told }) {
+  const { sentences, futures, compares } = told.search;
+  const rows = futures.map(({ action, return_m, reward_m, steps }) => ({
+    move: action, score: return_m, note: `${fineMillimetres(reward_m)} at once, ${count(steps, "step")} ahead`,
+  }));
+  return html`
+    <section>
+      <h4>Why this move</h4>
+      ${sentences.map((one) => html`<p>${one}</p>`)}
+      <${Ranking} told=${told} caption=${compares} rows=${rows} />
+    </section>
+  `;
+}
+
 /** The moves with the highest scores, and the one that was made. */
 function Scores({ told }) {
   const { scores, criterion } = told.choice;
-  const all = scores
-    .flatMap((row, pair) => row.map((score, cell) => ({ move: [pair, cell], score })))
-    .filter(({ score }) => score !== null)
-    .sort((a, b) => b.score - a.score);
+  const rows = scores.flatMap((row, pair) => row.map((score, cell) => ({
+    move: [pair, cell], score, note: triesOf(told, [pair, cell]) === 0 ? "never tried" : "",
+  })));
+  return html`<${Ranking} told=${told} caption=${criterion} rows=${rows.filter(({ score }) => score !== null)} />`;
+}
+
+function Ranking({ told, caption, rows }) {
+  const all = rows.toSorted((a, b) => b.score - a.score);
   const isMade = ({ move }) => move[0] === told.action[0] && move[1] === told.action[1];
   const first = all.slice(0, MOST_MOVES);
   const shown = first.some(isMade) ? first : [...first.slice(0, -1), ...all.filter(isMade)];
   const [high, low] = [all[0].score, all.at(-1).score];
   return html`
     <table class="scores">
-      <caption class="dim">${sentenceOf(criterion)}</caption>
+      <caption class="dim">${sentenceOf(caption)}</caption>
       <tbody>
         ${shown.map((one) => html`
           <tr class=${isMade(one) ? "made" : ""}>
             <th scope="row">
               ${moveInWords(one.move, told)}${isMade(one) && html`<span class="sr-only">, made</span>`}
+              ${one.note && html`<span class="dim note">${one.note}</span>`}
             </th>
             <td class="score-bar" aria-hidden="true"><i style=${barOf(one.score, low, high)}></i></td>
-            <td>${triesOf(told, one.move) === 0 && html`<span class="dim">never tried</span> `}
-              ${fineMillimetres(one.score)}</td>
+            <td>${fineMillimetres(one.score)}</td>
           </tr>
         `)}
       </tbody>

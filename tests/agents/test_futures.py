@@ -1,0 +1,81 @@
+"""Searches tell what they found about each action for their newest decision."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.agents.explanation import Foreseeing
+from app.agents.registry import OURS, compares, searches
+from app.assembly import build_walkers
+from app.runs.lane import lane_config
+from app.runs.race_config import RaceConfig
+from app.runs.walker import Walker
+
+SEARCHES = [name for name in OURS if searches(name)]
+
+
+def walker_of(agent: str, **settings: Any) -> Walker:
+    lane = lane_config(agent, **settings)
+    config = RaceConfig(gait="left-right-origin", simulator="kinematic", lanes=(lane,), steps=5)
+    (walker,) = build_walkers(config, [None])
+    return walker
+
+
+@pytest.mark.parametrize("name", SEARCHES)
+def test_what_is_found_is_what_is_simulated(name: str) -> None:
+    walker = walker_of(name)
+    assert isinstance(walker.agent, Foreseeing)
+    for _ in range(4):
+        legal, before = walker.legal, walker.transitions
+        action = walker.decide()
+        found = {one.action: one for one in walker.agent.futures()}
+
+        assert action in found
+        assert set(found) <= set(legal)
+        assert all(one.sequences >= 1 for one in found.values())
+        assert walker.transitions - before >= len(found)
+        simulated = {one: walker.simulator.step(walker.state, one).reward_m for one in found}
+        assert {one: future.reward_m for one, future in found.items()} == simulated
+        walker.carry_out(action)
+
+
+def test_greedy_and_two_step_take_the_highest_return() -> None:
+    for name, steps in (("greedy", 1), ("two-step", 2)):
+        walker = walker_of(name)
+        action = walker.decide()
+        assert isinstance(walker.agent, Foreseeing)
+        found = list(walker.agent.futures())
+        highest = max(one.return_m for one in found)
+
+        assert next(one.return_m for one in found if one.action == action) == highest
+        assert len(found) == 12
+        assert {(one.sequences, one.steps) for one in found} == {(12 ** (steps - 1), steps)}
+
+
+def test_two_step_adds_the_best_second_step() -> None:
+    walker = walker_of("two-step")
+    walker.decide()
+    assert isinstance(walker.agent, Foreseeing)
+    for one in walker.agent.futures():
+        walker.place(walker.simulator.rest())
+        first = walker.carry_out(one.action).reward_m
+        second = max(walker.simulator.step(walker.state, a).reward_m for a in walker.legal)
+        assert one.return_m == first + second
+
+
+def test_what_a_beam_dropped_is_known_less_far() -> None:
+    walker = walker_of("beam", width=2, depth=3)
+    action = walker.decide()
+    assert isinstance(walker.agent, Foreseeing)
+    found = {one.action: one for one in walker.agent.futures()}
+
+    assert found[action].steps == 3
+    assert {one.steps for one in found.values()} >= {1, 3}
+    np.testing.assert_array_less(0, [one.sequences for one in found.values()])
+
+
+def test_each_search_says_what_it_compares() -> None:
+    assert "mean" in compares("mcts")
+    assert "highest sum" in compares("beam")
+    assert compares("nowhere:Agent") == "return of its simulated sequences"
