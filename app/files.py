@@ -1,10 +1,11 @@
-"""Write files by atomic rename, and lock them between processes."""
+"""Write files by atomic rename or in chunks, and lock them between processes."""
 
+import io
 import os
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 
 def write_atomically(path: Path, data: bytes) -> None:
@@ -38,6 +39,29 @@ def sync_folder(folder: Path) -> None:
         os.fsync(handle)
     finally:
         os.close(handle)
+
+
+class DrainedBuffer(io.RawIOBase):
+    """Unseekable output of a writer of files, drained after each chunk that it wrote."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._parts: list[bytes] = []
+
+    def writable(self) -> bool:
+        """Return True."""
+        return True
+
+    def write(self, data: Any) -> int:
+        """Append bytes, and return their number."""
+        self._parts.append(bytes(data))
+        return len(data)
+
+    def drain(self) -> bytes:
+        """Return what was written since the last call."""
+        data = b"".join(self._parts)
+        self._parts.clear()
+        return data
 
 
 if sys.platform == "win32":

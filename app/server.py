@@ -17,6 +17,7 @@ from app.api import (
     docs,
     events,
     experiments,
+    exports,
     gait,
     health,
     metrics,
@@ -146,7 +147,10 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
 def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) -> None:
     versioned = APIRouter(prefix="/api/v1")
     # First, so that no other route matches `import` as a run's id.
-    modules = (transfer, trainings, races, experiments, runs, replays, gait, stage, events, options)
+    modules = (
+        *(transfer, trainings, races, experiments, runs, exports, replays, gait),
+        *(stage, events, options),
+    )
     for module in modules:
         versioned.include_router(module.router)
     versioned.include_router(start_routes(agents))

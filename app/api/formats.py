@@ -10,6 +10,7 @@ from app.storage.artifact_file import ArtifactFile, chunks
 _TYPES = {
     "application/json": "json",
     "text/csv": "csv",
+    "application/vnd.apache.parquet": "parquet",
     "application/x-npz": "npz",
     "application/octet-stream": "npz",
 }

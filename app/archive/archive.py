@@ -12,9 +12,10 @@ import stat
 import struct
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from app.domain.errors import DamagedFile, InvalidInput
+from app.files import DrainedBuffer
 
 MANIFEST = "manifest.json"
 MEDIA_TYPE = "application/zip"
@@ -73,7 +74,7 @@ def packed_size(size: int) -> int:
 
 
 def _pack_chunks(members: Mapping[str, Member]) -> Iterator[bytes]:
-    buffer, hashes = _StreamBuffer(), dict[str, str]()
+    buffer, hashes = DrainedBuffer(), dict[str, str]()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
         for name, one in members.items():
             digest = hashlib.sha256()
@@ -93,26 +94,6 @@ def _zip_info(name: str, size: int) -> zipfile.ZipInfo:
     info.external_attr = (stat.S_IFREG | 0o644) << 16
     info.file_size = size
     return info
-
-
-class _StreamBuffer(io.RawIOBase):
-    """Unseekable output buffer for `zipfile`, drained after each chunk."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._parts: list[bytes] = []
-
-    def writable(self) -> bool:
-        return True
-
-    def write(self, data: Any) -> int:
-        self._parts.append(bytes(data))
-        return len(data)
-
-    def drain(self) -> bytes:
-        data = b"".join(self._parts)
-        self._parts.clear()
-        return data
 
 
 def unpack(data: bytes, label: str, is_allowed: Callable[[str], bool]) -> dict[str, bytes]:

@@ -1,12 +1,13 @@
 """The `hexapods` command line: each command parses its options and makes one call.
 
 Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `tune`, `best-known`, `runs` (list,
-show, delete), `export`, `imports`, `doctor` (with checks in `data_diagnostics` and
-`physics_diagnostics`), `bench` (with the measurements in `benchmarks`). Their module docstrings are
-the descriptions in `--help`.
+show, delete; `run_files` has its verbs that write files), `export`, `imports`, `doctor` (with
+checks in `data_diagnostics` and `physics_diagnostics`), `bench` (with the measurements in
+`benchmarks`). Their module docstrings are the descriptions in `--help`.
 Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments
-and sweeps), `files` (files that users name), `server_client` (requests to a running server),
-`terminal` (progress bars and tables), `startup` (a faster start).
+and sweeps), `files` (files that users name), `stored_runs` (runs of a data folder),
+`server_client` (requests to a running server), `terminal` (progress bars and tables), `startup` (a
+faster start).
 """
 
 import argparse

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from app import __version__, assets
 from app.cli.options import CommandParser
-from app.cli.runs import add_data
+from app.cli.stored_runs import add_data
 from app.domain.errors import HexapodError
 from app.settings import PREFIX, Settings, is_loopback, read_settings
 

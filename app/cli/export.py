@@ -5,7 +5,7 @@ import json
 
 from app.cli.files import check_writable, write_whole
 from app.cli.options import CommandParser
-from app.cli.runs import add_data, find_run, open_for_reading
+from app.cli.stored_runs import add_data, find_run, open_for_reading
 from app.settings import read_settings
 
 

@@ -7,25 +7,21 @@ the data folder, or, if none has, here.
 import argparse
 import json
 import sys
-from contextlib import AbstractContextManager
 from datetime import datetime
-from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from app.cli import run_files
 from app.cli.options import CommandParser, integer
 from app.cli.server_client import call_server
+from app.cli.stored_runs import add_data, add_run, find_run, open_for_reading
 from app.cli.terminal import show_lanes, show_table
 from app.domain.errors import InvalidInput
 from app.events.damage import as_shown
 from app.events.run_view import run_view
 from app.runs.race_config import RaceConfig
-from app.settings import Settings, read_settings
-from app.storage.errors import NotFound
+from app.settings import read_settings
 from app.storage.json_text import json_text
 from app.storage.run import KINDS, STATES, AnyRun, DamagedRun, Run
-
-if TYPE_CHECKING:
-    from app.storage.database.store import RunStore
 
 _LIMIT = 50
 _HEAD = ("run", "kind", "state", "steps", "result", "began", "name")
@@ -33,7 +29,9 @@ _HEAD = ("run", "kind", "state", "steps", "result", "began", "name")
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
-    parser = commands.add_parser("runs", help="list, show, delete runs", description=__doc__)
+    parser = commands.add_parser(
+        "runs", help="list, show, delete runs, and take them home as files", description=__doc__
+    )
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     listing = verbs.add_parser("list", help="the runs, newest first")
     listing.add_argument("--kind", choices=KINDS, help="only these")
@@ -46,32 +44,8 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         add_data(verb)
         verb.add_argument("--json", action="store_true", help="for programs")
     for verb in (showing, deleting):
-        verb.add_argument("run_id", metavar="RUN", help="its id, as `hexapods runs list` tells it")
-
-
-def add_data(parser: argparse.ArgumentParser) -> None:
-    """Add `--data`, the data folder."""
-    parser.add_argument("--data", help="data folder (default: the user's, or HEXAPODS_DATA)")
-
-
-def find_run(store: "RunStore", run_id: str) -> AnyRun:
-    """Return a run, or what can be read of a damaged one.
-
-    Raises:
-        InvalidInput: if there is no such run.
-    """
-    try:
-        return store.find(run_id)
-    except NotFound as error:
-        raise InvalidInput(f"{error}; `hexapods runs list` shows what there is") from error
-
-
-def open_for_reading(settings: Settings) -> "AbstractContextManager[RunStore]":
-    """Open the store of a data folder read-only."""
-    # Imported here, as the database modules would slow the start of other commands.
-    from app.storage.database.read_only import open_read_only  # noqa: PLC0415
-
-    return open_read_only(settings)
+        add_run(verb)
+    run_files.add_to(verbs)
 
 
 def _list(options: argparse.Namespace) -> int:

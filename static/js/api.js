@@ -239,6 +239,9 @@ export const putStage = (changes) => call("PUT", "stage", changes);
 /** @type {(run: RunKey, rest: string) => string} */
 const addressOf = (run, rest) => new URL(`${pathOf(run)}/${rest}`, base()).href;
 
+/** A file of a run's walk, for other programs. @type {(run: RunKey, rest: string) => string} */
+const exportOf = ({ id }, rest) => new URL(`runs/${encodeURIComponent(id)}/${rest}`, base()).href;
+
 /**
  * The files of a run that can be downloaded: [label, address].
  * @param {RunKey} run
@@ -251,11 +254,13 @@ export function downloads(run) {
       ["Summary (JSON)", addressOf(run, "summary")],
     ];
   }
-  if (run.kind === "race") return [["Recording", addressOf(run, "recording")]];
+  const walk = /** @type {[string, string][]} */ ([["Joints and feet (CSV)", exportOf(run, "trajectory?format=csv")]]);
+  if (run.kind === "race") return [["Recording", addressOf(run, "recording")], ...walk];
   return [
     ["Curve (CSV)", addressOf(run, "curve?format=csv")],
     ["Q-table (CSV)", addressOf(run, "q-table?format=csv")],
     ["Q-table (npz)", addressOf(run, "q-table?format=npz")],
+    ...walk,
   ];
 }
 

@@ -117,6 +117,21 @@ def test_exported_run_is_imported_into_another_folder(data: Path, tmp_path: Path
         assert len(store.list().items) == 4
 
 
+def test_walk_is_written_as_a_table(data: Path, tmp_path: Path) -> None:
+    def write(*arguments: str) -> str:
+        return refusal("runs", "trajectory", *arguments, *here, folder=tmp_path, run=in_process)
+
+    here = ("--data", str(data))
+    told = output("runs", "trajectory", RACED, "--out", "w.csv", *here, folder=tmp_path)
+    assert (told["id"], told["bytes"]) == (RACED, (tmp_path / "w.csv").stat().st_size)
+    head, *rows = (tmp_path / "w.csv").read_text().splitlines()
+    assert head.startswith("lane,step,time_s,body_x_m")
+    assert {row.split(",")[0] for row in rows} == {"0", "1"}
+    assert "must end with .csv or .parquet: w.txt" in write(RACED, "--out", "w.txt")
+    assert "lane must be from 0 to 1, not 2" in write(RACED, "--lane", "2", "--out", "w.csv")
+    assert "no run 'nope'" in write("nope", "--out", "w.csv")
+
+
 def test_several_runs_are_exported_and_imported_together(data: Path, tmp_path: Path) -> None:
     out = ("--out", "runs.zip", "--data", str(data))
     exported = output("export", RACED, TRAINING, *out, folder=tmp_path, run=in_process)

@@ -1,0 +1,43 @@
+"""Options and functions of the commands that read runs from a data folder."""
+
+import argparse
+from contextlib import AbstractContextManager
+from typing import TYPE_CHECKING
+
+from app.domain.errors import InvalidInput
+from app.settings import Settings
+from app.storage.errors import NotFound
+from app.storage.run import AnyRun
+
+if TYPE_CHECKING:
+    from app.storage.database.store import RunStore
+
+
+def add_data(parser: argparse.ArgumentParser) -> None:
+    """Add `--data`, the data folder."""
+    parser.add_argument("--data", help="data folder (default: the user's, or HEXAPODS_DATA)")
+
+
+def add_run(parser: argparse.ArgumentParser) -> None:
+    """Add the argument that names a run."""
+    parser.add_argument("run_id", metavar="RUN", help="its id, as `hexapods runs list` tells it")
+
+
+def find_run(store: "RunStore", run_id: str) -> AnyRun:
+    """Return a run, or what can be read of a damaged one.
+
+    Raises:
+        InvalidInput: if there is no such run.
+    """
+    try:
+        return store.find(run_id)
+    except NotFound as error:
+        raise InvalidInput(f"{error}; `hexapods runs list` shows what there is") from error
+
+
+def open_for_reading(settings: Settings) -> "AbstractContextManager[RunStore]":
+    """Open the store of a data folder read-only."""
+    # Imported here, as the database modules would slow the start of other commands.
+    from app.storage.database.read_only import open_read_only  # noqa: PLC0415
+
+    return open_read_only(settings)

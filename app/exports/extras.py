@@ -1,0 +1,30 @@
+"""Optional packages: imported when they are first needed, with an error that names the extra."""
+
+import importlib
+from typing import Any
+
+from app.domain.errors import InvalidInput
+
+
+class MissingExtra(InvalidInput):
+    """A package of an extra is not installed; the message says how to install it."""
+
+
+def import_extra(module: str, extra: str, purpose: str) -> Any:
+    """Import a module of an extra of this package.
+
+    Args:
+        module: its full name.
+        extra: a name in `[project.optional-dependencies]` of pyproject.toml.
+        purpose: what needs it, as the subject of a sentence in the singular.
+
+    Raises:
+        MissingExtra: if it, or a package that it needs, is not installed.
+    """
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise MissingExtra(
+            f"{purpose} needs a package that is not installed here ({error}); "
+            f"`pip install 'racing-hexapods[{extra}]'` installs it"
+        ) from error

@@ -1,0 +1,200 @@
+"""Joint angles, feet and torques of a recorded walk over time, as CSV and Parquet.
+
+A row is a recorded frame: first the pose at rest, with step 0, then the frames of each step. Angles
+and torso are the recorded numbers; feet follow from them by the forward kinematics of the robot as
+it was built.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.domain.kinematics import JOINT_LIMITS_RAD, foot_positions
+from app.domain.robot import Robot
+from app.exports.extras import import_extra
+from app.exports.recorded_lanes import RecordedLane, RecordedWalks
+from app.files import DrainedBuffer
+
+CSV_TYPE, PARQUET_TYPE = "text/csv; charset=utf-8", "application/vnd.apache.parquet"
+PARQUET_EXTRA = "parquet"
+_STEPS_PER_BLOCK = 8
+"""About 130 frames, 90 kB of text, which stay in memory while a client reads them."""
+_ROWS_PER_GROUP = 4096
+_INDEX = ("lane", "step", "time_s")
+_BODY = ("body_x_m", "body_y_m", "body_z_m", "body_qw", "body_qx", "body_qy", "body_qz")
+
+Look = Callable[[], RecordedWalks]
+"""Returns the recording. Called for each chunk, and not kept while a client receives that:
+recordings are large, and clients may be many and slow."""
+
+
+class _Block(NamedTuple):
+    """Consecutive frames of one lane: its number, of each its step and robot time, and numbers."""
+
+    lane: int
+    steps: NDArray[np.int32]
+    times_s: NDArray[np.float64]
+    numbers: NDArray[np.float32]
+    """(k, columns after those of `_INDEX`); NaN where torque was not recorded."""
+
+
+def joint_names(robot: Robot) -> list[str]:
+    """Return the names of a robot's joints in the order of a pose: `leg1_coxa` and so on."""
+    legs = range(1, len(robot.legs) + 1)
+    return [f"leg{leg}_{joint}" for leg in legs for joint in JOINT_LIMITS_RAD]
+
+
+def column_names(robot: Robot, has_torque: bool) -> list[str]:
+    """Return the names of the columns, with units."""
+    joints, legs = joint_names(robot), range(1, len(robot.legs) + 1)
+    return [
+        *_INDEX,
+        *_BODY,
+        *(f"{joint}_rad" for joint in joints),
+        *(f"leg{leg}_foot_{axis}_m" for leg in legs for axis in "xyz"),
+        *(f"{joint}_torque_nm" for joint in joints if has_torque),
+    ]
+
+
+def trajectory_csv(look: Look, lanes: Sequence[int]) -> Iterator[str]:
+    """Yield a CSV table in chunks. Numbers are the shortest that give the recorded ones again.
+
+    Args:
+        look: returns the recording.
+        lanes: numbers of the lanes, counted from 0.
+    """
+    walks = look()
+    robot, has_torque = walks.problem.built_robot, _has_torque(walks, lanes)
+    del walks
+    yield ",".join(column_names(robot, has_torque)) + "\r\n"
+    for block in _blocks(look, lanes, has_torque):
+        index = zip(block.steps.tolist(), block.times_s.tolist(), block.numbers, strict=True)
+        yield "".join(
+            f"{block.lane},{step},{time_s:.6g}," + ",".join(map(_cell, row)) + "\r\n"
+            for step, time_s, row in index
+        )
+
+
+def _cell(number: np.float32) -> str:
+    return "" if np.isnan(number) else str(number)
+
+
+def trajectory_parquet(look: Look, lanes: Sequence[int]) -> Iterator[bytes]:
+    """Yield a Parquet file in chunks; a row group has at most about 4,000 frames of a lane.
+
+    Args:
+        look: returns the recording.
+        lanes: numbers of the lanes, counted from 0.
+
+    Raises:
+        MissingExtra: at the call, if PyArrow is not installed.
+    """
+    arrow = import_extra("pyarrow", PARQUET_EXTRA, "a Parquet file")
+    parquet = import_extra("pyarrow.parquet", PARQUET_EXTRA, "a Parquet file")
+    return _parquet(arrow, parquet, look, lanes)
+
+
+def _parquet(arrow: Any, parquet: Any, look: Look, lanes: Sequence[int]) -> Iterator[bytes]:
+    walks = look()
+    robot, has_torque = walks.problem.built_robot, _has_torque(walks, lanes)
+    del walks
+    types = [arrow.int16(), arrow.int32(), arrow.float64()]
+    names = column_names(robot, has_torque)
+    types += [arrow.float32()] * (len(names) - len(types))
+    schema = arrow.schema(list(zip(names, types, strict=True)))
+    buffer = DrainedBuffer()
+    with parquet.ParquetWriter(arrow.PythonFile(buffer, mode="w"), schema) as writer:
+        for group in _groups(_blocks(look, lanes, has_torque)):
+            numbers = np.concatenate([block.numbers for block in group])
+            columns = [
+                np.concatenate(
+                    [np.full(len(block.steps), block.lane, np.int16) for block in group]
+                ),
+                np.concatenate([block.steps for block in group]),
+                np.concatenate([block.times_s for block in group]),
+                *(np.ascontiguousarray(column) for column in numbers.T),
+            ]
+            arrays = [
+                arrow.array(column, kind, from_pandas=True)  # NaN as null
+                for column, kind in zip(columns, types, strict=True)
+            ]
+            writer.write_table(arrow.Table.from_arrays(arrays, schema=schema))
+            yield buffer.drain()
+    yield buffer.drain()
+
+
+def _groups(blocks: Iterator[_Block]) -> Iterator[list[_Block]]:
+    group: list[_Block] = []
+    for block in blocks:
+        group.append(block)
+        if sum(len(one.steps) for one in group) >= _ROWS_PER_GROUP:
+            yield group
+            group = []
+    if group:
+        yield group
+
+
+def _has_torque(walks: RecordedWalks, lanes: Sequence[int]) -> bool:
+    recorded = (walks.lanes[number] for number in lanes)
+    return any(
+        lane.motion(index).torque_nm is not None
+        for lane in recorded
+        for index in range(len(lane.steps))
+    )
+
+
+def _blocks(look: Look, lanes: Sequence[int], has_torque: bool) -> Iterator[_Block]:
+    for number in lanes:
+        walks = look()
+        count, problem = len(walks.lanes[number].steps), walks.problem
+        encode = _Encoder(number, problem.built_robot, problem.robot.step_s, has_torque)
+        rest = walks.lanes[number].rest_qpos
+        del walks
+        yield encode.rest(rest)
+        for first in range(0, count, _STEPS_PER_BLOCK):
+            yield encode.steps(look().lanes[number], first, min(first + _STEPS_PER_BLOCK, count))
+
+
+class _Encoder(NamedTuple):
+    """Turns recorded poses of a lane into blocks."""
+
+    lane: int
+    robot: Robot
+    step_s: float
+    has_torque: bool
+
+    def rest(self, qpos: NDArray[np.float32]) -> _Block:
+        """Return the pose before the first step."""
+        return self._block(np.zeros(1), np.zeros(1), qpos[None], self._torques(None, 1))
+
+    def steps(self, lane: RecordedLane, first: int, end: int) -> _Block:
+        """Return the frames of the steps with these indices."""
+        motions = [lane.motion(index) for index in range(first, end)]
+        steps = [lane.steps[index].step for index in range(first, end)]
+        counts = [len(motion.time_s) for motion in motions]
+        starts_s = np.repeat([(step - 1) * self.step_s for step in steps], counts)
+        return self._block(
+            np.repeat(steps, counts),
+            (starts_s + np.concatenate([motion.time_s for motion in motions])).round(6),
+            np.concatenate([motion.qpos for motion in motions]),
+            np.concatenate([self._torques(one.torque_nm, len(one.time_s)) for one in motions]),
+        )
+
+    def _torques(self, recorded: NDArray[np.float16] | None, frames: int) -> NDArray[np.float32]:
+        if recorded is None or not self.has_torque:
+            joints = len(joint_names(self.robot)) if self.has_torque else 0
+            return np.full((frames, joints), np.nan, np.float32)
+        return recorded.astype(np.float32)
+
+    def _block(
+        self,
+        steps: NDArray[Any],
+        times_s: NDArray[np.float64],
+        qpos: NDArray[np.float32],
+        torques: NDArray[np.float32],
+    ) -> _Block:
+        feet = foot_positions(self.robot, qpos.astype(float)).reshape(len(qpos), -1).round(6)
+        numbers = np.hstack([qpos, feet.astype(np.float32), torques])
+        return _Block(self.lane, steps.astype(np.int32), times_s, numbers)

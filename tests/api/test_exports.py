@@ -1,0 +1,52 @@
+"""A run's walk as files for other programs, over REST."""
+
+import csv
+import io
+from typing import Any
+
+import pytest
+
+from app.exports.trajectory import PARQUET_TYPE
+from tests.api.calls import Api, refused
+
+
+@pytest.fixture(scope="module")
+def raced(api: Api) -> dict[str, Any]:
+    """Return a finished race of two lanes with physics."""
+    lanes = [{"agent": "greedy"}, {"agent": "wave"}]
+    return api.finished(api.race(lanes=lanes, simulator="mujoco", steps=6))
+
+
+def test_trajectory_of_a_race_has_its_torques(api: Api, raced: dict[str, Any]) -> None:
+    answer = api.call("GET", f"/runs/{raced['id']}/trajectory", params={"lane": 1})
+    assert answer.status_code == 200
+    assert answer.headers["content-type"].startswith("text/csv")
+    assert f"race-{raced['id']}.csv" in answer.headers["content-disposition"]
+    first, *_, last = csv.DictReader(io.StringIO(answer.text))
+
+    assert (first["lane"], first["step"], first["leg1_coxa_torque_nm"]) == ("1", "0", "")
+    assert last["step"] == "6"
+    assert float(last["time_s"]) == pytest.approx(6 * 0.32)
+    assert any(float(last[f"leg{leg}_femur_torque_nm"]) for leg in range(1, 7))
+    assert float(last["body_y_m"]) == pytest.approx(
+        raced["result"]["lanes"][1]["total_distance_m"], abs=1e-5
+    )
+
+
+def test_trajectory_as_parquet(api: Api, raced: dict[str, Any]) -> None:
+    answer = api.call("GET", f"/runs/{raced['id']}/trajectory", headers={"Accept": PARQUET_TYPE})
+    assert answer.headers["content-type"] == PARQUET_TYPE
+    assert (answer.content[:4], answer.content[-4:]) == (b"PAR1", b"PAR1")
+
+
+def test_what_has_no_trajectory_is_refused(api: Api, raced: dict[str, Any]) -> None:
+    def trajectory(run_id: str, **query: Any) -> Any:
+        return api.call("GET", f"/runs/{run_id}/trajectory", params=query)
+
+    refused(trajectory("nothing"), 404, "nothing")
+    refused(trajectory(raced["id"], lane=2), 422, "Lane must be from 0 to 1, not 2")
+    refused(trajectory(raced["id"], lane=-1), 422, "lane must be the number of a lane")
+    refused(trajectory(raced["id"], format="xlsx"), 422, "format must be")
+    queued = api.race(lanes=[{"agent": "q-learning", "training": {"steps": 10_000_000}}])
+    refused(trajectory(queued["id"]), 409, "its walk can be had as a file once it ended")
+    api.stop(queued, *(api.get(f"/trainings/{one}") for one in queued["waiting_for"]))

@@ -1,0 +1,127 @@
+"""The trajectory of a recorded walk as CSV and Parquet: its numbers are the recorded ones."""
+
+import csv
+import dataclasses
+import io
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet
+import pytest
+
+from app.domain.errors import InvalidInput
+from app.domain.kinematics import foot_positions
+from app.exports import extras
+from app.exports.recorded_lanes import RecordedWalks, checked_lane, recorded_walks
+from app.exports.trajectory import column_names, trajectory_csv, trajectory_parquet
+from app.storage.errors import Conflict
+from tests.stage.stage_parts import StageParts
+from tests.storage.stores import temporary_store
+
+AGENTS = ("greedy", "wave")
+
+
+@pytest.fixture(scope="module")
+def parts() -> Iterator[StageParts]:
+    with temporary_store() as store:
+        yield StageParts(store)
+
+
+@pytest.fixture(scope="module")
+def raced(parts: StageParts) -> RecordedWalks:
+    """Return a race with physics."""
+    run = parts.finished_race(AGENTS, steps=6, simulator="mujoco")
+    return recorded_walks(parts.store.find(run.id), parts.recordings)
+
+
+def table_of(walks: RecordedWalks, lane: int | None = None) -> tuple[list[str], list[list[str]]]:
+    chunks = trajectory_csv(lambda: walks, checked_lane(walks, lane))
+    head, *rows = csv.reader(io.StringIO("".join(chunks)))
+    return head, rows
+
+
+def test_rows_of_csv_are_the_recorded_frames_to_the_last_bit(raced: RecordedWalks) -> None:
+    head, rows = table_of(raced)
+    robot, step_s = raced.problem.built_robot, raced.problem.robot.step_s
+    has_torque = "leg1_coxa_torque_nm" in head
+
+    assert head == column_names(robot, has_torque)
+    assert head[2:7] == ["time_s", "body_x_m", "body_y_m", "body_z_m", "body_qw"]
+    joints = 3 * len(robot.legs)
+    for number, lane in enumerate(raced.lanes):
+        own = [row for row in rows if row[0] == str(number)]
+        motions = [lane.motion(index) for index in range(6)]
+        recorded = np.concatenate([lane.rest_qpos[None], *(motion.qpos for motion in motions)])
+        written = np.array([row[3 : 10 + joints] for row in own], np.float32)
+        assert np.array_equal(written, recorded)
+        times = [0.0, *(k * step_s + t for k, one in enumerate(motions) for t in one.time_s)]
+        assert np.array([float(row[2]) for row in own]) == pytest.approx(times, abs=1e-5)
+        assert [row[1] for row in own][:2] == ["0", "1"]
+        feet = np.array([row[10 + joints : 10 + 2 * joints] for row in own], float)
+        expected = foot_positions(robot, recorded.astype(float)).reshape(len(own), -1)
+        assert feet == pytest.approx(expected, abs=2e-6)
+
+
+def test_torques_are_written_where_they_are_recorded(raced: RecordedWalks) -> None:
+    lane = raced.lanes[0]
+    steps: list[Any] = [*lane.steps]
+    motion = lane.motion(0)
+    torque = np.linspace(-2, 2, motion.qpos[:, 7:].size).reshape(motion.qpos[:, 7:].shape)
+    steps[0] = dataclasses.replace(
+        steps[0], motion=motion._replace(torque_nm=torque.astype(np.float16))
+    )
+    bare = [dataclasses.replace(s, motion=s.motion._replace(torque_nm=None)) for s in steps[1:]]
+    walks = dataclasses.replace(raced, lanes=[dataclasses.replace(lane, steps=[steps[0], *bare])])
+    head, rows = table_of(walks)
+
+    at = head.index("leg1_coxa_torque_nm")
+    count = len(motion.time_s)
+    written = np.array([row[at:] for row in rows[1 : 1 + count]], np.float16)
+    assert np.array_equal(written, torque.astype(np.float16))
+    assert set(rows[0][at:]) == {""}, "at rest it is not known"
+    assert set(rows[-1][at:]) == {""}
+
+
+def test_parquet_has_the_table_of_the_csv(raced: RecordedWalks) -> None:
+    chunks = trajectory_parquet(lambda: raced, checked_lane(raced, None))
+    table = pyarrow.parquet.read_table(io.BytesIO(b"".join(chunks)))
+    head, rows = table_of(raced)
+
+    assert table.column_names == head
+    assert table.num_rows == len(rows)
+    for name in ("body_y_m", "leg3_femur_rad", "leg6_foot_z_m"):
+        written = np.array([row[head.index(name)] for row in rows], np.float32)
+        assert np.array_equal(table[name].to_numpy(), written)
+
+
+def test_a_lane_is_taken_alone(raced: RecordedWalks) -> None:
+    _, rows = table_of(raced, 1)
+    assert {row[0] for row in rows} == {"1"}
+    with pytest.raises(InvalidInput, match="lane must be from 0 to 1, not 2"):
+        checked_lane(raced, 2)
+
+
+def test_a_practice_has_its_recorded_steps(parts: StageParts) -> None:
+    run = parts.finished_training(steps=30)
+    walks = recorded_walks(parts.store.find(run.id), parts.recordings)
+    _, rows = table_of(walks)
+    assert {int(row[1]) for row in rows} == set(range(31))
+    with pytest.raises(InvalidInput, match="lane must be 0, not 1"):
+        checked_lane(walks, 1)
+
+
+def test_what_runs_or_has_no_recording_is_refused(parts: StageParts) -> None:
+    run, advance = parts.running_race(AGENTS)
+    advance()
+    with pytest.raises(Conflict, match="is running; its walk can be had as a file once it ended"):
+        recorded_walks(parts.store.find(run.id), parts.recordings)
+    config: Any = parts.store.get(run.id).config
+    ended = parts.create(config, state="finished")
+    with pytest.raises(Conflict, match="is finished and has no recording"):
+        recorded_walks(parts.store.find(ended.id), parts.recordings)
+
+
+def test_a_missing_package_names_its_extra() -> None:
+    with pytest.raises(extras.MissingExtra, match=r"pip install 'racing-hexapods\[parquet\]'"):
+        extras.import_extra("no_such_module", "parquet", "a Parquet file")
