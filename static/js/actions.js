@@ -267,6 +267,14 @@ export function setStage(changes) {
   return Promise.resolve();
 }
 
+/**
+ * A function that shows a moment of a run [s]; null if another run is on stage, or for who may not.
+ * @param {string} id
+ * @returns {((time_s: number) => unknown) | null}
+ */
+export const seekIn = (id) =>
+  isOperator.value && scene.value?.run_id === id ? (time_s) => setStage({ time_s }) : null;
+
 export const togglePlaying = () => {
   if (canPlay.value && stage.value?.run_id) setStage({ playing: !isPlaying.value });
 };

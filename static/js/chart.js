@@ -37,7 +37,10 @@ import { signal } from "@preact/signals";
 
 // ---- the crosshair and the zoom, which all charts over the same axis share
 
-/** The position that is read, on one axis at a time. @type {Signal<{ axis: string, x: number } | null>} */
+/**
+ * The position that is read, on one axis at a time; that of a mouse goes with it.
+ * @type {Signal<{ axis: string, x: number, isOfMouse?: boolean } | null>}
+ */
 export const crosshair = signal(null);
 /** Axis → the part of it that is shown; without an entry all of it. @type {Signal<Record<string, Range>>} */
 const zooms = signal({});

@@ -88,6 +88,7 @@ def reads_and_seeks(dashboard: Dashboard, race: Locator) -> None:
     page.mouse.move(0, 0)
     expect(race.locator(".readout")).to_have_count(0)
     dashboard.button("Pause replay for everyone").click()
+    expect(dashboard.button("Play replay for everyone")).to_be_visible()
     # The axis keeps its length, so that one can go on from here as well.
     later_s = sought(page, lambda: race.click(position={"x": 0.9 * box["width"], "y": 40}))
     assert later_s == pytest.approx(0.9 * end, rel=0.1)
@@ -133,6 +134,11 @@ def answers_keys(dashboard: Dashboard, race: Locator) -> None:
     race.press("0")
     dashboard.eventually(lambda: numbers_of_axis(race) == before, "the axis shows all")
     assert follow.input_value() == followed  # the page's own key 0 frees the camera
+    # As for those who touch: the menu acts on what is read.
+    page.get_by_label("More of the race: zoom, download").press("Enter")
+    show = page.get_by_role("button", name=f"Show this moment: {at:.1f}\u00a0s")
+    assert sought(page, show.click) == pytest.approx(at, abs=0.05)
+    page.keyboard.press("Escape")
     race.press("Escape")
     expect(race.locator(".readout")).to_have_count(0)
     page.keyboard.press("?")
@@ -186,6 +192,7 @@ def on_a_spectators_phone(browser: Browser, server: Serving) -> None:
         dashboard.eventually(lambda: numbers_of_axis(race) != before, "the axis shows a part")
         page.get_by_label("More of the race: zoom, download").tap()
         expect(page.get_by_role("button", name=re.compile("^Show this moment"))).to_have_count(0)
+        expect(dashboard.button("Zoom out")).to_be_visible()
         dashboard.button("Show all").tap()
         dashboard.eventually(lambda: numbers_of_axis(race) == before, "the axis shows all")
         assert dashboard.scroll_width() == PHONE["width"]

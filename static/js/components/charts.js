@@ -67,7 +67,10 @@ export function Chart(props) {
       ${children}
       <div class="chart-foot">
         <${ChartAsTable} caption=${label} chart=${chart} />
-        <${ChartMenu} chart=${chart} axis=${axis} host=${host} />
+        <div class="chart-tools">
+          ${zoom && html`<button class="link" onClick=${() => zoomBy(axis, 0)}>Show all</button>`}
+          <${ChartMenu} chart=${chart} axis=${axis} host=${host} />
+        </div>
       </div>
     </div>
   `;
@@ -219,7 +222,6 @@ function ChartMenu({ chart, axis, host }) {
         <button class="quiet" onClick=${() => zoomBy(axis, MENU_FACTOR)}>Zoom in</button>
         ${zoomOf(axis.axis) && html`
           <button class="quiet" onClick=${() => zoomBy(axis, 1 / MENU_FACTOR)}>Zoom out</button>
-          <button class="quiet" onClick=${() => zoomBy(axis, 0)}>Show all</button>
         `}
         ${FILES.map(([kind, words]) => html`<button class="quiet" onClick=${() => save(kind)}>${words}</button>`)}
         ${problem && html`<p class="bad" role="alert">${problem}</p>`}

@@ -127,7 +127,8 @@ function usePointer(props, setSelection) {
   const read = (event) => {
     const { x } = placeOf(event, part);
     const inView = xs.filter((one) => one >= part[0] && one <= part[1]);
-    if (inView.length) crosshair.value = { axis, x: inView[nearestIndex(inView, x)] };
+    const isOfMouse = event.pointerType === "mouse";
+    if (inView.length) crosshair.value = { axis, x: inView[nearestIndex(inView, x)], isOfMouse };
   };
   const handlersOf = ({ pointerType }) => (pointerType === "touch" ? finger : mouse);
   return {
@@ -140,9 +141,9 @@ function usePointer(props, setSelection) {
     },
     onPointerUp: (event) => handlersOf(event).up(event),
     onPointerCancel: (event) => handlersOf(event).cancel(event),
-    onPointerLeave({ pointerType, currentTarget }) {
-      // A finger that is lifted leaves the values until something else is touched.
-      if (pointerType === "mouse" && !currentTarget.matches(":focus-visible")) crosshair.value = null;
+    onPointerLeave() {
+      // What keys or a finger read stays until something else has the focus.
+      if (crosshair.peek()?.isOfMouse) crosshair.value = null;
     },
     onDblClick: mouse.double,
   };

@@ -1,10 +1,10 @@
 // What the learner in view has learned: its learning curve, and its action values in its present state.
-import { setStage } from "../actions.js";
+import { seekIn } from "../actions.js";
 import { changesInWords, rateInWords } from "../changes.js";
 import { inTime, inWords } from "../disturbances.js";
 import { count, metres, millimetres, whole } from "../format.js";
 import { largest, valueColours } from "../scale.js";
-import { canPlay, shownRun } from "../selectors.js";
+import { shownRun } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { options, scene, served } from "../store.js";
 import { bestMove, curve, placeName } from "../training.js";
@@ -78,7 +78,7 @@ function Curve({ known }) {
   };
   return html`
     <${Chart} name="the learning curve" label=${captionOf(known)} x=${x} y=${y} lines=${[line]} xs=${steps}
-      marks=${marksOf(known)} seek=${seekIn(known)}>
+      marks=${marksOf(known)} seek=${seekToStep(known)}>
       ${best_known_m !== null && html`<${BestKnownKey} distance=${best_known_m} />`}
       ${known.happenings.length > 0 && html`
         <p class="changes happened">Happened: ${known.happenings.map(inTime).join("; ")}</p>
@@ -88,11 +88,11 @@ function Curve({ known }) {
   `;
 }
 
-/** Shows a step of the practice that is on stage; null if another run is, or for who may not. */
-function seekIn({ run, from }) {
-  const { run_id, kind, duration_s } = scene.value ?? {};
-  if (!canPlay.value || kind !== "training" || run_id !== run.id || !duration_s) return null;
-  return (step) => setStage({ time_s: (Math.max(0, step - from) * duration_s) / run.config.steps });
+/** Shows a step of the practice that is on stage; null if it cannot be. */
+function seekToStep({ run, from }) {
+  const seek = seekIn(run.id);
+  const { duration_s } = scene.value ?? {};
+  return seek && duration_s ? (step) => seek((Math.max(0, step - from) * duration_s) / run.config.steps) : null;
 }
 
 // ---- the action values: one for each pair of legs and each place on the foot grid

@@ -1,14 +1,12 @@
 // The race: its scoreboard, and its chart of distance against time.
-import { setStage } from "../actions.js";
+import { seekIn } from "../actions.js";
 import { happeningsOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
 import { clipped, distanceAt, headline, isTimedOut, ruleOf, shownTime, standings, timeline } from "../race.js";
-import {
-  canPlay, clock, isActive, originalRace, raceInView, raceScene, simulatedPerDecision,
-} from "../selectors.js";
+import { clock, isActive, originalRace, raceInView, raceScene, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
-import { runs, scene } from "../store.js";
+import { runs } from "../store.js";
 import { clockTitle, flatParts, knowledgeTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
 import { BestKnownKey, bestKnownMark, Chart, Empty } from "./charts.js";
@@ -257,7 +255,7 @@ function Lines({ known, time }) {
   return html`
     <${Chart} name="the race" label=${caption} x=${x} lines=${lanes} marks=${marksOf(known, until, best_m)}
       y=${{ min: Math.min(0, ...lanes.flatMap(({ ys }) => ys)), max: HEADROOM * far, unit: "m", text: metres }}
-      xs=${moments} now=${moments.indexOf(until)} seek=${seekIn(known)}>
+      xs=${moments} now=${moments.indexOf(until)} seek=${seekIn(known.id)}>
       ${best_m !== null && html`<${BestKnownKey} distance=${best_m} />`}
     <//>
   `;
@@ -270,12 +268,6 @@ let longestAxis = { key: "", until: 0 };
 function keptEnd(key, until) {
   if (longestAxis.key !== key || longestAxis.until < until) longestAxis = { key, until };
   return longestAxis.until;
-}
-
-/** Shows a moment of the race on stage; null if another run is, or for who may not. */
-function seekIn({ id }) {
-  const { run_id, kind } = scene.value ?? {};
-  return canPlay.value && kind === "race" && run_id === id ? (time_s) => setStage({ time_s }) : null;
 }
 
 /** The moments at which the crosshair stops: each half second, in a long race fewer, and the one that is shown. */
