@@ -27,7 +27,7 @@ def estimate_routes(bodies: AgentBodies) -> APIRouter:
     def estimate_training(
         services: ServicesDep, body: Annotated[TrainingBody, bodies.training]
     ) -> Response:
-        """Time a few steps of the agent on this machine, as busy as it is, and extrapolate."""
+        """Time a few steps of the agent on this machine, and extrapolate."""
         return JSONResponse({"seconds": round(services.estimates.of(body.start()), 1)})
 
     @router.post(

@@ -191,14 +191,7 @@ def import_runs(
             _checked(archive.unpack(one, label, _is_member_name), ids, agents, label)
             for label, one in ((f"{name} of {label}", one) for name, one in members.items())
         ]
-    added: list[Run] = []
-    try:
-        added.extend(store.add(run, content, ids) for run, content in checked)
-    except BaseException:
-        for run in added:
-            store.delete(run.id)
-        raise
-    return added
+    return list(store.add_all(checked, ids))
 
 
 def _checked(

@@ -7,6 +7,7 @@ the data folder, or, if none has, here.
 import argparse
 import json
 import sys
+from collections.abc import Mapping
 from datetime import datetime
 from urllib.parse import quote
 
@@ -21,9 +22,15 @@ from app.events.run_view import run_view
 from app.runs.race_config import RaceConfig
 from app.settings import read_settings
 from app.storage.json_text import json_text
-from app.storage.run import KINDS, STATES, AnyRun, DamagedRun, Run
+from app.storage.run import KINDS, SORTS, STATES, AnyRun, DamagedRun, Run, Sort
 
 _LIMIT = 50
+_TITLES: Mapping[Sort, str] = {
+    "newest": "Newest first",
+    "oldest": "Oldest first",
+    "name": "By name",
+    "distance": "Longest distance first",
+}
 _HEAD = ("run", "kind", "state", "steps", "result", "began", "name")
 
 
@@ -33,9 +40,12 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         "runs", help="list, show, delete runs, and take them home as files", description=__doc__
     )
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
-    listing = verbs.add_parser("list", help="the runs, newest first")
+    listing = verbs.add_parser("list", help="the runs")
     listing.add_argument("--kind", choices=KINDS, help="only these")
     listing.add_argument("--state", choices=STATES, help="only those that are this now")
+    listing.add_argument("--tag", help="only those with this tag")
+    listing.add_argument("--search", help="only those with this in name, id, tags or notes")
+    listing.add_argument("--sort", choices=SORTS, default=SORTS[0], help=f"default {SORTS[0]}")
     listing.add_argument("--limit", type=integer, default=_LIMIT, help=f"default {_LIMIT}")
     showing = verbs.add_parser("show", help="all about a run")
     deleting = verbs.add_parser("delete", help="forget a run that has ended, with all it has")
@@ -53,7 +63,14 @@ def _list(options: argparse.Namespace) -> int:
         raise InvalidInput(f"--limit must be at least 1, not {options.limit}")
 
     with open_for_reading(read_settings(data=options.data)) as store:
-        page = store.list(options.kind, options.state, options.limit)
+        page = store.list(
+            options.kind,
+            options.state,
+            options.limit,
+            search=options.search,
+            tag=options.tag,
+            sort=options.sort,
+        )
     if options.json:
         items = [run_view(run) for run in page.items]
         print(json_text({"items": items, "next_cursor": page.next_cursor}))
@@ -63,7 +80,7 @@ def _list(options: argparse.Namespace) -> int:
         return 0
     rows = [_row(run) for run in page.items]
     if sys.stdout.isatty():
-        show_table("Newest first", _HEAD, rows)
+        show_table(_TITLES[options.sort], _HEAD, rows)
     else:
         print("\n".join("\t".join(row) for row in rows))
     if page.next_cursor is not None:

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+import numpy as np
+
 from app.agents.registry import learns
 from app.assembly import build_learner, build_walkers
 from app.experiments.config import ExperimentConfig
@@ -128,15 +130,19 @@ class Estimates:
 
 
 def step_s_of(steps: Steps) -> float:
-    """Time the steps of a kind, without the first one, and return the mean [s]."""
+    """Time the steps of a kind, without the first one, and return a trimmed mean [s].
+
+    The slowest tenth is left out: the system has interrupted them.
+    """
     records = _practised(steps.training) if steps.practises else _raced(steps.training)
     next(records)  # compiles, and fills caches
-    began_s, count = time.perf_counter(), 0
+    moments = [time.perf_counter()]
     for _ in records:
-        count += 1
-        if time.perf_counter() - began_s > MEASURE_S:
+        moments.append(time.perf_counter())
+        if moments[-1] - moments[0] > MEASURE_S:
             break
-    return (time.perf_counter() - began_s) / max(count, 1)
+    durations = np.sort(np.diff(moments))
+    return float(durations[: max(1, len(durations) * 9 // 10)].mean()) if len(durations) else 0.0
 
 
 def _practised(config: TrainingConfig) -> Iterator[object]:

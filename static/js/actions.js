@@ -273,7 +273,7 @@ export function setStage(changes) {
  * @returns {((time_s: number) => unknown) | null}
  */
 export const seekIn = (id) =>
-  isOperator.value && scene.value?.run_id === id ? (time_s) => setStage({ time_s }) : null;
+  canPlay.value && scene.value?.run_id === id ? (time_s) => setStage({ time_s }) : null;
 
 export const togglePlaying = () => {
   if (canPlay.value && stage.value?.run_id) setStage({ playing: !isPlaying.value });

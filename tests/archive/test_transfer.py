@@ -151,17 +151,19 @@ def test_an_archive_of_several_runs_is_refused_as_a_whole(
             imported_runs(archive.pack(members), store)
     with pytest.raises(InvalidInput, match="which no run has"):
         imported(b"".join(export_many(source, [TRAINING])), store)
-    add = store.add
+    recording = source.artifact(RACED, RACE)
+    write = store._files.write
 
-    def add_no_race(run: Run, *rest: Any) -> Run:
-        if run.kind == "race":
+    def write_no_race(data: bytes) -> Any:
+        if data == recording:
             raise StorageFull("no space")
-        return add(run, *rest)
+        return write(data)
 
-    monkeypatch.setattr(store, "add", add_no_race)
+    monkeypatch.setattr(store._files, "write", write_no_race)
     with pytest.raises(StorageFull):
         imported_runs(b"".join(export_many(source, [TRAINING, RACED])), store)
     assert store.list().items == []
+    assert store.delete_orphans() == 0
 
 
 def test_what_cannot_be_exported_together_is_refused_before_the_first_byte(

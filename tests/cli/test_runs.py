@@ -132,6 +132,20 @@ def test_walk_is_written_as_a_table(data: Path, tmp_path: Path) -> None:
     assert "no run 'nope'" in write("nope", "--out", "w.csv")
 
 
+def test_runs_are_listed_by_tag_search_and_order(data: Path, tmp_path: Path) -> None:
+    with opened(data, None) as store:
+        store.update(RACED, tags=("ice",), notes="slips")
+
+    def listed(*options: str) -> list[str]:
+        given = ("runs", "list", "--data", str(data), *options)
+        return [run["id"] for run in output(*given, folder=tmp_path, run=in_process)["items"]]
+
+    assert listed("--sort", "oldest") == listed()[::-1] == sorted((RACED, TRAINING))
+    assert listed("--tag", "ICE") == listed("--search", "slip") == [RACED]
+    shown = in_process("runs", "show", RACED, "--data", str(data), folder=tmp_path).stdout
+    assert "slips" in shown
+
+
 def test_several_runs_are_exported_and_imported_together(data: Path, tmp_path: Path) -> None:
     out = ("--out", "runs.zip", "--data", str(data))
     exported = output("export", RACED, TRAINING, *out, folder=tmp_path, run=in_process)

@@ -108,47 +108,71 @@ class RunStore:
         new_id: Callable[[], str],
         key: IdempotencyKey | None = None,
     ) -> Run:
-        """Insert an ended run with its content (used by imports), atomically.
+        """Insert an ended run with its content, as `add_all`."""
+        return self.add_all([(run, content)], new_id, key)[0]
+
+    def add_all(
+        self,
+        imported: Sequence[tuple[Run, Content]],
+        new_id: Callable[[], str],
+        key: IdempotencyKey | None = None,
+    ) -> Sequence[Run]:
+        """Insert ended runs with their content (used by imports), all or none, atomically.
 
         Args:
-            run: the run; keeps its id if that is free in this store.
-            content: its curve, trials and artifacts.
-            new_id: creates an id if the run's own is already in use.
-            key: idempotency key of the request, stored in the same transaction.
+            imported: each run, which keeps its id if that is free in this store, and its curve,
+                trials and artifacts.
+            new_id: creates an id if a run's own is already in use.
+            key: idempotency key of the request, for the last of them, stored in the same
+                transaction.
 
         Returns:
-            the run as stored.
+            the runs as stored.
 
         Raises:
             StorageFull: if there is too little disk space; nothing is left behind then.
         """
-        stored: dict[str, StoredFile] = {}
+        stored: list[dict[str, StoredFile]] = [{} for _ in imported]
         was_submitted = False
 
-        def work(connection: Connection) -> Run:
-            existing = connection.execute(select(RUNS.c.id).where(RUNS.c.id == run.id)).first()
-            added = run if existing is None else replace(run, id=new_id())
-            connection.execute(insert(RUNS), [encode_run(added)])
-            self._curves.insert(connection, added.id, content.evaluations)
-            self._trials.insert(connection, added.id, content.trials)
-            self._artifacts.insert(connection, added.id, stored)
-            self._keys.insert(connection, key, added.id)
-            # Decoded again, so that a run that could not be read later is rejected now.
-            return decode_run(fetch_run_row(connection, added.id))
+        def work(connection: Connection) -> Sequence[Run]:
+            added = []
+            for (run, content), files in zip(imported, stored, strict=True):
+                added.append(self._insert(connection, run, content, files, new_id))
+            self._keys.insert(connection, key, added[-1].id)
+            return added
 
         try:
             # Files first: a crash then leaves orphaned files, which the next start deletes, but
             # never a row without its files.
-            for name, data in content.artifacts.items():
-                stored[name] = self._files.write(data)
+            for (_, content), files in zip(imported, stored, strict=True):
+                for name, data in content.artifacts.items():
+                    files[name] = self._files.write(data)
             was_submitted = True
             return self._database.write(work)
         except BaseException as error:
             # After an outage the transaction may have been committed with its reply lost. The
             # files stay then; if they are orphans, the next start deletes them.
             if not (was_submitted and isinstance(error, StorageFailed)):
-                self._files.remove(*(one.file for one in stored.values()))
+                self._files.remove(*(one.file for files in stored for one in files.values()))
             raise
+
+    def _insert(
+        self,
+        connection: Connection,
+        run: Run,
+        content: Content,
+        files: Mapping[str, StoredFile],
+        new_id: Callable[[], str],
+    ) -> Run:
+        existing = connection.execute(select(RUNS.c.id).where(RUNS.c.id == run.id)).first()
+        added = run if existing is None else replace(run, id=new_id())
+        connection.execute(insert(RUNS), [encode_run(added)])
+        self._curves.insert(connection, added.id, content.evaluations)
+        self._trials.insert(connection, added.id, content.trials)
+        self._artifacts.insert(connection, added.id, files)
+        # Decoded again, so that a run that could not be read later is rejected now.
+        return decode_run(fetch_run_row(connection, added.id))
 
     def find_key(self, key: str) -> KeyRecord | None:
         """Look up an idempotency key; None if it was not used within its lifetime."""
