@@ -60,7 +60,7 @@ def get_gait(
             _lanes(services, run),
         )
     elif isinstance(run.config, TrainingConfig):
-        shown, agents, walks = part, [run.config.agent], [_training(services, run, part)]
+        shown, agents, walks = part, [run.config.agent], [_training(services, run, part, from_s)]
     else:
         raise Conflict(f"{run_id} is an experiment, whose walks are not recorded", run.state)
     begin_s, end_s = window_of(walks, from_s, to_s, newest=shown == "practice")
@@ -75,12 +75,14 @@ def _lanes(services: Services, run: Run) -> Sequence[RecordedWalk]:
     return [walk_of_lane(lane, run.config, world_of(run)) for lane in lanes]
 
 
-def _training(services: Services, run: Run, part: TrainingPart) -> RecordedWalk:
+def _training(
+    services: Services, run: Run, part: TrainingPart, from_s: float | None
+) -> RecordedWalk:
     recording = services.recordings.training(run.id)
     if recording is None or not isinstance(run.config, TrainingConfig):
         raise Conflict(f"training {run.id} is {run.state} and has no recording (yet)", run.state)
     if part == "practice":
-        return walk_of_practice(recording, run.config, world_of(run))
+        return walk_of_practice(recording, run.config, world_of(run), from_s)
     evaluations = [one for one in recording.evaluations if one.motion is not None]
     if not evaluations:
         raise Conflict(
