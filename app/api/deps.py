@@ -7,6 +7,7 @@ from typing import Annotated, NamedTuple, Protocol
 from fastapi import Depends, Header, HTTPException, Request
 from starlette.requests import ClientDisconnect
 
+from app.api.answer_cache import AnswerCache
 from app.api.auth import Role
 from app.api.descriptions import VALID
 from app.events.run_metrics import RunMetrics
@@ -50,6 +51,7 @@ class Services:
         film: encodes a race's recording as a recorded stream for viser.
         listeners: slots of event streams.
         exports: memory budget of exports that clients are still reading.
+        gaits: gait analyses, which all pages that watch a run request at once.
     """
 
     store: RunStore
@@ -65,6 +67,7 @@ class Services:
     what_if: WhatIf
     listeners: ClientSlots["Listener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
+    gaits: AnswerCache = field(default_factory=AnswerCache)
 
 
 class Listener:
