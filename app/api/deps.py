@@ -7,6 +7,7 @@ from typing import Annotated, Any, NamedTuple, Protocol
 from fastapi import Depends, Header, HTTPException, Request
 from starlette.requests import ClientDisconnect
 
+from app.api.answer_cache import AnswerCache
 from app.api.auth import Role
 from app.api.descriptions import VALID
 from app.events.run_metrics import RunMetrics
@@ -71,6 +72,7 @@ class Services:
         replays: encodes frames of runs for pages that play them by themselves.
         listeners: slots of event streams.
         exports: memory budget of exports that clients are still reading.
+        gaits: gait analyses, which all pages that watch a run request at once.
     """
 
     store: RunStore
@@ -89,6 +91,7 @@ class Services:
     estimates: Estimates
     listeners: ClientSlots["Listener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
+    gaits: AnswerCache = field(default_factory=AnswerCache)
 
 
 class Listener:

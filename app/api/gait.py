@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 from fastapi import APIRouter, Query
 from starlette.responses import JSONResponse, Response
@@ -53,40 +53,62 @@ def get_gait(
     run = services.store.find(run_id)
     if isinstance(run, DamagedRun):
         raise Damaged(run.id, run.damaged)
-    if isinstance(run.config, RaceConfig):
-        shown, agents, walks = (
-            "race",
-            [lane.agent for lane in run.config.lanes],
-            _lanes(services, run),
-        )
-    elif isinstance(run.config, TrainingConfig):
-        shown, agents, walks = part, [run.config.agent], [_training(services, run, part)]
-    else:
-        raise Conflict(f"{run_id} is an experiment, whose walks are not recorded", run.state)
-    begin_s, end_s = window_of(walks, from_s, to_s, newest=shown == "practice")
-    lanes = [_lane(agent, walk, begin_s, end_s) for agent, walk in zip(agents, walks, strict=True)]
-    return JSONResponse({"part": shown, "step_s": run.config.robot.step_s, "lanes": lanes})
+    shown = _walks(services, run, part, from_s)
+    window = window_of(shown.walks, from_s, to_s, newest=shown.part == "practice")
+    recorded = tuple((walk.from_s, walk.to_s) for walk in shown.walks)
+    key = (run.id, shown.part, window, recorded, shown.step, len(run.changes))
+    return Response(
+        services.gaits.get(key, lambda: _answer(shown, *window)), media_type="application/json"
+    )
 
 
-def _lanes(services: Services, run: Run) -> Sequence[RecordedWalk]:
-    lanes = services.recordings.race(run.id)
-    if lanes is None or not isinstance(run.config, RaceConfig):
-        raise Conflict(f"race {run.id} is {run.state} and has no recording (yet)", run.state)
-    return [walk_of_lane(lane, run.config, world_of(run)) for lane in lanes]
+class _Walks(NamedTuple):
+    """What is analysed of a run: one walk of each agent."""
+
+    part: Literal["race", "practice", "evaluation"]
+    agents: Sequence[str]
+    walks: Sequence[RecordedWalk]
+    step: int = 0
+    """The step of practice after which an evaluation was."""
 
 
-def _training(services: Services, run: Run, part: TrainingPart) -> RecordedWalk:
+def _walks(services: Services, run: Run, part: TrainingPart, from_s: float | None) -> _Walks:
+    """Return the recorded walks of a run.
+
+    Raises:
+        Conflict: if there are none.
+    """
+    config = run.config
+    if isinstance(config, RaceConfig):
+        lanes = services.recordings.race(run.id)
+        if lanes is None:
+            raise Conflict(f"race {run.id} is {run.state} and has no recording (yet)", run.state)
+        agents = [lane.agent for lane in config.lanes]
+        return _Walks("race", agents, [walk_of_lane(one, config, world_of(run)) for one in lanes])
+    if not isinstance(config, TrainingConfig):
+        raise Conflict(f"{run.id} is an experiment, whose walks are not recorded", run.state)
     recording = services.recordings.training(run.id)
-    if recording is None or not isinstance(run.config, TrainingConfig):
+    if recording is None:
         raise Conflict(f"training {run.id} is {run.state} and has no recording (yet)", run.state)
     if part == "practice":
-        return walk_of_practice(recording, run.config, world_of(run))
-    evaluations = [one for one in recording.evaluations if one.motion is not None]
-    if not evaluations:
+        walk = walk_of_practice(recording, config, world_of(run), from_s)
+        return _Walks(part, [config.agent], [walk])
+    evaluation = next((e for e in reversed(recording.evaluations) if e.motion is not None), None)
+    if evaluation is None:
         raise Conflict(
             f"training {run.id} is {run.state} and has no recorded evaluation", run.state
         )
-    return walk_of_evaluation(evaluations[-1], recording, run.config, world_of(run))
+    walk = walk_of_evaluation(evaluation, recording, config, world_of(run))
+    return _Walks(part, [config.agent], [walk], evaluation.step)
+
+
+def _answer(shown: _Walks, from_s: float, to_s: float) -> bytes:
+    lanes = [
+        _lane(agent, walk, from_s, to_s)
+        for agent, walk in zip(shown.agents, shown.walks, strict=True)
+    ]
+    step_s = shown.walks[0].problem.robot.step_s
+    return bytes(JSONResponse({"part": shown.part, "step_s": step_s, "lanes": lanes}).body)
 
 
 def _lane(agent: str, walk: RecordedWalk, from_s: float, to_s: float) -> dict[str, Any]:

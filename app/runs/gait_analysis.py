@@ -115,19 +115,31 @@ def walk_of_lane(lane: LaneRecording, problem: WalkingProblem, world: World) -> 
 
 
 def walk_of_practice(
-    recording: PracticeRecording, problem: WalkingProblem, world: World
+    recording: PracticeRecording,
+    problem: WalkingProblem,
+    world: World,
+    from_s: float | None = None,
 ) -> RecordedWalk:
-    """Return the newest steps of a practice that are recorded without a gap."""
+    """Return steps of a practice that are recorded without a gap.
+
+    Args:
+        recording: the practice; of its first and its newest steps there are records.
+        problem: the walking problem.
+        world: all that happens in the practice.
+        from_s: a time before the end of those steps; None for the newest.
+    """
     steps: list[StepTaken] = []
-    start_qpos = recording.rest_qpos
     for taken in recording.steps:
         if taken.motion is None:
             continue
         if steps and steps[-1].step != taken.step - 1:
-            steps.clear()
-        if not steps and taken.step > 1:
-            start_qpos = taken.motion.qpos[0]
+            if from_s is not None and from_s < steps[-1].step * problem.robot.step_s:
+                break
+            steps = []
         steps.append(taken)
+    start_qpos = recording.rest_qpos
+    if steps and steps[0].step > 1:
+        start_qpos = cast(Motion, steps[0].motion).qpos[0]
     return RecordedWalk(problem, world, start_qpos, steps)
 
 

@@ -35,15 +35,18 @@ export const subject = computed(() => {
   return raceInView.value && { run: raceInView.value, part: "race" };
 });
 
-/** @type {Signal<{ id: string, answer: GaitAnalysis } | null>} */
+/** An answer; `number` is that of the part that was requested, null where all was. */
+/** @type {Signal<{ id: string, number: number | null, answer: GaitAnalysis } | null>} */
 const newest = signal(null);
 
-/** The analysis of the subject, null while it is not known. */
-export const analysis = computed(() => {
+/** The newest answer about the subject. */
+const known = computed(() => {
   const about = subject.value;
-  const known = newest.value;
-  return about && known?.id === about.run.id && known.answer.part === about.part ? known.answer : null;
+  return about && newest.value?.id === about.run.id && newest.value.answer.part === about.part ? newest.value : null;
 });
+
+/** The analysis of the subject, null while it is not known. */
+export const analysis = computed(() => known.value?.answer ?? null);
 
 // ---- the moment that is shown
 
@@ -91,19 +94,17 @@ export function seek(number, walked) {
 
 // ---- requests
 
-/** Of a long walk: the number of the part that is shown. */
+/** Of a walk that is long, or recorded in parts: the number of the part that is shown. */
 const partShown = computed(() => {
-  const lanes = analysis.value?.lanes ?? [];
-  const isLong = lanes.some((lane) => lane.recorded_to_s - lane.recorded_from_s > WINDOW_S + 1e-6);
-  return isLong ? Math.floor((momentOf(0) ?? 0) / PART_S) : null;
+  const moment = momentOf(0) ?? 0;
+  const isElsewhere = (/** @type {GaitLane} */ { recorded_from_s: from, recorded_to_s: to }) =>
+    to - from > WINDOW_S + 1e-6 || moment < from || (moment > to && subject.value?.part === "practice");
+  const isInParts = known.value && (known.value.number !== null || known.value.answer.lanes.some(isElsewhere));
+  return isInParts ? Math.floor(moment / PART_S) : null;
 });
 
-/** The beginning of a part of a long walk [s]. @param {GaitLane[]} lanes @param {number} number */
-const beginOf = (lanes, number) => {
-  const last = Math.max(...lanes.map((lane) => lane.recorded_to_s)) - 1;
-  const first = Math.min(...lanes.map((lane) => lane.recorded_from_s));
-  return Math.max(first, Math.min(last, (number - 0.5) * PART_S));
-};
+/** The beginning of what is requested of such a walk [s]. @param {number} shown */
+const beginOf = (shown) => Math.max(0, (shown - 0.5) * PART_S);
 
 /** What to request: each time the run has grown, or the moment that is shown has left the part that is known. */
 const wanted = computed(() => {
@@ -122,11 +123,9 @@ export function followGait() {
     const about = subject.peek();
     if (isBusy || !wanted.peek() || !about) return;
     isBusy = true;
-    const known = analysis.peek()?.lanes;
-    const number = partShown.peek();
-    const from_s = known && number !== null ? beginOf(known, number) : null;
-    const answer = await getGait(about.run.id, about.part, from_s).catch(() => null);
-    if (answer) newest.value = { id: about.run.id, answer };
+    const shown = partShown.peek();
+    const answer = await getGait(about.run.id, about.part, shown === null ? null : beginOf(shown)).catch(() => null);
+    if (answer) newest.value = { id: about.run.id, number: shown, answer };
     setTimeout(() => {
       isBusy = false;
       if (isStale) load();

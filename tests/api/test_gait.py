@@ -37,6 +37,21 @@ def test_gait_of_a_race_has_the_figures_of_each_lane(api: Api, raced: dict[str, 
         assert figures.effort.cost_of_transport is not None
 
 
+def test_gait_of_a_race_that_goes_on_is_new_and_of_one_that_ended_is_kept(
+    api: Api, raced: dict[str, Any]
+) -> None:
+    lanes = [{"agent": "look-ahead", "depth": 3}]
+    running = api.race(lanes=lanes, simulator="kinematic", steps=200)
+    ends = []
+    for steps in (1, 5):
+        api.until(running, lambda now, steps=steps: now["progress"]["done"] >= steps)
+        ends.append(gait(api, running).lanes[0].recorded_to_s)
+    api.stop(running)
+    assert 0 < ends[0] < ends[1]
+    path = f"/runs/{raced['id']}/gait"
+    assert api.call("GET", path).content == api.call("GET", path).content
+
+
 def test_gait_of_a_part_of_a_race(api: Api, raced: dict[str, Any]) -> None:
     figures = gait(api, raced, from_s=1.0, to_s=2.5).lanes[0].figures
 

@@ -427,6 +427,17 @@ def _race_with(source: RunStore, change: Change) -> bytes:
 def test_invalid_recordings_are_refused(source: RunStore) -> None:
     assert imported(_race_with(source, lambda arrays: None)).id == RACED
 
+    def effort(
+        shape: tuple[int, int] = (128, 18),
+        dtype: str = "f2",
+        torque: float = 1.0,
+        work: Any = (1.0,) * 128,
+    ) -> Change:
+        recorded = {"torque_nm": np.full(shape, torque).astype(dtype), "work_j": np.array(work)}
+        return lambda arrays: arrays.update({f"lane0.{k}": v for k, v in recorded.items()})
+
+    assert imported(_race_with(source, effort())).id == RACED
+
     def put(name: str, value: Callable[[Any], Any]) -> Change:
         return lambda arrays: arrays.update({name: value(arrays[name])})
 
@@ -437,6 +448,13 @@ def test_invalid_recordings_are_refused(source: RunStore) -> None:
         put("lane0.rest_qpos", lambda a: a[:-1]),
         put("lane0.time_s", lambda a: a[::-1]),
         put("lane0.time_s", lambda a: a * 0),
+        effort((128, 17)),
+        effort(torque=np.inf),
+        effort(dtype="U3"),
+        effort(dtype="f8"),
+        effort(work=[[1.0]] * 128),
+        effort(work=[-1.0] * 128),
+        effort(work=[np.nan] * 128),
         put("lane0.frames", lambda a: a * 1000),
         put("lane0.frames", lambda a: -a),
         put("lane0.observation", lambda a: a + 100),

@@ -246,6 +246,11 @@ def test_the_newest_steps_of_a_practice_and_its_newest_evaluation() -> None:
     assert figures is not None
     assert figures.duty_factor == pytest.approx(0.8, abs=0.05)
 
+    first = walk_of_practice(recording, config, UNDISTURBED, from_s=1.0)
+    assert (first.from_s, first.to_s) == pytest.approx((0, 20 * STEP_S))
+    after = walk_of_practice(recording, config, UNDISTURBED, from_s=30 * STEP_S)
+    assert after.from_s == pytest.approx(40 * STEP_S)
+
     evaluation = recording.evaluations[-1]
     tested = walk_of_evaluation(evaluation, recording, config, UNDISTURBED)
     figures = gait_figures(tested, 0, 16)

@@ -23,7 +23,9 @@ export function Gait({ isNear }) {
   const lanes = useMemo(() => known && lanesOf(known, run), [known, run?.config, colorOf(0)]);
   return html`
     <p class="dim">When each foot is on the ground, in robot time: without the time that decisions take</p>
-    ${lanes?.length ? html`<${Figures} lanes=${lanes} known=${known} />` : html`<${Empty} words=${INVITATION} />`}
+    ${lanes?.length
+      ? html`<${Figures} lanes=${lanes} known=${known} />`
+      : html`<${Empty} words=${known ? "Nothing is recorded of this part of the walk." : INVITATION} />`}
   `;
 }
 
