@@ -24,7 +24,8 @@ export function ExplainedStep({ told }) {
 function Happened({ told }) {
   const { reward_m } = told;
   const visits = triesOf(told, told.action);
-  const tried = visits === null ? "" : visits === 0 ? ", for the first time here" : `, here ${times(visits)} before`;
+  const before = visits ? `, which it had tried ${times(visits)} before` : ", for the first time";
+  const tried = visits === null ? "" : before;
   const went = reward_m < 0 ? "back" : "forward";
   return html`
     <p>
