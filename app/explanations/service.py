@@ -73,7 +73,7 @@ class Explanations:
         number = _checked_step(step, len(log))
 
         def answer() -> dict[str, Any]:
-            practice, changes = self._practice(run, log)
+            practice, changes = _in(run, lambda: self._practice(run, log))
             explained = _in(run, lambda: practice.explain(number, changes))
             return explanation_as_json(run_id, config, config.agent, explained)
 
@@ -108,7 +108,7 @@ class Explanations:
         count = min(count, MAX_VALUES_SHOWN // (pairs * cells))
 
         def answer() -> dict[str, Any]:
-            practice, changes = self._practice(run, log)
+            practice, changes = _in(run, lambda: self._practice(run, log))
             learner = _in(run, lambda: practice.learner_at(number, changes))
             if not isinstance(learner.agent, Tabular) or not isinstance(learner.agent, Valuing):
                 raise Conflict(
@@ -306,5 +306,6 @@ def _in(run: Run, explain: Callable[[], T]) -> T:
     """Tell why a learner cannot be built again as a conflict with the run that it is of."""
     try:
         return explain()
-    except NotRebuilt as error:
-        raise Conflict(str(error), run.state) from error
+    except (InvalidInput, NotRebuilt) as error:
+        reason = f"the learner of {run.kind} {run.id} cannot be built again: {error}"
+        raise Conflict(reason, run.state) from error

@@ -67,8 +67,9 @@ const sentenceOf = (text) => `${text.charAt(0).toUpperCase()}${text.slice(1)}${/
 
 function Search({ told }) {
   const { sentences, futures, compares } = told.search;
-  const rows = futures.map(({ action, return_m, reward_m, steps }) => ({
-    move: action, score: return_m, note: `${fineMillimetres(reward_m)} at once, ${count(steps, "step")} ahead`,
+  const rows = futures.map(({ action, return_m, reward_m, steps, sequences }) => ({
+    move: action, score: return_m,
+    note: `${fineMillimetres(reward_m)} at once; ${count(sequences, "sequence")} of ${count(steps, "step")}`,
   }));
   return html`
     <section>
