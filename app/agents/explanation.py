@@ -228,6 +228,7 @@ class Journal:
         self.moves[-1] = self.moves[-1].with_target(rule, terms)
 
 
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -274,7 +275,9 @@ def _substituted(rule: str, terms: Sequence[Term], text_of: Callable[[float], st
 
 
 def _rounded(value: float) -> str:
-    return f"{value:.4g}".replace("-", "−")
+    mantissa, _, exponent = f"{value:.4g}".partition("e")
+    power = f" · 10{str(int(exponent)).translate(_SUPERSCRIPTS)}" if exponent else ""
+    return mantissa.replace("-", "−") + power
 
 
 def in_millimetres(metres: float) -> str:

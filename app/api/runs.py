@@ -184,7 +184,8 @@ def explain_step(
     The learner is built again from what is stored, and takes the step once more: the rule of its
     update is checked, and gives the value after it to the last bit.
     """
-    return JSONResponse(services.explanations.explain(run_id, step, lane))
+    answer = services.explanations.explain(run_id, step, lane)
+    return Response(answer, media_type="application/json")
 
 
 def _page(services: Services, listing: Listing) -> Response:

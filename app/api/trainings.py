@@ -125,7 +125,8 @@ def get_table_at(
     significant. An answer has at most 30,000 values; `first` and `count` choose which.
     """
     find(services, "training", run_id)
-    return JSONResponse(services.explanations.table(run_id, step, first, count))
+    answer = services.explanations.table(run_id, step, first, count)
+    return Response(answer, media_type="application/json")
 
 
 @router.get(

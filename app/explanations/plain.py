@@ -77,7 +77,7 @@ def explanation_as_json(
         "reward_m": logged.reward_m,
         "next_observation": list(logged.next_observation) or None,
         "visits": None if explained.visits is None else _rows(explained.visits),
-        "choice": None if explained.choice is None else _choice(explained.choice, words),
+        "choice": None if explained.choice is None else _choice(explained, words),
         "update": None if explained.update is None else _update(explained.update, words),
         "search": None if search is None else _search(search, logged, words),
         "unexplained": unexplained,
@@ -139,7 +139,12 @@ def _foreseen(
     return sentences
 
 
-def _choice(choice: ChoiceExplanation, words: Words) -> dict[str, Any]:
+def _choice(explained: ExplainedStep, words: Words) -> dict[str, Any]:
+    choice = explained.choice
+    assert choice is not None  # noqa: S101 - the caller has checked
+    sentences = _reasons(choice, words)
+    if explained.chose_early:
+        sentences.append("It chose so before it learned from the step before, by the values then.")
     return {
         "kind": choice.kind,
         "criterion": choice.criterion,
@@ -150,7 +155,7 @@ def _choice(choice: ChoiceExplanation, words: Words) -> dict[str, Any]:
         "epsilon": choice.epsilon,
         "draw": choice.draw,
         "probability": choice.probability,
-        "sentences": _reasons(choice, words),
+        "sentences": sentences,
     }
 
 
@@ -174,7 +179,7 @@ def _reasons(choice: ChoiceExplanation, words: Words) -> list[str]:
     if choice.draw is not None:
         drawn = f", as {choice.draw:.3f} was drawn, not below ε = {choice.epsilon:.3f}"
     sentences.append(
-        f"It takes what it holds for best{drawn}: {move} has the highest {choice.criterion}, "
+        f"It takes what it holds for best{drawn}: {move} has the highest {choice.criterion}: "
         f"{in_millimetres(choice.scores[choice.action])}."
     )
     if len(choice.best) > 1:

@@ -87,8 +87,13 @@ class RebuiltPractice:
             if early:
                 self._take(explain_next=True)
         self._tune()
+        logged = self.steps.step(step - 1)
         with self._starting_anew_if_broken(step):
-            return self._learner.explain(self.steps.step(step - 1))
+            explained = self._learner.explain(logged)
+        if not logged.next_observation:
+            # The newest step of a lane, from which it learns before the next one.
+            self._learner, self._worked_s = self._new(), 0.0
+        return explained
 
     def _go_to(self, step: int) -> None:
         place = bisect_right(self._snapshots, step, key=lambda one: one.step) - 1

@@ -10,6 +10,7 @@ from app.agents import registry
 from app.agents.protocol import Tabular, Valuing
 from app.assembly import rebuild_lane, rebuild_learner
 from app.domain.errors import InvalidInput
+from app.explanations.answer_cache import AnswerCache
 from app.explanations.plain import Search, explanation_as_json, table_as_json
 from app.explanations.rebuilt_practice import Changes, RebuiltPractice
 from app.runs.config import TrainingConfig
@@ -41,9 +42,10 @@ class Explanations:
     def __init__(self, store: RunStore, recordings: Recordings) -> None:
         self._store, self._recordings = store, recordings
         self._practices: OrderedDict[tuple[str, int], RebuiltPractice] = OrderedDict()
+        self._answers = AnswerCache()
         self._lock, self._count_lock, self._waiting = threading.Lock(), threading.Lock(), 0
 
-    def explain(self, run_id: str, step: int | None, lane: int) -> dict[str, Any]:
+    def explain(self, run_id: str, step: int | None, lane: int) -> bytes:
         """Explain a step of a training, or of a lane of a race.
 
         Args:
@@ -52,7 +54,7 @@ class Explanations:
             lane: of a race, counted from 0; 0 for a training.
 
         Returns:
-            the explanation in plain types.
+            the explanation as JSON.
 
         Raises:
             NotFound: if there is no such run.
@@ -67,14 +69,17 @@ class Explanations:
             raise InvalidInput(f"run {run_id} is an experiment; its trials are no steps to explain")
         if lane != 0:
             raise InvalidInput("a training has one lane, 0")
-        log = self._log(run)
+        config, log = run.config, self._log(run)
         number = _checked_step(step, len(log))
-        with self._one_at_a_time():
-            practice, changes = self._practice(run, log)
-            explained = _in(run, lambda: practice.explain(number, changes))
-        return explanation_as_json(run_id, run.config, run.config.agent, explained)
 
-    def table(self, run_id: str, step: int | None, first: int, count: int) -> dict[str, Any]:
+        def answer() -> dict[str, Any]:
+            practice, changes = _in(run, lambda: self._practice(run, log))
+            explained = _in(run, lambda: practice.explain(number, changes))
+            return explanation_as_json(run_id, config, config.agent, explained)
+
+        return self._answer((run_id, 0, number), log, answer)
+
+    def table(self, run_id: str, step: int | None, first: int, count: int) -> bytes:
         """Return the values, visits and best actions of some states, as a learner has them.
 
         Args:
@@ -83,6 +88,9 @@ class Explanations:
             first: index of the first state.
             count: number of states.
 
+        Returns:
+            the table as JSON.
+
         Raises:
             NotFound, InvalidInput, Conflict, Busy: as `explain`; Conflict also for a learner
                 without a table.
@@ -90,50 +98,67 @@ class Explanations:
         run = self._store.get(run_id)
         if not isinstance(run.config, TrainingConfig):
             raise InvalidInput(f"run {run_id} is a {run.kind}; only trainings have a table")
-        log = self._log(run)
+        config, log = run.config, self._log(run)
         number = len(log) if step is None else step
         if not 0 <= number <= len(log):
             raise InvalidInput(f"step must be from 0 to {len(log):,}, not {number}")
-        with self._one_at_a_time():
-            practice, changes = self._practice(run, log)
+        pairs, cells = len(config.resolved_gait.pairs), len(config.grid)
+        if not 0 <= first < cells**pairs:
+            raise InvalidInput(f"first must be from 0 to {cells**pairs - 1:,}, not {first}")
+        count = min(count, MAX_VALUES_SHOWN // (pairs * cells))
+
+        def answer() -> dict[str, Any]:
+            practice, changes = _in(run, lambda: self._practice(run, log))
             learner = _in(run, lambda: practice.learner_at(number, changes))
             if not isinstance(learner.agent, Tabular) or not isinstance(learner.agent, Valuing):
                 raise Conflict(
-                    f"{run.config.agent} keeps no table: it generalises over all states", run.state
+                    f"{config.agent} keeps no table: it generalises over all states", run.state
                 )
             table = learner.agent.table
-            if not 0 <= first < table.states:
-                raise InvalidInput(f"first must be from 0 to {table.states - 1:,}, not {first}")
-            end = min(first + min(count, MAX_VALUES_SHOWN // table.actions), table.states)
-            states = [table.cells_at(state) for state in range(first, end)]
-            return table_as_json(
-                run.config, learner.agent, states, step=number, first=first, total=table.states
-            )
+            states = [table.cells_at(n) for n in range(first, min(first + count, table.states))]
+            shown = {"step": number, "first": first, "total": table.states}
+            return table_as_json(config, learner.agent, states, **shown)
 
-    def _explain_lane(
-        self, run: Run, config: RaceConfig, step: int | None, lane: int
-    ) -> dict[str, Any]:
+        # After the last step settings may still be changed, which changes no value.
+        return self._answer((run_id, "table", number, first, count), log, answer)
+
+    def _answer(
+        self, key: tuple[str | int, ...], source: object, answer: Callable[[], dict[str, Any]]
+    ) -> bytes:
+        """Return a known answer, or a new one."""
+        known = self._answers.get(key, source)
+        if known is not None:
+            return known
+        with self._one_at_a_time():
+            # Another request may have asked for the same meanwhile.
+            known = self._answers.get(key, source)
+            return self._answers.put(key, source, answer()) if known is None else known
+
+    def _explain_lane(self, run: Run, config: RaceConfig, step: int | None, lane: int) -> bytes:
         lanes = self._recordings.race(run.id)
         if lanes is None:
             raise Conflict(f"race {run.id} is {run.state} and has no recording (yet)", run.state)
         if not 0 <= lane < len(lanes):
             raise InvalidInput(f"lane must be from 0 to {len(lanes) - 1}, not {lane}")
-        number = _checked_step(step, len(lanes[lane].steps))
-        steps, why = LaneSteps(lanes[lane], config.lanes[lane].observation == "measured"), None
-        explained = ExplainedStep(number, steps.step(number - 1), None, None, None)
-        search = _search_of(config.lanes[lane].agent, lanes[lane].steps[number - 1])
-        if search is None:
-            try:
-                with self._one_at_a_time():
+        recording, own = lanes[lane], config.lanes[lane]
+        number = _checked_step(step, len(recording.steps))
+
+        def answer() -> dict[str, Any]:
+            steps, why = LaneSteps(recording, own.observation == "measured"), None
+            explained = ExplainedStep(number, steps.step(number - 1), None, None, None)
+            search = _search_of(own.agent, recording.steps[number - 1])
+            if search is None:
+                try:
                     explained = self._lane_practice(run, config, lane, steps).explain(number, ())
-            except (Conflict, InvalidInput, NotRebuilt) as error:
-                why = str(error)
-        return explanation_as_json(
-            *(run.id, config, config.lanes[lane].agent, explained),
-            lane=lane,
-            search=search,
-            unexplained=why,
-        )
+                except (Conflict, InvalidInput, NotRebuilt) as error:
+                    why = str(error)
+            return explanation_as_json(
+                *(run.id, config, own.agent, explained), lane=lane, search=search, unexplained=why
+            )
+
+        # What was learned from the newest step of a race that runs is told with the next one.
+        key = (run.id, lane, number, number < len(recording.steps))
+        return self._answer(key, recording, answer)
 
     def _log(self, run: Run) -> TransitionLog:
         log = self._recordings.transitions(run.id)
@@ -281,5 +306,6 @@ def _in(run: Run, explain: Callable[[], T]) -> T:
     """Tell why a learner cannot be built again as a conflict with the run that it is of."""
     try:
         return explain()
-    except NotRebuilt as error:
-        raise Conflict(str(error), run.state) from error
+    except (InvalidInput, NotRebuilt) as error:
+        reason = f"the learner of {run.kind} {run.id} cannot be built again: {error}"
+        raise Conflict(reason, run.state) from error

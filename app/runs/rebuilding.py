@@ -105,6 +105,7 @@ class ExplainedStep:
             a learner that does not count.
         choice: why it chose its action; None for a learner that does not explain.
         update: how its values changed; None for one that does not explain, or did not learn.
+        chose_early: whether it chose before it learned from the step before.
     """
 
     step: int
@@ -112,6 +113,7 @@ class ExplainedStep:
     visits: FloatArray | None
     choice: ChoiceExplanation | None
     update: UpdateExplanation | None
+    chose_early: bool = False
 
 
 class RebuiltLearner:
@@ -180,6 +182,7 @@ class RebuiltLearner:
         """
         agent, update = self.agent, None
         visits = agent.visits(logged.observation) if isinstance(agent, Valuing) else None
+        chose_early = self._next_action is not None
         choice = self._choose(logged, explain=True)
         transition = self._end(logged, explain_next=True)
         if transition is not None and isinstance(agent, Explaining):
@@ -187,7 +190,7 @@ class RebuiltLearner:
         elif transition is not None:
             agent.learn(transition)
         self.step += 1
-        return ExplainedStep(self.step, logged, visits, choice, update)
+        return ExplainedStep(self.step, logged, visits, choice, update, chose_early)
 
     def _choose(self, logged: Logged, explain: bool) -> ChoiceExplanation | None:
         """Let the learner choose the action of a step, unless it has."""

@@ -286,13 +286,17 @@ export function cellInWords(shown, row, column) {
 
 // ---- rules with numbers
 
+const SUPERSCRIPTS = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
+
 /**
  * A number of a rule with six significant digits: "0.0123457", "−2.5".
  * @param {number} value
  */
 export function ruleNumber(value) {
   const text = Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(6)));
-  return text.replace("-", "−").replace(/e−?/, (mark) => ` · 10^${mark.length > 1 ? "−" : ""}`);
+  const [mantissa, exponent] = text.split("e");
+  const raised = exponent?.replace(/[-\d]/g, (sign) => SUPERSCRIPTS["-0123456789".indexOf(sign)]);
+  return mantissa.replace("-", "−") + (raised ? ` · 10${raised}` : "");
 }
 
 /** A value of the table, to the digit at which another one differs. @type {(value: number, other: number) => string} */

@@ -186,6 +186,8 @@ def test_numbers_are_put_into_the_rule() -> None:
     update = ValueUpdate((0,), Action(0, 1), "(1 − α) · Q + α · Q′", terms, -0.5, 0.0)
 
     assert update.numbers == "(1 − 0.25) · (−0.5) + 0.25 · 1.235"
+    small = update._replace(rule="Q", terms=(Term("Q", -1.5e-12, ""),))
+    assert small.numbers == "(−1.5 · 10⁻¹²)"
 
 
 @settings(deadline=None)

@@ -126,6 +126,15 @@ def test_steps_of_a_continued_training_are_explained(api: Api, trained: dict[str
     assert explained(api, run["id"], step=11)["update"]["direct"]["is_exact"]
 
 
+def test_a_training_whose_table_is_gone_cannot_be_explained(api: Api) -> None:
+    first = api.finished(api.train(steps=5))
+    second = api.finished(api.train(continue_from=first["id"], steps=5))
+    api.call("DELETE", f"/trainings/{first['id']}")
+
+    for path in (f"/runs/{second['id']}/explain", f"/trainings/{second['id']}/table"):
+        refused(api.call("GET", path), 409, "cannot be built again", f"no training '{first['id']}'")
+
+
 def test_a_training_is_explained_while_it_runs_and_is_changed(api: Api) -> None:
     run = api.slow_training()
     seen = explained(api, run["id"], step=1)

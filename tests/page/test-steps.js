@@ -159,7 +159,7 @@ test("an empty table has no range", () => {
 
 test("numbers of a rule are short, and compared ones as long as they differ", () => {
   const numbers = [0.1, 3, -2.5, 0.012345678, 1.5e-9].map(ruleNumber);
-  assert.deepEqual(numbers, ["0.1", "3", "−2.5", "0.0123457", "1.5 · 10^−9"]);
+  assert.deepEqual(numbers, ["0.1", "3", "−2.5", "0.0123457", "1.5 · 10⁻⁹"]);
   assert.equal(comparedNumber(0.0123, 0.0456), "0.012300\u202fm");
   assert.equal(comparedNumber(0.012300004, 0.0123), "0.012300004\u202fm");
   assert.equal(fineMillimetres(-0.0000001), "0.00 mm");

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from app.agents.registry import OURS, learns
 from app.assembly import build_learner, build_walkers, rebuild_lane, rebuild_learner
+from app.domain.disturbances import Limp, SensorNoise
 from app.domain.observation import Observation
+from app.domain.world import World
 from app.runs.config import TrainingConfig, training_config
 from app.runs.lane import lane_config
 from app.runs.race_config import RaceConfig
@@ -81,6 +83,23 @@ def test_every_reading_of_the_feet_is_rebuilt(observation: Observation) -> None:
         rebuilt = fed(rebuild_learner(config_of(agent, observation)), steps_of(log))
 
         assert agent_state(rebuilt.agent) == agent_state(learner.walker.agent)
+
+
+@pytest.mark.parametrize("agent", ["q-learning", "linear-model"])
+def test_a_disturbed_training_on_mujoco_is_rebuilt_without_physics(agent: str) -> None:
+    world = World((SensorNoise(sd_m=0.004), Limp(legs=(1, 4), at_step=12)))
+    config = training_config(
+        agent, gait="left-right-origin", steps=25, world=world, tolerance=0.1, evaluate_every=10
+    )
+    learner = build_learner(config)
+    learner.logged = []
+    for _ in train(learner, config):
+        pass
+    taken = learner.take_transitions()
+    assert taken is not None
+    rebuilt = fed(rebuild_learner(config), steps_of(taken))
+
+    assert agent_state(rebuilt.agent) == agent_state(learner.walker.agent)
 
 
 @pytest.mark.parametrize("agent", LEARNERS)

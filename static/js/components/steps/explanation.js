@@ -24,7 +24,8 @@ export function ExplainedStep({ told }) {
 function Happened({ told }) {
   const { reward_m } = told;
   const visits = triesOf(told, told.action);
-  const tried = visits === null ? "" : visits === 0 ? ", for the first time here" : `, here ${times(visits)} before`;
+  const before = visits ? `, which it had tried ${times(visits)} before` : ", for the first time";
+  const tried = visits === null ? "" : before;
   const went = reward_m < 0 ? "back" : "forward";
   return html`
     <p>
@@ -66,8 +67,9 @@ const sentenceOf = (text) => `${text.charAt(0).toUpperCase()}${text.slice(1)}${/
 
 function Search({ told }) {
   const { sentences, futures, compares } = told.search;
-  const rows = futures.map(({ action, return_m, reward_m, steps }) => ({
-    move: action, score: return_m, note: `${fineMillimetres(reward_m)} at once, ${count(steps, "step")} ahead`,
+  const rows = futures.map(({ action, return_m, reward_m, steps, sequences }) => ({
+    move: action, score: return_m,
+    note: `${fineMillimetres(reward_m)} at once; ${count(sequences, "sequence")} of ${count(steps, "step")}`,
   }));
   return html`
     <section>

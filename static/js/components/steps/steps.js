@@ -19,7 +19,7 @@ export function Steps() {
   if (!at) return html`<p class="dim">Once a run is on stage, each of its steps is explained here.</p>`;
   return html`
     <${Navigator} at=${at} />
-    <div class="steps-parts">
+    <div class=${tableMoment.value ? "steps-parts" : "steps-parts alone"}>
       <${Explained} at=${at} />
       <${WholeTable} at=${at} />
     </div>
