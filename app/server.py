@@ -26,6 +26,7 @@ from app.api import (
     races,
     replays,
     runs,
+    spectators,
     stage,
     trainings,
     transfer,
@@ -107,6 +108,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     )
     app.state.viewer = viewer
     app.state.services = Services(
+        settings=settings,
         store=store,
         recordings=recordings,
         bus=bus,
@@ -144,8 +146,19 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
 def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) -> None:
     versioned = APIRouter(prefix="/api/v1")
     # First, so that no other route matches `import` as a run's id.
-    modules = (transfer, trainings, races, experiments, runs, replays, gait, stage, events, options)
-    for module in modules:
+    modules = (
+        transfer,
+        trainings,
+        races,
+        experiments,
+        runs,
+        replays,
+        gait,
+        stage,
+        spectators,
+        events,
+    )
+    for module in (*modules, options):
         versioned.include_router(module.router)
     versioned.include_router(start_routes(agents))
     app.include_router(versioned)
