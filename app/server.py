@@ -27,6 +27,7 @@ from app.api import (
     races,
     replays,
     runs,
+    spectators,
     stage,
     trainings,
     transfer,
@@ -109,6 +110,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     )
     app.state.viewer = viewer
     app.state.services = Services(
+        settings=settings,
         store=store,
         recordings=recordings,
         bus=bus,
@@ -149,7 +151,7 @@ def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) ->
     # First, so that no other route matches `import` as a run's id.
     modules = (
         *(transfer, trainings, races, experiments, runs, exports, replays, gait),
-        *(stage, events, options),
+        *(stage, spectators, events, options),
     )
     for module in modules:
         versioned.include_router(module.router)

@@ -27,6 +27,7 @@ _CHOICES = {"spectators": get_args(Spectators), "log_level": get_args(LogLevel)}
 _WHOLE_NUMBERS = {
     "quota_mb": (MIN_QUOTA_MB, None, " of megabytes"),
     "starts_per_minute": (1, None, ""),
+    "what_ifs_per_minute": (1, None, ""),
     "max_connections": (1, None, ""),
     "max_connections_per_address": (1, None, ""),
     "job_niceness": (0, 19, ""),
@@ -57,6 +58,8 @@ class Settings:
             allows beside the server's own.
         max_connections_per_address: of these, how many one address may have; None for half.
         starts_per_minute: how often one address may start something that costs the machine work.
+        what_ifs_per_minute: how many what-ifs the spectators of one address may ask; operators may
+            ask any number.
         job_niceness: by how much the priority of jobs is lower than the server's own, 0 to 19.
         log_level: below which records are left out of the log.
         quota_mb: how much the data folder may take, in MB; None for as much as the disk has.
@@ -75,6 +78,7 @@ class Settings:
     max_connections: int | None = None
     max_connections_per_address: int | None = None
     starts_per_minute: int = 1200
+    what_ifs_per_minute: int = 30
     job_niceness: int = 15
     max_viewers: int = 300
     log_level: LogLevel = "info"

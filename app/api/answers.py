@@ -529,6 +529,15 @@ class WhatIfView(Answer):
     compute_s: float
 
 
+class SpectatorsView(Answer):
+    """Where others can watch: an address and its QR code, or the reason why there is none."""
+
+    address: str | None
+    qr_code: str | None = Field(description="SVG image as a data URI")
+    reason: str
+    watching: Count
+
+
 class HealthView(Answer):
     """Status and version of the server."""
 

@@ -1,6 +1,7 @@
 """Token and session authentication, which gives each request the role operator or spectator.
 
-Spectators have read access; operators may also start, change, stop and delete runs.
+Spectators have read access, and may ask what-ifs; operators may also start, change, stop and delete
+runs.
 """
 
 import asyncio
@@ -14,7 +15,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.cookies import SessionCookie
 from app.api.problems import problem
-from app.api.rate_limit import too_many
+from app.api.rate_limit import is_what_if, too_many
 from app.domain.errors import HexapodError
 from app.limits.addresses import client_of
 from app.limits.connections import Connection
@@ -83,7 +84,7 @@ class TokenGuard:
             if wait_s > 0:
                 await _too_many_guesses(scope, wait_s)(scope, receive, send)
                 return
-        if role == "operator" or self._is_readable_by_all(scope):
+        if role == "operator" or self._is_open_to_spectators(scope):
             scope.setdefault("state", {})["role"] = role
             if role == "operator" and self._token is not None:
                 _mark_authenticated(scope)
@@ -107,8 +108,9 @@ class TokenGuard:
     def _cookie(self, scope: Scope, headers: Headers) -> SessionCookie:
         return SessionCookie(headers, self._is_https or scope["scheme"] in ("https", "wss"))
 
-    def _is_readable_by_all(self, scope: Scope) -> bool:
-        if scope["type"] == "http" and scope["method"] not in _READ_METHODS:
+    def _is_open_to_spectators(self, scope: Scope) -> bool:
+        changes = scope["type"] == "http" and scope["method"] not in _READ_METHODS
+        if changes and not is_what_if(scope):
             return False
         path: str = scope["path"]
         # The page's files are public; the data they show is not.

@@ -13,10 +13,14 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.auth import Role
+from app.api.rate_limit import is_spectators_what_if
 from app.limits.addresses import client_of
 
 SLOTS: dict[Role, int] = {"operator": 16, "spectator": 2}
 """Slots by role. Few, as Python threads share one interpreter lock and delay each other."""
+WHAT_IF_SLOTS = 1
+"""Slots of spectators' what-ifs, each of which takes a second of all cores: they do not delay what
+other spectators read, and an operator's what-if waits for one of them at most."""
 _EVENT_STREAM = "text/event-stream"
 T = TypeVar("T")
 
@@ -72,13 +76,16 @@ class ConcurrencyLimit:
         """Wrap an app; to be installed inside `TokenGuard`, which sets the role."""
         self._app = app
         self._semaphores = {role: RoundRobinSemaphore(size) for role, size in SLOTS.items()}
+        self._what_ifs = RoundRobinSemaphore(WHAT_IF_SLOTS)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Wait for a slot, and call the app."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        slot = _Slot(self._semaphores[scope["state"]["role"]], client_of(scope))
+        is_what_if = is_spectators_what_if(scope)
+        semaphore = self._what_ifs if is_what_if else self._semaphores[scope["state"]["role"]]
+        slot = _Slot(semaphore, client_of(scope))
         await slot.acquire()
         try:
             await self._app(scope, slot.wrap_receive(receive), slot.wrap_send(send))

@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.api.auth import PUBLIC_PATHS
 from app.api.cookies import NAME
 from app.api.problems import MEDIA_TYPE
+from app.api.rate_limit import WHAT_IF
 from app.settings import Settings
 
 Schema = dict[str, Any]
@@ -225,7 +226,7 @@ def _add_security(schema: Schema, settings: Settings) -> None:
     operator: list[Schema] = [{"bearer": []}, {"cookie": []}]
     for method, path, operation in operations(schema):
         needs_token = settings.token is not None and (
-            method in _WRITE_METHODS
+            (method in _WRITE_METHODS and path != WHAT_IF)
             or (settings.spectators != "public" and path not in PUBLIC_PATHS)
         )
         operation["security"] = operator if needs_token else [*operator, {}]

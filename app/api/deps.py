@@ -18,6 +18,7 @@ from app.limits.memory_budget import MemoryBudget
 from app.runs.clocks import Clock
 from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
+from app.settings import Settings
 from app.stage.race_show import Original
 from app.stage.stage import Stage
 from app.storage.database.store import RunStore
@@ -61,6 +62,7 @@ class Services:
     """Services that `create_app` builds and routes use.
 
     Attributes:
+        settings: settings of the server.
         store, recordings, bus, jobs, stage, idempotency: the services of these names.
         agents: names of the agents that were registered at server start.
         audience: returns the counters of the viewer hub.
@@ -75,6 +77,7 @@ class Services:
         gaits: gait analyses, which all pages that watch a run request at once.
     """
 
+    settings: Settings
     store: RunStore
     recordings: Recordings
     bus: RunMetrics

@@ -1,4 +1,4 @@
-"""Rate limit of starts: a token bucket per client address and role."""
+"""Rate limits of starts and of spectators' what-ifs: token buckets per client address."""
 
 import math
 import re
@@ -14,13 +14,15 @@ from app.settings import PREFIX, Settings
 
 _STARTS = re.compile(r"/api/v1/(?!stage$|events$)\w+(/import|/[^/]+/resume)?")
 _RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")
+WHAT_IF = "/api/v1/what-if"
+"""Path of what-ifs: its POST changes nothing, so spectators may use it, too."""
 
 
 class RateLimit:
     """Middleware that limits starts per minute, by client address and role.
 
     Besides runs it counts imports, resumes, and a race's recorded stream, which takes seconds to
-    encode.
+    encode. What-ifs of spectators have a limit of their own; those of operators have none.
     """
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
@@ -28,26 +30,52 @@ class RateLimit:
         self._app = app
         self._per_minute = settings.starts_per_minute
         self._buckets = RateLimiter(self._per_minute, self._per_minute / 60)
+        self._what_ifs_per_minute = settings.what_ifs_per_minute
+        self._what_ifs = RateLimiter(self._what_ifs_per_minute, self._what_ifs_per_minute / 60)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app, or respond 429."""
-        if not _starts_work(scope):
-            await self._app(scope, receive, send)
-            return
-        wait_s = self._buckets.take(f"{scope['state']['role']} {client_of(scope)}")
-        if wait_s == 0:
-            await self._app(scope, receive, send)
-            return
-        detail = (
-            f"One address may start {self._per_minute} times a minute here; try again later, or "
-            f"raise {PREFIX}STARTS_PER_MINUTE."
-        )
-        await too_many(detail, wait_s)(scope, receive, send)
+        refusal = self._refusal(scope)
+        await (self._app if refusal is None else refusal)(scope, receive, send)
+
+    def _refusal(self, scope: Scope) -> Response | None:
+        if is_spectators_what_if(scope):
+            wait_s = self._what_ifs.take(client_of(scope))
+            detail = (
+                f"Spectators of one address may ask {self._what_ifs_per_minute} times a minute "
+                f"here; ask again in {_whole_seconds(wait_s)} s. "
+                f"{PREFIX}WHAT_IFS_PER_MINUTE sets how often."
+            )
+        elif _starts_work(scope):
+            wait_s = self._buckets.take(f"{scope['state']['role']} {client_of(scope)}")
+            detail = (
+                f"One address may start {self._per_minute} times a minute here; try again later, "
+                f"or raise {PREFIX}STARTS_PER_MINUTE."
+            )
+        else:
+            return None
+        return too_many(detail, wait_s) if wait_s > 0 else None
+
+
+def is_what_if(scope: Scope) -> bool:
+    """Whether a request asks for a what-if."""
+    if scope["type"] != "http":
+        return False
+    return (scope["method"], scope["path"]) == ("POST", WHAT_IF)
+
+
+def is_spectators_what_if(scope: Scope) -> bool:
+    """Whether a spectator asks for a what-if; to be called inside `TokenGuard`."""
+    return is_what_if(scope) and bool(scope["state"]["role"] == "spectator")
 
 
 def too_many(detail: str, wait_s: float) -> Response:
     """Return a 429 response whose Retry-After is the wait, rounded up to at least 1 s."""
-    return problem(429, detail, headers={"Retry-After": str(max(1, math.ceil(wait_s)))})
+    return problem(429, detail, headers={"Retry-After": str(_whole_seconds(wait_s))})
+
+
+def _whole_seconds(wait_s: float) -> int:
+    return max(1, math.ceil(wait_s))
 
 
 def _starts_work(scope: Scope) -> bool:

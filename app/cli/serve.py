@@ -3,12 +3,9 @@
 import argparse
 import os
 import secrets
-import socket
 import sys
 from functools import partial
 from typing import Any
-
-import segno
 
 from app.cli.options import CommandParser, integer
 from app.cli.startup import without_garbage_collection
@@ -55,19 +52,10 @@ def read_token() -> str | None:
 
 def show_links(settings: Settings, port: int) -> None:
     """Print the links of operators and spectators, the latter also as a QR code."""
-    base = settings.public_url or f"http://{local_address()}:{port}"
-    print(f"Operator (may start and stop):  {base}/?token={settings.token}")
-    print(f"Spectators (may watch):         {base}/")
-    segno.make(f"{base}/", micro=False).terminal(out=sys.stdout, compact=True)
+    from app.api.spectators import qr_code, shared_address  # noqa: PLC0415 - as for `serve` above
+
+    address = shared_address(settings, port)
+    print(f"Operator (may start and stop):  {address}?token={settings.token}")
+    print(f"Spectators (may watch):         {address}")
+    qr_code(address).terminal(out=sys.stdout, compact=True)
     sys.stdout.flush()
-
-
-def local_address() -> str:
-    """Return this machine's address in the local network, as a connected UDP socket has it."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        try:
-            probe.connect(("192.0.2.1", 9))  # TEST-NET-1 (RFC 5737); nothing is sent
-            address: str = probe.getsockname()[0]
-        except OSError:
-            return "127.0.0.1"
-    return address

@@ -4,11 +4,18 @@ import asyncio
 
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api.concurrency_limit import SLOTS, ConcurrencyLimit, RoundRobinSemaphore
+from app.api.concurrency_limit import (
+    SLOTS,
+    WHAT_IF_SLOTS,
+    ConcurrencyLimit,
+    RoundRobinSemaphore,
+)
+from app.api.rate_limit import WHAT_IF
 
 
-def scope(role: str, address: str) -> Scope:
-    return {"type": "http", "state": {"role": role}, "client": (address, 1)}
+def scope(role: str, address: str, method: str = "GET", path: str = "/") -> Scope:
+    request = {"type": "http", "method": method, "path": path}
+    return {**request, "state": {"role": role}, "client": (address, 1)}
 
 
 async def nothing() -> Message:
@@ -60,6 +67,29 @@ def test_spectators_do_not_delay_operators() -> None:
         return working["spectator"], working["operator"]
 
     assert asyncio.run(scenario()) == (SLOTS["spectator"], 2)
+
+
+def test_what_ifs_of_spectators_do_not_delay_what_spectators_read() -> None:
+    async def scenario() -> dict[str, int]:
+        working = {"what-if": 0, "read": 0}
+
+        async def work(scope: Scope, receive: Receive, send: Send) -> None:
+            working["what-if" if scope["method"] == "POST" else "read"] += 1
+            await asyncio.Event().wait()
+
+        app = ConcurrencyLimit(work)
+        what_ifs = [scope("spectator", str(n), "POST", WHAT_IF) for n in range(20)]
+        tasks = [
+            asyncio.ensure_future(app(one, nothing, ignore))
+            for one in (*what_ifs, scope("spectator", "a"))
+        ]
+        await asyncio.sleep(0.01)
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        return working
+
+    assert asyncio.run(scenario()) == {"what-if": WHAT_IF_SLOTS, "read": 1}
 
 
 def test_slow_readers_and_streams_hold_no_slot() -> None:

@@ -1,0 +1,82 @@
+"""Route of the address at which others watch, with its QR code; used by `serve --share`, too."""
+
+import socket
+from urllib.parse import urlsplit
+
+import segno
+from fastapi import APIRouter, Request
+from starlette.responses import JSONResponse, Response
+
+from app.api.answers import SpectatorsView
+from app.api.deps import Services, ServicesDep
+from app.settings import PREFIX, Settings, is_loopback
+
+_WILDCARDS = ("0.0.0.0", "::")  # noqa: S104 - compared, not bound
+_NEEDS_TOKEN = (
+    f"There is no address for everyone: watching needs the token ({PREFIX}SPECTATORS=token)."
+)
+_LOOPBACK_ONLY = (
+    "Only this machine can open this page; to let others watch, start the server with "
+    f"`hexapods serve --share`, or set {PREFIX}PUBLIC_URL."
+)
+
+router = APIRouter(prefix="/spectators", tags=["stage"])
+
+
+@router.get("", response_model=SpectatorsView, summary="Where others can watch, and how many do")
+def get_spectators(request: Request, services: ServicesDep) -> Response:
+    """Return the address at which others watch, or why there is none, and its QR code."""
+    address = _address_for_others(request, services)
+    reason = _NEEDS_TOKEN if services.settings.spectators == "token" else _LOOPBACK_ONLY
+    answer = {
+        "address": address,
+        "qr_code": None
+        if address is None
+        else qr_code(address).svg_data_uri(border=2, light="#fff"),
+        "reason": reason if address is None else "",
+        "watching": services.audience().viewers,
+    }
+    return JSONResponse(answer)
+
+
+def qr_code(address: str) -> segno.QRCode:
+    """Return the QR code of an address."""
+    return segno.make(address, micro=False)
+
+
+def shared_address(settings: Settings, port: int) -> str:
+    """Return the address of the page for other machines, with a slash at the end.
+
+    Args:
+        settings: settings of the server.
+        port: the port on which it listens.
+    """
+    if settings.public_url is not None:
+        return f"{settings.public_url.rstrip('/')}/"
+    host = local_address() if settings.host in _WILDCARDS else settings.host
+    return f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"
+
+
+def local_address() -> str:
+    """Return this machine's address in the local network, as a connected UDP socket has it."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))  # TEST-NET-1 (RFC 5737); nothing is sent
+            address: str = probe.getsockname()[0]
+        except OSError:
+            return "127.0.0.1"
+    return address
+
+
+def _address_for_others(request: Request, services: Services) -> str | None:
+    settings = services.settings
+    if settings.spectators == "token":
+        return None
+    if settings.public_url is None:
+        # The Host has been checked: by that name this client has reached the server.
+        name = urlsplit(str(request.base_url)).hostname or ""
+        if not is_loopback(name):
+            return f"{str(request.base_url).rstrip('/')}/"
+        if is_loopback(settings.host):
+            return None
+    return shared_address(settings, request.scope["server"][1])

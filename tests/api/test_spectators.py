@@ -1,0 +1,54 @@
+"""The address at which others watch, and its QR code."""
+
+from collections.abc import Callable
+
+import pytest
+import segno
+
+from app.api.spectators import local_address
+from tests.api.calls import Api
+
+TOKEN = "a-token-for-tests"
+Serve = Callable[..., Api]
+
+
+@pytest.mark.parametrize(
+    ("settings", "host", "address"),
+    [
+        ({"host": "0.0.0.0"}, "127.0.0.1:8000", "http://{local}:8000/"),
+        ({"host": "0.0.0.0"}, "192.168.1.5:8000", "http://192.168.1.5:8000/"),
+        ({"host": "192.168.1.5"}, "localhost:8000", "http://192.168.1.5:8000/"),
+        ({"host": "fd00::5"}, "localhost:8000", "http://[fd00::5]:8000/"),
+        ({"allowed_hosts": ("lab.example",)}, "lab.example", "http://lab.example/"),
+        ({"public_url": "https://lab.example"}, "127.0.0.1:8000", "https://lab.example/"),
+    ],
+)
+def test_address_is_one_that_others_can_open(
+    serve: Serve, settings: dict[str, object], host: str, address: str
+) -> None:
+    found = serve(token=TOKEN, **settings).get("/spectators", headers={"Host": host})
+    expected = address.format(local=local_address())
+    assert found["address"] == expected
+    assert TOKEN not in str(found)
+    assert found["reason"] == ""
+    assert found["watching"] == 0
+    # Dark on white in both themes, with the margin that scanners need.
+    code = segno.make(expected, micro=False)
+    assert found["qr_code"] == code.svg_data_uri(border=2, light="#fff")
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({}, "--share"),
+        ({"token": TOKEN}, "Only this machine"),
+        ({"token": TOKEN, "host": "0.0.0.0", "spectators": "token"}, "needs the token"),
+    ],
+)
+def test_without_an_address_for_others_the_reason_is_told(
+    serve: Serve, settings: dict[str, object], words: str
+) -> None:
+    bearer = {"Authorization": f"Bearer {TOKEN}"}
+    found = serve(**settings).get("/spectators", headers=bearer)
+    assert (found["address"], found["qr_code"]) == (None, None)
+    assert words in found["reason"]
