@@ -470,6 +470,7 @@ class ReplayView(Answer):
     """What a page needs to play a run by itself; times are the run's own [s]."""
 
     run_id: str
+    ghost_id: str | None = Field(description="of the run whose lanes are shown as ghosts")
     kind: Literal["training", "race"]
     clock: Clock | None = Field(description="that times a race; null for a training")
     complete: bool = Field(description="whether the run will record no more")

@@ -44,16 +44,18 @@ class HubCounters(Protocol):
 class ReplayFrames(Protocol):
     """Encodes the frames of runs: see `app.viewer.replay_frames`."""
 
-    def plan(self, run_id: str, clock: Clock) -> dict[str, Any]:
+    def plan(self, run_id: str, clock: Clock, ghost_id: str | None) -> dict[str, Any]:
         """Return what a page needs to play a run."""
 
-    def scene(self, run_id: str) -> bytes:
+    def scene(self, run_id: str, ghost_id: str | None) -> bytes:
         """Return the scene at the start of a run."""
 
-    def moment(self, run_id: str, clock: Clock, time_s: float) -> bytes:
+    def moment(self, run_id: str, clock: Clock, time_s: float, ghost_id: str | None) -> bytes:
         """Return the frame at a time."""
 
-    def segment(self, run_id: str, clock: Clock, level: int, number: int) -> bytes:
+    def segment(
+        self, run_id: str, clock: Clock, level: int, number: int, ghost_id: str | None
+    ) -> bytes:
         """Return the frames of a segment."""
 
 

@@ -71,6 +71,7 @@ VALID: Mapping[str, str] = {
     "keep_learning": declared_fields(LaneConfig)["keep_learning"].valid,
     "run_id": "the id of a run",
     "id": f"the id of a run; up to {MAX_RUNS} of them as id=…&id=…",
+    "ghost": "the id of another run of the same kind that has ended",
     "time_s": "a number of seconds, 0 or more",
     "playing": "true or false",
     "speed": "a number from 0.25 to 64, or time-lapse",

@@ -11,6 +11,7 @@ from app.api.compression import accepts_gzip
 from app.api.contract import BINARY, answers
 from app.api.deps import ServicesDep
 from app.api.descriptions import VALID
+from app.api.fields import RunId
 from app.api.runs import RunPath
 from app.runs.clocks import Clock
 from app.stage.playback import HIGHEST_LEVEL, LOWEST_LEVEL
@@ -21,15 +22,19 @@ _MEDIA_TYPE = "application/octet-stream"
 _FRAMES = answers(200, {_MEDIA_TYPE: BINARY})
 _MAX_TIME_S = 1e9
 ClockQuery = Annotated[Clock, Query(description="times a race; a training has one clock")]
+GhostQuery = Annotated[RunId | None, Query(description=VALID["ghost"])]
 
 
 @router.get("", summary="What a run's replay shows, and when", response_model=ReplayView)
-def get_replay(services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper") -> Response:
+def get_replay(
+    services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper", ghost: GhostQuery = None
+) -> Response:
     """Return the recorded intervals of the run's time, its steps, and marks for a timeline.
 
-    The frames are at `segments/{level}/{number}`.
+    The frames are at `segments/{level}/{number}`. With `ghost` the robots of another run of the
+    same kind are shown too, as ghosts; say so in all requests of a replay.
     """
-    return JSONResponse(services.replays.plan(run_id, clock))
+    return JSONResponse(services.replays.plan(run_id, clock, ghost))
 
 
 @router.get(
@@ -38,21 +43,25 @@ def get_replay(services: ServicesDep, run_id: RunPath, clock: ClockQuery = "pape
     response_class=Response,
     responses=_FRAMES,
 )
-def get_replay_scene(services: ServicesDep, request: Request, run_id: RunPath) -> Response:
+def get_replay_scene(
+    services: ServicesDep, request: Request, run_id: RunPath, ghost: GhostQuery = None
+) -> Response:
     """Return the scene on which all frames are based; for the format see `docs/replays.md`."""
-    return _response(request, services.replays.scene(run_id))
+    return _response(request, services.replays.scene(run_id, ghost))
 
 
 @router.get("/moment", summary="One frame of a replay", response_class=Response, responses=_FRAMES)
 def get_replay_moment(
+    *,
     services: ServicesDep,
     request: Request,
     run_id: RunPath,
     time_s: Annotated[float, Query(ge=0, le=_MAX_TIME_S, description=VALID["time_s"])],
     clock: ClockQuery = "paper",
+    ghost: GhostQuery = None,
 ) -> Response:
     """Return the frame at a time of the run, or at the nearest that is recorded."""
-    return _response(request, services.replays.moment(run_id, clock, time_s))
+    return _response(request, services.replays.moment(run_id, clock, time_s, ghost))
 
 
 class Place(NamedTuple):
@@ -76,14 +85,16 @@ def _place(
     responses=_FRAMES,
 )
 def get_replay_segment(
+    *,
     services: ServicesDep,
     request: Request,
     run_id: RunPath,
     place: Annotated[Place, Depends(_place)],
     clock: ClockQuery = "paper",
+    ghost: GhostQuery = None,
 ) -> Response:
     """Return the frames of a segment; fewer than it can have where the run still computes."""
-    return _response(request, services.replays.segment(run_id, clock, *place))
+    return _response(request, services.replays.segment(run_id, clock, *place, ghost))
 
 
 def _response(request: Request, frames: bytes) -> Response:

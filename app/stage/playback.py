@@ -91,19 +91,24 @@ class Replay:
     Args:
         run: the run as it was when the replay was asked for.
         show: its show.
+        ghost: another run of the same kind, complete, whose lanes are shown as ghosts, each at the
+            same time of its own; in the end they stand still.
     """
 
-    def __init__(self, run: Run, show: RaceShow | PracticeShow) -> None:
-        self.run, self.show = run, show
+    def __init__(
+        self, run: Run, show: RaceShow | PracticeShow, ghost: "Replay | None" = None
+    ) -> None:
+        self.run, self.show, self.ghost = run, show, ghost
         self.is_complete = run.state not in NOT_ENDED
         """Whether the run will record no more."""
         self._lock = threading.Lock()
         self._label = RunLabel(run.id, run.name, playing=True, replay=True)
+        self._spec = replace(show.spec, ghosts=ghost.show.spec) if ghost else show.spec
 
     @property
     def version(self) -> str:
         """Identifies what the frames are made from, but for the steps that are still to come."""
-        return _version_of(self.run)
+        return _version_of(self.run, self.ghost.run if self.ghost else None)
 
     @property
     def recorded(self) -> tuple[tuple[float, float], ...]:
@@ -118,6 +123,7 @@ class Replay:
             show = self.show
             return {
                 "run_id": self.run.id,
+                "ghost_id": self.ghost.run.id if self.ghost else None,
                 "kind": self.run.kind,
                 "clock": show.clock if isinstance(show, RaceShow) else None,
                 "complete": self.is_complete,
@@ -154,7 +160,9 @@ class Replay:
         """Return the frame at a time [s], or at the nearest that is recorded."""
         with self._lock:
             self.show.seek(time_s)
-            return replace(self.show.frame(self._label), shown_speed=1.0)
+            frame = self.show.frame(self._label)
+        ghosts = self.ghost.frame_at(frame.time_s).lanes if self.ghost else frame.ghost_lanes
+        return replace(frame, spec=self._spec, ghost_lanes=ghosts, shown_speed=1.0)
 
 
 class Replays:
@@ -167,31 +175,63 @@ class Replays:
 
     def __init__(self, store: RunStore, recordings: Recordings) -> None:
         self._store, self._recordings = store, recordings
-        self._kept: OrderedDict[tuple[str, Clock], Replay] = OrderedDict()
+        self._kept: OrderedDict[tuple[str, Clock, str | None], Replay] = OrderedDict()
         self._lock = threading.Lock()
 
-    def get(self, run_id: str, clock: Clock) -> Replay:
+    def get(self, run_id: str, clock: Clock, ghost_id: str | None = None) -> Replay:
         """Return the replay of a run, of a race as timed by a clock.
+
+        Args:
+            run_id: id of a training or race.
+            clock: times a race.
+            ghost_id: id of another run of the same kind, whose lanes are shown as ghosts.
 
         Raises:
             NotFound: if there is no such run.
-            InvalidInput: if it is an experiment.
-            Conflict: if it has no recording (yet).
+            InvalidInput: if it is an experiment, or the ghost is the run itself or of another kind.
+            Conflict: if it has no recording (yet), or the ghost still runs.
         """
         run = self._store.get(run_id)
+        ghost = None if ghost_id is None else self._store.get(ghost_id)
+        if ghost is not None:
+            _check_ghost(run, ghost)
+        key = (run_id, clock, ghost_id)
         with self._lock:
-            replay = self._kept.pop((run_id, clock), None)
-            if replay is None or replay.version != _version_of(run):
-                world = world_of(run)
-                show = show_of(run, self._store, self._recordings, clock, world=lambda: world)
-                replay = Replay(run, show)
-            self._kept[run_id, clock] = replay
+            replay = self._kept.pop(key, None)
+            if replay is None or replay.version != _version_of(run, ghost):
+                beside = Replay(ghost, self._show(ghost, clock)) if ghost else None
+                replay = Replay(run, self._show(run, clock), beside)
+            self._kept[key] = replay
             while len(self._kept) > _KEPT_REPLAYS:
                 self._kept.popitem(last=False)
-        if not replay.recorded:
-            raise Conflict(f"{run.kind} {run.id} is {run.state} and has no recording", run.state)
+        for one in filter(None, (replay, replay.ghost)):
+            if not one.recorded:
+                kind, state = one.run.kind, one.run.state
+                raise Conflict(f"{kind} {one.run.id} is {state} and has no recording", state)
         return replay
 
+    def _show(self, run: Run, clock: Clock) -> RaceShow | PracticeShow:
+        world = world_of(run)
+        return show_of(run, self._store, self._recordings, clock, world=lambda: world)
 
-def _version_of(run: Run) -> str:
-    return json.dumps([run.id, run.created_at, run.state, run.name, run.changes], default=str)
+
+def _check_ghost(run: Run, ghost: Run) -> None:
+    if ghost.id == run.id:
+        raise InvalidInput(f"{run.kind} {run.id} cannot be its own ghost; choose another run")
+    if ghost.kind != run.kind:
+        raise InvalidInput(
+            f"{ghost.kind} {ghost.id} cannot be the ghost of {run.kind} {run.id}; choose another "
+            f"{run.kind}"
+        )
+    if ghost.state in NOT_ENDED:
+        raise Conflict(
+            f"{ghost.kind} {ghost.id} is {ghost.state}; it can be a ghost once it has ended",
+            ghost.state,
+        )
+
+
+def _version_of(run: Run, ghost: Run | None) -> str:
+    runs = [
+        [one.id, one.created_at, one.state, one.name, one.changes] for one in (run, ghost) if one
+    ]
+    return json.dumps(runs, default=str)

@@ -193,10 +193,7 @@ class RaceShow:
 
     def frame(self, run_label: RunLabel) -> StageFrame:
         """Return the frame at the playback position."""
-        lanes = tuple(
-            replace(lane.view(self._time_s, self._complete(lane)), original=self._original(number))
-            for number, lane in enumerate(self._lanes)
-        )
+        lanes = tuple(lane.view(self._time_s, self._complete(lane)) for lane in self._lanes)
         at_start = self._world.as_of(0)
         at_rest = LaneView(rest_pose(self.spec), 0, self.steps, 0.0, conditions=at_start)
         lanes = lanes or (at_rest,) * len(self.spec.lane_specs)
@@ -206,6 +203,7 @@ class RaceShow:
             phase=self._phase,
             label=self._label(run_label.name, lanes),
             lanes=self._with_ranks(lanes),
+            ghost_lanes=tuple(map(self._original, range(len(self._original_lanes)))),
             time_s=self._time_s,
             duration_s=self.duration_s,
             shown_speed=0.0 if self._freeze_left_s else self._rate,
@@ -283,9 +281,10 @@ class RaceShow:
         return [RaceLane(lane, self.steps, self.clock, robot, world) for lane in lanes]
 
     def _original(self, number: int) -> LaneView | None:
-        """Return a lane in the original race; None before the races part, or without one."""
-        has_parted = self._lanes[number].moment_at(self._time_s).step >= self._branch_step
-        if not self._original_lanes or not has_parted:
+        """Return a lane in the original race; None before the races part."""
+        if number >= len(self._lanes):
+            return None
+        if self._lanes[number].moment_at(self._time_s).step < self._branch_step:
             return None
         return self._original_lanes[number].view(self._time_s, complete=True)
 

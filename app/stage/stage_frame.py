@@ -41,6 +41,8 @@ class SceneSpec:
     grid: FootGrid
     lane_specs: tuple[LaneSpec, ...]
     """One for each lane, from left to right."""
+    ghosts: "SceneSpec | None" = None
+    """The scene of the run whose lanes are shown as ghosts; None if it is this one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,8 +107,6 @@ class LaneView:
     """Pushes in the step that is shown."""
     origin: Origin = AT_ORIGIN
     """Where the lane's frame lies on the ground; in a race at the ground's own origin."""
-    original: "LaneView | None" = None
-    """Of a race that branched off another: the same lane there, from the branch on."""
 
 
 @dataclass(frozen=True)
@@ -129,6 +129,11 @@ class StageFrame:
     label: str
     lanes: tuple[LaneView, ...]
     ghosts: tuple[Ghost, ...] = ()
+    """Evaluations so far, of a training."""
+    ghost_lanes: tuple[LaneView | None, ...] = ()
+    """Lanes of another run at the same time of its own, drawn as ghosts on the lanes of the same
+    number: of the race from which this one branched off, from the branch on, or of a run that is
+    compared. Empty without one; there may be more or fewer than `lanes`."""
     time_s: float = 0.0
     duration_s: float | None = None
     """None while it is unknown, since the run is still computed."""
@@ -155,6 +160,7 @@ class StageFrame:
                 {"step": ghost.step, "distance_m": round(ghost.distance_m, 4)}
                 for ghost in self.ghosts
             ],
+            "ghost_lanes": self._ghost_lanes(),
             "knowledge": self._knowledge(),
         }
 
@@ -170,6 +176,20 @@ class StageFrame:
             "distance_m": round(lane.distance_m, 4),
             **{name: getattr(lane, name) for name in (*plain, *flags)},
         }
+
+    def _ghost_lanes(self) -> list[dict[str, Any]]:
+        """Return where the ghosts of another run are; none before they part from this one."""
+        lane_specs = (self.spec.ghosts or self.spec).lane_specs
+        return [
+            {
+                "lane": number,
+                "name": lane_specs[number].name,
+                "distance_m": round(ghost.distance_m, 4),
+                "step": ghost.step,
+            }
+            for number, ghost in enumerate(self.ghost_lanes)
+            if ghost is not None
+        ]
 
     def _knowledge(self) -> dict[str, Any] | None:
         """Return the action values of the first lane that has any."""

@@ -51,15 +51,15 @@ class ReplayFrames:
         self._encoding = threading.Lock()
         self._segments = _SegmentCache(_CACHE_BYTES)
 
-    def plan(self, run_id: str, clock: Clock) -> dict[str, Any]:
+    def plan(self, run_id: str, clock: Clock, ghost_id: str | None = None) -> dict[str, Any]:
         """Return what a page needs to play a run, in plain types: see `ReplayView` of the API.
 
         Raises:
             NotFound, InvalidInput, Conflict: see `Replays.get`.
         """
-        return self._replays.get(run_id, clock).plan()
+        return self._replays.get(run_id, clock, ghost_id).plan()
 
-    def scene(self, run_id: str) -> bytes:
+    def scene(self, run_id: str, ghost_id: str | None = None) -> bytes:
         """Return the scene at the start of a run, on which all frames are based.
 
         It also has `lifecycles`, by type of message what it does to a scene node, and `world`, the
@@ -68,21 +68,25 @@ class ReplayFrames:
         Raises:
             NotFound, InvalidInput, Conflict: see `Replays.get`.
         """
-        replay = self._replays.get(run_id, "paper")
+        replay = self._replays.get(run_id, "paper", ghost_id)
         with self._encoding:
             return _encode(_frames(replay, ()), lifecycles=LIFECYCLES, world=WORLD)
 
-    def moment(self, run_id: str, clock: Clock, time_s: float) -> bytes:
+    def moment(
+        self, run_id: str, clock: Clock, time_s: float, ghost_id: str | None = None
+    ) -> bytes:
         """Return one frame, at a time [s] or the nearest that is recorded.
 
         Raises:
             NotFound, InvalidInput, Conflict: see `Replays.get`.
         """
-        replay = self._replays.get(run_id, clock)
+        replay = self._replays.get(run_id, clock, ghost_id)
         with self._encoding:
             return _encode(_after_scene(replay, [time_s]))
 
-    def segment(self, run_id: str, clock: Clock, level: int, number: int) -> bytes:
+    def segment(
+        self, run_id: str, clock: Clock, level: int, number: int, ghost_id: str | None = None
+    ) -> bytes:
         """Return a segment; of a run that is still computed only the frames so far.
 
         Args:
@@ -90,12 +94,13 @@ class ReplayFrames:
             clock: times a race.
             level: see `stage.playback`.
             number: number of the segment, from 0.
+            ghost_id: id of the run whose lanes are shown as ghosts, as in every method.
 
         Raises:
             NotFound: if there is no such run, or the segment is past its end.
             InvalidInput, Conflict: see `Replays.get`.
         """
-        replay = self._replays.get(run_id, clock)
+        replay = self._replays.get(run_id, clock, ghost_id)
         key = (replay.version, clock, level, number)
         if (kept := self._segments.get(key)) is not None:
             return kept

@@ -114,15 +114,17 @@ class Robots:
         return positions.astype(np.float32), wxyzs.astype(np.float32)
 
 
-def label_text(lane_spec: LaneSpec, lane: LaneView) -> str:
+def label_text(
+    lane_spec: LaneSpec, lane: LaneView, ghost: LaneView | None = None, ghost_name: str = "ghost"
+) -> str:
     """Return name, distance and activity, in lines so short that three labels fit on a phone."""
     if lane.failure is not None:
         return f"{lane_spec.name}\ncannot go on"
     if lane.step == 0:
         return lane_spec.name
     lines = [lane_spec.name, f"{metres(lane.distance_m)}, {_progress(lane)}"]
-    if lane.original is not None:
-        lines.append(f"original {metres(lane.original.distance_m)}")
+    if ghost is not None:
+        lines.append(f"{ghost_name} {metres(ghost.distance_m)}")
     if lane.thinking:
         futures = f" {lane.futures}/{lane.futures_total}" if lane.futures else "…"
         lines.append(f"thinking{futures}")
@@ -167,14 +169,20 @@ class NameLabel:
         )
         self._position: tuple[float, float, float] | None = None
 
-    def draw(self, lane: LaneView) -> None:
-        """Move the label with the robot and update its text and flag."""
+    def draw(self, lane: LaneView, ghost: LaneView | None, ghost_name: str) -> None:
+        """Move the label with the robot and update its text and flag.
+
+        Args:
+            lane: the lane.
+            ghost: what another run's ghost does on it, if there is one.
+            ghost_name: what the ghost is, in a word.
+        """
         # Rounded to the millimetre, so that a trembling robot causes no messages for its label.
         x, y, z = lane.qpos[:3].round(3).tolist()
         position = (x + self._x_m, y, z + ANTENNA_M + 0.03)
         if position != self._position:
             self._label.position = self._position = position
-        text = label_text(self._lane_spec, lane)
+        text = label_text(self._lane_spec, lane, ghost, ghost_name)
         if text != self._label.text:
             self._label.text = text
         if lane.crossed != self._flag.visible:

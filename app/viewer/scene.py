@@ -1,6 +1,8 @@
 """Draw the stage in viser: each immutable frame becomes one atomic window of messages."""
 
 import math
+from collections.abc import Sequence
+from itertools import zip_longest
 
 import viser
 
@@ -112,9 +114,11 @@ class _RunScene:
     def __init__(self, server: viser.ViserServer, spec: SceneSpec) -> None:
         self.spec = spec
         self._root = server.scene.add_frame(SCENE_ROOT, show_axes=False)
-        width = 2 * spec.robot.home_radius_m + spec.grid.side_m + 0.08
-        # A training has a second lane for the ghosts of its evaluations.
-        lanes = len(spec.lane_specs) + (spec.kind == "training")
+        self._ghost_spec = ghost_spec = spec.ghosts or spec
+        width = max(2 * s.robot.home_radius_m + s.grid.side_m + 0.08 for s in (spec, ghost_spec))
+        lane_specs = [*spec.lane_specs, *ghost_spec.lane_specs[len(spec.lane_specs) :]]
+        # A training has a last lane for the ghosts of its evaluations.
+        lanes = len(lane_specs) + (spec.kind == "training")
         xs = [width * (lane - (lanes - 1) / 2) for lane in range(lanes)]
         self._lines = draw_lanes(server, f"{SCENE_ROOT}/track", xs, width)
         self._grounds = [
@@ -131,11 +135,11 @@ class _RunScene:
         self.xs = xs[: len(spec.lane_specs)]
         self._mesh = mesh = RobotMesh(spec.robot)
         self._robots = Robots(server, f"{SCENE_ROOT}/robots", spec, mesh, self.xs)
-        self._originals: Robots | None = None
-        pairs = list(zip(spec.lane_specs, self.xs, strict=True))
+        self._ghost_xs = xs[: len(ghost_spec.lane_specs)]
+        self._ghost_robots: Robots | None = None
         self._labels = [
-            NameLabel(server, f"{SCENE_ROOT}/lane{n}", lane_spec, x)
-            for n, (lane_spec, x) in enumerate(pairs)
+            NameLabel(server, f"{SCENE_ROOT}/lane{n}", lane_spec, xs[n])
+            for n, lane_spec in enumerate(lane_specs)
         ]
         self._payloads = [
             PayloadCube(server, f"{SCENE_ROOT}/lane{n}/payload", spec, x)
@@ -154,11 +158,16 @@ class _RunScene:
 
     def draw(self, frame: StageFrame) -> bool:
         """Draw a frame; True if a robot moved."""
-        self._draw_grounds(frame)
+        # Ghosts on lanes beyond those of the run.
+        alone = [ghost for ghost in frame.ghost_lanes[len(frame.lanes) :] if ghost is not None]
+        self._draw_grounds(frame, alone)
         moved = self._robots.draw(frame.lanes)
-        moved |= self._draw_originals([lane.original for lane in frame.lanes])
-        for label, lane in zip(self._labels, frame.lanes, strict=True):
-            label.draw(lane)
+        moved |= self._draw_ghost_robots(frame.ghost_lanes)
+        ghost_name = "ghost" if self.spec.ghosts else "original"
+        labelled = [*zip_longest(frame.lanes, frame.ghost_lanes[: len(frame.lanes)])]
+        labelled += [(ghost, None) for ghost in alone]
+        for label, (lane, ghost) in zip(self._labels, labelled, strict=True):
+            label.draw(lane, ghost, ghost_name)
         for number, lane in enumerate(frame.lanes):
             self._payloads[number].draw(lane)
             self._pushes[number].draw(lane)
@@ -174,9 +183,9 @@ class _RunScene:
             self._ghosts.draw(frame.ghosts)
         return moved
 
-    def _draw_grounds(self, frame: StageFrame) -> None:
-        """Draw each lane's ground, and that of the ghosts as it was in the newest evaluation."""
-        grounds = [(lane.conditions, lane.origin) for lane in frame.lanes]
+    def _draw_grounds(self, frame: StageFrame, alone: Sequence[LaneView]) -> None:
+        """Draw each lane's ground, and that of evaluations as it was in the newest one."""
+        grounds = [(lane.conditions, lane.origin) for lane in (*frame.lanes, *alone)]
         if self._ghosts is not None:
             newest = frame.ghosts[-1].conditions if frame.ghosts else frame.lanes[0].conditions
             grounds.append((newest, AT_ORIGIN))
@@ -184,16 +193,17 @@ class _RunScene:
             ground.draw(conditions, origin)
         self._lines.raise_over(max(conditions.ground_m(0) for conditions, _ in grounds))
 
-    def _draw_originals(self, originals: list[LaneView | None]) -> bool:
-        """Draw the robots of the race from which this one branched off as ghosts."""
-        if self._originals is None:
-            if not any(originals):
+    def _draw_ghost_robots(self, ghosts: Sequence[LaneView | None]) -> bool:
+        """Draw the robots of the other run, over those on the lanes of the same number."""
+        if self._ghost_robots is None:
+            if not any(ghosts):
                 return False
-            root = f"{SCENE_ROOT}/originals"
-            self._originals = Robots(
-                self._server, root, self.spec, self._mesh, self.xs, is_ghost=True
+            spec, root = self._ghost_spec, f"{SCENE_ROOT}/ghost-robots"
+            mesh = self._mesh if spec.robot == self.spec.robot else RobotMesh(spec.robot)
+            self._ghost_robots = Robots(
+                self._server, root, spec, mesh, self._ghost_xs, is_ghost=True
             )
-        return self._originals.draw(originals)
+        return self._ghost_robots.draw(ghosts or [None] * len(self._ghost_xs))
 
     def remove(self) -> None:
         """Remove it from viser's scene."""

@@ -198,17 +198,22 @@ export const getCurve = (id) => call("GET", `${pathOf({ kind: "training", id })}
 /** @type {(id: string, clock: string) => Promise<Omit<Timeline, "id">>} */
 export const getTimeline = (id, clock) =>
   call("GET", `${pathOf({ kind: "race", id })}/timeline?clock=${clock}`);
-/** @type {(id: string, clock: string) => Promise<ReplayPlan>} */
-export const getReplay = (id, clock) => call("GET", `runs/${encodeURIComponent(id)}/replay?clock=${clock}`);
+/** @type {(id: string, clock: string, ghost: string | null) => Promise<ReplayPlan>} */
+export const getReplay = (id, clock, ghost) => {
+  const query = new URLSearchParams({ clock, ...(ghost === null ? {} : { ghost }) });
+  return call("GET", `runs/${encodeURIComponent(id)}/replay?${query}`);
+};
 
 /**
  * Frames of a replay, encoded.
  * @param {string} id
  * @param {string} address of the frames in the replay
+ * @param {Record<string, string>} query
  * @throws {RequestError}
  */
-export async function getReplayFrames(id, address) {
-  const response = await fetch(new URL(`runs/${encodeURIComponent(id)}/replay/${address}`, base())).catch(() => {
+export async function getReplayFrames(id, address, query) {
+  const path = `runs/${encodeURIComponent(id)}/replay/${address}?${new URLSearchParams(query)}`;
+  const response = await fetch(new URL(path, base())).catch(() => {
     throw new Unreachable();
   });
   if (!response.ok) throw refusal(response.status, parse(await response.text()) ?? {});

@@ -25,8 +25,8 @@ function readShortcuts() {
   }
 }
 
-/** Fields of the address for a replay of this page's own: the run, and the position in it [s]. */
-export const REPLAY_FIELDS = ["run", "t"];
+/** Fields of the address for a replay of this page's own: the run, its ghost, and the position in it [s]. */
+export const REPLAY_FIELDS = ["run", "ghost", "t"];
 
 // ---- the first lesson
 

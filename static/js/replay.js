@@ -2,7 +2,8 @@
 // The server gives frames (`replay-frames.js`); position, speed and clock are kept here and in the address.
 import { batch, computed, effect, signal } from "@preact/signals";
 import { getReplay, getReplayFrames } from "./api.js";
-import { place, REPLAY_FIELDS, view, viewOf } from "./page.js";
+import { view } from "./page.js";
+import { readReplay, replayAddress, writeReplay } from "./replay-address.js";
 import { decode, SceneState } from "./replay-frames.js";
 import { connection, ownScene, ownStage } from "./store.js";
 
@@ -27,6 +28,8 @@ const SAME_S = 1e-6;
 
 /** The id of the run that this page plays by itself; null while it shows the stage. @type {Signal<string | null>} */
 export const ownRunId = signal(null);
+/** The id of the run whose robots are shown as ghosts; null without one. @type {Signal<string | null>} */
+export const ghostId = signal(null);
 /** What there is to play; null until it is known. @type {Signal<ReplayPlan | null>} */
 export const plan = signal(null);
 /** Why the run cannot be played. @type {Signal<string | null>} */
@@ -63,14 +66,16 @@ let followed = 0;
 /**
  * Open a run at a time.
  * @param {string} id
- * @param {{ time_s?: number, isPlaying?: boolean, clock?: Clock }} [at]
+ * @param {{ time_s?: number, isPlaying?: boolean, clock?: Clock, ghost?: string | null }} [at]
  */
-export async function openReplay(id, { time_s = 0, isPlaying = true, clock: timedBy = clock.peek() } = {}) {
+export async function openReplay(id, at = {}) {
+  const { time_s = 0, isPlaying = true, clock: timedBy = clock.peek(), ghost = null } = at;
   opening += 1;
   const own = opening;
   forget();
   batch(() => {
     ownRunId.value = id;
+    ghostId.value = ghost;
     plan.value = null;
     replayProblem.value = null;
     replayTime.value = time_s;
@@ -80,7 +85,7 @@ export async function openReplay(id, { time_s = 0, isPlaying = true, clock: time
   });
   writeReplayAddress();
   try {
-    const [answer, start] = await Promise.all([getReplay(id, timedBy), load("scene")]);
+    const [answer, start] = await Promise.all([getReplay(id, timedBy, ghost), load("scene")]);
     if (own !== opening) return;
     scene = new SceneState(start);
     plan.value = answer;
@@ -89,7 +94,7 @@ export async function openReplay(id, { time_s = 0, isPlaying = true, clock: time
   } catch (error) {
     if (own !== opening) return;
     if (isLasting(error)) replayProblem.value = /** @type {Error} */ (error).message;
-    else setTimeout(() => own === opening && openReplay(id, { time_s, isPlaying, clock: timedBy }), RETRY_MS);
+    else setTimeout(() => own === opening && openReplay(id, { ...at, clock: timedBy }), RETRY_MS);
   }
 }
 
@@ -103,6 +108,7 @@ export function closeReplay() {
   forget();
   batch(() => {
     ownRunId.value = null;
+    ghostId.value = null;
     plan.value = null;
     replayProblem.value = null;
     isBuffering.value = false;
@@ -137,10 +143,16 @@ function redraw() {
 /** The message that removes all that is drawn. @type {(state: SceneState) => Message} */
 const removal = ({ world }) => ({ type: "RemoveSceneNodeMessage", name: world, owner: "" });
 
-/** @param {string} address */
-async function load(address) {
-  return decode(await getReplayFrames(/** @type {string} */ (ownRunId.peek()), address));
+/** @param {string} address @param {Record<string, string>} [query] */
+async function load(address, query = {}) {
+  return decode(await getReplayFrames(/** @type {string} */ (ownRunId.peek()), address, { ...query, ...ghostQuery() }));
 }
+
+/** @returns {Record<string, string>} */
+const ghostQuery = () => {
+  const ghost = ghostId.peek();
+  return ghost === null ? {} : { ghost };
+};
 
 // ---- what the user can do
 
@@ -172,9 +184,10 @@ export async function setReplayClock(name) {
   const id = ownRunId.peek();
   if (!before || !id || name === clock.peek()) return;
   const step = stepOf(before.step_ends_s[0] ?? [], replayTime.peek());
-  const after = await getReplay(id, name).catch(() => null);
+  const ghost = ghostId.peek();
+  const after = await getReplay(id, name, ghost).catch(() => null);
   const time_s = after?.step_ends_s[0]?.[step - 1] ?? 0;
-  await openReplay(id, { time_s, isPlaying: playing.peek(), clock: name });
+  await openReplay(id, { time_s, isPlaying: playing.peek(), clock: name, ghost });
 }
 
 /** @type {(ends: number[], time_s: number) => number} */
@@ -252,7 +265,7 @@ function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /
 }
 
 /** @type {(level: number, number: number) => string} */
-const addressOf = (level, number) => `segments/${level}/${number}?clock=${clock.peek()}`;
+const addressOf = (level, number) => `segments/${level}/${number}`;
 
 /** Frames that are loaded; requests them if they are not. @param {string} address */
 function request(address) {
@@ -269,7 +282,7 @@ function request(address) {
     segments.delete(oldest);
   }
   const own = opening;
-  load(address).then(
+  load(address, { clock: clock.peek() }).then(
     (frames) => own === opening && segments.set(address, frames),
     (error) => {
       if (own !== opening) return;
@@ -288,7 +301,9 @@ async function grow(address) {
   grewAt = performance.now();
   const own = opening;
   const id = /** @type {string} */ (ownRunId.peek());
-  const [answer, frames] = await Promise.all([getReplay(id, clock.peek()), load(address)]).catch(() => []);
+  const [answer, frames] = await Promise.all([
+    getReplay(id, clock.peek(), ghostId.peek()), load(address, { clock: clock.peek() }),
+  ]).catch(() => []);
   if (own !== opening || !answer || !frames) return;
   segments.set(address, frames);
   plan.value = answer;
@@ -300,7 +315,7 @@ async function showMoment(/** @type {number} */ now) {
   if (isMomentPending || Math.abs(shown.time_s - time_s) < SAME_S) return;
   isMomentPending = true;
   const own = opening;
-  const answer = await load(`moment?time_s=${time_s}&clock=${clock.peek()}`).catch(() => null);
+  const answer = await load("moment", { time_s: String(time_s), clock: clock.peek() }).catch(() => null);
   isMomentPending = false;
   if (!answer || own !== opening || !scene) return;
   const [frame] = answer.frames;
@@ -360,34 +375,19 @@ export function followReplay() {
 
 /** Open the run that the address names, if any. */
 export function readReplayAddress() {
-  const query = new URLSearchParams(location.search);
-  const id = query.get("run");
-  if (id) openReplay(id, { time_s: Math.max(0, Number(query.get("t")) || 0), isPlaying: !query.has("t") });
+  const named = readReplay();
+  if (named) openReplay(named.id, named.at);
   else if (ownRunId.peek() !== null) closeReplay();
 }
 
-/** The address at which a run is replayed. @param {string} id */
-export const replayAddress = (id) => `${location.pathname}?${new URLSearchParams({ run: id })}`;
+/** What is shown. @param {string} id @param {boolean} isHeld */
+const shownNow = (id, isHeld) => ({ id, ghost: ghostId.peek(), time_s: isHeld ? replayTime.peek() : null });
 
 /** A link to the moment that is shown. */
-export function replayLink() {
-  const query = new URLSearchParams({ run: ownRunId.peek() ?? "", t: replayTime.peek().toFixed(2) });
-  return `${location.origin}${location.pathname}?${query}`;
-}
+export const replayLink = () => `${location.origin}${replayAddress(shownNow(ownRunId.peek() ?? "", true))}`;
 
 /** Write the run and a held position into the address. */
 function writeReplayAddress() {
-  const query = new URLSearchParams(location.search);
-  const before = query.get("run");
-  for (const field of REPLAY_FIELDS) query.delete(field);
   const id = ownRunId.peek();
-  if (id) query.set("run", id);
-  if (id && !playing.peek()) query.set("t", replayTime.peek().toFixed(2));
-  const search = query.size ? `?${query}` : "";
-  // A replay opens in the view of the race, as the stage is there.
-  const address = `${location.pathname}${search}${id !== null && id !== before ? "" : location.hash}`;
-  // Back goes to what was shown before.
-  if (id !== before) history.pushState(history.state, "", address);
-  else history.replaceState(history.state, "", address);
-  place.value = viewOf(location.hash);
+  writeReplay(id === null ? null : shownNow(id, !playing.peek()));
 }

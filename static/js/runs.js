@@ -2,6 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getAnyRun, listRuns } from "./api.js";
 import { place } from "./page.js";
+import { ghostId } from "./replay.js";
 import { trainingIds } from "./selectors.js";
 import { connection, damagedRuns, isDeleted, requestRun, requestRuns, runs, stage } from "./store.js";
 import { messageOf } from "./titles.js";
@@ -53,11 +54,12 @@ export function followRuns(ids) {
 const originalIds = ({ config: { branch_from: branch } }) => (branch ? [branch.race_id] : []);
 
 /**
- * The runs on stage, with the trainings of its race and the race from which it branches off.
+ * The runs on stage and of ghosts, with the trainings of its race and the race from which it branches off.
  * They may be older than those of the snapshot.
  */
 export const stageIds = computed(() => {
-  const shown = [stage.value?.run_id, stage.value?.next_run_id].filter((id) => id !== null && id !== undefined);
+  const all = [stage.value?.run_id, stage.value?.next_run_id, ghostId.value];
+  const shown = all.filter((id) => id !== null && id !== undefined);
   return shown.flatMap((id) => {
     const run = runs.value.get(id);
     return run?.kind === "race" ? [id, ...trainingIds(run), ...originalIds(run)] : [id];

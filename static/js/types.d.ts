@@ -456,6 +456,7 @@ export interface ReplayMark {
 
 export interface ReplayPlan {
   run_id: string;
+  ghost_id: string | null;
   kind: "training" | "race";
   complete: boolean;
   duration_s: number | null;
@@ -514,6 +515,8 @@ export interface Scene {
   replay: boolean;
   lanes: SceneLane[];
   knowledge: Knowledge | null;
+  /** The robots of another run that are shown as ghosts. */
+  ghost_lanes?: { lane: number; name: string; distance_m: number; step: number }[];
 }
 
 // ---- explained steps, and tables

@@ -271,6 +271,7 @@ def test_recorded_stream_plays_in_the_viewer(api: Api) -> None:
 
 
 def test_race_is_replayed_by_each_page_for_itself(raced: dict[str, Any], api: Api) -> None:
+    ghost = api.finished(api.race(lanes=[{"agent": "greedy"}], steps=5))["id"]
     shared = ("run_id", "speed", "clock", "playing")
     before = {name: api.get("/stage")[name] for name in shared}
     path = f"/runs/{raced['id']}/replay"
@@ -288,11 +289,17 @@ def test_race_is_replayed_by_each_page_for_itself(raced: dict[str, Any], api: Ap
         plain = api.call("GET", path + address, headers={"Accept-Encoding": "identity"})
         assert packed.headers["content-encoding"] == "gzip"
         assert packed.content == plain.content, "the client unpacks it"
+    assert api.get(path, params={"ghost": ghost})["ghost_id"] == ghost
+    for address in ("/scene?ghost=", "/moment?time_s=1.5&ghost=", "/segments/0/1?ghost="):
+        packed = api.call("GET", path + address + ghost)
+        assert packed.content != api.call("GET", path + address.split("ghost")[0]).content
     after = api.get("/stage")
     assert {name: after[name] for name in shared} == before, "the stage is everybody's"
 
 
-def test_replay_that_cannot_be_says_why(raced: dict[str, Any], api: Api) -> None:
+def test_replay_that_cannot_be_says_why(
+    raced: dict[str, Any], trained: dict[str, Any], api: Api
+) -> None:
     path = f"/runs/{raced['id']}/replay"
     refused(api.call("GET", "/runs/none/replay"), 404, "none")
     refused(api.call("GET", f"{path}/segments/0/100000"), 404, "its last segment is")
@@ -300,6 +307,8 @@ def test_replay_that_cannot_be_says_why(raced: dict[str, Any], api: Api) -> None
     refused(api.call("GET", f"{path}/segments/0/-1"), 422, "number must be a whole number, 0")
     refused(api.call("GET", f"{path}/moment?time_s=-1"), 422, "0 or more")
     refused(api.call("GET", f"{path}?clock=sundial"), 422, "paper, wall, free")
+    refused(api.call("GET", f"{path}?ghost=gone"), 404, "gone")
+    refused(api.call("GET", f"{path}/scene?ghost={trained['id']}"), 422, "choose another race")
     past = api.call("GET", f"{path}/moment?time_s=1e6")
     assert past.status_code == 200, "the last moment"
     queued = api.race(lanes=[{"agent": "q-learning", "training": {"steps": 100_000}}])

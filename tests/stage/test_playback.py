@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from app.domain.disturbances import SensorNoise
+from app.domain.errors import InvalidInput
 from app.domain.world import World
 from app.runs.clocks import CLOCKS
 from app.runs.lane import LaneConfig
@@ -121,3 +122,58 @@ def test_segments_cover_the_recording_to_its_last_moment(parts: StageParts) -> N
         assert np.diff(times_s[:-1]) == pytest.approx(interval_s)
         with pytest.raises(NotFound, match=f"its last segment is {number - 1}"):
             replay.segment_times_s(level, number)
+
+
+def test_lanes_of_another_run_walk_along_as_ghosts_at_their_own_time(parts: StageParts) -> None:
+    run = parts.finished_race(LANES)
+    other = parts.finished_race(("two-step", "greedy"), 8)
+    replays = replays_of(parts)
+    alone = replays.get(other.id, "paper")
+    both = replays.get(run.id, "paper", other.id)
+
+    for time_s in (0.0, 1.7, 3.0, both.recorded[-1][1]):
+        frame, expected = both.frame_at(time_s), alone.frame_at(time_s)
+        assert (
+            frame.lanes[0].distance_m
+            == replays.get(run.id, "paper").frame_at(time_s).lanes[0].distance_m
+        )
+        shown = [ghost for ghost in frame.ghost_lanes if ghost is not None]
+        for ghost, lane in zip(shown, expected.lanes, strict=True):
+            assert np.array_equal(ghost.qpos, lane.qpos)
+        named = [(ghost["name"], ghost["step"]) for ghost in frame.scene()["ghost_lanes"]]
+        assert named == [("Two-step", shown[0].step), ("Greedy", shown[1].step)]
+    assert both.plan()["ghost_id"] == other.id
+    assert both.version != replays.get(run.id, "paper").version
+
+
+def test_two_practices_walk_side_by_side(parts: StageParts) -> None:
+    run, other = parts.finished_training(30), parts.finished_training(20, agent="sarsa")
+    both, alone = (
+        replays_of(parts).get(*ids) for ids in ((run.id, "paper", other.id), (other.id, "paper"))
+    )
+
+    frame = both.frame_at(4.0)
+    (ghost,) = frame.ghost_lanes
+    assert ghost is not None
+    assert np.array_equal(ghost.qpos, alone.frame_at(4.0).lanes[0].qpos)
+    late = both.frame_at(both.recorded[-1][1])
+    assert (late.lanes[0].step, late.scene()["ghost_lanes"][0]["step"]) == (30, 20), "it waits"
+
+
+def test_a_ghost_is_another_run_of_the_kind_that_has_ended(parts: StageParts) -> None:
+    race, training = parts.finished_race(LANES), parts.finished_training(20)
+    replays = replays_of(parts)
+    with pytest.raises(NotFound):
+        replays.get(race.id, "paper", "gone")
+    with pytest.raises(InvalidInput, match=f"race {race.id} cannot be its own ghost"):
+        replays.get(race.id, "paper", race.id)
+    with pytest.raises(InvalidInput, match=r"cannot be the ghost of race .* choose another race"):
+        replays.get(race.id, "paper", training.id)
+    running, advance = parts.running_race(LANES)
+    advance()
+    with pytest.raises(Conflict, match="it can be a ghost once it has ended"):
+        replays.get(race.id, "paper", running.id)
+    lanes = (LaneConfig(agent="greedy"),)
+    failed = parts.create(RaceConfig(gait="left-right-origin", lanes=lanes), state="failed")
+    with pytest.raises(Conflict, match=f"{failed.id} is failed and has no recording"):
+        replays.get(race.id, "paper", failed.id)

@@ -253,12 +253,12 @@ def test_original_lanes_run_along_from_the_branch_on(parts: StageParts) -> None:
     parts.stage.set(run_id=fork.id)
     parts.stage.set(clock="free")
 
-    lanes = [frame.lanes[0] for frame in parts.watch_to_end()]
+    pairs = [(frame.lanes[0], frame.ghost_lanes[0]) for frame in parts.watch_to_end()]
 
-    assert {lane.original is None for lane in lanes if lane.step <= 3} == {True}
-    beside = [lane for lane in lanes if lane.step > 3]
-    assert {lane.original.step == lane.step for lane in beside if lane.original} == {True}
-    last = beside[-1].original
+    assert {ghost is None for lane, ghost in pairs if lane.step <= 3} == {True}
+    beside = [(lane, ghost) for lane, ghost in pairs if lane.step > 3]
+    assert {ghost.step == lane.step for lane, ghost in beside if ghost} == {True}
+    last = beside[-1][1]
     assert last is not None
     assert last.qpos == pytest.approx(recording.steps[-1].motion.qpos[-1])
     assert last.distance_m == recording.distance_m
@@ -270,4 +270,4 @@ def test_fork_is_shown_without_its_original_if_that_is_deleted(parts: StageParts
     parts.delete(original)
     parts.stage.set(run_id=fork.id)
 
-    assert {frame.lanes[0].original for frame in parts.watch_to_end()} == {None}
+    assert {frame.ghost_lanes for frame in parts.watch_to_end()} == {()}

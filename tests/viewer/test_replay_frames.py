@@ -111,3 +111,26 @@ def test_a_race_under_way_is_encoded_as_far_as_it_is(parts: StageParts) -> None:
     later, _ = decoded(frames.segment(run.id, "paper", 0, 0))
 
     assert 0 < len(early["frames"]) < len(later["frames"])
+
+
+def test_ghosts_are_drawn_over_their_lanes_and_beside_with_the_name_of_their_own(
+    parts: StageParts,
+) -> None:
+    run, other = parts.finished_race(("q-learning",)), parts.finished_race(("greedy", "two-step"))
+    frames, replays = frames_of(parts), Replays(parts.store, parts.recordings)
+    segment, arrays = decoded(frames.segment(run.id, "paper", 0, 1, other.id))
+    state = shown(segment["frames"], arrays)
+    mesh = RobotMesh(replays.get(other.id, "paper").show.spec.robot)
+    ghosts = replays.get(other.id, "paper").frame_at(segment["frames"][-1]["time_s"]).lanes
+    links = mesh.parts[0].links
+    name = f"{SCENE_ROOT}/ghost-robots/0 batched_positions"
+    drawn = np.frombuffer(state[name], np.float32).reshape(2, len(links), 3)
+
+    for ghost, positions in zip(ghosts, drawn, strict=True):
+        offset = positions - mesh.body_poses(ghost.qpos).positions[links]
+        assert offset[:, 1:] == pytest.approx(0, abs=1e-5)
+    assert "ghost 0." in state[f"{SCENE_ROOT}/lane0/plate text"]
+    assert state[f"{SCENE_ROOT}/lane1/plate text"].startswith("Two-step")
+    assert frames.segment(run.id, "paper", 0, 1, other.id) != frames.segment(run.id, "paper", 0, 1)
+    first = frames.segment(run.id, "paper", 0, 1, other.id)
+    assert frames.segment(run.id, "paper", 0, 1, other.id) is first

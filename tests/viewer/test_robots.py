@@ -90,20 +90,20 @@ def test_original_is_a_ghost_on_the_lane_of_the_fork(server: InProcessViser) -> 
     ahead = lane.qpos.copy()
     ahead[1] = 0.4
     scene.draw(frame_of(spec, lane, lane))
-    assert not [name for name in scene_nodes(server) if "originals" in name]
+    assert not [name for name in scene_nodes(server) if "ghost-robots" in name]
 
     original = replace(lane, qpos=ahead, distance_m=0.4)
-    forked = replace(lane_in(spec, Lost(legs=(2,))), original=original)
-    scene.draw(frame_of(spec, forked, lane))
-    node = scene_nodes(server)["/world/cast/originals/0"]
+    forked = frame_of(spec, lane_in(spec, Lost(legs=(2,))), lane)
+    scene.draw(replace(forked, ghost_lanes=(original, None)))
+    node = scene_nodes(server)["/world/cast/ghost-robots/0"]
 
     assert 0 < node["opacity"] < 1
     y = node["batched_positions"].reshape(2, -1, 3)[0, 0, 1]
     robot = scene_nodes(server)["/world/cast/robots/0"]["batched_positions"].reshape(2, -1, 3)
     assert y - robot[0, 0, 1] == pytest.approx(0.4, abs=1e-6)
-    parts = looks(server, spec, root="originals")
+    parts = looks(server, spec, root="ghost-robots")
     assert {scale for leg in parts.values() for _, scale in leg} == {1.0}, "it has all its legs"
-    other = looks(server, spec, lane=1, root="originals")
+    other = looks(server, spec, lane=1, root="ghost-robots")
     assert {scale for leg in other.values() for _, scale in leg} == {0.0}, "that lane has none"
 
 
@@ -134,6 +134,7 @@ def test_label_names_the_step_of_a_fall_counted_from_one() -> None:
 
 def test_label_of_a_fork_has_the_distance_of_the_original() -> None:
     spec = race_of(1)
-    lane = replace(lane_in(spec), original=replace(lane_in(spec), distance_m=0.31))
+    lane, original = lane_in(spec), replace(lane_in(spec), distance_m=0.31)
+    label = label_text(spec.lane_specs[0], lane, original, "original")
 
-    assert label_text(spec.lane_specs[0], lane).split("\n")[2] == "original 0.31\u00a0m"
+    assert label.split("\n")[2] == "original 0.31\u00a0m"

@@ -2,13 +2,13 @@
 import { computed, signal } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { form } from "../form.js";
-import { sentence, times, whole } from "../format.js";
+import { metres, sentence, times, whole } from "../format.js";
 import { shownTheme, view } from "../page.js";
 import { standings } from "../race.js";
-import { closeReplay, drawIn, isBuffering, ownRunId, replayProblem } from "../replay.js";
+import { closeReplay, drawIn, ghostId, isBuffering, ownRunId, replayProblem } from "../replay.js";
 import { conditionsShown, playbackName, raceScene } from "../selectors.js";
 import { agentOf } from "../settings.js";
-import { connection, scene, stage } from "../store.js";
+import { connection, runs, scene, stage } from "../store.js";
 import { html } from "./elements.js";
 import { Transport } from "./transport.js";
 
@@ -181,8 +181,19 @@ function SceneChips() {
       ${ownRunId.value !== null
         ? html`<p class="chip accent">${isBuffering.value ? "Loading your replay…" : "Your own replay"}</p>`
         : now?.replay && html`<p class="chip">Replay</p>`}
+      ${ghostId.value !== null && html`<${GhostChip} ghosts=${now?.ghost_lanes ?? []} />`}
       <${SpeedChip} now=${now} />
     </div>
+  `;
+}
+
+/** Whose robots the ghosts are, and how far they have come. */
+function GhostChip({ ghosts }) {
+  const run = runs.value.get(ghostId.value ?? "");
+  const title = run ? run.name || sentence(run.kind) : "another run";
+  const distances = ghosts.map(({ name, distance_m }) => `${name} ${metres(distance_m)}`).join(", ");
+  return html`
+    <p class="chip ghosts">Ghosts: ${title}${distances && html` <span class="num">(${distances})</span>`}</p>
   `;
 }
 

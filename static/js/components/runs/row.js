@@ -8,7 +8,6 @@ import { changesInWords, rateChanges } from "../../changes.js";
 import { happeningsOf, inTime, joinedBySteps } from "../../disturbances.js";
 import { paceOf } from "../../experiments/runs.js";
 import { ago, count, listed, metres, sentence, whole } from "../../format.js";
-import { openReplay, replayAddress } from "../../replay.js";
 import { formRobot, isSame } from "../../robots.js";
 import { isSelected, setSelected } from "../../run-selection.js";
 import { hasTable, isActive, isOperator } from "../../selectors.js";
@@ -16,6 +15,7 @@ import { agentOf, laneTitle, ratesInWords } from "../../settings.js";
 import { served } from "../../store.js";
 import { describeRun, gaitTitle, observationTitle, robotTitle, runTitle, simulatorTitle } from "../../titles.js";
 import { html, Problem } from "../elements.js";
+import { ReplayLink } from "../replay-link.js";
 import { edit, Name, Notes, Tags } from "./annotations.js";
 import { showCode } from "./code.js";
 
@@ -122,7 +122,7 @@ function Actions({ run }) {
       ${run.kind === "experiment"
         ? html`<a class="to-report" href=${`#experiments?run=${encodeURIComponent(run.id)}`}>Report</a>`
         : html`
-          <${ReplayLink} run=${run} />
+          ${run.progress.done > 0 && html`<${ReplayLink} id=${run.id}>Replay<//>`}
           ${isOperator.value && html`
             <button class="secondary compact" disabled=${isPending || run.state === "queued"}
               onClick=${() => showOnStage(run)} title="Show it on the stage, to everybody">
@@ -133,17 +133,6 @@ function Actions({ run }) {
       <${Menu} run=${run} />
     </div>
   `;
-}
-
-function ReplayLink({ run }) {
-  if (!run.progress.done) return null;
-  const open = (event) => {
-    // A click with a key opens the link in another tab.
-    if (event.ctrlKey || event.metaKey || event.shiftKey) return;
-    event.preventDefault();
-    openReplay(run.id);
-  };
-  return html`<a class="to-report" href=${replayAddress(run.id)} onClick=${open}>Replay</a>`;
 }
 
 function Menu({ run }) {

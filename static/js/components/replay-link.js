@@ -1,0 +1,16 @@
+// A link to a replay, which opens on this page.
+import { openReplay } from "../replay.js";
+import { replayAddress } from "../replay-address.js";
+import { html } from "./elements.js";
+
+export function ReplayLink({ id, ghost = null, label = null, children }) {
+  const open = (event) => {
+    // A click with a key opens the link in another tab.
+    if (event.ctrlKey || event.metaKey || event.shiftKey) return;
+    event.preventDefault();
+    openReplay(id, { ghost });
+  };
+  return html`
+    <a class="to-report" href=${replayAddress({ id, ghost })} aria-label=${label} onClick=${open}>${children}</a>
+  `;
+}
