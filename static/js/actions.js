@@ -4,14 +4,14 @@ import * as api from "./api.js";
 import { configAtEnd } from "./changes.js";
 import { changesSomething, conditionsNow, textOf } from "./disturbances.js";
 import {
-  chooseLearner, form, link, mistakes, raceBody, setField, setFields, trainingBody, validSteps,
+  chooseLearner, form, mistakes, raceBody, setField, setFields, trainingBody, validSteps,
 } from "./form.js";
 import { count, listed, whole } from "./format.js";
 import {
   canPlay, isActive, isOperator, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, myWork, shownRun, work,
 } from "./selectors.js";
 import {
-  closeReplay, ownRunId, playReplay, replayLink, seekReplay, setReplayClock, setReplaySpeed,
+  closeReplay, ownRunId, playReplay, seekReplay, setReplayClock, setReplaySpeed,
 } from "./replay.js";
 import { formRobot } from "./robots.js";
 import { agentOf, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
@@ -32,8 +32,6 @@ export const problems = /** @type {Signal<Record<string, RequestError | null>>} 
 export const pending = signal({});
 /** Fields that the server refused at a place. @type {(place: string) => string[]} */
 export const refusedFields = (place) => problems.value[place]?.fields ?? [];
-/** The message that is shown for a few seconds. @type {Signal<string | null>} */
-export const toastMessage = signal(null);
 
 /**
  * Perform an action unless the place is pending, and keep its error there.
@@ -366,41 +364,3 @@ function configOfRace({ config: { lanes, steps, ...walk } }) {
 
 /** @param {Run} run */
 export const isShown = (run) => shownRun.value?.id === run.id;
-
-// ---- the page
-
-const TOAST_MS = 4000;
-/** @type {ReturnType<typeof setTimeout> | undefined} */
-let toastTimer;
-
-/** @param {string} message */
-function toast(message) {
-  toastMessage.value = message;
-  clearTimeout(toastTimer);
-  toastTimer = setTimeout(() => (toastMessage.value = null), TOAST_MS);
-}
-
-/**
- * Copy a text; false where there is no clipboard, as outside of https and loopback.
- * @param {string} text
- * @param {string} words that tell of it
- */
-export async function copy(text, words) {
-  try {
-    await navigator.clipboard.writeText(text);
-  } catch {
-    return false;
-  }
-  toast(words);
-  return true;
-}
-
-export async function share() {
-  const isOwn = ownRunId.value !== null;
-  const address = isOwn ? replayLink() : link();
-  const contents = isOwn ? "It opens this replay at this moment." : "It contains every setting of the form.";
-  if (!(await copy(address, `Link copied. ${contents}`))) {
-    history.replaceState(history.state, "", address);
-    toast("The address bar has the link: copy it from there.");
-  }
-}

@@ -1,13 +1,14 @@
 // The page: header, the three views, the first lesson, keyboard shortcuts, the help dialog and messages.
 import { signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { primaryAction, runPrimaryAction, share, toastMessage, togglePause } from "../actions.js";
+import { primaryAction, runPrimaryAction, togglePause } from "../actions.js";
 import {
   closeLesson, helpIsOpen, isNarrow, lesson, nextTheme, openLesson, place, setShortcuts, shortcuts, theme, view,
 } from "../page.js";
 import { announcement } from "../race.js";
 import { ownRunId, stepReplay } from "../replay.js";
 import { isOperator } from "../selectors.js";
+import { share, toastMessage } from "../share.js";
 import { connection, isLockedOut, options, setEntry, viewers } from "../store.js";
 import { Controls } from "./controls.js";
 import { html, Icon } from "./elements.js";

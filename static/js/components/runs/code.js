@@ -1,7 +1,7 @@
 // The dialog that shows a run as commands and as a Python program.
 import { signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { copy } from "../../actions.js";
+import { copy } from "../../share.js";
 import { getCode } from "../../api.js";
 import { messageOf } from "../../titles.js";
 import { html, Segments } from "../elements.js";
