@@ -43,7 +43,7 @@ venv: $(DQN_STAMP) $(PAGE_STAMP) ## Make or update .venv with everything a devel
 
 .PHONY: test
 test: ## Run every check; this is the gate
-	@$(MAKE) --no-print-directory --jobs=4 lint test-page browser $(DQN_STAMP)
+	@$(MAKE) --no-print-directory --jobs=4 lint test-page browser $(DQN_STAMP) docs
 	@$(MAKE) --no-print-directory --jobs=2 types pytest
 
 .PHONY: check
@@ -74,6 +74,10 @@ test-page: $(PAGE_STAMP) ## Check the page's JavaScript: linter, types, unit tes
 	$(BIN)/node node_modules/typescript/bin/tsc --project tsconfig.json
 	$(BIN)/node node_modules/typescript/bin/tsc --project tsconfig.logic.json
 	$(BIN)/node --import ./tests/page/browser.js --test --test-reporter=dot "tests/page/test-*.js"
+
+.PHONY: docs
+docs: $(DEV_STAMP) ## Build docs/ as a site in build/docs
+	$(BIN)/python -m sphinx -q -W --keep-going -b html docs build/docs
 
 .PHONY: soak
 soak: $(DEV_STAMP) ## Show what is promised at its full length; it takes hours

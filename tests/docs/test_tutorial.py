@@ -17,7 +17,7 @@ _BLOCK = re.compile(r"^```(sh|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 def test_every_command_of_the_tutorial_runs(tmp_path: Path) -> None:
     blocks = _BLOCK.findall((ROOT / "docs" / "tutorial.md").read_text("utf-8"))
     commands = [content for language, content in blocks if language == "sh"]
-    assert len(commands) == 6
+    assert len(commands) == 7
     for language, content in blocks:
         if language == "python":
             name = content.split("\n", 1)[0].removeprefix("# ")
