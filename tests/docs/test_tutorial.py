@@ -29,4 +29,4 @@ def test_every_command_of_the_tutorial_runs(tmp_path: Path) -> None:
             cwd=tmp_path,
             env={**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"},
         )
-    assert (tmp_path / "figure4" / "report.html").exists()
+    assert (tmp_path / "sweep" / "report.html").exists()
