@@ -5,7 +5,7 @@ import { setStage } from "./actions.js";
 import { getGait } from "./api.js";
 import { count } from "./format.js";
 import { shownTime, timeline, timeSpent } from "./race.js";
-import { isOperator, raceInView, shownRun } from "./selectors.js";
+import { canPlay, raceInView, shownRun } from "./selectors.js";
 import { connection, options, scene, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -77,7 +77,7 @@ export const raceTimeAt = ({ thinking }, walked) =>
 /** Whether this page may choose the moment that is shown. */
 export const canSeek = computed(() => {
   const about = subject.value;
-  return isOperator.value && stage.value?.run_id === about?.run.id && about?.part !== "evaluation";
+  return canPlay.value && stage.value?.run_id === about?.run.id && about?.part !== "evaluation";
 });
 
 /**
