@@ -57,7 +57,13 @@ VALID: Mapping[str, str] = {
     ),
     "branch_from": "an object: race_id, and step, how many steps of that race are repeated",
     "race_id": "the id of a race",
-    "step": "a whole number from 0 to the steps that the race has taken; at least one must be left",
+    "branch_from.step": (
+        "a whole number from 0 to the steps that the race has taken; at least one must be left"
+    ),
+    "step": "a whole number, the steps that the run has taken at most",
+    "lane": "a whole number, the number of a lane of the race, from 0 on",
+    "first": "a whole number, the index of a state, from 0 on",
+    "count": "a whole number, 1 or more",
     "world": f"the name of a world: {_one_of(WORLDS)}",
     "worlds": (
         f"a list, each the name of a world, {_one_of(WORLDS)}, or what happens, such as "
@@ -134,7 +140,7 @@ def _sentence(field: str, error: Mapping[str, Any], path: list[Any]) -> str:
     if not names:
         return "The request's body must be a JSON object, sent as application/json."
     is_missing = error["type"] == "missing"
-    valid = VALID.get(names[-1]) or _length(error) or "given"
+    valid = VALID.get(field) or VALID.get(names[-1]) or _length(error) or "given"
     return f"{field} {'is missing; it ' if is_missing else ''}must be {valid}."
 
 

@@ -221,7 +221,7 @@ class BranchFrom(Body):
     # How many steps the race has taken, the domain checks.
     step: Annotated[
         int,
-        Field(strict=True, ge=0, lt=MAX_RACE_STEPS, description=VALID["step"]),
+        Field(strict=True, ge=0, lt=MAX_RACE_STEPS, description=VALID["branch_from.step"]),
         INTEGRAL,
     ]
 

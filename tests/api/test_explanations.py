@@ -187,6 +187,10 @@ def test_steps_and_lanes_that_are_not_there_are_refused(api: Api, trained: dict[
         ("?lane=1", "A training has one lane, 0."),
     ):
         refused(api.call("GET", path + query), 422, sentence)
+    refused(api.call("GET", f"{path}?step=soon"), 422, "step must be a whole number, the steps")
+    refused(api.call("GET", f"{path}?lane=x"), 422, "lane must be a whole number, the number of a")
+    refused(api.call("GET", f"{table}?count=0"), 422, "count must be a whole number, 1 or more")
+    refused(api.call("GET", f"{table}?first=-1"), 422, "first must be a whole number, the index")
     refused(api.call("GET", f"{table}?step=101"), 422, "Step must be from 0 to 100, not 101.")
     refused(api.call("GET", f"{table}?first=125"), 422, "First must be from 0 to 124, not 125.")
     refused(api.call("GET", "/runs/0000000000000/explain"), 404, "")

@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.assembly import build_learner, finish_training
+from app.agents.protocol import Tabular
+from app.assembly import build_learner, finish_training, rebuild_learner
 from app.domain.disturbances import Limp, SensorNoise, disturbance
 from app.domain.errors import DamagedFile, InvalidInput
 from app.events.bus import EventBus
@@ -115,6 +116,15 @@ def test_disturbed_training_that_was_killed_equals_the_unbroken_one(
     assert made == happened == list(unbroken.world.disturbances)
     assert 0 < happened[0].at_step < happened[1].at_step < 200
     assert ended.result == finish_training(unbroken, config)
+
+    # Its log has each step once, so that its learner can be built again from it.
+    log = Recordings(store).transitions(run.id)
+    assert log is not None
+    whole, rebuilt = log.part(0, 200), rebuild_learner(config)
+    for number in range(200):
+        rebuilt.take(whole.step(number))
+    assert isinstance(rebuilt.agent, Tabular)
+    assert rebuilt.agent.table.sha256() == ended.result["q_table_sha256"]
 
 
 def test_training_without_a_checkpoint_restarts_from_its_table(
