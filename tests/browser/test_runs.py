@@ -181,13 +181,14 @@ def test_several_runs_are_tagged_taken_away_as_a_file_and_brought_back(
     page.get_by_label("Select all").click()
     with page.expect_download() as download:
         page.get_by_role("link", name="Export 2").click()
+    archive = download.value.path()  # waits for its end
     dashboard.button("Delete 2").click()
     dashboard.button("Delete 2 runs for good?").click()
     expect(page.get_by_text("No run matches these filters.")).to_be_visible()
     assert dashboard.violations() == []
     bad = tmp_path / "notes.zip"
     bad.write_text("no zip")
-    page.get_by_label("Import…").set_input_files([download.value.path(), bad])
+    page.get_by_label("Import…").set_input_files([archive, bad])
     expect(names).to_have_text(["Walk 10", "Walk 11"])
     expect(page.get_by_text("has brought 2 runs.")).to_be_visible()
     expect(page.locator(".imports .problem")).to_contain_text("is no archive of a run")

@@ -51,6 +51,7 @@ function Head() {
   return html`
     <div class="runs-head">
       <h2 id="runs-title">Runs</h2>
+      ${isOperator.value && html`<${ImportButton} />`}
       <${Segments} label="Kind" choices=${KINDS} value=${kind} onValue=${(value) => setFilters({ kind: value })} />
       <${Choice} label="State" choices=${[["", "any state"], ...STATES]} value=${state}
         onValue=${(value) => setFilters({ state: value })} />
@@ -58,7 +59,6 @@ function Head() {
       <input class="search" type="search" aria-label="Search names, ids, tags and notes"
         placeholder="Name, id, tag or note" maxlength=${served().limits.name[1]} value=${search}
         onInput=${({ target }) => setFilters({ search: target.value })} />
-      ${isOperator.value && html`<${ImportButton} />`}
     </div>
   `;
 }
