@@ -1,5 +1,5 @@
 // The user's actions. Each keeps its own error, which is shown beside the control that caused it.
-import { computed, signal } from "@preact/signals";
+import { computed, effect, signal, untracked } from "@preact/signals";
 import * as api from "./api.js";
 import { configAtEnd } from "./changes.js";
 import { changesSomething, conditionsNow, textOf } from "./disturbances.js";
@@ -249,13 +249,24 @@ export const branchRace = (race, step, disturbances) =>
 export const setStage = (changes) =>
   attempt("stage", () => requestStage(() => api.putStage(changes)));
 
+/** The newest moment to be shown that is not sent yet [s]. @type {Signal<number | null>} */
+const wantedMoment = signal(null);
+
+// Whoever seeks again before the stage has answered gets the newest moment, not the first.
+effect(() => {
+  const time_s = wantedMoment.value;
+  if (time_s === null || pending.value.stage) return;
+  wantedMoment.value = null;
+  untracked(() => setStage({ time_s }));
+});
+
 /**
  * A function that shows a moment of a run [s]; null if another run is on stage, or for who may not.
  * @param {string} id
- * @returns {((time_s: number) => unknown) | null}
+ * @returns {((time_s: number) => void) | null}
  */
 export const seekIn = (id) =>
-  isOperator.value && scene.value?.run_id === id ? (time_s) => setStage({ time_s }) : null;
+  isOperator.value && scene.value?.run_id === id ? (time_s) => (wantedMoment.value = time_s) : null;
 
 export const togglePlaying = () => {
   if (isOperator.value && stage.value?.run_id) setStage({ playing: !isPlaying.value });
