@@ -1,5 +1,5 @@
 // The user's actions. Each keeps its own error, which is shown beside the control that caused it.
-import { computed, signal } from "@preact/signals";
+import { computed, effect, signal, untracked } from "@preact/signals";
 import * as api from "./api.js";
 import { configAtEnd } from "./changes.js";
 import { changesSomething, conditionsNow, textOf } from "./disturbances.js";
@@ -265,13 +265,24 @@ export function setStage(changes) {
   return Promise.resolve();
 }
 
+/** The newest moment to be shown that is not sent yet [s]. @type {Signal<number | null>} */
+const wantedMoment = signal(null);
+
+// Whoever seeks again before the stage has answered gets the newest moment, not the first.
+effect(() => {
+  const time_s = wantedMoment.value;
+  if (time_s === null || pending.value.stage) return;
+  wantedMoment.value = null;
+  untracked(() => setStage({ time_s }));
+});
+
 /**
  * A function that shows a moment of a run [s]; null if another run is on stage, or for who may not.
  * @param {string} id
- * @returns {((time_s: number) => unknown) | null}
+ * @returns {((time_s: number) => void) | null}
  */
 export const seekIn = (id) =>
-  canPlay.value && scene.value?.run_id === id ? (time_s) => setStage({ time_s }) : null;
+  canPlay.value && scene.value?.run_id === id ? (time_s) => (wantedMoment.value = time_s) : null;
 
 export const togglePlaying = () => {
   if (canPlay.value && stage.value?.run_id) setStage({ playing: !isPlaying.value });

@@ -143,7 +143,7 @@ def answers_keys(dashboard: Dashboard, race: Locator) -> None:
     expect(race.locator(".readout")).to_have_count(0)
     page.keyboard.press("?")
     help_dialog = page.get_by_role("dialog", name="Keys")
-    expect(help_dialog).to_contain_text("Enter, or a click")
+    expect(help_dialog).to_contain_text("show that moment on stage")
     assert dashboard.violations() == []
     page.keyboard.press("Escape")
 

@@ -237,10 +237,10 @@ const KEYS = [
 
 /** Of a chart that has the focus. */
 const CHART_KEYS = [
-  ["← →", "read the values, in all charts over the same axis"],
-  ["Enter, or a click", "show that moment on stage, for those who may"],
-  ["+ −, or a drag", "zoom in and out; by touch with two fingers"],
-  ["0, or a double click", "show all"],
+  ["← →", "read the values, in all charts over the same axis; or point, or touch"],
+  ["Enter", "show that moment on stage, for those who may; or click"],
+  ["+ −", "zoom in and out; or drag, or move two fingers"],
+  ["0", "show all; or click twice"],
 ];
 
 const TEXT = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable]";
@@ -326,7 +326,7 @@ function HelpDialog() {
           Use single keys
         </label>
         <h2>Charts</h2>
-        <dl class="keys of-charts">
+        <dl class="keys">
           ${CHART_KEYS.map(([key, does]) => html`<div><dt><kbd>${key}</kbd></dt><dd>${does}</dd></div>`)}
         </dl>
         <h2>What you see</h2>

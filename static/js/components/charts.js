@@ -1,11 +1,11 @@
 // Charts: lines over an axis with a crosshair, zoom, table and files, and the placeholder of a chart without data.
-import { useLayoutEffect, useRef, useState } from "preact/hooks";
+import { useRef, useState } from "preact/hooks";
 import { crosshair, fileNameOf, tableOf, thinnedPath, valuesIn, within, zoomOf } from "../chart.js";
 import { metres, sentence, whole as wholeNumber } from "../format.js";
 import { placeCaptions } from "../labels.js";
 import { thinned, ticks } from "../scale.js";
 import { Crosshair, readIndex, zoomBy } from "./crosshair.js";
-import { html } from "./elements.js";
+import { html, useWidth } from "./elements.js";
 import { cssColour, LineLabels, MarkLines, roomFor, widthOf } from "./line-labels.js";
 
 /** @import { Line, Mark } from "../chart.js" */
@@ -160,25 +160,6 @@ function Curve({ line: { color, xs, ys, low, high, seeds = [], dots }, frame }) 
       `)}
     </g>
   `;
-}
-
-/** [ref, width in px], 0 until it is measured. @returns {[{ current: any }, number]} */
-function useWidth() {
-  /** @type {{ current: any }} */
-  const host = useRef(null);
-  const [width, setWidth] = useState(0);
-  useLayoutEffect(() => {
-    const measure = () => {
-      const { width: now } = host.current.getBoundingClientRect();
-      // While it is hidden it has none.
-      if (now > 0) setWidth(Math.round(now));
-    };
-    measure();
-    const watcher = new ResizeObserver(measure);
-    watcher.observe(host.current);
-    return () => watcher.disconnect();
-  }, []);
-  return [host, width];
 }
 
 /** The line of the best known walk, thin; its caption stands where those of other lines do not begin. */

@@ -1,6 +1,8 @@
 // Every seed as a dot on one axis, with the interquartile mean and reference values.
+import { placeCaptions } from "../labels.js";
 import { largest, percent, shareOf, swarm, thinned, ticks } from "../scale.js";
-import { html } from "./elements.js";
+import { html, useWidth } from "./elements.js";
+import { widthOf } from "./line-labels.js";
 
 const DOT_PX = 3;
 const APART_PX = 5;
@@ -11,6 +13,7 @@ const LANE_PX = 12;
 /** Height of the axis' numbers, and about how many there are: strips may be narrow. */
 const AXIS_PX = 14;
 const AXIS_NUMBERS = 3;
+const NUMBER_GAP_PX = 6;
 
 /**
  * Every seed as a dot on one axis, with the interquartile mean and reference values.
@@ -31,6 +34,7 @@ const AXIS_NUMBERS = 3;
 export function DotStrip({
   label, points, low = 0, high, typical = null, marks = [], color, height = 36, axis = null, onDot = null,
 }) {
+  const [host, width] = useWidth();
   const at = (value) => percent(shareOf(value, low, high));
   const drawn = points.length > MOST_DOTS ? thinned([...points].sort((a, b) => a - b), MOST_DOTS) : points;
   const rows = swarm(drawn.map((value) => shareOf(value, low, high)));
@@ -40,7 +44,7 @@ export function DotStrip({
   const style = color && { "--agent": color };
   return html`
     <svg class="dots" width="100%" height=${height + (axis ? AXIS_PX : 0)} role="img" aria-label=${label}
-      style=${style}>
+      style=${style} ref=${host}>
       <line class="axis" x1="0" x2="100%" y1=${middle} y2=${middle} />
       ${marks.filter(({ kind }) => kind !== "published").map(({ value, kind }) => html`
         <line class=${`mark ${kind}`} x1=${at(value)} x2=${at(value)} y1="0" y2=${height} />
@@ -50,17 +54,31 @@ export function DotStrip({
           r=${DOT_PX} onClick=${onDot && (() => onDot(points.indexOf(value)))} />
       `)}
       ${typical && html`<${Typical} typical=${typical} at=${at} y=${height - LANE_PX / 2} />`}
-      ${axis && ticks(high, AXIS_NUMBERS).map((value) => html`
-        <line class="axis" x1=${at(value)} x2=${at(value)} y1=${height} y2=${height + 3} />
-        <text class="axis-number" x=${at(value)} y=${height + AXIS_PX} text-anchor=${value ? "middle" : "start"}>
-          ${axis(value)}
-        </text>
-      `)}
+      ${axis && html`<${Axis} high=${high} axis=${axis} at=${at} width=${width} y=${height} />`}
       ${marks.filter(({ kind }) => kind === "published").map(({ value }) => html`
         <svg x=${at(value)} y=${middle} overflow="visible"><path class="mark published" d="M0-7 6 0 0 7-6 0z" /></svg>
       `)}
     </svg>
   `;
+}
+
+/** Round numbers, of which a narrow strip has room for fewer. */
+function Axis({ high, axis, at, width, y }) {
+  const values = ticks(high, AXIS_NUMBERS);
+  const boxes = values.map((value) => {
+    const room = widthOf(axis(value)) + NUMBER_GAP_PX;
+    const middle = shareOf(value, 0, high) * width;
+    return { left: value ? middle - room / 2 : 0, top: 0, width: room, height: AXIS_PX };
+  });
+  const placed = placeCaptions(boxes, { left: 0, top: 0, width: Math.max(width, 1e4), height: AXIS_PX });
+  return values.map((value, n) => html`
+    <line class="axis" x1=${at(value)} x2=${at(value)} y1=${y} y2=${y + 3} />
+    ${width > 0 && placed[n] && html`
+      <text class="axis-number" x=${at(value)} y=${y + AXIS_PX} text-anchor=${value ? "middle" : "start"}>
+        ${axis(value)}
+      </text>
+    `}
+  `);
 }
 
 const Typical = ({ typical, at, y }) => html`

@@ -1,6 +1,7 @@
 // The `html` template tag, and the elements that all views share: icons, glyphs, errors, bars, switches.
 import htm from "htm";
 import { h } from "preact";
+import { useLayoutEffect, useRef, useState } from "preact/hooks";
 import { dismissProblem, problems } from "../actions.js";
 import { listed } from "../format.js";
 import { labelOf, messageOf } from "../titles.js";
@@ -151,3 +152,22 @@ export const Segments = ({ label, choices, value, onValue }) => html`
     `)}
   </div>
 `;
+
+/** The width of an element as [ref, px], 0 until it is measured. @returns {[{ current: any }, number]} */
+export function useWidth() {
+  /** @type {{ current: any }} */
+  const host = useRef(null);
+  const [width, setWidth] = useState(0);
+  useLayoutEffect(() => {
+    const measure = () => {
+      const { width: now } = host.current.getBoundingClientRect();
+      // While it is hidden it has none.
+      if (now > 0) setWidth(Math.round(now));
+    };
+    measure();
+    const watcher = new ResizeObserver(measure);
+    watcher.observe(host.current);
+    return () => watcher.disconnect();
+  }, []);
+  return [host, width];
+}
