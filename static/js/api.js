@@ -1,7 +1,8 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
 
 /** @import { Annotations, Curve, Disturbance, Explanation, GaitAnalysis, Kind, Options, Page } from "./types.js" */
-/** @import { Rates, ReplayPlan, Run, Stage, StateTable, Summary, Timeline, Verb, WhatIfAnswer } from "./types.js" */
+/** @import { Rates, ReplayPlan, Run, Spectators, Stage, StateTable, Summary, Timeline, Verb } from "./types.js" */
+/** @import { WhatIfAnswer } from "./types.js" */
 
 const base = () => new URL("api/v1/", document.baseURI);
 
@@ -219,6 +220,9 @@ export const getGait = (id, part, from_s) => {
 };
 /** @type {(id: string) => Promise<Summary>} */
 export const getSummary = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/summary`);
+
+/** @returns {Promise<Spectators>} */
+export const getSpectators = () => call("GET", "spectators");
 
 /** @returns {Promise<Stage>} */
 export const getStage = () => call("GET", "stage");

@@ -41,7 +41,7 @@ const MOST_SEEDS = 200;
  */
 export function Chart(props) {
   const { name, label, x, y, lines, marks = [], xs, now = xs.length - 1, seek = null, children } = props;
-  const [host, width] = useWidth();
+  const [host, width, scale] = useSize();
   /** @type {[number, number]} */
   const whole = [x.min ?? 0, x.max];
   const zoom = zoomOf(x.axis);
@@ -51,15 +51,17 @@ export function Chart(props) {
   const frame = frameOf(width, { y, lines, part, values: zoom ? valuesIn(lines, part, all) : all });
   const chart = { ...props, marks };
   const axis = { axis: x.axis, xs, whole, part, now, seek };
-  const inset = { left: frame.left, right: width - frame.right, top: TOP_PX, bottom: BOTTOM_PX };
+  const inset = {
+    left: scale * frame.left, right: scale * (width - frame.right), top: scale * TOP_PX, bottom: scale * BOTTOM_PX,
+  };
   const onFocusOut = ({ relatedTarget, currentTarget }) => {
     if (!currentTarget.contains(relatedTarget) && crosshair.peek()?.axis === x.axis) crosshair.value = null;
   };
   return html`
     <div class="chart-frame" onFocusOut=${onFocusOut}>
-      <div class="chart-picture" ref=${host} style=${{ height: `${HEIGHT}px` }}>
+      <div class="chart-picture" ref=${host} style=${{ height: `${scale * HEIGHT}px` }}>
         ${width > 0 && html`
-          <${Picture} label=${label} x=${x} y=${y} lines=${lines} marks=${marks} frame=${frame} />
+          <${Picture} label=${label} x=${x} y=${y} lines=${lines} marks=${marks} frame=${frame} scale=${scale} />
           <${Crosshair} ...${axis} name=${name} lines=${lines} marks=${marks} x=${x} y=${y} inset=${inset} />
         `}
       </div>
@@ -94,7 +96,7 @@ const withOwnText = (numbers, text) =>
 
 let pictures = 0;
 
-function Picture({ label, x, y, lines, marks, frame }) {
+function Picture({ label, x, y, lines, marks, frame, scale }) {
   const { current: id } = useRef(`chart-${(pictures += 1)}`);
   const { left, right, top, bottom, width, height } = frame;
   const isAcross = (at) => at >= left - 1 && at <= right + 1;
@@ -102,7 +104,8 @@ function Picture({ label, x, y, lines, marks, frame }) {
   const inView = marks.filter((mark) => (mark.x === undefined ? isUp(frame.y(mark.y)) : isAcross(frame.x(mark.x))));
   const ended = lines.filter(({ xs, ys }) => isAcross(frame.x(xs.at(-1))) && isUp(frame.y(ys.at(-1))));
   return html`
-    <svg class="chart-lines" width=${width} height=${height} role="img" aria-label=${label}>
+    <svg class="chart-lines" width=${scale * width} height=${scale * height} viewBox=${`0 0 ${width} ${height}`}
+      role="img" aria-label=${label}>
       <clipPath id=${id}>
         <rect x=${left} y=${top - 4} width=${right - left} height=${bottom - top + 8} />
       </clipPath>
@@ -157,23 +160,32 @@ function Curve({ line: { color, xs, ys, low, high, seeds = [], dots }, frame }) 
   `;
 }
 
-/** [ref, width in px], 0 until it is measured. @returns {[{ current: any }, number]} */
-function useWidth() {
+const USUAL_FONT_PX = 16;
+
+/**
+ * A ref, the width that there is to draw in [px], 0 until it is measured, and by how much it is drawn larger, as the
+ * page's type is.
+ * @returns {[{ current: any }, number, number]}
+ */
+function useSize() {
   /** @type {{ current: any }} */
   const host = useRef(null);
-  const [width, setWidth] = useState(0);
+  const [[width, scale], setSize] = useState([0, 1]);
   useLayoutEffect(() => {
     const measure = () => {
       const { width: now } = host.current.getBoundingClientRect();
       // While it is hidden it has none.
-      if (now > 0) setWidth(Math.round(now));
+      const larger = parseFloat(getComputedStyle(document.documentElement).fontSize) / USUAL_FONT_PX;
+      /** @type {[number, number]} */
+      const size = [Math.round(now / larger), larger];
+      if (now > 0) setSize((before) => (before.join() === size.join() ? before : size));
     };
     measure();
     const watcher = new ResizeObserver(measure);
     watcher.observe(host.current);
     return () => watcher.disconnect();
   }, []);
-  return [host, width];
+  return [host, width, scale];
 }
 
 /** The line of the best known walk, thin; its caption stands where those of other lines do not begin. */
