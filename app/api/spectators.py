@@ -17,7 +17,7 @@ _NEEDS_TOKEN = (
 )
 _LOOPBACK_ONLY = (
     "Only this machine can open this page; to let others watch, start the server with "
-    f"`hexapods serve --share`, or set {PREFIX}PUBLIC_URL."
+    f"hexapods serve --share, or set {PREFIX}PUBLIC_URL."
 )
 
 router = APIRouter(prefix="/spectators", tags=["stage"])

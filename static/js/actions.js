@@ -193,7 +193,7 @@ let unsent = null;
  */
 export function tune(changes) {
   const run = liveTraining.value;
-  if (!run) return;
+  if (!run || !isOperator.value) return;
   setEntry(rates, run.id, { ...rates.value[run.id], ...changes });
   if (unsent) {
     Object.assign(unsent, changes);

@@ -1,8 +1,8 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
 
 /** @import { Annotations, Curve, Disturbance, Explanation, GaitAnalysis, Kind, Options, Page } from "./types.js" */
-/** @import { Rates, ReplayPlan, Run, Stage, StateTable, Summary, Timeline, Trial, Verb } from "./types.js" */
-/** @import { WhatIfAnswer } from "./types.js" */
+/** @import { Rates, ReplayPlan, Run, Spectators, Stage, StateTable, Summary, Timeline, Trial } from "./types.js" */
+/** @import { Verb, WhatIfAnswer } from "./types.js" */
 
 const base = () => new URL("api/v1/", document.baseURI);
 
@@ -235,6 +235,9 @@ export const getTrials = (id) => call("GET", `${pathOf({ kind: "experiment", id 
 export const startTrial = (id, key) => start(`${pathOf({ kind: "experiment", id })}/trials/run`, { key });
 /** @type {(id: string) => Promise<Summary>} */
 export const getSummary = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/summary`);
+
+/** @returns {Promise<Spectators>} */
+export const getSpectators = () => call("GET", "spectators");
 
 /** @returns {Promise<Stage>} */
 export const getStage = () => call("GET", "stage");

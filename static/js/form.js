@@ -3,7 +3,7 @@ import { computed, signal } from "@preact/signals";
 import { isSimulated, parseText } from "./disturbances.js";
 import { listed } from "./format.js";
 import { parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
-import { REPLAY_FIELDS } from "./page.js";
+import { PAGE_FIELDS } from "./page.js";
 import { agentOf, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
 import { options, served } from "./store.js";
 
@@ -24,6 +24,11 @@ export const overrides = signal({});
 export const typed = signal({});
 /** What a link says that is no field of the form, as "alhpa=0.5". @type {Signal<string[]>} */
 export const unknownParts = signal([]);
+/**
+ * Whether the form shows the settings of the run that the page shows, as it does to spectators until they try other
+ * ones. They are read only, and not in the address.
+ */
+export const isReadOnly = signal(false);
 
 // ---- texts as values
 
@@ -225,7 +230,8 @@ const everyValue = () => {
   return { ...form.value, ...select(overrides.value, (field) => field in own && !(field in form.value)) };
 };
 
-const isChanged = computed(() => {
+/** Whether the form says anything else than its defaults. */
+export const isChanged = computed(() => {
   const defaults = complete({});
   const isOther = (/** @type {[string, FormValue]} */ [field, value]) => written(value) !== written(defaults[field]);
   return Object.keys(wrong.value).length > 0 || Object.entries(everyValue()).some(isOther);
@@ -264,7 +270,7 @@ export function readQuery(query) {
   for (const [field, text] of query) {
     if (field in known && !(field in found) && !(field in texts)) take(field, text, agents);
   }
-  const isUnknown = (/** @type {string} */ field) => !(field in known) && !REPLAY_FIELDS.includes(field);
+  const isUnknown = (/** @type {string} */ field) => !(field in known) && !PAGE_FIELDS.includes(field);
   unknownParts.value = [...query].filter(([field]) => isUnknown(field)).map((part) => part.join("="));
   overrides.value = select(found, (field) => field === "lanes" || written(found[field]) !== written(defaults[field])
     || (field === "agent" && found.agent !== served().defaults.training.agent));
@@ -276,9 +282,9 @@ export const readAddress = () => readQuery(new URLSearchParams(location.search))
 
 /** Write the form to the page's address; an unchanged form keeps it clean. */
 export function writeAddress() {
-  const query = isChanged.value ? toQuery() : new URLSearchParams();
+  const query = isChanged.value && !isReadOnly.value ? toQuery() : new URLSearchParams();
   for (const [field, text] of new URLSearchParams(location.search)) {
-    if (REPLAY_FIELDS.includes(field)) query.set(field, text);
+    if (PAGE_FIELDS.includes(field)) query.set(field, text);
   }
   const search = query.size ? `?${query}` : "";
   history.replaceState(history.state, "", `${location.pathname}${search}${location.hash}`);

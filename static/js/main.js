@@ -6,10 +6,11 @@ import { App, listenForKeys, listenForMenus } from "./components/app.js";
 import { html } from "./components/elements.js";
 import { announceExperiments, followAddress, followExperiments, followSummary } from "./experiments/runs.js";
 import { readAddress, writeAddress } from "./form.js";
-import { followTheme } from "./page.js";
+import { followPresenter, followTheme } from "./page.js";
 import { announceOutcomes, followTimeline } from "./race.js";
 import { followReplay, readReplayAddress } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
+import { followStageSettings } from "./spectators.js";
 import { applyEvent, connection, isLockedOut, options, version } from "./store.js";
 import { followCurves } from "./training.js";
 import { followWhatIf } from "./what-if.js";
@@ -32,6 +33,7 @@ async function loadOptions(attempt = 0) {
   }
   readAddress();
   writeAddress();
+  followStageSettings();
   followAddress();
   followWhatIf();
 }
@@ -47,6 +49,7 @@ function reloadAfterUpgrade() {
 }
 
 followTheme();
+followPresenter();
 reloadAfterUpgrade();
 followRuns(stageIds);
 followCurves();

@@ -27,6 +27,60 @@ function readShortcuts() {
 
 /** Fields of the address for a replay of this page's own: the run, its ghost, and the position in it [s]. */
 export const REPLAY_FIELDS = ["run", "ghost", "t"];
+const PRESENT_FIELD = "present";
+/** Fields of the address that are none of the form. */
+export const PAGE_FIELDS = [...REPLAY_FIELDS, PRESENT_FIELD];
+
+// ---- the presenter view: full screen, large type
+
+const hasPresentField = () => new URLSearchParams(location.search).has(PRESENT_FIELD);
+
+/** Whether the page is presented: `?present`, or the button. */
+export const isPresenting = signal(hasPresentField());
+/** Whether the page fills the screen. */
+export const isFullScreen = signal(false);
+
+/** Fill the screen, where the browser allows it. */
+export const enterFullScreen = () => document.documentElement.requestFullscreen?.().catch(() => {});
+
+export function present() {
+  location.hash = "";
+  place.value = "race";
+  isPresenting.value = true;
+  helpIsOpen.value = false;
+  writePresentField();
+  enterFullScreen();
+}
+
+export function leavePresenter() {
+  isPresenting.value = false;
+  writePresentField();
+  if (document.fullscreenElement) document.exitFullscreen().catch(() => {});
+}
+
+function writePresentField() {
+  const query = new URLSearchParams(location.search);
+  query.delete(PRESENT_FIELD);
+  // Without a value, as a person types it.
+  const parts = [query.toString(), isPresenting.value ? PRESENT_FIELD : ""].filter(Boolean).join("&");
+  history.replaceState(history.state, "", `${location.pathname}${parts && `?${parts}`}${location.hash}`);
+}
+
+/** Keep the style sheet's mark of the presenter view, which ends with the full screen and with the view of the race. */
+export function followPresenter() {
+  document.addEventListener("fullscreenchange", () => {
+    isFullScreen.value = document.fullscreenElement !== null;
+    if (!isFullScreen.value && isPresenting.value) leavePresenter();
+  });
+  addEventListener("popstate", () => {
+    if (hasPresentField()) isPresenting.value = true;
+    else if (isPresenting.value) leavePresenter();
+  });
+  effect(() => {
+    if (isPresenting.value && place.value !== "race") leavePresenter();
+    document.documentElement.toggleAttribute("data-presenting", isPresenting.value);
+  });
+}
 
 // ---- the first lesson
 

@@ -434,6 +434,14 @@ export interface WhatIfAnswer {
 
 // ---- the stage and its scene
 
+/** Where others can watch. */
+export interface Spectators {
+  address: string | null;
+  qr_code: string | null;
+  reason: string;
+  watching: number;
+}
+
 export interface Stage {
   run_id: string | null;
   next_run_id: string | null;

@@ -1,10 +1,9 @@
 // What-if: kinematic trials of the form's settings, beside trials of the defaults.
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "./api.js";
-import { form, mistakes, whatIfBody } from "./form.js";
-import { isOperator } from "./selectors.js";
+import { form, isReadOnly, mistakes, whatIfBody } from "./form.js";
 import { limitsOf } from "./settings.js";
-import { options } from "./store.js";
+import { options, role } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
@@ -31,8 +30,9 @@ export const seeds = computed(() => options.value?.defaults.what_if.seeds ?? 0);
 /** Whether the answer is for the form's settings as they are. */
 export const isCurrent = computed(() => answer.value?.settings === settings.value);
 
-const canAsk = () =>
-  isOperator.value && isPanelOpen.value && !isTooLong.value && Object.keys(mistakes.value).length === 0;
+/** A form that follows the stage would ask from every page at once. */
+const canAsk = () => role.value !== null && !isReadOnly.value && isPanelOpen.value && !isTooLong.value &&
+  Object.keys(mistakes.value).length === 0;
 
 let hasMissed = false;
 

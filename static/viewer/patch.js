@@ -34,6 +34,7 @@
     if (data?.type !== "hexapods:show") return;
     setTheme(data.theme);
     setView(data.view);
+    root.toggleAttribute("data-presenting", data.isPresenting === true);
   });
   setTheme(query.get("theme"));
   if (query.has("playbackPath")) root.dataset.playback = "";

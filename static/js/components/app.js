@@ -3,7 +3,8 @@ import { signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { primaryAction, runPrimaryAction, togglePause } from "../actions.js";
 import {
-  closeLesson, helpIsOpen, isNarrow, lesson, nextTheme, openLesson, place, setShortcuts, shortcuts, theme, view,
+  closeLesson, helpIsOpen, isNarrow, isPresenting, leavePresenter, lesson, nextTheme, openLesson, place, present,
+  setShortcuts, shortcuts, theme, view,
 } from "../page.js";
 import { announcement } from "../race.js";
 import { ownRunId, stepReplay } from "../replay.js";
@@ -81,9 +82,11 @@ const RaceView = ({ isHidden }) => html`
       <${Knowledge} />
       <${StepsPanel} />
     </div>
+    ${isPresenting.value && html`<${Loaded} name="address for others" load=${loadAudience} />`}
   </div>
 `;
 
+const loadAudience = () => import("./audience.js").then(({ Audience }) => Audience);
 const loadGait = () => import("./gait.js").then(({ Gait }) => Gait);
 
 // ---- what is loaded when it is first opened: most visits do not
@@ -202,6 +205,9 @@ const Header = () => html`
         <${Icon} name="link" /><span class="wide-only">Share</span>
         <span class="sr-only narrow-only">Share</span>
       </button>
+      <button class="quiet wide-only" onClick=${present} title="Full screen and large type, for a class">
+        <${Icon} name="present" />Present
+      </button>
       <button class="quiet square" onClick=${nextTheme} title="Light, dark, or the system's theme"
         aria-label=${`Theme: ${theme.value}. Change it`}>
         <${Icon} name=${theme.value} />
@@ -232,6 +238,7 @@ const KEYS = [
   ["1 – 8", "follow the robot in that lane"],
   ["0", "free the camera"],
   [", .", "in your own replay: one robot step back or on"],
+  ["P", "present: full screen and large type, until Escape"],
   ["?", "show this list"],
 ];
 
@@ -258,6 +265,7 @@ function press(key) {
   else if (/^[1-8]$/.test(key)) view.value = key;
   else if (key === "0") view.value = "free";
   else if (ownRunId.value !== null && (key === "," || key === ".")) stepReplay(key === "." ? 1 : -1);
+  else if (key === "p" || key === "P") (isPresenting.value ? leavePresenter : present)();
   else if (key === "?") helpIsOpen.value = !helpIsOpen.value;
   else return false;
   return true;
@@ -287,9 +295,12 @@ export function listenForMenus() {
   for (const type of ["pointerdown", "focusin"]) addEventListener(type, ({ target }) => closeOtherMenus(target));
 }
 
+const leaveIfPresenting = () => isPresenting.value && leavePresenter();
+
 export function listenForKeys() {
   addEventListener("keydown", (event) => {
     const { key, target, repeat } = event;
+    if (key === "Escape" && !event.defaultPrevented && !helpIsOpen.value) leaveIfPresenting();
     if (event.ctrlKey || event.altKey || event.metaKey || repeat || !shortcuts.value) return;
     const isIn = (/** @type {string} */ selector) => target instanceof Element && target.closest(selector);
     if (isIn(TEXT)) return;
@@ -298,8 +309,9 @@ export function listenForKeys() {
     if (press(key)) event.preventDefault();
   });
   addEventListener("message", ({ origin, data }) => {
-    if (origin !== location.origin || data?.type !== "hexapods:key" || !shortcuts.value) return;
-    press(data.key);
+    if (origin !== location.origin || data?.type !== "hexapods:key") return;
+    if (data.key === "Escape") leaveIfPresenting();
+    else if (shortcuts.value) press(data.key);
   });
 }
 

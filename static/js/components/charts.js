@@ -42,7 +42,7 @@ const MOST_SEEDS = 200;
  */
 export function Chart(props) {
   const { name, label, x, y, lines, marks = [], xs, now = xs.length - 1, seek = null, children } = props;
-  const [host, width] = useWidth();
+  const [host, width, scale] = useSize();
   /** @type {[number, number]} */
   const whole = [x.min ?? 0, x.max];
   const zoom = zoomOf(x.axis);
@@ -52,15 +52,17 @@ export function Chart(props) {
   const frame = frameOf(width, { y, lines, part, values: zoom ? valuesIn(lines, part, all) : all });
   const chart = { ...props, marks };
   const axis = { axis: x.axis, xs, whole, part, now, seek };
-  const inset = { left: frame.left, right: width - frame.right, top: TOP_PX, bottom: BOTTOM_PX };
+  const inset = {
+    left: scale * frame.left, right: scale * (width - frame.right), top: scale * TOP_PX, bottom: scale * BOTTOM_PX,
+  };
   const onFocusOut = ({ relatedTarget, currentTarget }) => {
     if (!currentTarget.contains(relatedTarget) && crosshair.peek()?.axis === x.axis) crosshair.value = null;
   };
   return html`
     <div class="chart-frame" onFocusOut=${onFocusOut}>
-      <div class="chart-picture" ref=${host} style=${{ height: `${HEIGHT}px` }}>
+      <div class="chart-picture" ref=${host} style=${{ height: `${scale * HEIGHT}px` }}>
         ${width > 0 && html`
-          <${Picture} label=${label} x=${x} y=${y} lines=${lines} marks=${marks} frame=${frame} />
+          <${Picture} label=${label} x=${x} y=${y} lines=${lines} marks=${marks} frame=${frame} scale=${scale} />
           <${Crosshair} ...${axis} name=${name} lines=${lines} marks=${marks} x=${x} y=${y} inset=${inset} />
         `}
       </div>
@@ -98,7 +100,7 @@ const withOwnText = (numbers, text) =>
 
 let pictures = 0;
 
-function Picture({ label, x, y, lines, marks, frame }) {
+function Picture({ label, x, y, lines, marks, frame, scale }) {
   const { current: id } = useRef(`chart-${(pictures += 1)}`);
   const { left, right, top, bottom, width, height } = frame;
   const isAcross = (at) => at >= left - 1 && at <= right + 1;
@@ -106,7 +108,8 @@ function Picture({ label, x, y, lines, marks, frame }) {
   const inView = marks.filter((mark) => (mark.x === undefined ? isUp(frame.y(mark.y)) : isAcross(frame.x(mark.x))));
   const ended = lines.filter(({ xs, ys }) => isAcross(frame.x(xs.at(-1))) && isUp(frame.y(ys.at(-1))));
   return html`
-    <svg class="chart-lines" width=${width} height=${height} role="img" aria-label=${label}>
+    <svg class="chart-lines" width=${scale * width} height=${scale * height} viewBox=${`0 0 ${width} ${height}`}
+      role="img" aria-label=${label}>
       <clipPath id=${id}>
         <rect x=${left - DOT_PX} y=${top - DOT_PX} width=${right - left + 2 * DOT_PX}
           height=${bottom - top + 2 * DOT_PX} />
@@ -160,6 +163,19 @@ function Curve({ line: { color, xs, ys, low, high, seeds = [], dots }, frame }) 
       `)}
     </g>
   `;
+}
+
+const USUAL_FONT_PX = 16;
+
+/**
+ * A ref, the width that there is to draw in [px], 0 until it is measured, and by how much it is drawn larger, as the
+ * page's type is.
+ * @returns {[{ current: any }, number, number]}
+ */
+function useSize() {
+  const [host, width] = useWidth();
+  const larger = parseFloat(getComputedStyle(document.documentElement).fontSize) / USUAL_FONT_PX;
+  return [host, Math.round(width / larger), larger];
 }
 
 /** The line of the best known walk, thin; its caption stands where those of other lines do not begin. */

@@ -5,11 +5,12 @@ import {
   showOnStage, stop,
 } from "../actions.js";
 import { raceEstimate } from "../estimate.js";
-import { chooseLearner, form, mistakes, unknownParts } from "../form.js";
+import { chooseLearner, form, isReadOnly, mistakes, unknownParts } from "../form.js";
 import { count, listed, sentence, whole } from "../format.js";
 import { isNarrow } from "../page.js";
 import { interruptedRun, isOperator, myWork, offStage, progress, shownRun, work } from "../selectors.js";
-import { agentOf, laneTitle, learners, ratesInWords } from "../settings.js";
+import { agentOf, learners, ratesInWords } from "../settings.js";
+import { showStageSettings, tryOwnSettings } from "../spectators.js";
 import { scene } from "../store.js";
 import { gaitTitle, inFormWords, labelOf } from "../titles.js";
 import { EstimateNote, goToField, Held, html, Icon, Problem, ProgressBar, UnknownParts } from "./elements.js";
@@ -38,7 +39,8 @@ function FoldedSettings() {
     : [gaitTitle(gait), count(steps, "step"), agentOf(agent).title, ...ratesInWords(agent, form.value)];
   const onToggle = ({ target }) => isNarrow.value && setOpen(target.open);
   return html`
-    <details class="folded" open=${isOpen || !isNarrow.value} onToggle=${onToggle}>
+    <details class="folded" open=${isOpen || !isNarrow.value} onToggle=${onToggle}
+      tabindex=${isReadOnly.value ? "0" : undefined}>
       <summary hidden=${!isNarrow.value}>
         <span>Settings</span>
         <span class="dim">${about.join(", ")}</span>
@@ -184,17 +186,33 @@ function Interrupted() {
   `;
 }
 
+// ---- spectators: every setting, to read or to try
+
+const START_WORDS = "Runs are started with the operator’s link.";
+
 /** Shown to spectators in place of the controls. */
 function Spectator() {
-  const names = (shownRun.value?.config?.lanes ?? []).map(laneTitle);
+  const kind = shownRun.value?.kind;
+  const of = kind ? `the ${kind} that is shown` : "the next run, as they are by default";
+  const words = isReadOnly.value
+    ? `These are the settings of ${of}. ${START_WORDS}`
+    : "Only “What if?” tries these settings; the stage goes on as it is.";
   return html`
-    <section class="panel" aria-label="What is shown">
-      <h2>You are watching</h2>
-      <p class="dim">
-        ${names.length ? `${names.join(", ")} race. ` : ""}You control your camera;
-        runs are started with the operator’s link.
-      </p>
-      ${progress.value && html`<${Progress} />`}
+    <section class="panel controls" aria-label="What is shown">
+      <div class="watching">
+        <h2>You are watching</h2>
+        <p class="dim">${words}</p>
+        ${progress.value && html`<${Progress} />`}
+        <div class="row">
+          ${isReadOnly.value
+            ? html`<button class="secondary compact" onClick=${tryOwnSettings}>Try other settings</button>`
+            : html`
+              <button class="secondary compact" onClick=${showStageSettings}>Back to the settings on stage</button>
+            `}
+        </div>
+        ${!isReadOnly.value && html`<${UnknownParts} parts=${unknownParts} />`}
+      </div>
+      <${FoldedSettings} />
     </section>
   `;
 }

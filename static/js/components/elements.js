@@ -28,9 +28,10 @@ const PATHS = {
   auto: "M8 2.2a5.8 5.8 0 1 0 0 11.6A5.8 5.8 0 0 0 8 2.2M8 2.2v11.6M8 4.8h3.9M8 8h5.8M8 11.2h3.9",
   edit: "M3 13l.7-3L10.6 3.1l2.3 2.3L6 12.3zM9.3 4.4l2.3 2.3",
   import: "M8 2v7.5M4.8 6.5 8 9.7l3.2-3.2M2.5 11v2.5h11V11",
+  present: "M2.5 3.5h11v7.5h-11zM8 11v2.5M5 13.5h6",
   flag: "M4 14V2.5h8.5L10.8 5.3l1.7 2.7H4",
 };
-const OUTLINED = new Set(["link", "replay", "light", "dark", "auto", "flag", "edit", "import"]);
+const OUTLINED = new Set(["link", "replay", "light", "dark", "auto", "flag", "edit", "import", "present"]);
 const SIZE = 16;
 
 /** An icon, drawn in the colour of the text beside it. */

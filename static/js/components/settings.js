@@ -3,9 +3,9 @@ import { useState } from "preact/hooks";
 import { tune } from "../actions.js";
 import { presentRates, rateInWords } from "../changes.js";
 import { inTime, parseText } from "../disturbances.js";
-import { chooseLearner, enter, form, setField, wrong } from "../form.js";
+import { chooseLearner, enter, form, isReadOnly, setField, wrong } from "../form.js";
 import { count, listed } from "../format.js";
-import { liveTraining } from "../selectors.js";
+import { isOperator, liveTraining, trainingInView } from "../selectors.js";
 import {
   agentOf, beginningOf, fullTitle, furtherSettings, kindOf, laneSettings, learners, mainSettings, quantityOf,
   ratesInWords, settingOf, settingsOf, sliderOf,
@@ -25,11 +25,11 @@ const PRACTICE = { min: 50, max: 2000, step: 50 };
 
 /** In the order of a thought: who learns, in what, against whom. Each group is one line when folded. */
 export const Settings = () => html`
-  <div class="settings">
+  <fieldset class="settings" disabled=${isReadOnly.value} aria-label="Settings">
     <${Group} title="Who learns" chosen=${learnerChosen()} fields=${learnerFields()} isFirst><${WhoLearns} /><//>
     <${Group} title="In what" chosen=${placeChosen()} fields=${PLACE_FIELDS}><${InWhat} /><//>
     <${Group} title="Against whom" chosen=${rivalsChosen()} fields=${rivalFields()}><${AgainstWhom} /><//>
-  </div>
+  </fieldset>
 `;
 
 /** Show the opened fields where the settings scroll inside their panel. */
@@ -95,12 +95,19 @@ const Learner = () => html`
     choices=${learners.value.map(({ name, title }) => [name, title])} />
 `;
 
+/** The training whose present values stand in the fields: operators change them, others may read those of the stage. */
+function trainingInFields() {
+  const run = liveTraining.value;
+  if (isOperator.value) return run;
+  return isReadOnly.value && run?.id === trainingInView.value?.id ? run : null;
+}
+
 /**
  * The main settings of the learner. While a training runs, its live settings that the form does not keep take the
  * places of those they replace.
  */
 function LearnerSettings() {
-  const run = liveTraining.value;
+  const run = trainingInFields();
   const live = run ? agentOf(run.config.agent).live_settings : {};
   const main = mainSettings(form.value.agent);
   const acting = main.map((one) => one.live);
@@ -110,7 +117,7 @@ function LearnerSettings() {
       ? html`<${Present} key=${one.live} name=${one.live} setting=${live[one.live]} run=${run} />`
       : html`<${Chosen} key=${one.name} one=${one} run=${one.name in live ? run : null} />`)),
     ...others.map((name) => html`<${Present} key=${name} name=${name} setting=${live[name]} run=${run} />`),
-    run && html`<${NextRates} key="next-rates" run=${run} />`,
+    run && isOperator.value && html`<${NextRates} key="next-rates" run=${run} />`,
   ];
 }
 
@@ -274,7 +281,7 @@ function Figure({ field, step }) {
 }
 
 function Pace() {
-  const run = liveTraining.value;
+  const run = trainingInFields();
   const pace = run ? rateNow(run, "pace") : form.value.pace;
   const choices = PACES.some(([one]) => one === pace) ? PACES : [...PACES, [pace, `×${pace}`]];
   const onValue = (value) => {

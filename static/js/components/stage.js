@@ -3,7 +3,7 @@ import { computed, signal } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { form } from "../form.js";
 import { metres, sentence, times, whole } from "../format.js";
-import { shownTheme, view } from "../page.js";
+import { isPresenting, shownTheme, view } from "../page.js";
 import { standings } from "../race.js";
 import { closeReplay, drawIn, ghostId, isBuffering, ownRunId, replayProblem } from "../replay.js";
 import { conditionsShown, playbackName, raceScene } from "../selectors.js";
@@ -49,10 +49,10 @@ export function Stage() {
   useEffect(() => {
     const message = {
       type: "hexapods:show", view: followed, theme: shownTheme.value, lanes: colours.split(" "),
-      covered: covered.value,
+      covered: covered.value, isPresenting: isPresenting.value,
     };
     frame.current?.contentWindow?.postMessage(message, location.origin);
-  }, [followed, shownTheme.value, status, colours, covered.value]);
+  }, [followed, shownTheme.value, status, colours, covered.value, isPresenting.value]);
 
   const isAway = connection.value === "reconnecting" || status === "reconnecting";
   return html`

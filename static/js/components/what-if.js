@@ -1,7 +1,7 @@
 // What-if: distances of kinematic robots that practise with these settings, and with the defaults.
 import { useEffect, useState } from "preact/hooks";
 import { canStart, continueTraining, practiseMore } from "../actions.js";
-import { form, mistakes, validSteps } from "../form.js";
+import { form, isReadOnly, mistakes, validSteps } from "../form.js";
 import { count, metres, whole } from "../format.js";
 import { isNarrow } from "../page.js";
 import { isOperator, matchingTable, work } from "../selectors.js";
@@ -20,9 +20,9 @@ export function WhatIf() {
   const [choice, setChoice] = useState(/** @type {boolean | null} */ (null));
   const isOpen = choice ?? (!isNarrow.value && !work.value);
   useEffect(() => {
-    isPanelOpen.value = isOpen && isOperator.value;
-  }, [isOpen, isOperator.value]);
-  if (!isOperator.value || !form.value.lanes.some(learns)) return null;
+    isPanelOpen.value = isOpen;
+  }, [isOpen]);
+  if (!form.value.lanes.some(learns)) return null;
   const onClick = (event) => {
     event.preventDefault();
     setChoice(!isOpen);
@@ -55,7 +55,7 @@ function Comparison({ onContinue }) {
       ${known && html`<${Axis} known=${known} far=${far} />`}
     </div>
     <${Status} known=${known} />
-    <${Continue} onContinue=${onContinue} />
+    ${isOperator.value && html`<${Continue} onContinue=${onContinue} />`}
   `;
 }
 
@@ -121,9 +121,12 @@ function Status({ known }) {
   return html`<p class="what-if-words dim" role="status">${words}</p>`;
 }
 
+/** By whether the sliders are read only. */
+const FIRST_WORDS = { false: "Move a slider: each seed becomes a dot.", true: "Each seed becomes a dot." };
+
 const Request = ({ isFirst }) => html`
   <p class="what-if-words dim">
-    <span>${isFirst ? "Move a slider: each seed becomes a dot." : "The settings have changed."}</span>
+    <span>${isFirst ? FIRST_WORDS[`${isReadOnly.value}`] : "The settings have changed."}</span>
     <button class="link" onClick=${evaluateSettings}>Try ${isFirst ? "the settings as they are" : "these"}</button>
   </p>
 `;

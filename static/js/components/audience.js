@@ -1,0 +1,52 @@
+// The presenter view's strip below the picture: where others can watch, as an address and a QR code, and how many do.
+import { useEffect, useState } from "preact/hooks";
+import { getSpectators } from "../api.js";
+import { canStart, primaryAction, runPrimaryAction } from "../actions.js";
+import { enterFullScreen, isFullScreen, leavePresenter } from "../page.js";
+import { canPlay, isOperator } from "../selectors.js";
+import { connection, viewers } from "../store.js";
+import { html } from "./elements.js";
+
+/** @import { Spectators } from "../types.js" */
+
+export function Audience() {
+  const [known, setKnown] = useState(/** @type {Spectators | null} */ (null));
+  const [problem, setProblem] = useState("");
+  const state = connection.value;
+  useEffect(() => {
+    // A server that comes back may have another address.
+    if (state === "live") getSpectators().then(setKnown, (error) => setProblem(error.message));
+  }, [state]);
+  return html`
+    <section class="panel audience" aria-labelledby="audience-title">
+      ${known?.qr_code && html`<img class="qr-code" src=${known.qr_code} alt=${`QR code of ${known.address}`} />`}
+      <h1 class="sr-only">Racing Hexapods</h1>
+      <div class="audience-words">
+        <h2 id="audience-title">Watch along</h2>
+        <${Address} known=${known} problem=${problem} />
+        <p class="watching-count"><b>${viewers.value ?? known?.watching ?? "…"}</b> watching</p>
+      </div>
+      <${Keys} />
+    </section>
+  `;
+}
+
+function Address({ known, problem }) {
+  if (known?.address) return html`<p class="address">${known.address.replace(/^http:\/\/|\/$/g, "")}</p>`;
+  return html`<p class="dim" role="status">${known?.reason || problem}</p>`;
+}
+
+const Keys = () => html`
+  <div class="presenter-keys">
+    ${isOperator.value && html`
+      <button class="quiet" onClick=${runPrimaryAction} aria-disabled=${canStart.value ? undefined : "true"}>
+        <kbd>R</kbd> ${primaryAction.value.label}
+      </button>
+    `}
+    ${canPlay.value && html`<p><kbd>Space</kbd> Pause and play</p>`}
+    ${!isFullScreen.value && document.fullscreenEnabled && html`
+      <button class="quiet" onClick=${enterFullScreen}>Full screen</button>
+    `}
+    <button class="quiet" onClick=${leavePresenter}><kbd>Esc</kbd> Leave</button>
+  </div>
+`;
