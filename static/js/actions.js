@@ -123,7 +123,7 @@ export const runPrimaryAction = () => (canStart.value ? primaryAction.value.run(
  * Take in a run that this tab starts.
  * @param {() => Promise<Run | null>} send
  */
-const adopt = async (send) => {
+export const adopt = async (send) => {
   const run = await requestRun(send);
   if (run?.id) {
     markAsMine(run.id);

@@ -11,7 +11,7 @@ import { announceOutcomes, followTimeline } from "./race.js";
 import { followReplay, readReplayAddress } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
 import { applyEvent, connection, isLockedOut, options, version } from "./store.js";
-import { followCurves } from "./training.js";
+import { followCurves, trainingsInView } from "./training.js";
 import { followWhatIf } from "./what-if.js";
 
 const FIRST_RETRY_MS = 500;
@@ -49,7 +49,7 @@ function reloadAfterUpgrade() {
 followTheme();
 reloadAfterUpgrade();
 followRuns(stageIds);
-followCurves();
+followCurves(trainingsInView);
 followTimeline();
 followReplay();
 readReplayAddress();

@@ -108,6 +108,7 @@ function Loaded({ name, load }) {
 const LOADERS = {
   experiments: () => import("./experiments/experiments.js").then(({ Experiments }) => Experiments),
   runs: () => import("./runs/runs.js").then(({ Runs }) => Runs),
+  compare: () => import("./compare/compare.js").then(({ Compare }) => Compare),
 };
 
 function LoadedView({ name }) {
