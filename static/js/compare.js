@@ -242,7 +242,9 @@ export const comparedResults = computed(() => {
   const all = comparable.value.map(runOf);
   const distances = all.map(distanceOf);
   const most = Math.max(...distances.map((one) => one ?? -Infinity));
-  const best = all.length > 1 ? distances.flatMap((one, n) => (one !== null && one === most ? [n] : [])) : [];
+  // A race and a training have other numbers of steps.
+  const isAlike = all.length > 1 && all.every(({ kind }) => kind === all[0].kind);
+  const best = isAlike ? distances.flatMap((one, n) => (one !== null && one === most ? [n] : [])) : [];
   const shares = all.map((run, n) => {
     const [own, greedy] = [distances[n], greedyOf(run)];
     return own !== null && greedy ? percentage(own / greedy) : null;

@@ -188,12 +188,18 @@ function LessonCard() {
 
 const VIEWS = [["race", "Race", "#"], ["experiments", "Experiments", "#experiments"], ["runs", "Runs", "#runs"]];
 
+/** Runs are compared from their list. @param {string} name */
+const currentOf = (name) => {
+  if (place.value === "compare" && name === "runs") return "true";
+  return place.value === name ? "page" : undefined;
+};
+
 const Header = () => html`
   <header class="header">
     <h1 class="brand"><img src="static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</h1>
     <nav class="nav" aria-label="Views">
       ${VIEWS.map(([name, title, href]) => html`
-        <a href=${href} aria-current=${place.value === name ? "page" : undefined}>${title}</a>
+        <a href=${href} aria-current=${currentOf(name)}>${title}</a>
       `)}
     </nav>
     <${Connection} />
