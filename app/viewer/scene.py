@@ -163,11 +163,10 @@ class _RunScene:
         self._draw_grounds(frame, alone)
         moved = self._robots.draw(frame.lanes)
         moved |= self._draw_ghost_robots(frame.ghost_lanes)
-        ghost_name = "ghost" if self.spec.ghosts else "original"
         labelled = [*zip_longest(frame.lanes, frame.ghost_lanes[: len(frame.lanes)])]
         labelled += [(ghost, None) for ghost in alone]
-        for label, (lane, ghost) in zip(self._labels, labelled, strict=True):
-            label.draw(lane, ghost, ghost_name)
+        for number, (lane, ghost) in enumerate(labelled):
+            self._labels[number].draw(lane, ghost, self._ghost_name(number))
         for number, lane in enumerate(frame.lanes):
             self._payloads[number].draw(lane)
             self._pushes[number].draw(lane)
@@ -182,6 +181,17 @@ class _RunScene:
         if self._ghosts is not None:
             self._ghosts.draw(frame.ghosts)
         return moved
+
+    def _ghost_name(self, number: int) -> str:
+        """Return what the label of a lane calls the ghost on it."""
+        if self.spec.ghosts is None:
+            return "original"
+        names = [
+            lane_spec.name
+            for spec in (self.spec, self.spec.ghosts)
+            for lane_spec in spec.lane_specs[number : number + 1]
+        ]
+        return "ghost" if len(set(names)) == 1 else f"ghost {names[-1]}"
 
     def _draw_grounds(self, frame: StageFrame, alone: Sequence[LaneView]) -> None:
         """Draw each lane's ground, and that of evaluations as it was in the newest one."""

@@ -16,6 +16,7 @@ import { signal } from "@preact/signals";
  * @property {(number | null)[]} [low] of the 95 % interval
  * @property {(number | null)[]} [high]
  * @property {(number | null)[][]} [seeds] each seed by x
+ * @property {number[]} [dash] its dashes [px]; without any it is solid
  * @property {boolean} [dots] whether its points are marked
  * @property {string} [end] the label at its end
  */

@@ -12,7 +12,7 @@ import { followReplay, readReplayAddress } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
 import { followStageSettings } from "./spectators.js";
 import { applyEvent, connection, isLockedOut, options, version } from "./store.js";
-import { followCurves } from "./training.js";
+import { followCurves, trainingsInView } from "./training.js";
 import { followWhatIf } from "./what-if.js";
 
 const FIRST_RETRY_MS = 500;
@@ -52,7 +52,7 @@ followTheme();
 followPresenter();
 reloadAfterUpgrade();
 followRuns(stageIds);
-followCurves();
+followCurves(trainingsInView);
 followTimeline();
 followReplay();
 readReplayAddress();

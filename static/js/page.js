@@ -112,10 +112,10 @@ function isLessonDone() {
 
 // ---- the open view
 
-const VIEWS = ["experiments", "runs"];
+const VIEWS = ["experiments", "runs", "compare"];
 
 /**
- * The view that a hash names: "race", "experiments" or "runs".
+ * The view that a hash names: "race", "experiments", "runs" or "compare".
  * @param {string} hash
  */
 export const viewOf = (hash) => VIEWS.find((name) => hash.slice(1).split("?")[0] === name) ?? "race";

@@ -90,6 +90,9 @@ function bodyAzimuths(robot) {
   return Array.from({ length: n_legs }, (_, leg) => (360 * leg) / n_legs);
 }
 
+/** @param {RobotConfig | undefined} robot */
+export const numberOfLegs = (robot) => bodyAzimuths(robot).length;
+
 /**
  * The legs' directions from forward [°], anticlockwise, in the order of their numbers.
  * @param {RobotConfig | undefined} robot

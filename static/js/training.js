@@ -6,7 +6,7 @@ import { happeningsOf, joinedBySteps } from "./disturbances.js";
 import { trainingInView } from "./selectors.js";
 import { bestKnown, connection, evaluations, references, requestRun, runs, scene, setEntry } from "./store.js";
 
-/** @import { Signal } from "@preact/signals" */
+/** @import { ReadonlySignal, Signal } from "@preact/signals" */
 /** @import { RateChange } from "./changes.js" */
 /** @import { Disturbance, Evaluation, Knowledge, Run } from "./types.js" */
 
@@ -36,7 +36,6 @@ function chainOf(training) {
   return found;
 }
 
-const chain = computed(() => chainOf(trainingInView.value));
 
 /** @param {string} id */
 const evaluationsOf = (id) => {
@@ -48,14 +47,17 @@ const evaluationsOf = (id) => {
   return [...byStep.values()].sort((a, b) => a.step - b.step);
 };
 
+/** The curve of the training in view, null without one; as far as the stage shows it. */
+export const curve = computed(() => (trainingInView.value ? curveOf(trainingInView.value, shownUpTo) : null));
+
 /**
- * The curve of the training in view, null without one. `blocks` are the steps at which one training
+ * The curve of a training, with those that it continues. `blocks` are the steps at which one training
  * ended and the next continued it, `changes` those at which live settings changed; `happenings` are disturbances.
+ * @param {Run} run
+ * @param {(part: Run) => number} [upTo] the last step of a training that is shown
  */
-export const curve = computed(() => {
-  const trainings = chain.value;
-  const run = trainings.at(-1);
-  if (!run) return null;
+export function curveOf(run, upTo = () => Infinity) {
+  const trainings = chainOf(run);
   /** @type {CurvePoint[]} */
   const points = [{ step: 0, distance_m: 0 }];
   /** @type {number[]} */
@@ -67,10 +69,11 @@ export const curve = computed(() => {
   let from = 0;
   for (const part of trainings) {
     if (part !== trainings[0]) blocks.push(from);
-    const shown = evaluationsOf(part.id).filter(({ step }) => step <= shownUpTo(part));
+    const last = upTo(part);
+    const shown = evaluationsOf(part.id).filter(({ step }) => step <= last);
     points.push(...shown.map((one) => ({ ...one, step: from + one.step })));
-    changes.push(...rateChanges(part, from).filter(({ step }) => step <= from + shownUpTo(part)));
-    const happened = happeningsOf(part).filter(({ at_step }) => at_step <= shownUpTo(part));
+    changes.push(...rateChanges(part, from).filter(({ step }) => step <= from + last));
+    const happened = happeningsOf(part).filter(({ at_step }) => at_step <= last);
     happenings.push(...happened.map((one) => movedBy(one, from)));
     if (part !== run) from += part.progress?.done ?? 0;
   }
@@ -78,7 +81,7 @@ export const curve = computed(() => {
   const to = from + run.config.steps;
   const best_known_m = bestKnownOf(run);
   return { run, points, from, to, greedy_m, best_known_m, blocks, changes, happenings: joinedBySteps(happenings) };
-});
+}
 
 /** A disturbance in the steps of all practice. @type {(one: Disturbance, from: number) => Disturbance} */
 const movedBy = (one, from) => ({
@@ -118,20 +121,32 @@ async function load(id) {
   if (answer.greedy_distance_m !== null) setEntry(requestedReferences, id, answer.greedy_distance_m);
 }
 
-/** Request what the event stream did not deliver: evaluations before the page was open or while it was offline. */
-export function followCurves() {
-  const wanted = computed(() => (connection.value === "live" ? chain.value.map(({ id }) => id).join(" ") : ""));
+/**
+ * Request what the event stream did not deliver of the curves of trainings: evaluations before the page was open or
+ * while it was offline, and the trainings that they continue.
+ * @param {ReadonlySignal<Run[]>} trainings
+ */
+export function followCurves(trainings) {
+  const chains = computed(() => trainings.value.map(chainOf));
+  const wanted = computed(() => {
+    const ids = new Set(chains.value.flat().map(({ id }) => id));
+    return connection.value === "live" ? [...ids].join(" ") : "";
+  });
   effect(() => wanted.value.split(" ").filter(Boolean).forEach(load));
 
   const unknown = computed(() => {
-    const id = chain.value[0]?.config?.continue_from;
-    return id && !runs.value.has(id) ? id : null;
+    const ids = chains.value.map(([first]) => first?.config?.continue_from ?? "");
+    return ids.filter((id) => id && !runs.value.has(id)).join(" ");
   });
   effect(() => {
-    const id = unknown.value;
-    if (id) requestRun(() => getRun({ kind: "training", id })).catch(() => {});
+    for (const id of unknown.value.split(" ").filter(Boolean)) {
+      requestRun(() => getRun({ kind: "training", id })).catch(() => {});
+    }
   });
 }
+
+/** The training in view, if any. */
+export const trainingsInView = computed(() => (trainingInView.value ? [trainingInView.value] : []));
 
 // ---- the action values of one state: the best move, and the names of places on the foot grid
 

@@ -264,6 +264,8 @@ export interface RunResult {
   distance_m: number;
   greedy_distance_m: number;
   best_known_m?: number | null;
+  /** Counted from 0. */
+  fell_at_step?: number | null;
   lanes: LaneResult[];
   files?: string[];
 }
@@ -283,6 +285,8 @@ export interface Run {
   notes?: string;
   can_resume: boolean;
   created_at: string;
+  started_at?: string | null;
+  ended_at?: string | null;
   /** The trainings that a race waits for. */
   waiting_for?: string[];
   greedy_distance_m?: number | null;

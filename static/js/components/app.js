@@ -112,6 +112,7 @@ function Loaded({ name, load }) {
 const LOADERS = {
   experiments: () => import("./experiments/experiments.js").then(({ Experiments }) => Experiments),
   runs: () => import("./runs/runs.js").then(({ Runs }) => Runs),
+  compare: () => import("./compare/compare.js").then(({ Compare }) => Compare),
 };
 
 function LoadedView({ name }) {
@@ -191,12 +192,18 @@ function LessonCard() {
 
 const VIEWS = [["race", "Race", "#"], ["experiments", "Experiments", "#experiments"], ["runs", "Runs", "#runs"]];
 
+/** Runs are compared from their list. @param {string} name */
+const currentOf = (name) => {
+  if (place.value === "compare" && name === "runs") return "true";
+  return place.value === name ? "page" : undefined;
+};
+
 const Header = () => html`
   <header class="header">
     <h1 class="brand"><img src="static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</h1>
     <nav class="nav" aria-label="Views">
       ${VIEWS.map(([name, title, href]) => html`
-        <a href=${href} aria-current=${place.value === name ? "page" : undefined}>${title}</a>
+        <a href=${href} aria-current=${currentOf(name)}>${title}</a>
       `)}
     </nav>
     <${Connection} />

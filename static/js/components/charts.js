@@ -145,7 +145,7 @@ function Axes({ x, y, frame }) {
 /** @type {(value: number) => string} */
 const tickText = (value) => (Number.isInteger(value) ? wholeNumber(value) : String(Number(value.toFixed(3))));
 
-function Curve({ line: { color, xs, ys, low, high, seeds = [], dots }, frame }) {
+function Curve({ line: { color, dash = [], xs, ys, low, high, seeds = [], dots }, frame }) {
   const at = (values) => thinnedPath(
     values.flatMap((value, n) => (value === null || value === undefined ? [] : [[frame.x(xs[n]), frame.y(value)]])),
     Math.max(1, frame.right - frame.left),
@@ -157,7 +157,7 @@ function Curve({ line: { color, xs, ys, low, high, seeds = [], dots }, frame }) 
     <g style=${{ "--agent": cssColour(color) }} class=${low ? "with-band" : ""}>
       ${thinned(each, MOST_SEEDS).map((values) => html`<path class="seed-line" d=${path(values)} />`)}
       ${hasBand && html`<path class="band" d=${`${path(low)}L${at(high).reverse().join("L")}Z`} />`}
-      <path class="curve" d=${path(ys)} />
+      <path class="curve" d=${path(ys)} stroke-dasharray=${dash.length ? dash.join(" ") : undefined} />
       ${dots && ys.map((value, n) => html`
         <circle class="curve-dot" cx=${frame.x(xs[n])} cy=${frame.y(value)} r=${DOT_PX} />
       `)}

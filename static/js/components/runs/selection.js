@@ -6,9 +6,11 @@ import { shownRuns } from "../../run-list.js";
 import {
   clearSelection, deletable, deleteSelected, exported, selectAll, selected, tagSelected,
 } from "../../run-selection.js";
+import { compareAddress, MOST_COMPARED } from "../../compare.js";
 import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
 import { html, Problem } from "../elements.js";
+import { RaceThem } from "../compare/race-them.js";
 
 export function Selection() {
   const { length } = selected.value;
@@ -29,6 +31,8 @@ export function Selection() {
 function Deeds() {
   const { count: exportable, most, address } = exported.value;
   return html`
+    <${CompareThem} />
+    <${RaceThem} runs=${selected.value} />
     ${address
       ? html`<a class="secondary compact button" href=${address} download>Export ${exportable}</a>`
       : html`<span class="dim">${exportable ? `An export has up to ${most} runs.` : "None has ended yet."}</span>`}
@@ -36,6 +40,13 @@ function Deeds() {
     ${isOperator.value && deletable.value.length > 0 && html`<${DeleteThem} />`}
     <button class="quiet compact" onClick=${clearSelection}>Clear</button>
   `;
+}
+
+function CompareThem() {
+  const ids = selected.value.filter(({ kind }) => kind !== "experiment").map(({ id }) => id);
+  if (ids.length < 2) return null;
+  if (ids.length > MOST_COMPARED) return html`<span class="dim">Up to ${MOST_COMPARED} runs compare.</span>`;
+  return html`<a class="secondary compact button" href=${compareAddress(ids)}>Compare ${ids.length}</a>`;
 }
 
 function TagThem() {

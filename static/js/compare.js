@@ -1,0 +1,265 @@
+// Runs that are compared: which, each one's letter, colour and dashes, their curves, settings and results.
+import { computed, effect, signal } from "@preact/signals";
+import { changesInWords, rateChanges } from "./changes.js";
+import { happeningsOf, inTime, joinedBySteps } from "./disturbances.js";
+import { count, duration, listed, metres, percentage, sentence, whole } from "./format.js";
+import { followQuery, place } from "./page.js";
+import { formRobot } from "./robots.js";
+import { absentIds, followRuns } from "./runs.js";
+import { isActive } from "./selectors.js";
+import { agentOf, choiceTitle, fullTitle, laneTitle, settingsOf } from "./settings.js";
+import { damagedRuns, isDeleted, runs, served } from "./store.js";
+import { agentTitle, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "./titles.js";
+import { curveOf, followCurves } from "./training.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { LaneResult, Run } from "./types.js" */
+
+/** With more, their lines cannot be told apart. */
+export const MOST_COMPARED = 8;
+const LETTERS = "ABCDEFGH";
+/** Okabe and Ito's colours, as of agents, and dashes for who cannot tell colours apart. */
+const COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8A6D3B", "#7F7F7F"];
+const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 3], [12, 3, 2, 3, 2, 3], [1, 2], [14, 5]];
+
+// ---- which runs: `#compare?runs=a,b,c`
+
+/** Ids of the runs that are compared, in their order. @type {Signal<string[]>} */
+export const comparedIds = signal([]);
+
+/** Number of runs that a link names beyond those that can be compared. */
+export const leftOut = signal(0);
+
+/** @param {URLSearchParams} query */
+export function readCompared(query) {
+  const named = [...new Set((query.get("runs") ?? "").split(",").map((id) => id.trim()).filter(Boolean))];
+  comparedIds.value = named.slice(0, MOST_COMPARED);
+  leftOut.value = named.length - comparedIds.value.length;
+}
+
+export const comparedAsQuery = () =>
+  comparedIds.value.length ? `runs=${comparedIds.value.map(encodeURIComponent).join(",")}` : "";
+
+/** Where runs are compared. @param {string[]} ids */
+export const compareAddress = (ids) => `#compare?runs=${ids.map(encodeURIComponent).join(",")}`;
+
+/** @param {string} id */
+export const leaveOut = (id) => (comparedIds.value = comparedIds.value.filter((one) => one !== id));
+
+/** Keep the address, the runs and their curves, while the view is open. */
+export function followCompared() {
+  followQuery("compare", readCompared, comparedAsQuery);
+  followRuns(computed(() => (place.value === "compare" ? comparedIds.value : [])));
+  followCurves(computed(() => (place.value === "compare" ? comparedTrainings.value : [])));
+  // What was told of a link that was too long is of that link only.
+  effect(() => {
+    if (comparedIds.value.length < MOST_COMPARED) leftOut.value = 0;
+  });
+}
+
+/**
+ * A run of the comparison; `problem` says why it cannot be compared. Without either it is still requested.
+ * @typedef {object} Compared
+ * @property {string} id
+ * @property {string} letter
+ * @property {string} color
+ * @property {number[]} dash
+ * @property {string} title
+ * @property {Run | null} run
+ * @property {string | null} problem
+ */
+
+/** @param {Run} run */
+export const titleOf = (run) => run.name || sentence(run.kind);
+
+/** @type {Signal<Compared[]>} */
+export const compared = computed(() =>
+  comparedIds.value.map((id, number) => {
+    const run = runs.value.get(id) ?? null;
+    const problem = problemOf(id, run);
+    return {
+      id, letter: LETTERS[number], color: COLOURS[number], dash: DASHES[number], problem,
+      title: run ? titleOf(run) : id, run: problem ? null : run,
+    };
+  }),
+);
+
+/** @type {(id: string, run: Run | null) => string | null} */
+function problemOf(id, run) {
+  if (run?.kind === "experiment") return "It is an experiment, which has its own report: choose trainings and races.";
+  if (run) return null;
+  const damaged = damagedRuns.value.get(id);
+  if (damaged) return `It cannot be read: ${damaged.damaged}`;
+  if (absentIds.value.has(id) || isDeleted(id)) return "There is no such run: it was deleted, or the link is wrong.";
+  return null;
+}
+
+/** @typedef {Compared & { run: Run }} Comparable */
+
+/** Those that can be compared. */
+export const comparable = computed(() =>
+  /** @type {Comparable[]} */ (compared.value.filter((one) => one.run !== null)));
+/** @param {Comparable} one */
+const runOf = ({ run }) => run;
+const comparedTrainings = computed(() => comparable.value.map(runOf).filter(({ kind }) => kind === "training"));
+
+// ---- their learning curves
+
+/** The curves of trainings that have been evaluated, and why each other run has none, in a sentence. */
+export const comparedCurves = computed(() => {
+  const trainings = comparable.value.filter(({ run }) => run.kind === "training");
+  const curves = trainings.map((one) => ({ one, curve: curveOf(one.run) }));
+  const shown = curves.filter(({ curve }) => curve.points.length > 1);
+  const races = comparable.value.filter(({ run }) => run.kind === "race");
+  const unmeasured = curves.filter(({ curve }) => curve.points.length < 2).map(({ one }) => one);
+  const letters = (/** @type {Compared[]} */ ones) => listed(ones.map(({ letter }) => letter));
+  const none = (/** @type {Compared[]} */ ones, /** @type {string} */ words) =>
+    (ones.length ? [`${letters(ones)} ${ones.length === 1 ? "has" : "have"} no ${words}.`] : []);
+  return {
+    shown,
+    without: [...none(races, "learning curve: a race does not practise"), ...none(unmeasured, "evaluation yet")],
+  };
+});
+
+// ---- tables with a column for each run: settings and results
+
+/**
+ * A row of such a table; a cell is null where a run has nothing of it.
+ * @typedef {{ name: string, title: string, cells: (string | null)[], differs: boolean, best: number[] }} Row
+ */
+
+/** What a run does not have is no difference. @type {(cells: (string | null)[]) => boolean} */
+const differ = (cells) => new Set(cells.filter((one) => one !== null)).size > 1;
+
+/** @type {(name: string, title: string, cells: (string | null)[], best?: number[]) => Row} */
+const row = (name, title, cells, best = []) => ({ name, title, cells, differs: differ(cells), best });
+
+/** Fields of configs that are told in words of their own. @type {[string, string, (run: Run) => string | null][]} */
+const SETTINGS = [
+  ["kind", "Kind", ({ kind }) => sentence(kind)],
+  ["agent", "Learner", ({ config }) => (config.agent ? agentTitle(config.agent) : null)],
+  ["lanes", "Lanes", ({ kind, config }) => (kind === "race" ? config.lanes.map(laneTitle).join("; ") : null)],
+  ["gait", "Gait", ({ config }) => gaitInWords(config.gait)],
+  ["robot", "Robot", ({ config }) => robotTitle(formRobot(config.robot))],
+  ["simulator", "Simulator", ({ config }) => sentence(simulatorTitle(config.simulator))],
+  ["observation", "Observation", ({ config: { observation } }) =>
+    (observation ? sentence(observationTitle(observation)) : null)],
+];
+
+/** @param {import("./types.js").GaitConfig} gait */
+const gaitInWords = (gait) => (typeof gait === "string" ? gaitTitle(gait) : `Custom: ${JSON.stringify(gait)}`);
+
+/** Fields that are told as they are declared, and the kinds that have them. @type {[string, string][]} */
+const PLAIN = [
+  ["divisions", ""], ["grid_side_m", ""], ["seed", ""], ["steps", "training"], ["steps_per_episode", "training"],
+  ["evaluate_every", "training"], ["race_steps", "race"],
+];
+
+const NOTHING = "nothing";
+
+/** What is told after the settings. @type {[string, string, (run: Run) => string | null][]} */
+const HAPPENINGS = [
+  ["continue_from", "Continues", ({ kind, config: { continue_from: id } }) => {
+    if (kind === "race") return null;
+    return id ? runs.value.get(id)?.name ?? id : NOTHING;
+  }],
+  ["world", "What happens", (run) => joinedBySteps(happeningsOf(run)).map(inTime).join("; ") || NOTHING],
+  ["changes", "Changed while it ran", (run) =>
+    (run.kind === "training" ? changesInWords(run.config.agent, rateChanges(run)).join(", ") || NOTHING : null)],
+];
+
+/** The settings of the runs side by side. */
+export const comparedSettings = computed(() => {
+  const all = comparable.value.map(runOf);
+  const agents = [...new Set(all.flatMap(({ config: { agent } }) => (agent ? [agent] : [])))];
+  const own = Object.entries(settingsOf(agents)).map(([name, setting]) =>
+    row(name, fullTitle(setting), all.map(({ config }) => valueInWords(setting, config.agent ? config[name] : null))));
+  const plain = PLAIN.map(([name, kind]) => {
+    const setting = served().settings[name];
+    const field = name === "race_steps" ? "steps" : name;
+    const cells = all.map((run) => (["", run.kind].includes(kind) ? valueInWords(setting, run.config[field]) : null));
+    return row(name, fullTitle(setting), cells);
+  });
+  const told = (/** @type {typeof SETTINGS} */ list) =>
+    list.map(([name, title, cell]) => row(name, title, all.map(cell)));
+  return [...told(SETTINGS), ...plain, ...own, ...told(HAPPENINGS)].filter(isTold);
+});
+
+/** Whether any run has something of a row. @param {Row} row */
+const isTold = ({ cells }) => cells.some((one) => one !== null && one !== NOTHING);
+
+/** @type {(setting: import("./types.js").SettingOption, value: any) => string | null} */
+function valueInWords(setting, value) {
+  if (value === null || value === undefined) return null;
+  if (typeof value === "boolean") return value ? "yes" : "no";
+  if (typeof value === "number") return setting.is_whole ? whole(value) : String(value);
+  return setting.choices.length ? choiceTitle(setting, value) : String(value);
+}
+
+/** @param {Run} run */
+const lanesOf = ({ result }) => result?.lanes ?? [];
+/** @param {LaneResult} lane */
+const atTimeOut = ({ clocks }) => clocks.paper.finished_distance_m;
+/**
+ * The distance of a training, or of the winner of a race by the paper clock.
+ * @param {Run} run
+ * @returns {number | null}
+ */
+function distanceOf(run) {
+  if (run.kind === "training") return run.result?.distance_m ?? null;
+  return lanesOf(run).length ? Math.max(...lanesOf(run).map(atTimeOut)) : null;
+}
+/** @param {Run} run @returns {number | null} */
+const greedyOf = ({ kind, greedy_distance_m, result }) =>
+  kind === "training" ? greedy_distance_m ?? result?.greedy_distance_m ?? null : null;
+/** @param {Run} run */
+const bestKnownOf = (run) => run.result?.best_known_m ?? run.best_known_m ?? null;
+
+/** @param {Run} run */
+function wallTime({ started_at, ended_at }) {
+  if (!started_at || !ended_at) return null;
+  return duration((Date.parse(ended_at) - Date.parse(started_at)) / 1000);
+}
+
+/** @param {Run} run */
+function falls(run) {
+  const fell = (/** @type {number | null | undefined} */ step) =>
+    (typeof step === "number" ? `step ${whole(step + 1)}` : "");
+  if (run.kind === "training") return fell(run.result?.fell_at_step) || null;
+  const fallen = lanesOf(run).filter(({ fell_at_step: step }) => typeof step === "number");
+  return fallen.map((lane) => `${agentOf(lane.agent).title}: ${fell(lane.fell_at_step)}`).join("; ") || null;
+}
+
+/** @param {Run} run */
+const lanesInWords = (run) =>
+  lanesOf(run).map((lane) => `${agentOf(lane.agent).title} ${metres(atTimeOut(lane))}`).join("; ") || null;
+
+/** @type {(value: number | null) => string | null} */
+const metresOrNull = (value) => (value === null ? null : metres(value));
+
+/** What came of the runs, side by side. */
+export const comparedResults = computed(() => {
+  const all = comparable.value.map(runOf);
+  const distances = all.map(distanceOf);
+  const most = Math.max(...distances.map((one) => one ?? -Infinity));
+  // A race and a training have other numbers of steps.
+  const isAlike = all.length > 1 && all.every(({ kind }) => kind === all[0].kind);
+  const best = isAlike ? distances.flatMap((one, n) => (one !== null && one === most ? [n] : [])) : [];
+  const shares = all.map((run, n) => {
+    const [own, greedy] = [distances[n], greedyOf(run)];
+    return own !== null && greedy ? percentage(own / greedy) : null;
+  });
+  const practised = (/** @type {Run} */ { kind, progress }) =>
+    (kind === "training" ? count(progress.done, "step") : null);
+  return [
+    row("state", "State", all.map(({ state }) => sentence(state))),
+    row("distance", "Distance", distances.map(metresOrNull), best),
+    row("lanes", "Each lane at time-out", all.map(lanesInWords)),
+    row("greedy", "Greedy’s distance", all.map((run) => metresOrNull(greedyOf(run)))),
+    row("share", "Share of greedy’s", shares),
+    row("best-known", "Best known", all.map((run) => metresOrNull(bestKnownOf(run)))),
+    row("practice", "Practised", all.map(practised)),
+    row("falls", "Fell at", all.map(falls)),
+    row("wall-time", "Wall time", all.map((run) => (isActive(run) ? "still running" : wallTime(run)))),
+  ].filter(isTold);
+});

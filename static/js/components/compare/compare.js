@@ -1,0 +1,103 @@
+// The view that compares runs: which, their learning curves, results, settings, policies, and replays.
+import { compared, comparable, followCompared, leaveOut, leftOut, MOST_COMPARED } from "../../compare.js";
+import { count } from "../../format.js";
+import { isActive } from "../../selectors.js";
+import { html } from "../elements.js";
+import { ReplayLink } from "../replay-link.js";
+import { Curves } from "./curves.js";
+import { Key } from "./key.js";
+import { Policies } from "./policies.js";
+import { RaceThem } from "./race-them.js";
+import { Results, Settings } from "./tables.js";
+
+followCompared();
+
+export function Compare() {
+  const all = compared.value;
+  if (all.length === 0) return html`<div class="compare"><${Nothing} /></div>`;
+  const isEnough = comparable.value.length > 1;
+  return html`
+    <div class="compare">
+      <section class="panel" aria-labelledby="compare-title">
+        <h2 id="compare-title">Compare ${count(all.length, "run")}</h2>
+        <ul class="compared">${all.map((one) => html`<${ComparedRun} key=${one.id} one=${one} />`)}</ul>
+        ${leftOut.value > 0 && html`
+          <p class="notice" role="status">
+            Up to ${MOST_COMPARED} runs are compared; the link names ${leftOut.value} more, which are left out.
+          </p>
+        `}
+        <div class="compare-foot">
+          <${RaceThem} runs=${comparable.value.map(({ run }) => run)} />
+          <a class="dim" href="#runs">Choose others in the list</a>
+        </div>
+      </section>
+      ${isEnough ? html`<${Parts} />` : html`<${TooFew} />`}
+    </div>
+  `;
+}
+
+const Parts = () => html`
+  <${Curves} />
+  <${Results} />
+  <${Settings} />
+  <${Policies} />
+`;
+
+const Nothing = () => html`
+  <section class="panel compare-none" aria-labelledby="compare-title">
+    <h2 id="compare-title">Compare runs</h2>
+    <p class="dim">
+      Select two runs or more in the list, and press Compare: their learning curves are laid over each other, and
+      settings, results and policies stand side by side.
+    </p>
+    <a class="secondary button" href="#runs">Go to the list</a>
+  </section>
+`;
+
+function TooFew() {
+  const isLoading = compared.value.some(({ run, problem }) => !run && !problem);
+  return isLoading
+    ? html`
+      <section class="panel">
+        <p role="status"><span class="spinner" aria-hidden="true"></span> Loading the runs…</p>
+      </section>
+    `
+    : html`
+      <section class="panel compare-none">
+        <p>It takes two runs to compare. <a href="#runs">Choose another in the list</a>.</p>
+      </section>
+    `;
+}
+
+function ComparedRun({ one }) {
+  const { id, letter, title, run, problem } = one;
+  return html`
+    <li>
+      <${Key} one=${one} />
+      <span class="compared-run">
+        <b>${title}</b>
+        ${run && html` <span class="dim">${run.kind}, ${run.state}</span>`}
+        ${problem && html` <span class="bad" role="alert">${problem}</span>`}
+        ${!run && !problem && html` <span class="dim" role="status">loading…</span>`}
+      </span>
+      ${run && run.progress.done > 0 && html`
+        <span class="compared-links">
+          <${ReplayLink} id=${id} label=${`Replay ${letter}`}>Replay<//>
+          <${GhostLink} one=${one} />
+        </span>
+      `}
+      <button class="quiet square small" aria-label=${`Leave out ${title}`} title="Leave out"
+        onClick=${() => leaveOut(id)}>✕</button>
+    </li>
+  `;
+}
+
+/** A replay of the first run with this one's robots as ghosts, or of this one with the first's. */
+function GhostLink({ one }) {
+  const [first] = comparable.value;
+  if (!first?.run || first.id === one.id || first.run.kind !== one.run.kind || !first.run.progress.done) return null;
+  const [shown, ghost] = isActive(one.run) ? [one, first] : [first, one];
+  if (isActive(ghost.run)) return null;
+  const words = `${shown.letter} with ${ghost.letter} as ghost`;
+  return html`<${ReplayLink} id=${shown.id} ghost=${ghost.id} label=${`Replay ${words}`}>${words}<//>`;
+}

@@ -1,0 +1,138 @@
+"""Runs compared from the list: side by side, raced against each other, one as ghost of another."""
+
+import re
+import time
+from typing import NamedTuple
+
+import httpx2
+import pytest
+from playwright.sync_api import expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import Serving
+
+pytestmark = pytest.mark.timeout(300)
+
+WALK = {"gait": "left-right-origin", "simulator": "kinematic"}
+
+
+class Duel(NamedTuple):
+    """Ids of two trainings that can race each other, and of one with another gait."""
+
+    one: str
+    other: str
+    turned: str
+
+
+@pytest.fixture(scope="module")
+def duel(shared_server: Serving) -> Duel:
+    """Return trainings that have finished."""
+    bodies = [
+        {"steps": 150, "name": "Duel calm"},
+        {"steps": 100, "name": "Duel bold", "agent": "sarsa"},
+        {"steps": 20, "name": "Duel turned", "gait": "front-back-origin"},
+    ]
+    with httpx2.Client(base_url=f"{shared_server.address}api/v1/") as api:
+        started = [api.post("trainings", json={**WALK, **body}) for body in bodies]
+        ids = [answer.raise_for_status().json()["id"] for answer in started]
+        for run_id in ids:
+            while api.get(f"trainings/{run_id}").json()["state"] != "finished":
+                time.sleep(0.05)
+    return Duel(*ids)
+
+
+def different_states(dashboard: Dashboard, *ids: str) -> int:
+    """Return in how many states that both have visited the best moves of two tables differ."""
+    tables = [dashboard.get(f"/api/v1/trainings/{run_id}/table") for run_id in ids]
+    visited = zip(*(map(any, table["visits"]) for table in tables), strict=True)
+    moves = zip(*(table["best"] for table in tables), strict=True)
+    return sum(all(seen) and a != b for seen, (a, b) in zip(visited, moves, strict=True))
+
+
+def test_runs_are_compared_side_by_side_and_raced(
+    dashboard: Dashboard, shared_server: Serving, duel: Duel
+) -> None:
+    page = dashboard.page
+    one, other, turned = duel
+
+    # From the list: those that cannot race say why, and two that can are compared.
+    page.goto(f"{shared_server.address}#runs?search=duel&sort=oldest")
+    expect(page.locator(".run-name b")).to_have_text(["Duel calm", "Duel bold", "Duel turned"])
+    page.get_by_label("Select all").click()
+    expect(page.locator(".selection")).to_contain_text("they differ in gait (Left-right, opposite")
+    expect(dashboard.button("Race these")).to_have_attribute("aria-disabled", "true")
+    page.locator(".run-box input").nth(2).click()
+    expect(dashboard.button("Race these")).not_to_have_attribute("aria-disabled", "true")
+    page.get_by_role("link", name="Compare 2").click()
+
+    # Curves over each other, read at the crosshair by keys.
+    expect(page).to_have_url(f"{shared_server.address}#compare?runs={one},{other}")
+    expect(page.get_by_role("img", name=re.compile("^Learning curves: A .* B "))).to_be_visible()
+    page.get_by_role("slider", name=re.compile("learning curves")).focus()
+    page.keyboard.press("Home")
+    page.keyboard.press("ArrowRight")
+    reading = page.locator(".compare .chart-frame")
+    expect(reading).to_contain_text(re.compile("A: Duel calm.*B: Duel bold", re.DOTALL))
+
+    # Settings, with what differs marked, and nothing else on request.
+    settings = page.get_by_role("region", name="Settings side by side")
+    expect(settings.locator(".differs th")).to_contain_text(["Learner", "Practice"])
+    assert settings.locator("tbody tr").count() > settings.locator(".differs").count()
+    page.get_by_label("Only differences").focus()
+    page.keyboard.press("Space")
+    expect(settings.locator("tbody tr:not(.differs)")).to_have_count(0)
+    practised = page.get_by_role("row", name=re.compile("^Practised"))
+    expect(practised).to_contain_text("150 steps100 steps")
+
+    # Policies where they differ, as the tables have them.
+    differ = different_states(dashboard, one, other)
+    policies = page.locator(".policies")
+    expect(policies.locator("p b").first).to_have_text(str(differ))
+    if differ > 12:
+        policies.get_by_role("button", name=f"Show all {differ}").click()
+    expect(policies.locator("tbody tr")).to_have_count(differ)
+    assert dashboard.violations() == []
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.emulate_media(color_scheme="dark")
+    assert dashboard.scroll_width() == 390
+    assert dashboard.violations() == []
+    page.set_viewport_size({"width": 1280, "height": 720})
+
+    # What cannot be compared says why; the rest stays.
+    page.goto(f"{shared_server.address}#compare?runs={one},gone,{other},{turned}")
+    expect(page.get_by_role("alert").filter(has_text="There is no such run")).to_be_visible()
+    dashboard.button("Leave out gone").click()
+    dashboard.button("Leave out Duel turned").click()
+    assert dashboard.complaints.pop().startswith("404")
+    dashboard.button("Race these").click()
+    expect(page.locator(".controls")).to_be_visible()
+    race = dashboard.get("/api/v1/races?sort=newest&limit=1")["items"][0]
+    assert race["name"] == "Race of Duel calm and Duel bold"
+    assert [lane["training_id"] for lane in race["config"]["lanes"]] == [one, other]
+
+    page.goto(f"{shared_server.address}#compare?runs={one}")
+    expect(page.get_by_text("It takes two runs to compare.")).to_be_visible()
+    assert dashboard.violations() == []
+
+
+def test_the_robots_of_another_run_walk_along_as_ghosts(
+    dashboard: Dashboard, shared_server: Serving, duel: Duel
+) -> None:
+    page = dashboard.page
+    one, other, _ = duel
+    dashboard.open(f"{shared_server.address}#compare?runs={one},{other}")
+    page.get_by_role("link", name="Replay A with B as ghost").click()
+    expect(page).to_have_url(re.compile(rf"\?run={one}&ghost={other}$"))
+    expect(page.locator(".chip.ghosts")).to_contain_text(
+        re.compile(r"Ghosts: Duel bold \(Sarsa −?0\.\d\d")
+    )
+    dashboard.button("Pause replay").click()
+    expect(page).to_have_url(re.compile(rf"run={one}&ghost={other}&t="))
+    assert dashboard.violations() == []
+    page.goto(f"{shared_server.address}?run={one}&ghost={one}")
+    alert = page.get_by_role("alert").filter(has_text="cannot be its own ghost")
+    expect(alert).to_be_visible()
+    dashboard.button("Watch the stage").click()
+    assert "ghost=" not in page.url
+    assert {complaint.split()[0] for complaint in dashboard.complaints} == {"422"}
+    dashboard.complaints.clear()

@@ -1,0 +1,138 @@
+// Runs that are compared: which, what differs, where policies part, and which trained runs can race each other.
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+import {
+  compareAddress, compared, comparedAsQuery, comparedCurves, comparedIds, comparedResults, comparedSettings, leaveOut,
+  leftOut, MOST_COMPARED, readCompared,
+} from "../../static/js/compare.js";
+import { differencesOf, haveSameStates } from "../../static/js/compare-policies.js";
+import { absentIds } from "../../static/js/runs.js";
+import { applyEvent, options } from "../../static/js/store.js";
+import { conditionsOfRace, obstacle } from "../../static/js/table-race.js";
+import { makeRun, OPTIONS } from "./options.js";
+
+const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
+const { config } = makeRun({});
+/** @type {(changes: object, more?: object) => ReturnType<typeof makeRun>} */
+const trained = (changes, more = {}) => makeRun({ config: { ...config, ...changes }, state: "finished", ...more });
+
+/** @param {{ id: string }[]} runs */
+function compare(...runs) {
+  const known = runs.filter((run) => "kind" in run);
+  applyEvent("snapshot", { runs: known, stage: STAGE, scene: null, role: "operator" });
+  comparedIds.value = runs.map(({ id }) => id);
+}
+
+beforeEach(() => {
+  options.value = OPTIONS;
+  absentIds.value = new Set();
+  readCompared(new URLSearchParams());
+});
+
+test("the address names the runs, each once, as many as can be told apart", () => {
+  readCompared(new URLSearchParams("runs=b, a,b,,c"));
+  assert.deepEqual(comparedIds.value, ["b", "a", "c"]);
+  assert.equal(comparedAsQuery(), "runs=b,a,c");
+  assert.equal(compareAddress(["a", "b c"]), "#compare?runs=a,b%20c");
+  leaveOut("a");
+  assert.deepEqual(comparedIds.value, ["b", "c"]);
+  readCompared(new URLSearchParams({ runs: "abcdefghijk".split("").join(",") }));
+  assert.deepEqual([comparedIds.value.length, leftOut.value], [MOST_COMPARED, 3]);
+});
+
+test("a run that is gone, cannot be read or is an experiment says so, and the others are compared", () => {
+  const [run, experiment] = [trained({}), makeRun({ kind: "experiment" })];
+  const damaged = { id: "bad", kind: "training", name: null, created_at: null, damaged: "its config is lost" };
+  compare(run, experiment, damaged, { id: "gone" }, { id: "late" });
+  applyEvent("run-deleted", { id: "gone" });
+  absentIds.value = new Set(["gone"]);
+  const told = compared.value.map(({ problem }) => problem?.split(":")[0] ?? null);
+  assert.deepEqual(told, [
+    null, "It is an experiment, which has its own report", "It cannot be read", "There is no such run", null,
+  ]);
+  assert.deepEqual(compared.value.map(({ letter }) => letter), ["A", "B", "C", "D", "E"]);
+  assert.equal(compared.value[4].run, null, "it is still requested");
+});
+
+test("settings that differ are marked; what a run does not have is no difference", () => {
+  const race = makeRun({
+    kind: "race",
+    config: { gait: config.gait, robot: config.robot, simulator: config.simulator, divisions: config.divisions,
+      grid_side_m: config.grid_side_m, seed: config.seed, steps: 25, lanes: [{ agent: "greedy" }] },
+  });
+  const disturbed = { disturbances: [{ kind: "limp", at_step: 25, legs: [1, 4] }] };
+  compare(trained({ alpha: 0.3 }), trained({ alpha: 0.5, ...disturbed }), race);
+  const rows = Object.fromEntries(comparedSettings.value.map((row) => [row.name, row]));
+  assert.deepEqual(rows.alpha.cells, ["0.3", "0.5", null]);
+  assert.deepEqual(["alpha", "world", "kind"].map((name) => rows[name].differs), [true, true, true]);
+  assert.deepEqual(["gait", "steps", "race_steps"].map((name) => rows[name].differs), [false, false, false]);
+  assert.deepEqual(rows.race_steps.cells, [null, null, "25"]);
+  assert.equal(rows.world.cells[0], "nothing");
+  assert.equal(rows.changes, undefined, "nothing was changed in any");
+});
+
+test("results have the farthest marked, and the share of greedy's distance", () => {
+  const times = { started_at: "2030-01-01T00:00:00.000Z", ended_at: "2030-01-01T00:00:42.000Z" };
+  const result = { distance_m: 0.4, greedy_distance_m: 0.5, best_known_m: 0.6, fell_at_step: 11 };
+  const other = { ...result, distance_m: 0.2, fell_at_step: null };
+  compare(trained({}, { result, ...times }), trained({}, { result: other }));
+  const rows = Object.fromEntries(comparedResults.value.map((row) => [row.name, row]));
+  assert.deepEqual(rows.distance.best, [0]);
+  assert.deepEqual(rows.share.cells, ["80 %", "40 %"]);
+  assert.deepEqual(rows.falls.cells, ["step 12", null]);
+  assert.deepEqual(rows["wall-time"].cells, ["42 s", null]);
+  assert.equal(rows["best-known"].cells[0], "0.60\u00a0m");
+});
+
+test("curves are of trainings that have been evaluated; of others it says why there is none", () => {
+  const [run, fresh] = [trained({}), trained({}, { state: "running" })];
+  const race = makeRun({ kind: "race", config: { ...config, lanes: [] } });
+  compare(run, fresh, race);
+  applyEvent("evaluation", { run_id: run.id, step: 50, distance_m: 0.2, epsilon: 0.5 });
+  const { shown, without } = comparedCurves.value;
+  assert.deepEqual(shown.map(({ one, curve }) => [one.letter, curve.points.length]), [["A", 2]]);
+  assert.deepEqual(without, [
+    "C has no learning curve: a race does not practise.", "B has no evaluation yet.",
+  ]);
+});
+
+const GRID = { pairs: [[1, 4]], cells_m: /** @type {[number, number][]} */ ([[0, 0], [0, 1], [1, 0]]) };
+
+/** A table of one pair on three cells: the best cell of each state, and whether the state was tried. */
+const tableWith = (/** @type {number[]} */ best, /** @type {number[]} */ tries) => ({
+  ...GRID, cell_names: ["home", "front", "back"], states: 3,
+  values: best.map((cell) => [0, 1, 2].map((one) => (one === cell ? 0.05 : 0))),
+  visits: tries.map((times) => [times, 0, 0]),
+  best: best.map((cell) => /** @type {[number, number]} */ ([0, cell])),
+});
+
+test("policies differ where both have practised and their best moves are others", () => {
+  const [one, other] = [tableWith([1, 2, 0], [3, 9, 0]), tableWith([2, 0, 1], [5, 4, 7])];
+  const { different, compared: states, known } = differencesOf(one, other);
+  assert.equal(states, 3);
+  assert.deepEqual(known, { both: 2, one: 0, other: 1 });
+  assert.deepEqual(different.map(({ index }) => index), [1, 0], "the most visited first");
+  assert.deepEqual(different[0].bests.map(({ move, value, visits }) => [move, value, visits]), [
+    [[0, 2], 0.05, 9], [[0, 0], 0.05, 4],
+  ]);
+  assert.equal(haveSameStates(one, other), true);
+  assert.equal(haveSameStates(one, { ...other, pairs: [[2, 5]] }), false);
+});
+
+test("trained runs race if gait and grid are the same, and else it says what differs", () => {
+  const [one, other] = [trained({}, { name: "One" }), trained({ alpha: 0.9 }, { name: "Other" })];
+  assert.equal(obstacle([one, other]), null);
+  assert.equal(conditionsOfRace([one, other]), null);
+  const finer = trained({ divisions: 4 }, { name: "Finer" });
+  const words = obstacle([one, finer]) ?? "";
+  assert.match(words, /^They cannot race each other, as they differ in divisions of the foot grid \(2 and 4\): /);
+  const running = trained({}, { name: "Young", state: "running" });
+  assert.equal(obstacle([one, running]), "Young is running: a training races once it is finished or stopped.");
+  const race = makeRun({ kind: "race", name: "Final" });
+  assert.equal(obstacle([one, race]), "Only trainings race with their tables: leave out Final.");
+  assert.equal(obstacle([one]), "Two trainings or more race each other.");
+  const many = Array.from({ length: 20 }, () => one);
+  assert.match(obstacle(many) ?? "", /^A race has up to \d+ lanes: choose fewer than 20 trainings\.$/);
+  const ideal = trained({ simulator: config.simulator === "mujoco" ? "kinematic" : "mujoco" });
+  assert.match(conditionsOfRace([one, ideal]) ?? "", /^All race with the simulator \(.*\) of One\.$/);
+});
