@@ -102,7 +102,6 @@ VALID: Mapping[str, str] = {
         f"a number of seconds of robot time over from_s, at most {MAX_WINDOW_S:g} s later; by "
         "default the end of the walk"
     ),
-    "lane": "the number of a lane, from 0 on",
     "part": "practice, or evaluation for the newest one; of a training",
     "key": "the key of a trial, as GET …/trials has it: the setting and the seed's number",
     "format": "a format that the description of the route names",

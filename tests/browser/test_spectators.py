@@ -34,10 +34,9 @@ def test_a_spectator_reads_the_settings_tries_others_and_presents(
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     address = f"http://localhost:{port}/"
-    settings = {"public_url": address, "what_ifs_per_minute": 2}
     bearer = {"Authorization": f"Bearer {TOKEN}"}
     with (
-        serving(tmp_path, port, TOKEN, **settings),
+        serving(tmp_path, port, TOKEN, public_url=address, what_ifs_per_minute=2),
         httpx2.Client(base_url=f"{address}api/v1/", headers=bearer) as api,
     ):
         race = finished_race(api)
