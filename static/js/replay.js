@@ -2,8 +2,7 @@
 // The server gives frames (`replay-frames.js`); position, speed and clock are kept here and in the address.
 import { batch, computed, effect, signal } from "@preact/signals";
 import { getReplay, getReplayFrames } from "./api.js";
-import { view } from "./page.js";
-import { readReplay, replayAddress, writeReplay } from "./replay-address.js";
+import { readReplay, replayAddress, view, writeReplay } from "./page.js";
 import { decode, SceneState } from "./replay-frames.js";
 import { connection, ownScene, ownStage } from "./store.js";
 

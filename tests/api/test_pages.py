@@ -129,8 +129,15 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
     page = api.client.get("/").text
     folder = assets.static_dir()
     modules = imported_modules("static/js/main.js", folder)
-    names = ("experiments/experiments", "runs/runs", "steps/steps", "gait", "chart-files")
-    opened = {f"static/js/components/{name}.js" for name in names}
+    lazy = (
+        "experiments/experiments",
+        "runs/runs",
+        "compare/compare",
+        "steps/steps",
+        "gait",
+        "audience",
+    )
+    opened = {f"static/js/components/{name}.js" for name in (*lazy, "chart-files")}
     later = {path for one in opened for path in imported_modules(one, folder)} - {*modules}
 
     every = {*(folder / "js").rglob("*.js")}

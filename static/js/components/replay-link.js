@@ -1,6 +1,6 @@
 // A link to a replay, which opens on this page.
+import { replayAddress } from "../page.js";
 import { openReplay } from "../replay.js";
-import { replayAddress } from "../replay-address.js";
 import { html } from "./elements.js";
 
 export function ReplayLink({ id, ghost = null, label = null, children }) {
