@@ -14,13 +14,14 @@ from app.settings import PREFIX, Settings
 
 _STARTS = re.compile(r"/api/v1/(?!stage$|events$)\w+(/import|/[^/]+/resume)?")
 _RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")
+_ENCODED = re.compile(r"/api/v1/runs/[^/]+/(page|video)")
 
 
 class RateLimit:
     """Middleware that limits starts per minute, by client address and role.
 
-    Besides runs it counts imports, resumes, and a race's recorded stream, which takes seconds to
-    encode.
+    Besides runs it counts imports, resumes, and what takes seconds to encode: a race's recorded
+    stream, pages that need no server, and videos.
     """
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
@@ -53,8 +54,10 @@ def too_many(detail: str, wait_s: float) -> Response:
 def _starts_work(scope: Scope) -> bool:
     if scope["type"] != "http":
         return False
-    if scope["method"] == "POST":
-        return _STARTS.fullmatch(scope["path"]) is not None
+    if scope["method"] == "POST" and _STARTS.fullmatch(scope["path"]) is not None:
+        return True
+    if _ENCODED.fullmatch(scope["path"]) is not None:
+        return True
     if _RECORDING.fullmatch(scope["path"]) is None:
         return False
     # Decoded as the endpoint decodes it, so that percent-encoding cannot bypass the limit.

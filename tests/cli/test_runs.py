@@ -117,7 +117,7 @@ def test_exported_run_is_imported_into_another_folder(data: Path, tmp_path: Path
         assert len(store.list().items) == 4
 
 
-def test_walk_is_written_as_a_table(data: Path, tmp_path: Path) -> None:
+def test_walk_is_written_as_a_file(data: Path, tmp_path: Path) -> None:
     def write(*arguments: str) -> str:
         return refusal("runs", "trajectory", *arguments, *here, folder=tmp_path, run=in_process)
 
@@ -127,6 +127,8 @@ def test_walk_is_written_as_a_table(data: Path, tmp_path: Path) -> None:
     head, *rows = (tmp_path / "w.csv").read_text().splitlines()
     assert head.startswith("lane,step,time_s,body_x_m")
     assert {row.split(",")[0] for row in rows} == {"0", "1"}
+    told = output("runs", "page", RACED, "--out", "r.html", *here, folder=tmp_path, run=in_process)
+    assert told["bytes"] == (tmp_path / "r.html").stat().st_size < 15_000_000
     assert "must end with .csv or .parquet: w.txt" in write(RACED, "--out", "w.txt")
     assert "lane must be from 0 to 1, not 2" in write(RACED, "--lane", "2", "--out", "w.csv")
     assert "no run 'nope'" in write("nope", "--out", "w.csv")
