@@ -10,6 +10,7 @@ from app.api.deps import Services, ServicesDep
 from app.api.formats import attachment, negotiated
 from app.api.replays import ClockQuery
 from app.api.runs import RunPath
+from app.exports.mcap_log import MCAP_TYPE, mcap_log
 from app.exports.recorded_lanes import RecordedWalks, checked_lane, recorded_walks
 from app.exports.trajectory import (
     CSV_TYPE,
@@ -86,6 +87,22 @@ def get_page(services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper"
     title = run.name or f"{run.kind} {run.id}"
     chunks = services.replay_page(run.id, title, clock)
     return attachment(chunks, "text/html; charset=utf-8", f"{run.kind}-{run.id}.html")
+
+
+@router.get(
+    "/mcap",
+    summary="Joint states and frames as an MCAP log",
+    response_class=Response,
+    responses=answers(200, {MCAP_TYPE: BINARY}, headers=ATTACHMENT),
+)
+def get_mcap(services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper") -> Response:
+    """Return `foxglove.JointStates` of each lane, and `foxglove.FrameTransforms` of all links.
+
+    It needs `racing-hexapods[mcap]` on the server.
+    """
+    run = services.store.get(run_id)
+    chunks = mcap_log(_walks(services, run), clock)
+    return attachment(chunks, MCAP_TYPE, f"{run.kind}-{run.id}.mcap")
 
 
 @router.post(

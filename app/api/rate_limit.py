@@ -14,14 +14,14 @@ from app.settings import PREFIX, Settings
 
 _STARTS = re.compile(r"/api/v1/(?!stage$|events$)\w+(/import|/[^/]+/resume)?")
 _RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")
-_ENCODED = re.compile(r"/api/v1/runs/[^/]+/(page|video)")
+_ENCODED = re.compile(r"/api/v1/runs/[^/]+/(mcap|page|video)")
 
 
 class RateLimit:
     """Middleware that limits starts per minute, by client address and role.
 
     Besides runs it counts imports, resumes, and what takes seconds to encode: a race's recorded
-    stream, pages that need no server, and videos.
+    stream, pages that need no server, videos and logs.
     """
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:

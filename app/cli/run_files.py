@@ -44,7 +44,8 @@ def add_to(verbs: "argparse._SubParsersAction[CommandParser]") -> None:
     video.add_argument("--height", type=integer, default=360, help="pixels, default 360")
     video.add_argument("--fps", type=integer, default=30, help="pictures a second, default 30")
     video.add_argument("--speed", type=float, default=1.0, help="times the run's own, default 1")
-    for verb in (page, video):
+    log = _add(verbs, "mcap", "joint states and frames, for tools of robots", _mcap, (".mcap",))
+    for verb in (page, video, log):
         _add_clock(verb)
 
 
@@ -130,3 +131,9 @@ def _video(source: Source, options: argparse.Namespace) -> Iterable[bytes]:
         clock=options.clock,
     )
     return [render_video(source.walks, film)]
+
+
+def _mcap(source: Source, options: argparse.Namespace) -> Iterable[bytes]:
+    from app.exports.mcap_log import mcap_log  # noqa: PLC0415
+
+    return mcap_log(source.walks, options.clock)

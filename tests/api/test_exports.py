@@ -48,6 +48,12 @@ def test_page_of_a_race_is_a_file_with_its_own_policy(api: Api, raced: dict[str,
     refused(api.call("GET", "/runs/nothing/page"), 404, "nothing")
 
 
+def test_log_of_a_race(api: Api, raced: dict[str, Any]) -> None:
+    answer = api.call("GET", f"/runs/{raced['id']}/mcap", params={"clock": "free"})
+    assert answer.content[:8] == answer.content[-8:] == b"\x89MCAP0\r\n"
+    assert f'filename="race-{raced["id"]}.mcap"' in answer.headers["content-disposition"]
+
+
 def test_video_of_a_race(api: Api, raced: dict[str, Any]) -> None:
     def film(**query: Any) -> Any:
         return api.call("POST", f"/runs/{raced['id']}/video", params=query)

@@ -129,6 +129,11 @@ def test_walk_is_written_as_a_file(data: Path, tmp_path: Path) -> None:
     assert {row.split(",")[0] for row in rows} == {"0", "1"}
     told = output("runs", "page", RACED, "--out", "r.html", *here, folder=tmp_path, run=in_process)
     assert told["bytes"] == (tmp_path / "r.html").stat().st_size < 15_000_000
+    log = output("runs", "mcap", RACED, "--out", "r.mcap", *here, folder=tmp_path, run=in_process)
+    assert log["bytes"] == (tmp_path / "r.mcap").stat().st_size
+    film = ("--out", "r.gif", "--width", "64", "--height", "64", "--fps", "1")
+    output("runs", "video", RACED, *film, *here, folder=tmp_path, run=in_process)
+    assert (tmp_path / "r.gif").read_bytes()[:6] == b"GIF89a"
     assert "must end with .csv or .parquet: w.txt" in write(RACED, "--out", "w.txt")
     assert "lane must be from 0 to 1, not 2" in write(RACED, "--lane", "2", "--out", "w.csv")
     assert "no run 'nope'" in write("nope", "--out", "w.csv")
