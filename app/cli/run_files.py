@@ -90,7 +90,8 @@ def _write(options: argparse.Namespace, export: Export, endings: tuple[str, ...]
     if options.json:
         print(json.dumps({"id": run.id, "file": options.out, "bytes": len(data)}))
     else:
-        print(f"{run.kind} {run.id} is in {options.out} ({len(data) / 1e6:.1f} MB).".capitalize())
+        size = f"{len(data) / 1e6:.1f} MB" if len(data) >= 1e6 else f"{len(data) / 1e3:.0f} kB"
+        print(f"{run.kind.capitalize()} {run.id} is in {options.out} ({size}).")
     return 0
 
 
@@ -120,8 +121,13 @@ def _page(source: Source, options: argparse.Namespace) -> Iterable[bytes]:
 
 
 def _video(source: Source, options: argparse.Namespace) -> Iterable[bytes]:
-    from app.exports.video import VideoOptions, render_video  # noqa: PLC0415
+    from app.exports.extras import NoOpenGL  # noqa: PLC0415
 
+    try:
+        from app.exports.video import VideoOptions, render_video  # noqa: PLC0415
+    # MuJoCo loads the OpenGL of MUJOCO_GL when it is imported, and PyOpenGL fails in many ways.
+    except (ImportError, AttributeError, RuntimeError) as error:
+        raise NoOpenGL(error) from error
     film = VideoOptions(
         ending=Path(options.out).suffix,
         width=options.width,

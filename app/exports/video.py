@@ -22,7 +22,7 @@ from PIL import Image, ImageDraw, ImageFont
 from app.agents.appearance import colors_of, title_of
 from app.domain.errors import InvalidInput
 from app.domain.types import FloatArray
-from app.exports.extras import MissingExtra, import_extra
+from app.exports.extras import NoOpenGL, import_extra
 from app.exports.recorded_lanes import RecordedLane, RecordedWalks
 from app.physics.mjcf import VISIBLE_GROUP, is_painted, robot_spec
 from app.runs.clocks import FINISH_LINE_M, Clock
@@ -32,7 +32,6 @@ VIDEO_EXTRA = "video"
 MAX_WIDTH, MAX_HEIGHT, MAX_FPS = 1920, 1080, 60
 MAX_FRAMES = 9000
 """Pictures of one film; each takes about 0.1 s in software."""
-DEBIAN_PACKAGES = {"egl": "libegl1 libgl1-mesa-dri", "osmesa": "libosmesa6"}
 ENDINGS = (".mp4", ".gif")
 _GAP_M = 0.25
 _SMOOTHING_S = 0.25
@@ -187,8 +186,7 @@ def _pictures(
 
 def _gl_context(width: int, height: int) -> Any:
     """Return an OpenGL context of this thread, to be used in a `with` block."""
-    name = os.environ.get("MUJOCO_GL", "").lower()
-    name = name if name in DEBIAN_PACKAGES else "egl"
+    name = "osmesa" if os.environ.get("MUJOCO_GL", "").lower() == "osmesa" else "egl"
     import_extra("OpenGL", VIDEO_EXTRA, "a video")
     try:
         backend = importlib.import_module(f"mujoco.{name}")
@@ -196,10 +194,7 @@ def _gl_context(width: int, height: int) -> Any:
         context.make_current()
     # PyOpenGL raises errors of many kinds where the library is missing.
     except Exception as error:
-        raise MissingExtra(
-            f"a video needs OpenGL by {name}, which does not work here ({error}); on Debian "
-            f"`apt-get install {DEBIAN_PACKAGES[name]}` installs it"
-        ) from error
+        raise NoOpenGL(error) from error
     return _Closing(context)
 
 
