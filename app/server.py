@@ -6,6 +6,7 @@ import socket
 import sys
 import threading
 from collections.abc import AsyncIterator, Callable
+from functools import partial
 from types import FrameType
 
 import uvicorn
@@ -47,6 +48,7 @@ from app.domain.errors import HexapodError
 from app.events import logs
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
+from app.exports.video_renderer import VideoRenderer
 from app.jobs.jobs import Jobs
 from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
@@ -64,6 +66,7 @@ from app.storage.recordings import Recordings
 from app.storage.server_lock import write_address_file
 from app.storage.sessions import Sessions
 from app.viewer.replay_frames import ReplayFrames
+from app.viewer.replay_page import replay_page
 from app.viewer.service import ViewerService, viewer_routes
 from app.viewer.session import websocket_options
 from app.what_if.estimate import Estimates
@@ -109,6 +112,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         redoc_url=None,
     )
     app.state.viewer = viewer
+    replays = ReplayFrames(Replays(store, recordings))
     app.state.services = Services(
         settings=settings,
         store=store,
@@ -121,7 +125,9 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         audience=lambda: viewer.hub.counters,
         ready=lambda: _unready_reason(jobs, store),
         film=viewer.recorded_stream,
-        replays=ReplayFrames(Replays(store, recordings)),
+        replays=replays,
+        replay_page=partial(replay_page, replays),
+        videos=VideoRenderer(),
         what_if=WhatIf(TrialPool()),
         explanations=Explanations(store, recordings),
         estimates=Estimates(TrialPool(count=1), jobs.cores),

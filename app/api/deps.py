@@ -1,6 +1,6 @@
 """FastAPI dependencies of routes: the services, the client's role, a start request."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any, NamedTuple, Protocol
 
@@ -12,6 +12,7 @@ from app.api.auth import Role
 from app.api.descriptions import VALID
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
+from app.exports.video_renderer import VideoRenderer
 from app.jobs.jobs import Jobs
 from app.limits.client_slots import ClientSlots
 from app.limits.memory_budget import MemoryBudget
@@ -31,6 +32,11 @@ from app.what_if.what_if import WhatIf
 StreamEncoder = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock, Original | None], bytes]
 """Encodes a race's lanes as a recorded stream for viser: with the race's name, under a clock, and
 with the race from which it branched off, if any."""
+
+
+PageBuilder = Callable[[str, str, Clock], Iterator[bytes]]
+"""Builds the page that replays a run without a server: with the run's id, its title, and a clock;
+see `app.viewer.replay_page`."""
 
 
 class HubCounters(Protocol):
@@ -74,6 +80,8 @@ class Services:
         estimates: estimates how long runs would take.
         film: encodes a race's recording as a recorded stream for viser.
         replays: encodes frames of runs for pages that play them by themselves.
+        replay_page: builds pages that need no server.
+        videos: renders films.
         listeners: slots of event streams.
         exports: memory budget of exports that clients are still reading.
         gaits: gait analyses, which all pages that watch a run request at once.
@@ -91,6 +99,8 @@ class Services:
     ready: Callable[[], str | None]
     film: StreamEncoder
     replays: ReplayFrames
+    replay_page: PageBuilder
+    videos: VideoRenderer
     what_if: WhatIf
     explanations: Explanations
     estimates: Estimates

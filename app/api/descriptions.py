@@ -12,6 +12,7 @@ from app.domain.settings import declared_fields
 from app.domain.text import MAX_NAME, MAX_TAG, NAMES, NOTES, TAGS
 from app.domain.world import MAX_DISTURBANCES, WORLDS
 from app.experiments.config import EXPERIMENTS, MAX_SEEDS
+from app.exports.video import MAX_FPS, MAX_HEIGHT, MAX_WIDTH
 from app.runs.clocks import CLOCKS
 from app.runs.config import SIMULATORS, TrainingConfig
 from app.runs.gait_analysis import MAX_WINDOW_S
@@ -102,6 +103,10 @@ VALID: Mapping[str, str] = {
         f"a number of seconds of robot time over from_s, at most {MAX_WINDOW_S:g} s later; by "
         "default the end of the walk"
     ),
+    "width": f"an even number of pixels from 64 to {MAX_WIDTH}",
+    "height": f"an even number of pixels from 64 to {MAX_HEIGHT}",
+    "fps": f"a whole number of pictures a second from 1 to {MAX_FPS}",
+    "playback_speed": "a number from 0.05 to 64, times the run's own time",
     "part": "practice, or evaluation for the newest one; of a training",
     "key": "the key of a trial, as GET …/trials has it: the setting and the seed's number",
     "format": "a format that the description of the route names",

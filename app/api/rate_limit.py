@@ -14,6 +14,7 @@ from app.settings import PREFIX, Settings
 
 _STARTS = re.compile(r"/api/v1/(?!stage$|events$)\w+(/import|/[^/]+/resume)?")
 _RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")
+_ENCODED = re.compile(r"/api/v1/runs/[^/]+/(mcap|page|video)")
 WHAT_IF = "/api/v1/what-if"
 """Path of what-ifs: its POST changes nothing, so spectators may use it, too."""
 
@@ -21,8 +22,9 @@ WHAT_IF = "/api/v1/what-if"
 class RateLimit:
     """Middleware that limits starts per minute, by client address and role.
 
-    Besides runs it counts imports, resumes, and a race's recorded stream, which takes seconds to
-    encode. What-ifs of spectators have a limit of their own; those of operators have none.
+    Besides runs it counts imports, resumes, and what takes seconds to encode: a race's recorded
+    stream, pages that need no server, videos and logs. What-ifs of spectators have a limit of their
+    own; those of operators have none.
     """
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
@@ -81,8 +83,10 @@ def _whole_seconds(wait_s: float) -> int:
 def _starts_work(scope: Scope) -> bool:
     if scope["type"] != "http":
         return False
-    if scope["method"] == "POST":
-        return _STARTS.fullmatch(scope["path"]) is not None
+    if scope["method"] == "POST" and _STARTS.fullmatch(scope["path"]) is not None:
+        return True
+    if _ENCODED.fullmatch(scope["path"]) is not None:
+        return True
     if _RECORDING.fullmatch(scope["path"]) is None:
         return False
     # Decoded as the endpoint decodes it, so that percent-encoding cannot bypass the limit.

@@ -94,7 +94,7 @@ def recorded_walks(run: AnyRun, recordings: Recordings) -> RecordedWalks:
         if practice is not None:
             steps = [step for step in practice.steps if step.motion is not None]
             lanes = [RecordedLane(config.agent, practice.rest_qpos, steps)]
-    if not lanes:
+    if not any(lane.steps for lane in lanes):
         raise Conflict(f"{run.kind} {run.id} is {run.state} and has no recording", run.state)
     return RecordedWalks(config, lanes)
 

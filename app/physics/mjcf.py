@@ -15,6 +15,8 @@ from app.physics.conditions import apply_conditions
 LINKS = ("coxa", "femur", "tibia")
 VISIBLE_GROUP = 1
 """The group of the visual geoms."""
+_UNPAINTED = ("servo", "hip", "knee", "belly", "deck", "foot", "bracket")
+"""Substrings of the names of geoms that are not painted in the agent's colour."""
 
 
 @lru_cache(maxsize=32)
@@ -67,6 +69,11 @@ def robot_spec(robot: Robot) -> mujoco.MjSpec:
         )
         spec.attach(_leg_spec(robot), prefix=f"leg{number}_", frame=frame)
     return spec
+
+
+def is_painted(geom_name: str) -> bool:
+    """Return whether a visual geom is painted in the agent's colour."""
+    return not any(part in geom_name for part in _UNPAINTED)
 
 
 def _shape_torso(spec: mujoco.MjSpec, robot: Robot) -> None:

@@ -11,14 +11,10 @@ from numpy.typing import NDArray
 from app.domain.robot import Robot
 from app.domain.types import FloatArray, IntArray
 from app.domain.world import World
-from app.physics.mjcf import LINKS, VISIBLE_GROUP, compile_visual_model
+from app.physics.mjcf import LINKS, VISIBLE_GROUP, compile_visual_model, is_painted
 from app.viewer.colormap import Rgb
 from app.viewer.condition_colors import link_color
 from app.viewer.shapes import Shape, antenna, geom_shape, joined
-
-_UNPAINTED = ("servo", "hip", "knee", "belly", "deck", "foot", "bracket")
-"""Substrings of the names of geoms that are not painted in the agent's colour."""
-
 
 ANTENNA_M = 0.15
 """Height of the antenna's top over the torso's centre [m]."""
@@ -99,7 +95,7 @@ def _parts(robot: Robot) -> tuple[Part, ...]:
     for geom in np.flatnonzero(model.geom_group == VISIBLE_GROUP):
         link, shape = _on_link(model, int(geom))
         name = model.geom(geom).name
-        painted = not any(word in name for word in _UNPAINTED)
+        painted = is_painted(name)
         links.setdefault((link, painted), []).append(shape)
     by_shape: dict[tuple[bytes, bool], tuple[Shape, list[int]]] = {}
     for (link, painted), shapes in links.items():

@@ -262,7 +262,11 @@ export function downloads(run) {
       ["Summary (JSON)", addressOf(run, "summary")],
     ];
   }
-  const walk = /** @type {[string, string][]} */ ([["Joints and feet (CSV)", exportOf(run, "trajectory?format=csv")]]);
+  /** @type {[string, string][]} */
+  const walk = [
+    ["Joints and feet (CSV)", exportOf(run, "trajectory?format=csv")],
+    ["Offline replay (HTML)", exportOf(run, "page")],
+  ];
   if (run.kind === "race") return [["Recording", addressOf(run, "recording")], ...walk];
   return [
     ["Curve (CSV)", addressOf(run, "curve?format=csv")],

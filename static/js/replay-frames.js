@@ -12,6 +12,9 @@ const ARRAYS = {
   "<f4": Float32Array, "<f8": Float64Array, "|u1": Uint8Array, "<u2": Uint16Array, "<u4": Uint32Array,
   "|i1": Int8Array, "<i2": Int16Array, "<i4": Int32Array,
 };
+const SMOOTHING_S = 0.25;
+/** Of so many frames at once only the last is shown. */
+const MOST_STEPS = 4;
 const HEAD_BYTES = 4;
 const ALIGNMENT_BYTES = 8;
 
@@ -107,6 +110,18 @@ export class SceneState {
   }
 
   /**
+   * Show a frame of a segment; returns what to send.
+   * @param {Frame[]} frames of the segment
+   * @param {number} index of the frame
+   * @param {number} shown index of the frame of this segment that is shown, -1 if none is
+   */
+  showFrame(frames, index, shown) {
+    const isNext = shown >= 0 && shown < index && index - shown <= MOST_STEPS;
+    const messages = frames.slice(isNext ? shown + 1 : 0, index + 1).flatMap((one) => one.messages);
+    return isNext ? this.follow(messages) : this.jump(messages);
+  }
+
+  /**
    * Put a message into its slot; returns the entities that it changes.
    * @private
    * @param {Map<string, Slots>} state
@@ -144,3 +159,34 @@ export class SceneState {
 
 /** @type {(entity: string) => Message} */
 const removal = (entity) => ({ type: "RemoveSceneNodeMessage", name: entity.slice(entity.indexOf(" ") + 1) });
+
+/** Keeps what the camera follows in the middle of the world: a lane at once, the leader smoothly. */
+export class Follower {
+  constructor() {
+    this.y = 0;
+  }
+
+  /**
+   * The message that centres the world.
+   * @param {SceneState} state
+   * @param {Frame} frame
+   * @param {string} view
+   * @param {number} elapsed_s since the picture before; Infinity for another moment
+   * @returns {Message}
+   */
+  centring({ world }, { follow }, view, elapsed_s) {
+    const [x, y] = follow[view] ?? [0, 0];
+    if (view === "leader") this.y = y + (this.y - y) * Math.exp(-elapsed_s / SMOOTHING_S);
+    const at = view === "leader" ? this.y : y;
+    return { type: "SetPositionMessage", name: world, position: [-x, -at, 0], owner: "" };
+  }
+}
+
+/**
+ * The time itself, or the next one that is recorded.
+ * @type {(recorded_s: [number, number][], time_s: number) => number}
+ */
+export function inRecording(recorded_s, time_s) {
+  const next = recorded_s.find(([, end]) => time_s <= end);
+  return next ? Math.max(time_s, next[0]) : recorded_s.at(-1)?.[1] ?? 0;
+}

@@ -3,7 +3,7 @@
 import { batch, computed, effect, signal } from "@preact/signals";
 import { getReplay, getReplayFrames } from "./api.js";
 import { readReplay, replayAddress, view, writeReplay } from "./page.js";
-import { decode, SceneState } from "./replay-frames.js";
+import { decode, Follower, inRecording, SceneState } from "./replay-frames.js";
 import { connection, ownScene, ownStage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -20,9 +20,6 @@ const RETRY_MS = 1500;
 const ADDRESS_MS = 250;
 /** As on the stage, a stall does not skip what comes after it. */
 const LONGEST_TICK_S = 0.25;
-const SMOOTHING_S = 0.25;
-/** Of so many frames at once only the last is shown. */
-const MOST_STEPS = 4;
 const SAME_S = 1e-6;
 
 /** The id of the run that this page plays by itself; null while it shows the stage. @type {Signal<string | null>} */
@@ -60,7 +57,7 @@ let isMomentPending = false;
 /** Counts the runs and clocks that were opened: late answers are of an older one. */
 let opening = 0;
 let sceneSentAt = -Infinity;
-let followed = 0;
+const follower = new Follower();
 
 /**
  * Open a run at a time.
@@ -221,16 +218,10 @@ export function tick(now) {
   const known = plan.peek();
   if (!known || !scene) return;
   if (playing.peek() && !hasEnded.peek() && !isBuffering.peek()) {
-    replayTime.value = inRecording(known, replayTime.peek() + elapsed_s * speed.peek());
+    replayTime.value = inRecording(known.recorded_s, replayTime.peek() + elapsed_s * speed.peek());
   }
   if (playing.peek() && !hasEnded.peek()) playFrame(known, now, elapsed_s);
   else showMoment(now);
-}
-
-/** The time itself, or the next one that is recorded. @type {(known: ReplayPlan, time_s: number) => number} */
-function inRecording({ recorded_s }, time_s) {
-  const next = recorded_s.find(([, end]) => time_s <= end);
-  return next ? Math.max(time_s, next[0]) : endTime.peek();
 }
 
 /** Show the frame at the position, of a segment at the level that fits the speed. */
@@ -253,12 +244,10 @@ function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /
     request(addressOf(level, number + 1));
   }
   if (shown.address === address && shown.index === index) return;
-  const isNext = shown.address === address && shown.index < index && index - shown.index <= MOST_STEPS;
-  const frames = loaded.frames.slice(isNext ? shown.index + 1 : 0, index + 1);
-  const messages = frames.flatMap((one) => one.messages);
   const state = /** @type {SceneState} */ (scene);
   const newest = loaded.frames[index];
-  draw([...(isNext ? state.follow(messages) : state.jump(messages)), centring(state, newest, elapsed_s)]);
+  const messages = state.showFrame(loaded.frames, index, shown.address === address ? shown.index : -1);
+  draw([...messages, follower.centring(state, newest, view.peek(), elapsed_s)]);
   shown = { address, index, time_s: newest.time_s };
   tell(loaded.frames.slice(0, index + 1).findLast((one) => one.scene) ?? newest, now);
 }
@@ -318,7 +307,7 @@ async function showMoment(/** @type {number} */ now) {
   isMomentPending = false;
   if (!answer || own !== opening || !scene) return;
   const [frame] = answer.frames;
-  draw([...scene.jump(frame.messages), centring(scene, frame, Infinity)]);
+  draw([...scene.jump(frame.messages), follower.centring(scene, frame, view.peek(), Infinity)]);
   shown = { address: "", index: -1, time_s };
   if (frame.time_s > time_s + SAME_S && replayTime.peek() === time_s) {
     // In a gap of the recording: the next moment is shown.
@@ -327,17 +316,6 @@ async function showMoment(/** @type {number} */ now) {
   }
   sceneSentAt = -Infinity;
   tell(frame, now);
-}
-
-/**
- * The message that centres the world on what the camera follows.
- * @type {(state: SceneState, frame: Frame, elapsed_s: number) => Message}
- */
-function centring({ world }, { follow }, elapsed_s) {
-  const [x, y] = follow[view.peek()] ?? [0, 0];
-  if (view.peek() === "leader") followed = y + (followed - y) * Math.exp(-elapsed_s / SMOOTHING_S);
-  const at = view.peek() === "leader" ? followed : y;
-  return { type: "SetPositionMessage", name: world, position: [-x, -at, 0], owner: "" };
 }
 
 /** Let the page know the moment, as often as the stage does. @param {Frame} frame @param {number} now */

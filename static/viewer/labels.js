@@ -2,9 +2,9 @@
 // theme, and on top of each other; here they follow the theme and give way to each other.
 // What it assumes of viser's client is listed and tested in app/viewer/viser_internals.
 //
-//   from the parent   {type: "hexapods:show", lanes?: colours of the lanes, covered?: [{left, top, right, bottom}],
-//                      what the parent shows over the picture, in pixels of it}
-//                     {type: "hexapods:draw", messages: of viser, which the parent draws instead of the stream's}
+//   events   hexapods:show {lanes?: colours of the lanes, covered?: [{left, top, right, bottom}], what is shown over
+//            the picture, in pixels of it}
+//            hexapods:draw {messages: of viser, which are drawn instead of the stream's}
 (() => {
   "use strict";
 
@@ -79,8 +79,8 @@
     }
   };
 
-  // A playback has no worker: its messages go straight to the client's queue, the same objects again each time that
-  // the recording is played or sought, so they are copied.
+  // The messages of a playback, which has no worker, and of a page that draws by itself are the same objects again each
+  // time that they are drawn, so they are copied.
   const copyOf = (message) => {
     const copy = { ...message };
     for (const part of ["props", "updates"]) if (message[part]) copy[part] = { ...message[part] };
@@ -122,12 +122,10 @@
     window.__viserMutable?.requestRender();
   };
 
-  addEventListener("message", ({ origin, source, data }) => {
-    if (origin !== location.origin || source !== parent) return;
-    if (data?.type === "hexapods:draw") draw(data.messages);
-    if (data?.type !== "hexapods:show") return;
-    covered = data.covered ?? covered;
-    lanes = data.lanes ?? lanes;
+  addEventListener("hexapods:draw", ({ detail }) => draw(detail.messages.map(copyOf)));
+  addEventListener("hexapods:show", ({ detail }) => {
+    covered = detail.covered ?? covered;
+    lanes = detail.lanes ?? lanes;
     labels.forEach(paint);
     window.__viserMutable?.requestRender();
   });

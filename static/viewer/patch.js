@@ -1,4 +1,4 @@
-// Patch of viser's client: runs before it on the page /viewer/, which the dashboard has in an iframe.
+// Patch of viser's client: runs before it on the page /viewer/, which the dashboard has in an iframe, after client.js.
 // What it assumes of the client is listed and tested in app/viewer/viser_internals.
 //
 //   from the parent   {type: "hexapods:show", view?: "leader" | a lane from "1" | "free", theme?: "light" | "dark"}
@@ -31,7 +31,9 @@
   };
   addEventListener("message", ({ origin, source, data }) => {
     if (origin !== location.origin || source !== parent) return;
-    if (data?.type !== "hexapods:show") return;
+    if (data?.type !== "hexapods:show" && data?.type !== "hexapods:draw") return;
+    dispatchEvent(new CustomEvent(data.type, { detail: data })); // for labels.js
+    if (data.type === "hexapods:draw") return;
     setTheme(data.theme);
     setView(data.view);
     root.toggleAttribute("data-presenting", data.isPresenting === true);
@@ -91,17 +93,6 @@
       return super.postMessage({ ...message, server: socketAddress() }, ...rest);
     }
   };
-
-  // ---- the Content-Security-Policy forbids code from strings. viser's sorter of Gaussian splats makes
-  // some when it loads; as the stage has no splats, it gets functions that do nothing
-  window.Function = new Proxy(Function, {
-    apply: () => () => () => {},
-    construct: () => () => () => {},
-  });
-
-  // ---- the client reconnects only while it has the focus, which an iframe may never get
-  document.hasFocus = () => !document.hidden;
-  document.addEventListener("visibilitychange", () => dispatchEvent(new Event("focus")));
 
   // ---- the dashboard's shortcuts work while the viewer has the focus
   addEventListener("keydown", (event) => {

@@ -39,6 +39,33 @@ def test_trajectory_as_parquet(api: Api, raced: dict[str, Any]) -> None:
     assert (answer.content[:4], answer.content[-4:]) == (b"PAR1", b"PAR1")
 
 
+def test_page_of_a_race_is_a_file_with_its_own_policy(api: Api, raced: dict[str, Any]) -> None:
+    answer = api.call("GET", f"/runs/{raced['id']}/page")
+    assert answer.status_code == 200
+    assert f'filename="race-{raced["id"]}.html"' in answer.headers["content-disposition"]
+    assert answer.text.count('<meta http-equiv="Content-Security-Policy" content="default-src') == 1
+    assert 'id="segment-0"' in answer.text
+    refused(api.call("GET", "/runs/nothing/page"), 404, "nothing")
+
+
+def test_log_of_a_race(api: Api, raced: dict[str, Any]) -> None:
+    answer = api.call("GET", f"/runs/{raced['id']}/mcap", params={"clock": "free"})
+    assert answer.content[:8] == answer.content[-8:] == b"\x89MCAP0\r\n"
+    assert f'filename="race-{raced["id"]}.mcap"' in answer.headers["content-disposition"]
+
+
+def test_video_of_a_race(api: Api, raced: dict[str, Any]) -> None:
+    def film(**query: Any) -> Any:
+        return api.call("POST", f"/runs/{raced['id']}/video", params=query)
+
+    answer = film(format="gif", width=160, height=120, fps=2, clock="free")
+    assert (answer.status_code, answer.headers["content-type"]) == (200, "image/gif")
+    assert answer.content[:6] == b"GIF89a"
+    refused(film(width=161), 422, "width must be an even number of pixels")
+    refused(film(playback_speed=0), 422, "playback_speed must be a number from 0.05 to 64")
+    refused(film(fps=60, playback_speed=0.05), 422, "more than 900 pictures; choose a higher speed")
+
+
 def test_what_has_no_trajectory_is_refused(api: Api, raced: dict[str, Any]) -> None:
     def trajectory(run_id: str, **query: Any) -> Any:
         return api.call("GET", f"/runs/{run_id}/trajectory", params=query)

@@ -3,6 +3,7 @@
 import json
 import os
 import pty
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -117,7 +118,7 @@ def test_exported_run_is_imported_into_another_folder(data: Path, tmp_path: Path
         assert len(store.list().items) == 4
 
 
-def test_walk_is_written_as_a_table(data: Path, tmp_path: Path) -> None:
+def test_walk_is_written_as_a_file(data: Path, tmp_path: Path) -> None:
     def write(*arguments: str) -> str:
         return refusal("runs", "trajectory", *arguments, *here, folder=tmp_path, run=in_process)
 
@@ -127,9 +128,24 @@ def test_walk_is_written_as_a_table(data: Path, tmp_path: Path) -> None:
     head, *rows = (tmp_path / "w.csv").read_text().splitlines()
     assert head.startswith("lane,step,time_s,body_x_m")
     assert {row.split(",")[0] for row in rows} == {"0", "1"}
+    log = output("runs", "mcap", RACED, "--out", "r.mcap", *here, folder=tmp_path, run=in_process)
+    assert log["bytes"] == (tmp_path / "r.mcap").stat().st_size
+    film = ("--out", "r.gif", "--width", "64", "--height", "64", "--fps", "1")
+    output("runs", "video", RACED, *film, *here, folder=tmp_path, run=in_process)
+    assert (tmp_path / "r.gif").read_bytes()[:6] == b"GIF89a"
     assert "must end with .csv or .parquet: w.txt" in write(RACED, "--out", "w.txt")
     assert "lane must be from 0 to 1, not 2" in write(RACED, "--lane", "2", "--out", "w.csv")
     assert "no run 'nope'" in write("nope", "--out", "w.csv")
+    assert f"{TRAINING} is finished and has no recording" in write(TRAINING, "--out", "w.csv")
+    done = in_process("runs", "page", RACED, "--out", "r.html", *here, folder=tmp_path)
+    assert re.fullmatch(rf"Race {RACED} is in r.html \(\d+ kB\).\n", done.stdout)
+
+
+def test_film_without_opengl_names_its_packages(data: Path, tmp_path: Path) -> None:
+    film = ("runs", "video", RACED, "--out", "r.mp4", "--data", str(data))
+    sentence = refusal(*film, folder=tmp_path, MUJOCO_GL="milk")
+    assert "does not work here by milk" in sentence
+    assert "apt-get install libegl1 libgl1-mesa-dri" in sentence
 
 
 def test_runs_are_listed_by_tag_search_and_order(data: Path, tmp_path: Path) -> None:

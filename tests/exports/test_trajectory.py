@@ -3,7 +3,6 @@
 import csv
 import dataclasses
 import io
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -16,23 +15,8 @@ from app.exports import extras
 from app.exports.recorded_lanes import RecordedWalks, checked_lane, recorded_walks
 from app.exports.trajectory import column_names, trajectory_csv, trajectory_parquet
 from app.storage.errors import Conflict
+from tests.exports.conftest import AGENTS
 from tests.stage.stage_parts import StageParts
-from tests.storage.stores import temporary_store
-
-AGENTS = ("greedy", "wave")
-
-
-@pytest.fixture(scope="module")
-def parts() -> Iterator[StageParts]:
-    with temporary_store() as store:
-        yield StageParts(store)
-
-
-@pytest.fixture(scope="module")
-def raced(parts: StageParts) -> RecordedWalks:
-    """Return a race with physics."""
-    run = parts.finished_race(AGENTS, steps=6, simulator="mujoco")
-    return recorded_walks(parts.store.find(run.id), parts.recordings)
 
 
 def table_of(walks: RecordedWalks, lane: int | None = None) -> tuple[list[str], list[list[str]]]:

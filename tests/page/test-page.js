@@ -28,8 +28,9 @@ test("addresses of files are escaped part by part", () => {
   const run = { kind: /** @type {const} */ ("experiment"), id: "a b" };
   assert.equal(fileAddress(run, "figures/one two.png"),
     "http://page.test/api/v1/experiments/a%20b/files/figures/one%20two.png");
-  assert.deepEqual(downloads({ ...run, kind: "race" }).map(([label]) => label), ["Recording", "Joints and feet (CSV)"]);
-  assert.equal(downloads({ ...run, kind: "training" }).length, 4);
+  assert.deepEqual(downloads({ ...run, kind: "race" }).map(([label]) => label), 
+    ["Recording", "Joints and feet (CSV)", "Offline replay (HTML)"]);
+  assert.equal(downloads({ ...run, kind: "training" }).length, 5);
 });
 
 test("names of the vocabulary, unless the server has a title", () => {

@@ -48,6 +48,9 @@ Assumed by `client`:
 - reconnects_with_focus: the client reconnects only while `document.hasFocus()`.
 - code_from_strings: the client calls `Function` only for `RunJavascriptMessage`, which is blocked,
   and in the sorter of Gaussian splats, of which the stage has none.
+- worker_connects: the client connects by posting `set_server` to its worker, takes `connected` for
+  an empty scene, and shows it after a `message_batch` with `ReplayDoneMessage`, so that
+  `static/viewer/offline.js` can do without a server.
 - controls_have_these_selectors: `static/viewer/patch.css` hides viser's controls by attributes and
   class names of its page.
 - labels_are_taken_out: the worker posts messages as `message_batch`, which the client reads after

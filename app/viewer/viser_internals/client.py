@@ -1,6 +1,6 @@
 """viser's client in the browser: the page at /viewer/ that patches it, and its colours.
 
-The page is viser's single file with two scripts and a style sheet injected. By its
+The page is viser's single file with scripts and a style sheet injected. By its
 Content-Security-Policy only its own scripts may run, by their hashes. The client itself is packed
 into an attribute of its loader, in base 88 and zstd; the loader unpacks it and adds it to the page
 as one more inline script, so its hash is needed as well.
@@ -10,7 +10,8 @@ import base64
 import gzip
 import hashlib
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from html import escape
 from pathlib import Path
 from urllib.parse import urlencode
 
@@ -23,6 +24,9 @@ from starlette.responses import Response
 
 from app import assets
 
+STAGE_SCRIPTS = ("client.js", "patch.js", "labels.js")
+OFFLINE_SCRIPTS = ("client.js", "offline.js", "labels.js")
+"""The scripts of the page `/viewer/`, and of a page that is a file."""
 _HEAD = "<head>"
 _TITLE = "<title>Viser</title>"
 _SCRIPT = re.compile(r"<script(?P<attributes>[^>]*)>(?P<body>.*?)</script>", re.DOTALL)
@@ -85,7 +89,7 @@ class ViewerPage:
         Raises:
             RuntimeError: The installed viser's page does not have the expected form.
         """
-        page = _patched_page()
+        page = patched_page("Racing Hexapods: the stage", STAGE_SCRIPTS)
         self._policy = content_policy(page)
         html = page.encode("utf-8")
         digest = hashlib.sha256(html).hexdigest()[:16]
@@ -111,7 +115,7 @@ class ViewerPage:
         return Response(body, media_type="text/html", headers=response_headers)
 
 
-def content_policy(page: str) -> str:
+def content_policy(page: str, *, is_file: bool = False) -> str:
     """Return the page's Content-Security-Policy.
 
     Besides scripts it allows what viser's client needs: it compiles WebAssembly, runs its
@@ -119,16 +123,18 @@ def content_policy(page: str) -> str:
 
     Args:
         page: the page's HTML, patch included.
+        is_file: whether the page is a file without a server: then it may load nothing at all, and
+            be embedded anywhere.
 
     Raises:
         RuntimeError: This version of viser packs its client in another way.
     """
+    own, ancestors = ("", "") if is_file else ("'self' ", "; frame-ancestors 'self'")
     hashes = " ".join(_hash(script) for script in page_scripts(page))
     return (
         f"default-src 'none'; script-src 'strict-dynamic' 'wasm-unsafe-eval' {hashes}; "
-        "worker-src blob:; style-src 'unsafe-inline'; img-src 'self' blob: data:; "
-        "connect-src 'self' blob: data:; base-uri 'none'; form-action 'none'; "
-        "frame-ancestors 'self'"
+        f"worker-src blob:; style-src 'unsafe-inline'; img-src {own}blob: data:; "
+        f"connect-src {own}blob: data:; base-uri 'none'; form-action 'none'{ancestors}"
     )
 
 
@@ -145,19 +151,28 @@ def page_scripts(page: str) -> list[bytes]:
     return [*(script["body"].encode() for script in scripts), _unpacked(packed[0])]
 
 
-def _patched_page() -> str:
+def patched_page(title: str, scripts: Sequence[str], head: str = "") -> str:
+    """Return viser's page with its patch: HTML without a policy.
+
+    Args:
+        title: of the page, plain text.
+        scripts: names of files in `static/viewer`, which run before the client in this order.
+        head: HTML that follows them.
+
+    Raises:
+        RuntimeError: The installed viser's page does not have the expected form.
+    """
     html = (Path(viser.__file__).parent / "client" / "build" / "index.html").read_text("utf-8")
     if html.count(_HEAD) != 1 or html.count(_TITLE) != 1:
         raise _unsupported("its head or title is not where the patch goes")
     folder = assets.static_dir() / "viewer"
     # Read as they are sent, since the policy has the scripts' hashes.
-    script, labels, style = (
-        (folder / name).read_text("utf-8") for name in ("patch.js", "labels.js", "patch.css")
-    )
-    html = html.replace(_TITLE, "<title>Racing Hexapods: the stage</title>")
+    texts = [(folder / name).read_text("utf-8") for name in scripts]
+    style = (folder / "patch.css").read_text("utf-8")
+    patch = "".join(f"<script>{text}</script>" for text in texts) + f"<style>{style}</style>"
+    html = html.replace(_TITLE, f"<title>{escape(title)}</title>")
     # At the start of the head, since viser's loader runs while the page is still parsed.
-    patch = f"<script>{script}</script><script>{labels}</script><style>{style}</style>"
-    return html.replace(_HEAD, f"{_HEAD}{patch}")
+    return html.replace(_HEAD, f"{_HEAD}{patch}{head}")
 
 
 def _unpacked(packed: re.Match[str]) -> bytes:

@@ -405,6 +405,13 @@ def test_code_from_strings(client: str) -> None:
     assert made_of == [*["...f,p", "...c,a"] * 2, "n.source"]
 
 
+def test_worker_connects(client: str) -> None:
+    assert "{type:`set_server`,server:" in client
+    assert "s.type===`connected`" in client
+    assert "s.type===`message_batch`&&" in client
+    assert "ReplayDoneMessage" in client
+
+
 def test_controls_have_these_selectors(client: str) -> None:
     style = (assets.static_dir() / "viewer" / "patch.css").read_text("utf-8")
     for selector, source in (

@@ -15,12 +15,17 @@ from starlette.testclient import TestClient
 from app import assets
 from app.viewer.hub import Hub
 from app.viewer.service import viewer_routes
-from app.viewer.viser_internals.client import ViewerPage, batch_colors, content_policy
+from app.viewer.viser_internals.client import (
+    OFFLINE_SCRIPTS,
+    STAGE_SCRIPTS,
+    ViewerPage,
+    batch_colors,
+    content_policy,
+)
 
 PATCH = assets.static_dir() / "viewer"
-LABELS, SCRIPT, STYLE = (
-    (PATCH / name).read_text("utf-8") for name in ("labels.js", "patch.js", "patch.css")
-)
+SCRIPTS = [(PATCH / name).read_text("utf-8") for name in STAGE_SCRIPTS]
+STYLE = (PATCH / "patch.css").read_text("utf-8")
 DIGITS = "!#$%()*+,-./0123456789:;=?@ABCDEFGHIJKLMNOPQRSTUVWXYZ[\\]^_abcdefghijklmnopqrstuvwxyz{|}~"
 
 
@@ -40,7 +45,7 @@ def test_patch_precedes_visers_loader(client: TestClient) -> None:
     html = client.get("/viewer/").text
 
     patch_position, loader_position = (
-        html.index(f"<script>{SCRIPT}</script><script>{LABELS}</script>"),
+        html.index("".join(f"<script>{script}</script>" for script in SCRIPTS)),
         html.index("<script data-p="),
     )
     assert html.index("<head>") < patch_position < loader_position
@@ -49,7 +54,8 @@ def test_patch_precedes_visers_loader(client: TestClient) -> None:
 
 
 def test_patch_contains_no_closing_tags() -> None:
-    assert "</" not in LABELS + SCRIPT
+    for name in {*STAGE_SCRIPTS, *OFFLINE_SCRIPTS}:
+        assert "</" not in (PATCH / name).read_text("utf-8")
     assert "</" not in STYLE
 
 
@@ -180,11 +186,11 @@ def test_packed_style_is_not_part_of_the_hash() -> None:
     assert content_policy(page_of("α()", "b { --β: 1 }")) == content_policy(page_of("α()"))
 
 
-def test_installed_client_has_four_scripts_and_all_are_hashed() -> None:
+def test_installed_client_has_five_scripts_and_all_are_hashed() -> None:
     headers = ViewerPage().response({}).headers
     policy = headers["content-security-policy"]
 
-    assert len(hashes(policy)) == 4
+    assert len(hashes(policy)) == 5
     script_source = policy.partition("script-src")[2].partition(";")[0]
     for word in ("'unsafe-inline'", "'unsafe-eval'", "'self'", "http"):
         assert word not in script_source

@@ -1,0 +1,143 @@
+"""A replay as one page that needs no server: viser's client, a player and the frames of the run.
+
+The page is `viser_internals.client`'s with `static/js/offline/player.js` and the modules that this
+imports, all inline, and blocks of data: `film`, JSON about the run; `scene` and `segment-…`, the
+encodings of `replay_frames` in base64. By its Content-Security-Policy it can load nothing.
+"""
+
+import base64
+import json
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from app import assets
+from app.runs.clocks import Clock
+from app.stage.playback import HIGHEST_LEVEL
+from app.storage.errors import Conflict
+from app.viewer.replay_frames import ReplayFrames
+from app.viewer.viser_internals.client import OFFLINE_SCRIPTS, content_policy, patched_page
+
+MAX_BYTES = 15_000_000
+"""Maximum size of a page; a longer run has fewer frames in a second."""
+_PLAYER = "js/offline/player.js"
+_STYLE = "style/offline.css"
+_IMPORT = re.compile(r'^import \{[^}]*\} from "(?P<path>\.[^"]*)";\n', re.MULTILINE)
+_EXPORT = re.compile(r"^export (?=(async )?(function|class|const)\b)", re.MULTILINE)
+_HEAD_END, _BODY_END = "</head>", "</body>"
+
+
+def replay_page(
+    frames: ReplayFrames, run_id: str, title: str, clock: Clock, max_bytes: int = MAX_BYTES
+) -> Iterator[bytes]:
+    """Yield the page of a run that has ended, in chunks of at most a segment.
+
+    Args:
+        frames: encodes the replay.
+        run_id: id of a training or race.
+        title: of the page.
+        clock: times a race.
+        max_bytes: maximum size of the page.
+
+    Raises:
+        NotFound, InvalidInput, Conflict: at the call, as `ReplayFrames.plan`, and if the run has
+            not ended.
+    """
+    plan = frames.plan(run_id, clock)
+    if not plan["complete"]:
+        raise Conflict(
+            f"{plan['kind']} {run_id} is not over; it can be had as a page once it ended, or was "
+            "stopped",
+            "running",
+        )
+    scene = base64.b64encode(frames.scene(run_id))
+    before, after = _around_frames(title)
+    room = max_bytes - len(before) - len(after) - len(scene) - len(json.dumps(plan)) - 2000
+    level, numbers = _segments_that_fit(frames, run_id, clock, plan, room)
+    film = {**plan, "title": title, "level": level, "notes": _notes(plan, level)}
+
+    def chunks() -> Iterator[bytes]:
+        yield before
+        # "<" could end the block.
+        yield _block("film", json.dumps(film).replace("<", "\\u003c").encode())
+        yield _block("scene", scene)
+        for number in numbers:
+            segment = frames.segment(run_id, clock, level, number)
+            yield _block(f"segment-{number}", base64.b64encode(segment))
+        yield after
+
+    return chunks()
+
+
+def _block(name: str, data: bytes) -> bytes:
+    """Return an element that holds data; its type is none that browsers run."""
+    return b'<script type="text/plain" id="%s">%s</script>\n' % (name.encode(), data)
+
+
+def _segments_that_fit(
+    frames: ReplayFrames, run_id: str, clock: Clock, plan: dict[str, Any], room: int
+) -> tuple[int, list[int]]:
+    """Return the lowest level from 0 on whose segments fit, and their numbers."""
+    for level in range(HIGHEST_LEVEL + 1):
+        numbers, size = _recorded_segments(plan, level), 0
+        for number in numbers:
+            size += len(_block(f"segment-{number}", b""))
+            size += 4 * -(-len(frames.segment(run_id, clock, level, number)) // 3)
+            if size > room:
+                break
+        else:
+            return level, numbers
+    raise Conflict(
+        f"{plan['kind']} {run_id} is too long for a page of {MAX_BYTES // 1_000_000} MB; "
+        "replay it on the server",
+        "finished",
+    )
+
+
+def _recorded_segments(plan: dict[str, Any], level: int) -> list[int]:
+    """Return the numbers of the segments that have recorded frames."""
+    segment_s = plan["frame_s"] * plan["segment_frames"] * 2**level
+    numbers: set[int] = set()
+    for from_s, to_s in plan["recorded_s"]:
+        numbers.update(range(int(from_s / segment_s), int(to_s / segment_s) + 1))
+    return sorted(number for number in numbers if number * segment_s <= plan["recorded_s"][-1][1])
+
+
+def _notes(plan: dict[str, Any], level: int) -> list[str]:
+    """Return what the page leaves out, in sentences."""
+    notes = []
+    if level > 0:
+        rate = 1 / (plan["frame_s"] * 2**level)
+        notes.append(f"{rate:.3g} pictures a second of the run's time, so that the file is small.")
+    if len(plan["recorded_s"]) > 1:
+        notes.append("Only the first 20 and the newest 500 steps of this practice are recorded.")
+    return notes
+
+
+def _around_frames(title: str) -> tuple[bytes, bytes]:
+    """Return the page before and after the blocks of data."""
+    style = (assets.static_dir() / _STYLE).read_text("utf-8")
+    head = f'<style>{style}</style><script type="module">{_inlined(_PLAYER)}</script>'
+    page = patched_page(title, OFFLINE_SCRIPTS, head)
+    policy = content_policy(page, is_file=True)
+    meta = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
+    page = page.replace("<head>", f'<head><meta charset="utf-8">{meta}', 1)
+    before, after = page.rsplit(_BODY_END, 1)
+    return before.encode(), (_BODY_END + after).encode()
+
+
+def _inlined(entry: str) -> str:
+    """Return a module with all that it imports in one, each before what imports it."""
+    texts: dict[str, str] = {}
+
+    def add(path: str) -> None:
+        source = (assets.static_dir() / path).read_text("utf-8")
+        for found in _IMPORT.finditer(source):
+            target = (assets.static_dir() / path).parent / found["path"]
+            imported = target.resolve().relative_to(assets.static_dir().resolve()).as_posix()
+            if imported not in texts:
+                add(imported)
+        texts[path] = _EXPORT.sub("", _IMPORT.sub("", source))
+
+    add(entry)
+    return "\n".join(texts.values())

@@ -1,0 +1,27 @@
+// viser's client without a server: it is told that it is connected to an empty scene, which js/offline/player.js draws.
+// Dispatches `hexapods:connected` when it is. What it assumes of the client is listed in app/viewer/viser_internals.
+(() => {
+  "use strict";
+
+  /** The client connects before it has a queue to draw from. */
+  const announce = () => {
+    if (window.__viserMutable?.messageQueue) dispatchEvent(new Event("hexapods:connected"));
+    else requestAnimationFrame(announce);
+  };
+
+  window.Worker = class extends Worker {
+    postMessage(message, ...rest) {
+      if (message?.type !== "set_server") return super.postMessage(message, ...rest);
+      setTimeout(() => {
+        for (const data of [
+          { type: "connected" },
+          { type: "message_batch", messages: [{ type: "ReplayDoneMessage" }] },
+        ]) {
+          this.dispatchEvent(new MessageEvent("message", { data }));
+        }
+        announce();
+      });
+      return undefined;
+    }
+  };
+})();

@@ -1,0 +1,24 @@
+"""A store with runs for the tests of exports."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from app.exports.recorded_lanes import RecordedWalks, recorded_walks
+from tests.stage.stage_parts import StageParts
+from tests.storage.stores import temporary_store
+
+AGENTS = ("greedy", "wave")
+
+
+@pytest.fixture(scope="package")
+def parts() -> Iterator[StageParts]:
+    with temporary_store() as store:
+        yield StageParts(store)
+
+
+@pytest.fixture(scope="package")
+def raced(parts: StageParts) -> RecordedWalks:
+    """Return a race with physics."""
+    run = parts.finished_race(AGENTS, steps=6, simulator="mujoco")
+    return recorded_walks(parts.store.find(run.id), parts.recordings)

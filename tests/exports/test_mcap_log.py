@@ -1,0 +1,98 @@
+"""The MCAP log of a recorded walk, opened by the reader of the format's authors."""
+
+import io
+from typing import Any
+
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
+
+from app.domain.kinematics import foot_positions, rotation_matrices
+from app.exports.mcap_log import mcap_log
+from app.exports.recorded_lanes import RecordedWalks
+from app.exports.trajectory import joint_names
+
+Messages = dict[str, list[Any]]
+
+
+@pytest.fixture(scope="module")
+def data(raced: RecordedWalks) -> bytes:
+    return b"".join(mcap_log(raced, "paper"))
+
+
+@pytest.fixture(scope="module")
+def messages(data: bytes) -> Messages:
+    """Return the decoded messages by topic, in order of time."""
+    reader = make_reader(io.BytesIO(data), decoder_factories=[DecoderFactory()])
+    found: Messages = {}
+    for _, channel, _, message in reader.iter_decoded_messages():
+        found.setdefault(channel.topic, []).append(message)
+    return found
+
+
+def seconds(timestamp: Any) -> float:
+    value: float = timestamp.seconds + timestamp.nanos / 1e9
+    return value
+
+
+def test_schemas_are_those_that_foxglove_knows(data: bytes) -> None:
+    reader = make_reader(io.BytesIO(data))
+    summary = reader.get_summary()
+    assert summary is not None
+    names = {
+        channel.topic: summary.schemas[channel.schema_id].name
+        for channel in summary.channels.values()
+    }
+    assert names == {
+        "/lane0/joint_states": "foxglove.JointStates",
+        "/lane1/joint_states": "foxglove.JointStates",
+        "/tf": "foxglove.FrameTransforms",
+    }
+    (agents,) = reader.iter_metadata()
+    assert agents.metadata == {"lane0": "Greedy", "lane1": "Wave"}
+
+
+def test_joint_states_are_the_recorded_angles(raced: RecordedWalks, messages: Messages) -> None:
+    names, step_s = joint_names(raced.problem.built_robot), raced.problem.robot.step_s
+    for number, lane in enumerate(raced.lanes):
+        states = messages[f"/lane{number}/joint_states"]
+        motions = [lane.motion(index) for index in range(6)]
+        recorded = np.concatenate([lane.rest_qpos[None], *(motion.qpos for motion in motions)])
+        assert [joint.name for joint in states[0].joints] == names
+        written = np.array([[joint.position for joint in one.joints] for one in states])
+        assert np.array_equal(written, recorded[:, 7:].astype(float))
+        times = [
+            start + t
+            for start, motion in zip(lane.starts_s(step_s, "paper"), motions, strict=True)
+            for t in motion.time_s.tolist()
+        ]
+        assert [seconds(one.timestamp) for one in states] == pytest.approx([0, *times])
+
+
+def test_frames_put_the_links_where_the_robot_was(raced: RecordedWalks, messages: Messages) -> None:
+    lane = raced.lanes[1]
+    last = [
+        one for one in messages["/tf"] if one.transforms[0].child_frame_id.startswith("lane1/")
+    ][-1]
+    above = {one.child_frame_id: one for one in last.transforms}
+    pose = lane.motion(5).qpos[-1:].astype(float)
+
+    def place_of(frame: str) -> tuple[Any, Any]:
+        """Return position and rotation of a frame in that of its lane."""
+        if frame == "lane1":
+            return np.zeros(3), np.eye(3)
+        one = above[frame]
+        position, rotation = place_of(one.parent_frame_id)
+        t, r = one.translation, one.rotation
+        turn = rotation_matrices(np.array([[0, 0, 0, r.w, r.x, r.y, r.z]]))[0]
+        return position + rotation @ [t.x, t.y, t.z], rotation @ turn
+
+    assert place_of("lane1/torso")[0] == pytest.approx(pose[0, :3])
+    feet = foot_positions(raced.problem.built_robot, pose)[0]
+    for leg in range(1, 7):
+        assert place_of(f"lane1/leg{leg}_foot")[0] == pytest.approx(feet[leg - 1], abs=1e-6)
+    (origin,) = [
+        t for one in messages["/tf"] for t in one.transforms if t.child_frame_id == "lane1"
+    ]
+    assert (origin.parent_frame_id, origin.translation.x) == ("world", 1)

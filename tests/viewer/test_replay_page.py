@@ -1,0 +1,91 @@
+"""The page that replays a run without a server: its frames are those of the recording."""
+
+import base64
+import json
+import re
+
+import numpy as np
+import pytest
+
+from app.stage.playback import FRAMES_PER_S, SEGMENT_FRAMES, Replays
+from app.storage.errors import Conflict
+from app.viewer.replay_frames import ReplayFrames
+from app.viewer.replay_page import replay_page
+from app.viewer.robot_mesh import RobotMesh
+from app.viewer.scene import SCENE_ROOT
+from tests.stage.stage_parts import StageParts
+from tests.viewer.test_replay_frames import LANES, decoded, frames_of, shown
+
+_BLOCK = re.compile(r'<script type="text/plain" id="([\w-]+)">([^<]*)</script>')
+
+
+def page_of(frames: ReplayFrames, run_id: str, **more: int) -> str:
+    return b"".join(replay_page(frames, run_id, "A <race> & more", "paper", **more)).decode()
+
+
+def blocks_of(page: str) -> dict[str, str]:
+    return dict(_BLOCK.findall(page))
+
+
+def test_frames_of_the_page_are_the_joint_positions_that_were_simulated(parts: StageParts) -> None:
+    run = parts.finished_race(LANES)
+    replay = Replays(parts.store, parts.recordings).get(run.id, "paper")
+    page = page_of(frames_of(parts), run.id)
+    blocks = blocks_of(page)
+    film = json.loads(blocks["film"])
+    mesh = RobotMesh(replay.show.spec.robot)
+
+    assert film["level"] == 0
+    assert film["notes"] == []
+    end_s = film["recorded_s"][-1][1]
+    numbers = range(int(end_s * FRAMES_PER_S / SEGMENT_FRAMES) + 1)
+    assert list(blocks) == ["film", "scene", *(f"segment-{number}" for number in numbers)]
+    for number in numbers:
+        segment, arrays = decoded(base64.b64decode(blocks[f"segment-{number}"]))
+        time_s = segment["frames"][-1]["time_s"]
+        state = shown(segment["frames"], arrays)
+        moved = f"{SCENE_ROOT}/robots/0 batched_positions"
+        drawn = np.frombuffer(state[moved], np.float32).reshape(len(LANES), -1, 3)
+        for lane, view in enumerate(replay.frame_at(time_s).lanes):
+            expected = mesh.body_poses(view.qpos).positions[mesh.parts[0].links]
+            offset = drawn[lane] - expected
+            assert np.ptp(offset, axis=0) == pytest.approx(0, abs=1e-5)
+            assert offset[:, 1:] == pytest.approx(0, abs=1e-5), "lanes differ in x"
+    assert segment["frames"][-1]["time_s"] == pytest.approx(end_s)
+
+
+def test_the_page_has_its_modules_inline_and_its_title_as_text(parts: StageParts) -> None:
+    page = page_of(frames_of(parts), parts.finished_race(LANES).id)
+
+    assert "<title>A &lt;race&gt; &amp; more</title>" in page
+    assert "A <race>" not in page
+    (player,) = re.findall(r'<script type="module">(.*?)</script>', page, re.DOTALL)
+    assert not re.search(r"^(import|export) ", player, re.MULTILINE)
+    assert player.index("class SceneState") < player.index("class Player")
+    assert "frame-ancestors" not in page.split("</head>")[0].split("<script")[0]
+
+
+def test_a_page_that_would_be_too_large_has_fewer_frames(parts: StageParts) -> None:
+    run, frames = parts.finished_race(LANES), frames_of(parts)
+    whole = len(page_of(frames, run.id).encode())
+    small = page_of(frames, run.id, max_bytes=whole - 20_000)
+    film = json.loads(blocks_of(small)["film"])
+
+    assert len(small.encode()) < whole - 20_000
+    assert film["level"] >= 1
+    assert "pictures a second of the run's time" in film["notes"][0]
+    with pytest.raises(Conflict, match="too long for a page of"):
+        page_of(frames, run.id, max_bytes=100_000)
+
+
+def test_a_long_practice_has_the_segments_of_its_recorded_steps(parts: StageParts) -> None:
+    run = parts.finished_training(steps=700)
+    film = json.loads(blocks_of(page_of(frames_of(parts), run.id))["film"])
+    assert "Only the first 20 and the newest 500 steps" in film["notes"][0]
+
+
+def test_a_race_under_way_has_no_page(parts: StageParts) -> None:
+    run, advance = parts.running_race(LANES)
+    advance()
+    with pytest.raises(Conflict, match="can be had as a page once it ended"):
+        page_of(frames_of(parts), run.id)
