@@ -252,7 +252,7 @@ const exportOf = ({ id }, rest) => new URL(`runs/${encodeURIComponent(id)}/${res
 
 /**
  * The files of a run that can be downloaded: [label, address].
- * @param {RunKey} run
+ * @param {RunKey & { started_at?: string | null }} run
  * @returns {[string, string][]}
  */
 export function downloads(run) {
@@ -262,8 +262,9 @@ export function downloads(run) {
       ["Summary (JSON)", addressOf(run, "summary")],
     ];
   }
+  // Nothing was recorded of an imported table.
   /** @type {[string, string][]} */
-  const walk = [
+  const walk = run.started_at === null ? [] : [
     ["Joints and feet (CSV)", exportOf(run, "trajectory?format=csv")],
     ["Offline replay (HTML)", exportOf(run, "page")],
   ];

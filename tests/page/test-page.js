@@ -31,6 +31,7 @@ test("addresses of files are escaped part by part", () => {
   assert.deepEqual(downloads({ ...run, kind: "race" }).map(([label]) => label), 
     ["Recording", "Joints and feet (CSV)", "Offline replay (HTML)"]);
   assert.equal(downloads({ ...run, kind: "training" }).length, 5);
+  assert.equal(downloads({ ...run, kind: "training", started_at: null }).length, 3);
 });
 
 test("names of the vocabulary, unless the server has a title", () => {
