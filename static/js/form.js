@@ -3,7 +3,7 @@ import { computed, signal } from "@preact/signals";
 import { isSimulated, parseText } from "./disturbances.js";
 import { listed } from "./format.js";
 import { parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
-import { PAGE_FIELDS } from "./page.js";
+import { hasOwnSettings, isReadOnly, PAGE_FIELDS } from "./page.js";
 import { agentOf, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
 import { options, served } from "./store.js";
 
@@ -24,11 +24,6 @@ export const overrides = signal({});
 export const typed = signal({});
 /** What a link says that is no field of the form, as "alhpa=0.5". @type {Signal<string[]>} */
 export const unknownParts = signal([]);
-/**
- * Whether the form shows the settings of the run that the page shows, as it does to spectators until they try other
- * ones. They are read only, and not in the address.
- */
-export const isReadOnly = signal(false);
 
 // ---- texts as values
 
@@ -289,6 +284,12 @@ export function writeAddress() {
   const search = query.size ? `?${query}` : "";
   history.replaceState(history.state, "", `${location.pathname}${search}${location.hash}`);
 }
+
+/** Let a spectator change the form. */
+export const tryOwnSettings = () => {
+  hasOwnSettings.value = true;
+  writeAddress();
+};
 
 /** A link to the page with every field of the form. */
 export const link = () =>

@@ -10,8 +10,7 @@ import { followPresenter, followTheme } from "./page.js";
 import { announceOutcomes, followTimeline } from "./race.js";
 import { followReplay, readReplayAddress } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
-import { followStageSettings } from "./spectators.js";
-import { applyEvent, connection, isLockedOut, options, version } from "./store.js";
+import { applyEvent, connection, isLockedOut, options, role, version } from "./store.js";
 import { followCurves, trainingsInView } from "./training.js";
 import { followWhatIf } from "./what-if.js";
 
@@ -33,7 +32,9 @@ async function loadOptions(attempt = 0) {
   }
   readAddress();
   writeAddress();
-  followStageSettings();
+  effect(() => {
+    if (role.value === "spectator") import("./spectators.js").then((module) => module.followStageSettings());
+  });
   followAddress();
   followWhatIf();
 }

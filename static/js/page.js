@@ -1,5 +1,6 @@
 // State of this page alone: the open view, the camera, the help dialog, the layout, the colour theme.
 import { computed, effect, signal } from "@preact/signals";
+import { role } from "./store.js";
 
 /** What the camera follows: "leader", "free", or the number of a lane, from "1". */
 export const view = signal("leader");
@@ -30,6 +31,13 @@ export const REPLAY_FIELDS = ["run", "ghost", "t"];
 const PRESENT_FIELD = "present";
 /** Fields of the address that are none of the form. */
 export const PAGE_FIELDS = [...REPLAY_FIELDS, PRESENT_FIELD];
+
+// ---- the form on a spectator's page
+
+/** Whether a spectator's form has settings of its own, which only "What if?" tries. */
+export const hasOwnSettings = signal(false);
+/** Whether the form shows a spectator the settings of the run that is shown, which are not in the address. */
+export const isReadOnly = computed(() => role.value === "spectator" && !hasOwnSettings.value);
 
 // ---- the presenter view: full screen, large type
 

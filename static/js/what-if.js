@@ -1,7 +1,8 @@
 // What-if: kinematic trials of the form's settings, beside trials of the defaults.
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "./api.js";
-import { form, isReadOnly, mistakes, whatIfBody } from "./form.js";
+import { form, mistakes, whatIfBody } from "./form.js";
+import { isReadOnly } from "./page.js";
 import { limitsOf } from "./settings.js";
 import { options, role } from "./store.js";
 

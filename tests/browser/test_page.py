@@ -30,7 +30,7 @@ def test_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
     assert page.url == server.address
     page.get_by_role("link", name="Runs").click()
     expect(page.get_by_text("No runs yet.")).to_be_visible()
-    expect(page.locator(".no-runs")).to_contain_text("or its report. Start the first one.")
+    expect(page.locator(".no-runs")).to_contain_text("or its report. Start the first one, or drop")
 
 
 def test_the_first_lesson_is_skipped_once_and_opened_again(

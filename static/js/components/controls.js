@@ -5,12 +5,11 @@ import {
   showOnStage, stop,
 } from "../actions.js";
 import { raceEstimate } from "../estimate.js";
-import { chooseLearner, form, isReadOnly, mistakes, unknownParts } from "../form.js";
+import { chooseLearner, form, mistakes, tryOwnSettings, unknownParts } from "../form.js";
 import { count, listed, sentence, whole } from "../format.js";
-import { isNarrow } from "../page.js";
+import { hasOwnSettings, isNarrow, isReadOnly } from "../page.js";
 import { interruptedRun, isOperator, myWork, offStage, progress, shownRun, work } from "../selectors.js";
 import { agentOf, learners, ratesInWords } from "../settings.js";
-import { showStageSettings, tryOwnSettings } from "../spectators.js";
 import { scene } from "../store.js";
 import { gaitTitle, inFormWords, labelOf } from "../titles.js";
 import { EstimateNote, goToField, Held, html, Icon, Problem, ProgressBar, UnknownParts } from "./elements.js";
@@ -207,7 +206,9 @@ function Spectator() {
           ${isReadOnly.value
             ? html`<button class="secondary compact" onClick=${tryOwnSettings}>Try other settings</button>`
             : html`
-              <button class="secondary compact" onClick=${showStageSettings}>Back to the settings on stage</button>
+              <button class="secondary compact" onClick=${() => (hasOwnSettings.value = false)}>
+                Back to the settings on stage
+              </button>
             `}
         </div>
         ${!isReadOnly.value && html`<${UnknownParts} parts=${unknownParts} />`}

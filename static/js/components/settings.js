@@ -3,8 +3,9 @@ import { useState } from "preact/hooks";
 import { tune } from "../actions.js";
 import { presentRates, rateInWords } from "../changes.js";
 import { inTime, parseText } from "../disturbances.js";
-import { chooseLearner, enter, form, isReadOnly, setField, wrong } from "../form.js";
+import { chooseLearner, enter, form, setField, wrong } from "../form.js";
 import { count, listed } from "../format.js";
+import { isReadOnly } from "../page.js";
 import { isOperator, liveTraining, trainingInView } from "../selectors.js";
 import {
   agentOf, beginningOf, fullTitle, furtherSettings, kindOf, laneSettings, learners, mainSettings, quantityOf,

@@ -1,9 +1,9 @@
 // What-if: distances of kinematic robots that practise with these settings, and with the defaults.
 import { useEffect, useState } from "preact/hooks";
 import { canStart, continueTraining, practiseMore } from "../actions.js";
-import { form, isReadOnly, mistakes, validSteps } from "../form.js";
+import { form, mistakes, validSteps } from "../form.js";
 import { count, metres, whole } from "../format.js";
-import { isNarrow } from "../page.js";
+import { isNarrow, isReadOnly } from "../page.js";
 import { isOperator, matchingTable, work } from "../selectors.js";
 import { agentOf, learns } from "../settings.js";
 import {
