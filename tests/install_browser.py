@@ -2,7 +2,7 @@
 
 Debian's Chromium where apt-get may install it, else Playwright's own. A browser counts only if it
 starts, because Ubuntu's `chromium` may be a stub that asks for snap, and Playwright's own may
-lack system libraries.
+lack system libraries. Films, which are drawn off screen, need OpenGL by EGL too.
 """
 
 import os
@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
+from ctypes.util import find_library
 from pathlib import Path
 
 ENVIRONMENT_NAME = "HEXAPODS_TEST_BROWSER"
@@ -25,8 +26,8 @@ WHAT_PLAYWRIGHT_NEEDS = (
     "On Debian: apt-get install libatomic1."
 )
 
-# Playwright's driver needs libatomic, which a slim Debian has not.
-_DEBIAN_PACKAGES = ["chromium", "libatomic1"]
+# Playwright's driver needs libatomic, which a slim Debian has not; films are drawn with EGL.
+_DEBIAN_PACKAGES = ["chromium", "libatomic1", "libegl1", "libgl1-mesa-dri"]
 
 _PLAYWRIGHT_VERSION = [sys.executable, "-m", "playwright", "--version"]
 
@@ -55,7 +56,7 @@ def main() -> int:
     browser = find_browser()
     if browser is None and os.environ.get(ENVIRONMENT_NAME):
         return _give_up(f"{ENVIRONMENT_NAME} names no browser that starts.")
-    if browser is None or not _succeeds(_PLAYWRIGHT_VERSION):
+    if browser is None or not _succeeds(_PLAYWRIGHT_VERSION) or find_library("EGL") is None:
         _install_debian_packages()
         browser = find_browser()
     if not _succeeds(_PLAYWRIGHT_VERSION):
@@ -76,7 +77,7 @@ def _give_up(why: str) -> int:
 
 
 def _install_debian_packages() -> None:
-    print(f"The browser tests need {' and '.join(_DEBIAN_PACKAGES)}.")
+    print(f"The tests of the page and of films need {' and '.join(_DEBIAN_PACKAGES)}.")
     as_root = _as_root()
     if shutil.which("apt-get") is None or as_root is None:
         print("apt-get cannot install them: it is not here, or needs root or passwordless sudo.")

@@ -137,7 +137,12 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
         "gait",
         "audience",
     )
-    opened = {f"static/js/components/{name}.js" for name in (*lazy, "chart-files")}
+    opened = {
+        *(f"static/js/components/{name}.js" for name in (*lazy, "chart-files")),
+        "static/js/spectators.js",
+        # Of files that play a replay offline.
+        "static/js/offline/player.js",
+    }
     later = {path for one in opened for path in imported_modules(one, folder)} - {*modules}
 
     every = {*(folder / "js").rglob("*.js")}

@@ -10,7 +10,7 @@ import pytest
 from app.stage.playback import FRAMES_PER_S, SEGMENT_FRAMES, Replays
 from app.storage.errors import Conflict
 from app.viewer.replay_frames import ReplayFrames
-from app.viewer.replay_page import replay_page
+from app.viewer.replay_page import _notes, _recorded_segments, replay_page
 from app.viewer.robot_mesh import RobotMesh
 from app.viewer.scene import SCENE_ROOT
 from tests.stage.stage_parts import StageParts
@@ -80,8 +80,11 @@ def test_a_page_that_would_be_too_large_has_fewer_frames(parts: StageParts) -> N
 
 def test_a_long_practice_has_the_segments_of_its_recorded_steps(parts: StageParts) -> None:
     run = parts.finished_training(steps=700)
-    film = json.loads(blocks_of(page_of(frames_of(parts), run.id))["film"])
-    assert "Only the first 20 and the newest 500 steps" in film["notes"][0]
+    plan = frames_of(parts).plan(run.id, "paper")
+    # At level 4 a segment has 34.1 s; of 224 s in all, 6.4 to 64 s are not recorded.
+    assert _recorded_segments(plan, 4) == [0, 1, 2, 3, 4, 5, 6]
+    assert _recorded_segments(plan, 2) == [0, *range(7, 27)]
+    assert "Only the first 20 and the newest 500 steps" in _notes(plan, 0)[0]
 
 
 def test_a_race_under_way_has_no_page(parts: StageParts) -> None:
