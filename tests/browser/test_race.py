@@ -198,7 +198,7 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
 
     # Keys of the race do nothing here, and a menu closes as menus do.
     page.keyboard.press("r")
-    menu = page.locator("details.menu").first
+    menu = page.locator(".run details.menu").first
     menu.locator("summary").click()
     expect(menu).to_have_attribute("open", "")
     page.keyboard.press("Tab")
