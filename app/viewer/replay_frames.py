@@ -106,9 +106,12 @@ class ReplayFrames:
             return kept
         times_s = replay.segment_times_s(level, number)
         with self._encoding:
+            # Another request for it may have been encoded while this one waited.
+            if (kept := self._segments.get(key)) is not None:
+                return kept
             encoded = _encode(_after_scene(replay, times_s))
-        if replay.is_complete or len(times_s) == SEGMENT_FRAMES:
-            self._segments.put(key, encoded)
+            if replay.is_complete or len(times_s) == SEGMENT_FRAMES:
+                self._segments.put(key, encoded)
         return encoded
 
 

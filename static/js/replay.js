@@ -51,8 +51,10 @@ let draw = () => {};
 let scene = null;
 /** Address → frames; null while they are requested. @type {Map<string, Frames | null>} */
 const segments = new Map();
-/** The newest of the frames that are shown: of a segment by its address and index, or a moment. */
-let shown = { address: "", index: -1, time_s: NaN };
+const NOTHING = { address: "", index: -1, time_s: NaN, frame: /** @type {Frame | null} */ (null), view: "" };
+/** The newest frame that is drawn, by its segment and index or by its time, and the view that it is centred for. */
+let shown = NOTHING;
+/** Whether a moment is requested, or not to be requested again yet. */
 let isMomentPending = false;
 /** Counts the runs and clocks that were opened: late answers are of an older one. */
 let opening = 0;
@@ -68,16 +70,11 @@ export async function openReplay(id, at = {}) {
   const { time_s = 0, isPlaying = true, clock: timedBy = clock.peek(), ghost = null } = at;
   opening += 1;
   const own = opening;
-  forget();
   batch(() => {
-    ownRunId.value = id;
-    ghostId.value = ghost;
-    plan.value = null;
-    replayProblem.value = null;
+    forget(id, ghost);
     replayTime.value = time_s;
     playing.value = isPlaying;
     clock.value = timedBy;
-    ownScene.value = null;
   });
   writeReplayAddress();
   try {
@@ -88,37 +85,53 @@ export async function openReplay(id, at = {}) {
     redraw();
     seekReplay(time_s);
   } catch (error) {
-    if (own !== opening) return;
-    if (isLasting(error)) replayProblem.value = /** @type {Error} */ (error).message;
-    else setTimeout(() => own === opening && openReplay(id, { ...at, clock: timedBy }), RETRY_MS);
+    retryAfter(error, own, () => openReplay(id, { ...at, clock: timedBy }));
   }
 }
 
-/** Whether an error will be the same the next time. @param {unknown} error */
-const isLasting = (error) => [403, 404, 409, 410, 422].includes(/** @type {RequestError} */ (error).status);
+/**
+ * Tell an error that will be the same the next time, else try again after a while.
+ * @param {unknown} error
+ * @param {number} own the opening that the request belongs to
+ * @param {() => unknown} again
+ */
+function retryAfter(error, own, again) {
+  if (own !== opening) return;
+  const { status, message } = /** @type {RequestError} */ (error);
+  if (LASTING.includes(status)) replayProblem.value = message;
+  else setTimeout(() => own === opening && again(), RETRY_MS);
+}
+
+const LASTING = [403, 404, 409, 410, 422];
 
 /** Show the stage again that all pages share. */
 export function closeReplay() {
   opening += 1;
   if (scene) draw([removal(scene)]);
-  forget();
   batch(() => {
-    ownRunId.value = null;
-    ghostId.value = null;
-    plan.value = null;
-    replayProblem.value = null;
-    isBuffering.value = false;
+    forget(null, null);
     ownStage.value = null;
-    ownScene.value = null;
   });
   writeReplayAddress();
 }
 
-const forget = () => {
+/**
+ * Forget what is known of the run that was open; another one is, or none.
+ * @param {string | null} id
+ * @param {string | null} ghost
+ */
+function forget(id, ghost) {
   scene = null;
   segments.clear();
-  shown = { address: "", index: -1, time_s: NaN };
-};
+  shown = NOTHING;
+  isMomentPending = false;
+  ownRunId.value = id;
+  ghostId.value = ghost;
+  plan.value = null;
+  replayProblem.value = null;
+  isBuffering.value = false;
+  ownScene.value = null;
+}
 
 /**
  * Take the 3D view in which to draw; what it had is gone.
@@ -133,7 +146,7 @@ export function drawIn(take) {
 function redraw() {
   if (!scene) return;
   draw([removal(scene), ...scene.restart()]);
-  shown = { address: "", index: -1, time_s: NaN };
+  shown = NOTHING;
 }
 
 /** The message that removes all that is drawn. @type {(state: SceneState) => Message} */
@@ -216,12 +229,16 @@ export function tick(now) {
   const elapsed_s = lastTick === null ? 0 : Math.min((now - lastTick) / 1000, LONGEST_TICK_S);
   lastTick = now;
   const known = plan.peek();
-  if (!known || !scene) return;
+  if (!known || !scene || replayProblem.peek() !== null) return;
   if (playing.peek() && !hasEnded.peek() && !isBuffering.peek()) {
     replayTime.value = inRecording(known.recorded_s, replayTime.peek() + elapsed_s * speed.peek());
   }
   if (playing.peek() && !hasEnded.peek()) playFrame(known, now, elapsed_s);
   else showMoment(now);
+  if (shown.frame && shown.view !== view.peek()) {
+    draw([follower.centring(scene, shown.frame, view.peek(), Infinity)]);
+    shown = { ...shown, view: view.peek() };
+  }
 }
 
 /** Show the frame at the position, of a segment at the level that fits the speed. */
@@ -248,7 +265,7 @@ function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /
   const newest = loaded.frames[index];
   const messages = state.showFrame(loaded.frames, index, shown.address === address ? shown.index : -1);
   draw([...messages, follower.centring(state, newest, view.peek(), elapsed_s)]);
-  shown = { address, index, time_s: newest.time_s };
+  shown = { address, index, time_s: newest.time_s, frame: newest, view: view.peek() };
   tell(loaded.frames.slice(0, index + 1).findLast((one) => one.scene) ?? newest, now);
 }
 
@@ -272,11 +289,7 @@ function request(address) {
   const own = opening;
   load(address, { clock: clock.peek() }).then(
     (frames) => own === opening && segments.set(address, frames),
-    (error) => {
-      if (own !== opening) return;
-      if (isLasting(error)) replayProblem.value = error.message;
-      else setTimeout(() => own === opening && segments.delete(address), RETRY_MS);
-    },
+    (error) => retryAfter(error, own, () => segments.delete(address)),
   );
   return null;
 }
@@ -303,12 +316,20 @@ async function showMoment(/** @type {number} */ now) {
   if (isMomentPending || Math.abs(shown.time_s - time_s) < SAME_S) return;
   isMomentPending = true;
   const own = opening;
-  const answer = await load("moment", { time_s: String(time_s), clock: clock.peek() }).catch(() => null);
-  isMomentPending = false;
-  if (!answer || own !== opening || !scene) return;
-  const [frame] = answer.frames;
-  draw([...scene.jump(frame.messages), follower.centring(scene, frame, view.peek(), Infinity)]);
-  shown = { address: "", index: -1, time_s };
+  try {
+    const { frames: [frame] } = await load("moment", { time_s: String(time_s), clock: clock.peek() });
+    if (own !== opening || !scene) return;
+    isMomentPending = false;
+    drawMoment(scene, frame, time_s, now);
+  } catch (error) {
+    retryAfter(error, own, () => (isMomentPending = false));
+  }
+}
+
+/** @type {(state: SceneState, frame: Frame, time_s: number, now: number) => void} */
+function drawMoment(state, frame, time_s, now) {
+  draw([...state.jump(frame.messages), follower.centring(state, frame, view.peek(), Infinity)]);
+  shown = { ...NOTHING, time_s, frame, view: view.peek() };
   if (frame.time_s > time_s + SAME_S && replayTime.peek() === time_s) {
     // In a gap of the recording: the next moment is shown.
     replayTime.value = frame.time_s;
@@ -342,11 +363,18 @@ export function followReplay() {
   effect(() => {
     if (connection.value === "live" && replayProblem.peek() && ownRunId.peek()) readReplayAddress();
   });
+  let isLooping = false;
   const loop = (/** @type {number} */ now) => {
-    if (ownRunId.peek() !== null) tick(now);
+    isLooping = ownRunId.peek() !== null;
+    if (!isLooping) return;
+    tick(now);
     requestAnimationFrame(loop);
   };
-  requestAnimationFrame(loop);
+  effect(() => {
+    if (ownRunId.value === null || isLooping) return;
+    isLooping = true;
+    requestAnimationFrame(loop);
+  });
   addEventListener("popstate", readReplayAddress);
 }
 
