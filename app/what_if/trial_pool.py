@@ -4,6 +4,7 @@ import multiprocessing
 import os
 import queue
 import threading
+import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -21,7 +22,7 @@ TIMEOUT_S = 60.0
 NICENESS = 10
 """Less than that of jobs, since a user waits for the reply."""
 _CHUNK_SIZE = 3
-_CLOSE_S = 3.0
+_CLOSE_S, _KILL_EVERY_S = 3.0, 0.02
 T = TypeVar("T")
 R = TypeVar("R")
 
@@ -80,8 +81,7 @@ class TrialPool:
         """Call a function of a module with each of some arguments; raises as `run`."""
         request = _Request(function, arguments, Future())
         with self._lock:
-            if self._closed:
-                raise Busy("the server is stopping; try again later", 1)
+            self._check_open()
             if self._thread is None:
                 self._thread = threading.Thread(target=self._serve, name="trial pool", daemon=True)
                 self._thread.start()
@@ -89,14 +89,20 @@ class TrialPool:
         return request.future.result()
 
     def close(self) -> None:
-        """Kill the processes and reject further requests."""
+        """Kill the processes; reject further requests, and those that wait."""
         with self._lock:
             self._closed = True
             self._requests.put(None)
             thread = self._thread
-        self._kill_workers()
-        if thread is not None:
-            thread.join(_CLOSE_S)
+        deadline = time.monotonic() + _CLOSE_S
+        # More than once: a worker that is being started is not listed yet.
+        while thread is not None and thread.is_alive() and time.monotonic() < deadline:
+            self._kill_workers()
+            thread.join(_KILL_EVERY_S)
+
+    def _check_open(self) -> None:
+        if self._closed:
+            raise Busy("the server is stopping; try again later", 1)
 
     def _serve(self) -> None:
         while True:
@@ -109,6 +115,7 @@ class TrialPool:
                 self._stop_workers()
                 return
             try:
+                self._check_open()
                 request.future.set_result(self._run(request.function, request.arguments))
             except HexapodError as error:
                 request.future.set_exception(error)

@@ -64,6 +64,8 @@ def test_a_server_that_is_away_is_told_and_asked_again(
     page = dashboard.page
     dashboard.open(server.address)
     panel = page.get_by_role("region", name="What if?")
+    # The page is live before it has the options that its forms are made of.
+    expect(panel).to_contain_text("Move a slider")
     server.kill()
     panel.get_by_role("button", name="Try the settings as they are").click()
     expect(panel.get_by_role("alert")).to_contain_text("does not answer")

@@ -178,3 +178,26 @@ def test_workers_exit_when_idle_and_when_closed() -> None:
     assert not psutil.pid_exists(second)
     with pytest.raises(Busy, match="stopping"):
         pool.run([trial])
+
+
+def test_closing_rejects_requests_that_wait_and_starts_no_more_workers() -> None:
+    pool = TrialPool(count=1)
+    refused: list[float] = []
+
+    def ask() -> None:
+        with pytest.raises(Busy):
+            pool.map(time.sleep, [LONG_S])
+        refused.append(time.monotonic())
+
+    threads = [threading.Thread(target=ask) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    deadline = time.monotonic() + LONG_S
+    while not pool.pids:
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    pool.close()
+    for thread in threads:
+        thread.join(LONG_S / 2)
+    assert len(refused) == 3
+    assert pool.pids == []
