@@ -121,7 +121,7 @@ class Settings:
 
     @property
     def viewers_per_address(self) -> int:
-        """How many of them may be of one address: many, as a class may have one, but not all."""
+        """Maximum of them per address: many, as a class may share one, but not all."""
         return max(1, self.max_viewers * 4 // 5)
 
     @property

@@ -1,4 +1,4 @@
-"""How well experiments use two workers instead of one, and what the engine costs beside a trial.
+"""Speed-up of experiments by a second worker, and the engine's cost beside a trial.
 
     python benchmarks/experiment_engine.py --trials 24 --repeats 5
 

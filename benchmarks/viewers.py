@@ -1,4 +1,4 @@
-"""How many can watch: `python benchmarks/viewers.py http://127.0.0.1:8000 --viewers 200`.
+"""Load by viewers: `python benchmarks/viewers.py http://127.0.0.1:8000 --viewers 200`.
 
 Opens viewers of a server that runs on this machine, counts what they get for some seconds, times
 `GET /healthz` meanwhile, prints one JSON object, and ends. Something must move on stage, or there
@@ -40,7 +40,7 @@ _PICTURES_PER_S = 30.0
 
 @dataclass
 class Tally:
-    """What one viewer got."""
+    """Frames and bytes that one viewer got."""
 
     frames: int = 0
     size_bytes: int = 0
@@ -61,7 +61,7 @@ async def measure(host: str, port: int, options: argparse.Namespace) -> dict[str
             *(open_one(_SMALL_BUFFER_BYTES) for _ in range(options.stalled))
         )
         viewers = await asyncio.gather(*(open_one(None) for _ in range(options.viewers)))
-        # What a newcomer gets first, the whole scene, is not the stream's rate.
+        # The whole scene, which a newcomer gets first, is not the stream's rate.
         await asyncio.gather(*(viewer.recv(decode=False) for viewer in viewers))
         tallies = [Tally() for _ in viewers]
         replays = [Replay(number) for number in range(options.replays)]
@@ -90,7 +90,7 @@ class Replay:
         self.pictures = 0
         self.played_s = 0.0
         self.waits_s: list[float] = []
-        """How long each segment took from its request until it could be drawn [s]."""
+        """Times from the request of each segment until it could be drawn [s]."""
 
     def play(self, host: str, port: int, until_s: float) -> None:
         """Play until a time of `time.perf_counter`; run it in a thread."""
@@ -111,7 +111,7 @@ class Replay:
             self.waits_s.append(arrived_s - requested_s)
             if len(self.waits_s) == 1:
                 began_s = arrived_s
-            # What is late is waited for; playback goes on from there.
+            # A late segment is waited for; playback goes on from there.
             due_s = max(due_s, arrived_s)
             self.pictures += min(plan["segment_frames"], round((until_s - due_s) * _PICTURES_PER_S))
             due_s += segment_s

@@ -44,7 +44,7 @@ def interquartile_mean(values: FloatArray) -> float:
 
 
 def look_ahead(run: tuple[str, str, str, dict[str, Any]]) -> float:
-    """How far an agent comes in 50 steps [m]: agent, gait, simulator, what its robot has."""
+    """Distance of an agent in 50 steps [m]: agent, gait, simulator, conditions."""
     agent, gait, simulator, has = run
     config = RaceConfig(
         gait=gait,
@@ -58,7 +58,7 @@ def look_ahead(run: tuple[str, str, str, dict[str, Any]]) -> float:
 
 
 def practise(config: TrainingConfig) -> float:
-    """How far a learner comes in 50 steps after its practice [m]."""
+    """Distance of a learner in 50 steps after its practice [m]."""
     learner = build_learner(config)
     for _ in train(learner, config):
         pass

@@ -1,4 +1,4 @@
-"""How long tests wait: for as long as something gets on, and no longer."""
+"""Timeouts of tests: they wait for as long as something gets on, and no longer."""
 
 import time
 from typing import Any

@@ -126,7 +126,7 @@ def postgres_server() -> Iterator[PostgresServer]:
 
 
 def _unprivileged(folder: Path) -> dict[str, Any]:
-    """How to run a program in the folder without being root."""
+    """Arguments that run a program in the folder without being root."""
     common = {"cwd": folder, "env": {"LC_ALL": "C", "PATH": os.defpath, "TZ": "UTC"}}
     if os.geteuid() != 0:
         return common

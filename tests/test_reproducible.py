@@ -85,7 +85,7 @@ def test_an_experiment_has_the_same_trials_with_the_same_seeds(
 
 
 def _race(training: TrainingConfig, table: Checkpoint) -> list[float]:
-    """How far the learner, greedy and two-step come in six steps [m]."""
+    """Distances of the learner, greedy and two-step in six steps [m]."""
     learner = LaneConfig(agent=training.agent, observation=training.observation)
     lanes = (learner, LaneConfig(agent="greedy"), LaneConfig(agent="two-step"))
     race = RaceConfig(

@@ -33,7 +33,7 @@ class ValueUpdate(NamedTuple):
     """The state whose value it is."""
     action: Action
     rule: str
-    """What the value becomes, in the symbols of the terms."""
+    """Formula of the new value, in the symbols of the terms."""
     terms: tuple[Term, ...]
     before: float
     after: float
@@ -63,7 +63,7 @@ class Belief(NamedTuple):
 
 @dataclass(frozen=True)
 class UpdateExplanation:
-    """How a transition changed what a learner knows.
+    """Update of a learner's values by a transition.
 
     Attributes:
         summary: in a sentence or two.
@@ -126,7 +126,7 @@ class ChoiceExplanation:
 
     @property
     def margin(self) -> float | None:
-        """How much higher its score is than that of the runner-up [m]; negative if it is lower."""
+        """Its score less that of the runner-up [m]; negative if it is lower."""
         other = self.runner_up
         return None if other is None else float(self.scores[self.action] - self.scores[other])
 
@@ -141,17 +141,17 @@ class ChoiceExplanation:
 
 
 class Future(NamedTuple):
-    """What a search found about an action of the present state."""
+    """Finding of a search about an action of the present state."""
 
     action: Action
     reward_m: float
     """Reward of the step, as simulated."""
     return_m: float
-    """What the search compared, such as the highest sum of rewards of the sequences below."""
+    """The score compared, such as the highest sum of rewards of the sequences below."""
     sequences: int
     """Simulated sequences of steps that begin with it."""
     steps: int
-    """How many steps ahead these go."""
+    """Number of steps ahead that these go."""
 
 
 @runtime_checkable

@@ -18,7 +18,7 @@ from app.agents.search import Budget, Search
 from app.domain.types import Action, Cells, FloatArray, IntArray
 
 LAYER_WEIGHTS = (2, 3, 3)
-"""How a budget is shared by the layers of the tree: the first has the fewest candidates."""
+"""Shares of the budget of the layers of the tree: the first has the fewest candidates."""
 BUDGET_PER_LAYER = 20
 """A budget of 20 transitions pays for a second layer, one of 40 for a third."""
 PROMISING = 24
@@ -107,7 +107,7 @@ class _Candidate(NamedTuple):
     """A step that may be simulated next."""
 
     value_m: float
-    """What the whole sequence promises, the step after this one included."""
+    """Estimated return of the whole sequence, the step after this one included."""
     sequence: _Sequence
     action: Action
     offsets_m: FloatArray

@@ -205,7 +205,7 @@ class TabularLearner(TabularAgent):
         """Notes each change of a value while an update is explained."""
 
     next_meaning = "value of the next state"
-    """What `_next_value` is, for explanations."""
+    """Meaning of `_next_value`, for explanations."""
 
     @property
     def epsilon(self) -> float:

@@ -17,7 +17,7 @@ MAX_MODEL_VALUES = 300_000
 
 @dataclass(slots=True)
 class TriedPair:
-    """What followed a state-action pair.
+    """Outcomes of a state-action pair.
 
     Attributes:
         state, column: row and column of the Q-table.

@@ -61,7 +61,7 @@ Gait = str | GaitParts
 
 
 class DisturbanceView(Answer):
-    """What happens from a step on; the fields of its kind are further members, by name."""
+    """Disturbance from a step on; the fields of its kind are further members, by name."""
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, Value | list[int]]
@@ -467,7 +467,7 @@ class ReplayMark(Answer):
 
 
 class ReplayView(Answer):
-    """What a page needs to play a run by itself; times are the run's own [s]."""
+    """Plan by which a page plays a run by itself; times are the run's own [s]."""
 
     run_id: str
     ghost_id: str | None = Field(description="of the run whose lanes are shown as ghosts")
@@ -503,7 +503,7 @@ class StageView(Answer):
 
 
 class EstimateView(Answer):
-    """How long a run would take here once it has a core [s]."""
+    """Estimated duration of a run here once it has a core [s]."""
 
     seconds: Annotated[float, Field(ge=0)]
 

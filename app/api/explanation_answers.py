@@ -75,7 +75,7 @@ class OtherUpdates(Answer):
 
 
 class BeliefView(Answer):
-    """What a model believes, before and after the step."""
+    """Beliefs of a model, before and after the step."""
 
     name: str
     unit: str
@@ -86,7 +86,7 @@ class BeliefView(Answer):
 
 
 class UpdateView(Answer):
-    """How a step changed what the learner knows."""
+    """Update of the learner's values by a step."""
 
     summary: str
     direct: ValueUpdateView | None
@@ -98,7 +98,7 @@ class UpdateView(Answer):
 
 
 class FutureView(Answer):
-    """What a search found about an action."""
+    """Finding of a search about an action."""
 
     action: Move
     reward_m: Annotated[float, Field(description="of the step, as simulated")]
@@ -108,7 +108,7 @@ class FutureView(Answer):
 
 
 class SearchView(Answer):
-    """What a search simulated, and what each future brought; its action comes first."""
+    """Simulations of a search, with the outcome of each future; its action comes first."""
 
     compares: str
     transitions: Count

@@ -63,7 +63,7 @@ def get_gait(
 
 
 class _Walks(NamedTuple):
-    """What is analysed of a run: one walk of each agent."""
+    """Walks of a run that are analysed: one of each agent."""
 
     part: Literal["race", "practice", "evaluation"]
     agents: Sequence[str]

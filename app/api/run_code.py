@@ -97,7 +97,7 @@ class _Practices:
                 f"does.\n{self._download(run.id)}"
             )
         else:
-            # What happened while it ran happens at the same step.
+            # Disturbances of the run happen at the same step.
             config = replace(run.config, world=world_of(run))
             self.commands.append(_training_command(run, config))
         self._code.append(self._training_python(run, run.config))

@@ -218,7 +218,7 @@ class BranchFrom(Body):
     """A moment of a race."""
 
     race_id: RunId
-    # How many steps the race has taken, the domain checks.
+    # The domain checks the number of steps that the race has taken.
     step: Annotated[
         int,
         Field(strict=True, ge=0, lt=MAX_RACE_STEPS, description=VALID["branch_from.step"]),

@@ -13,7 +13,7 @@ _MAX_M = 1e6
 _MAX_S = 1e9
 _EARLIEST = datetime(1970, 1, 1, tzinfo=UTC)
 _MAX_CLOCK_LEAD = timedelta(days=1)
-"""How far the clock of the exporting machine may be ahead of this one's."""
+"""Most by which the clock of the exporting machine may be ahead of this one's."""
 
 Count = Annotated[int, Meta(ge=0, le=MAX_STEPS * MAX_LANES)]
 """Number of steps, summed over all lanes."""

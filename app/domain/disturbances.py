@@ -38,7 +38,7 @@ _Friction = Annotated[
 LEGS = Setting(title="Legs", help="The numbers of the legs, from 1.")
 """Description of the field `legs`."""
 Key = tuple[Any, ...]
-"""What a disturbance changes; that of a leg is the beginning of those of its joints."""
+"""Part that a disturbance changes; that of a leg is the beginning of those of its joints."""
 
 
 class RangesByChoice(NamedTuple):

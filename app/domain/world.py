@@ -141,7 +141,7 @@ class World:
 
     @property
     def at_start(self) -> "World":
-        """What holds from the start, for good and as it was given; without pushes."""
+        """Disturbances that hold from the start, for good and as given; without pushes."""
         early = (d for d in self.disturbances if d.at_step == 0 and not isinstance(d, Push))
         return World(tuple(replace(one, until_step=None) for one in early))
 

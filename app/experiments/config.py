@@ -62,7 +62,7 @@ class ExperimentConfig:
     """
 
     kind: ClassVar[str] = "experiment"
-    """What a results folder says that it holds."""
+    """Name of the experiment in a results folder."""
     options: ClassVar[Mapping[str, str]] = {
         "agents": "--agent",
         "gaits": "--gait",
@@ -70,7 +70,7 @@ class ExperimentConfig:
         "robots": "--robot",
         "worlds": "--world",
     }
-    """What a user types on the command line, by field; see `option_of`."""
+    """Options of the command line, by field; see `option_of`."""
 
     experiment: ExperimentName
     seeds: int = 30

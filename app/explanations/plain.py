@@ -85,7 +85,7 @@ def explanation_as_json(
 
 
 class Search(NamedTuple):
-    """What a search found before a step.
+    """Findings of a search before a step.
 
     Attributes:
         compares: what it compared.

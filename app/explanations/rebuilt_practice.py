@@ -25,7 +25,7 @@ class Steps(Protocol):
 
     @property
     def source(self) -> object:
-        """What they are read from."""
+        """File or run that they are read from."""
 
     def __len__(self) -> int:
         """Return their number so far."""

@@ -156,7 +156,7 @@ class Explanations:
                 *(run.id, config, own.agent, explained), lane=lane, search=search, unexplained=why
             )
 
-        # What was learned from the newest step of a race that runs is told with the next one.
+        # The update by the newest step of a race that runs is told with the next one.
         key = (run.id, lane, number, number < len(recording.steps))
         return self._answer(key, recording, answer)
 

@@ -20,7 +20,7 @@ from app.storage.run import NOT_ENDED, AnyRun, DamagedRun
 
 @dataclass(frozen=True)
 class RecordedLane:
-    """What is recorded of one robot.
+    """Recording of one robot.
 
     Attributes:
         agent: name of its agent.

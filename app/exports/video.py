@@ -41,7 +41,7 @@ _CAPTION, _CAPTION_BOX = (236, 240, 245, 255), (13, 17, 23, 190)
 
 @dataclass(frozen=True)
 class VideoOptions:
-    """How a film is rendered.
+    """Settings of a rendered film.
 
     Attributes:
         ending: `.mp4` or `.gif`.

@@ -19,7 +19,7 @@ _logger = logging.getLogger(__name__)
 
 
 class Exit(NamedTuple):
-    """How a process ended."""
+    """End of a process."""
 
     how: str
     """A clause for an error message."""

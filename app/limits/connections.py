@@ -22,7 +22,7 @@ STALL_S, STALL_BYTES = 30.0, 32 << 10
 OPERATOR_SLOTS = 16
 """Connections beyond both limits, for addresses from which an operator was authenticated."""
 OPERATOR_S = 24 * 3600.0
-"""How long an address counts as an operator's after an authentication."""
+"""Time for which an address counts as an operator's after an authentication."""
 _MAX_OPERATOR_ADDRESSES = 1000
 
 

@@ -1,4 +1,4 @@
-"""What a world does to a MuJoCo model: servos, legs, ground, gravity and payload.
+"""Effects of a world on a MuJoCo model: servos, legs, ground, gravity and payload.
 
 Only parameters and geoms of existing bodies change, so that a state of one model continues in
 another. Sensor noise, delay and dead band are no part of a model.

@@ -10,7 +10,7 @@ from app.domain.types import FloatArray, IntArray
 
 
 class Effort(NamedTuple):
-    """What the servos did up to each of k frames, since the frame before."""
+    """Torque and work of the servos up to each of k frames, since the frame before."""
 
     torque_nm: NDArray[np.float16]
     """Of each servo its largest torque by magnitude, with its sign [N·m], (k, servos)."""

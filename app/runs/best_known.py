@@ -34,7 +34,7 @@ COVERAGE = (
     "nothing proves that none is farther. It was computed in MuJoCo for preset robots in named "
     "gaits and worlds on the usual grid; elsewhere a dash stands."
 )
-"""What a best known distance is, and where there is one, for readers of reports."""
+"""Definition of a best known distance, and where there is one, for readers of reports."""
 PATH = Path(__file__).with_name("best_known.json")
 Key = tuple[str, str, str]
 """Names of robot, world and gait."""

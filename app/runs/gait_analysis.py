@@ -211,7 +211,7 @@ class Posture:
 
 @dataclass(frozen=True)
 class ServoEffort:
-    """What the servos did: torque and mechanical work.
+    """Torque and mechanical work of the servos.
 
     Attributes:
         time_s: robot time of the samples.

@@ -90,7 +90,7 @@ class LaneStep:
     motion: Motion
     knowledge: ActionValues | None
     futures: tuple[Future, ...] = ()
-    """What a search found about the actions, in the order in which it did."""
+    """Findings of a search about the actions, in the order in which it made them."""
 
 
 @dataclass(frozen=True)

@@ -102,7 +102,7 @@ class LaneView:
     """First step in which it fell, counted from 0; None if it has not fallen so far."""
     knowledge: ActionValuesView | None = None
     conditions: World = UNDISTURBED
-    """What holds in the step that is shown, a result of `World.as_of`."""
+    """Conditions in the step that is shown, a result of `World.as_of`."""
     pushes: tuple[Push, ...] = ()
     """Pushes in the step that is shown."""
     origin: Origin = AT_ORIGIN
@@ -116,7 +116,7 @@ class Ghost:
     step: int
     distance_m: float
     conditions: World = UNDISTURBED
-    """What held in the evaluation, a result of `World.as_of`."""
+    """Conditions in the evaluation, a result of `World.as_of`."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ _RELEASE_MS = 1_767_225_600_000
 """2026-01-01 in UTC: an earlier clock is wrong, as on a machine without a battery-backed clock
 before its first NTP synchronisation."""
 _MAX_CLOCK_LEAD_MS = 366 * 24 * 3_600_000
-"""How far the clock may have been ahead when an existing id was created."""
+"""Most by which the clock may have been ahead when an existing id was created."""
 
 
 class RunIds:

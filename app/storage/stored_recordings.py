@@ -36,7 +36,7 @@ EVALUATIONS_PER_FILE, TRANSITIONS_PER_FILE = 20, 50_000
 CACHE_RECORDINGS, CACHE_BYTES = 4, 100_000_000
 """Capacity of each cache in recordings and in bytes; the newest entry is kept whatever its size."""
 _MISS_TTL_S = 1.0
-"""How long a cached miss is valid before the store is read again."""
+"""Time for which a cached miss is valid before the store is read again."""
 _STEP_OVERHEAD_BYTES = 1000
 """Approximate size of a step in memory besides its motion."""
 T = TypeVar("T")

@@ -17,7 +17,7 @@ UPHILL: Rgb = (245, 196, 60)
 _NO_TORQUE: Rgb = (126, 130, 136)
 _STUCK: Rgb = (226, 33, 52)
 _HIGHEST_SHARE = 0.7
-"""How grey a leg with hardly any torque is; limp ones are altogether."""
+"""Share of grey of a leg with hardly any torque; limp ones are grey altogether."""
 
 
 def link_color(color: Rgb, conditions: World, leg: int, joint: str) -> Rgb | None:

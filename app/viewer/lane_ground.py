@@ -29,7 +29,7 @@ _KINDS = (Rough, Friction, Patch, Slope)
 
 
 class LaneGround(Temporary):
-    """What is drawn on a lane's ground while conditions say so; without any of it nothing is.
+    """Drawing of a lane's ground while conditions change it; without any of them nothing is drawn.
 
     Args:
         server: where to draw.

@@ -1,4 +1,4 @@
-"""What acts on a robot from outside: the payload on its torso, and the arrow of a push."""
+"""Loads on a robot from outside: the payload on its torso, and the arrow of a push."""
 
 import math
 

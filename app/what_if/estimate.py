@@ -1,4 +1,4 @@
-"""How long a training, race or experiment would take here: its steps times their measured time."""
+"""Estimated time of a training, race or experiment here: its steps times their measured time."""
 
 import threading
 import time
@@ -58,7 +58,7 @@ class _Part(NamedTuple):
     steps: Steps
     number: int
     paced_s: float = 0.0
-    """How long each takes at least, by the pace [s]."""
+    """Shortest time of each, by the pace [s]."""
 
 
 class Estimates:

@@ -219,7 +219,7 @@ function refuseTuning(run, sent, error) {
 
 // ---- what happens to robots
 
-/** What happened last: an answer waits for the end of a step, in which the next leg may be clicked. */
+/** Newest disturbance: an answer waits for the end of a step, in which the next leg may be clicked. */
 let lastChange = Promise.resolve(/** @type {{ id: string, changes: Change[] } | null} */ (null));
 
 /**

@@ -12,7 +12,7 @@ const UNLEARNED = "pace";
 /** A slider that is dragged sends values in a row; those within this share of the training are one change. */
 const BURST_SHARE = 0.02;
 
-/** What happens is no setting: see `disturbances.js`. @type {(change: Change) => [string, SettingValue][]} */
+/** Changed settings, without disturbances. @type {(change: Change) => [string, SettingValue][]} */
 const ratesOf = ({ step: _step, disturbance: _disturbance, ...values }) => Object.entries(values);
 
 /**

@@ -263,7 +263,7 @@ export function tableOf({ lines, marks, xs, titles }) {
   return { columns, rows: rows.filter((_, n) => lines.some((line) => valueAt(line, xs[n]) !== null)) };
 }
 
-/** What a spreadsheet would take for a formula. */
+/** First characters that a spreadsheet would take for a formula. */
 const FORMULA = /^[=+\-@\t\r]/;
 
 /** @param {string} text */

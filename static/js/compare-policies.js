@@ -26,7 +26,7 @@ const TOO_EARLY = 429;
 
 /** Run id and steps done → its table, or why there is none. @type {Signal<Map<string, Answer>>} */
 const answers = signal(new Map());
-/** What is being asked for. @type {Set<string>} */
+/** Requests under way. @type {Set<string>} */
 const asked = new Set();
 
 /** @param {Run} run */

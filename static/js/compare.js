@@ -51,7 +51,7 @@ export function followCompared() {
   followQuery("compare", readCompared, comparedAsQuery);
   followRuns(computed(() => (place.value === "compare" ? comparedIds.value : [])));
   followCurves(computed(() => (place.value === "compare" ? comparedTrainings.value : [])));
-  // What was told of a link that was too long is of that link only.
+  // The note on a link that was too long is of that link only.
   effect(() => {
     if (comparedIds.value.length < MOST_COMPARED) leftOut.value = 0;
   });
@@ -128,7 +128,7 @@ export const comparedCurves = computed(() => {
  * @typedef {{ name: string, title: string, cells: (string | null)[], differs: boolean, best: number[] }} Row
  */
 
-/** What a run does not have is no difference. @type {(cells: (string | null)[]) => boolean} */
+/** Whether values differ; a missing one does not. @type {(cells: (string | null)[]) => boolean} */
 const differ = (cells) => new Set(cells.filter((one) => one !== null)).size > 1;
 
 /** @type {(name: string, title: string, cells: (string | null)[], best?: number[]) => Row} */
@@ -157,7 +157,7 @@ const PLAIN = [
 
 const NOTHING = "nothing";
 
-/** What is told after the settings. @type {[string, string, (run: Run) => string | null][]} */
+/** Rows after the settings. @type {[string, string, (run: Run) => string | null][]} */
 const HAPPENINGS = [
   ["continue_from", "Continues", ({ kind, config: { continue_from: id } }) => {
     if (kind === "race") return null;
@@ -237,7 +237,7 @@ const lanesInWords = (run) =>
 /** @type {(value: number | null) => string | null} */
 const metresOrNull = (value) => (value === null ? null : metres(value));
 
-/** What came of the runs, side by side. */
+/** Results of the runs, side by side. */
 export const comparedResults = computed(() => {
   const all = comparable.value.map(runOf);
   const distances = all.map(distanceOf);

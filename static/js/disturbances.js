@@ -1,4 +1,4 @@
-// What happens to robots and to the ground: what holds in a step, its words, and its text in links and commands.
+// Disturbances of robots and ground: conditions of a step, their words, and their text in links and commands.
 import { listed, sentence, whole } from "./format.js";
 import { parseSetting, quoted } from "./parse.js";
 import { builtPart } from "./robots.js";
@@ -12,7 +12,7 @@ import { options } from "./store.js";
 export const PUSH = "push";
 const REPAIR = "repair";
 const LOST = "lost";
-/** What happens to the servos of a leg, of which a joint may be stuck besides. */
+/** Conditions of the servos of a leg, of which a joint may be stuck besides. */
 const POWER_KINDS = ["limp", "weak"];
 const STEPS = ["at_step", "until_step"];
 /** Of the fields in a text. @type {Record<string, string>} */
@@ -156,7 +156,7 @@ function fieldsInWords(one) {
     });
 }
 
-/** What a kind makes of legs. @type {Record<string, string>} */
+/** Adjective of a leg, by the kind of its disturbance. @type {Record<string, string>} */
 export const LEG_WORDS = { limp: "limp", lost: "lost", weak: "weak", repair: "repaired" };
 
 /** @param {number[]} legs */
@@ -174,7 +174,7 @@ export function inWords(one) {
   return [title, values.join(", ")].filter(Boolean).join(" ");
 }
 
-/** What happens to legs alike as one. @param {Disturbance[]} parts */
+/** Merge the same disturbance of several legs. @param {Disturbance[]} parts */
 function joined(parts) {
   /** @type {Map<string, Disturbance>} */
   const found = new Map();
@@ -219,7 +219,7 @@ export function joinedBySteps(happenings) {
 /** @param {Disturbance} one */
 export const legsOf = ({ leg, legs }) => legs ?? (leg ? [leg] : []);
 
-/** What happened to each leg: "limp", "femur stuck, weak". @param {Disturbance[]} conditions */
+/** Conditions of each leg: "limp", "femur stuck, weak". @param {Disturbance[]} conditions */
 export function legStates(conditions) {
   /** @type {Map<number, string>} */
   const states = new Map();
@@ -296,7 +296,7 @@ export const textOf = ({ kind, ...fields }) => {
 
 /** @type {(text: string, field: FieldOption) => Parsed<any>} */
 function parseField(text, field) {
-  // What must be given cannot be left empty.
+  // A required field cannot be left empty.
   const setting = field.is_required ? { ...field, default: 0 } : field;
   if (!field.is_list) return parseSetting(text, setting);
   const values = text.split(",").map((one) => parseSetting(one, setting));

@@ -1,4 +1,4 @@
-// How long the run that the form would start takes on the server, told before a long start.
+// Estimated duration of the run that the form would start, told before a long start.
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "./api.js";
 import { form, mistakes, raceBody } from "./form.js";
@@ -14,7 +14,7 @@ const LONG_S = 20;
 /** A form that has not changed for so long is asked about. */
 const QUIET_MS = 600;
 
-/** What would be started. @typedef {{ path: string, body: object }} Start */
+/** Request of a start. @typedef {{ path: string, body: object }} Start */
 
 /**
  * Ask how long a start takes, each time it has come to rest as another one.
@@ -54,7 +54,7 @@ const mayBeLong = computed(() => {
   return learners * steps > SHORT_PRACTICE || race_steps > SHORT_RACE || isFine || pace !== "max";
 });
 
-/** How long the form's practice and race take, in words. */
+/** Estimated duration of the form's practice and race, in words. */
 export const raceEstimate = makeEstimate(computed(() => {
   const isValid = Object.keys(form.value).length > 0 && Object.keys(mistakes.value).length === 0;
   return isValid && isOperator.value && mayBeLong.value ? { path: "races", body: raceBody() } : null;

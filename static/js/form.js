@@ -14,7 +14,7 @@ import { options, served } from "./store.js";
 /** Empty until the server's options have come; no component shows the form before. */
 const UNKNOWN = /** @type {FormValues} */ ({});
 
-/** What a person or a link has set; all else is the server's default. @type {Signal<Record<string, FormValue>>} */
+/** Values set by a person or a link; all else is the server's default. @type {Signal<Record<string, FormValue>>} */
 export const overrides = signal({});
 /**
  * Field → its text, as it was typed or as a link has it, while it is not valid. The field's value stays the last
@@ -22,7 +22,7 @@ export const overrides = signal({});
  * @type {Signal<Record<string, string>>}
  */
 export const typed = signal({});
-/** What a link says that is no field of the form, as "alhpa=0.5". @type {Signal<string[]>} */
+/** Parts of a link that are no field of the form, as "alhpa=0.5". @type {Signal<string[]>} */
 export const unknownParts = signal([]);
 
 // ---- texts as values
@@ -152,7 +152,7 @@ export const wrong = computed(() => {
   return found;
 });
 
-/** What happens in a named world. @param {string} name */
+/** Disturbances of a named world. @param {string} name */
 const disturbancesOf = (name) => served().worlds.find((world) => world.name === name)?.disturbances ?? [];
 
 /** @type {(simulator: string, kind: string) => string} */

@@ -16,7 +16,7 @@ const PAUSE_MS = 1000;
 /** The server analyses at most so much at once [s]; of a longer walk parts are requested that overlap by half. */
 const WINDOW_S = 120;
 const PART_S = WINDOW_S / 2;
-/** What is shown around the present moment: so much before it and after [s]. */
+/** Time shown before and after the present moment [s]. */
 export const BEFORE_S = 3;
 export const AFTER_S = 1.5;
 
@@ -27,7 +27,7 @@ export const part = signal("practice");
 /** Whether the whole walk is drawn, instead of what is around the present moment. */
 export const isWhole = signal(false);
 
-/** What the panel is about: a race, or a part of a training. */
+/** Subject of the panel: a race, or a part of a training. */
 export const subject = computed(() => {
   const shown = shownRun.value;
   const isPractice = shown?.kind === "training" && (scene.value?.kind === "training" || !raceInView.value);
@@ -106,7 +106,7 @@ const partShown = computed(() => {
 /** The beginning of what is requested of such a walk [s]. @param {number} shown */
 const beginOf = (shown) => Math.max(0, (shown - 0.5) * PART_S);
 
-/** What to request: each time the run has grown, or the moment that is shown has left the part that is known. */
+/** Next request: one each time the run has grown, or the moment that is shown has left the part that is known. */
 const wanted = computed(() => {
   const about = subject.value;
   if (!isWatched.value || !about?.run.progress.done || connection.value !== "live") return "";

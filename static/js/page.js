@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { role } from "./store.js";
 
-/** What the camera follows: "leader", "free", or the number of a lane, from "1". */
+/** Target of the camera: "leader", "free", or the number of a lane, from "1". */
 export const view = signal("leader");
 export const helpIsOpen = signal(false);
 /** Whether single keys act; they can interfere with speech input. */

@@ -63,7 +63,7 @@ export function parseNumber(text, limits, isWhole) {
 
 // ---- lists
 
-/** How a list can be divided into its entries. @param {string} text */
+/** Ways to divide a list into its entries. @param {string} text */
 function divisionsOf(text) {
   const trimmed = text.trim();
   // Beside semicolons, a comma or a space belongs to a number.

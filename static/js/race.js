@@ -303,7 +303,7 @@ const simulatedUntil = (track, steps) =>
 /** The text of the page's live region. */
 export const announcement = signal("");
 
-/** Who leads, or who has won and when, in one sentence; null before the race. */
+/** Leader, or winner and time, in one sentence; null before the race. */
 export const headline = computed(() => {
   const rows = standings.value;
   if (!rows?.length) return null;

@@ -1,10 +1,10 @@
 // Frames of a replay: decodes them, and tells what to send to the 3D view to be at one of them.
-// How they are encoded: app/viewer/replay_frames.py.
+// Their encoder: app/viewer/replay_frames.py.
 
 /** A message of viser. @typedef {Record<string, any> & { type: string }} Message */
 /** Position of each view on the ground [m]. @typedef {Record<string, [number, number]>} FollowPoints */
 /** @typedef {{ time_s: number, messages: Message[], follow: FollowPoints, scene: object | null }} Frame */
-/** What a type of message does: kind of entity, phase of its life, field with its id. @typedef {string | null} Part */
+/** Effect of a type of message: kind of entity, phase of its life, field with its id. @typedef {string | null} Part */
 /** @typedef {{ frames: Frame[], lifecycles?: Record<string, [Part, Part, Part]>, world?: string }} Frames */
 
 /** @type {Record<string, (new (buffer: ArrayBuffer) => ArrayBufferView)>} */
@@ -70,7 +70,7 @@ export class SceneState {
 
   /** @private */
   clear() {
-    /** What is shown. @type {Map<string, Slots>} */
+    /** Entities shown. @type {Map<string, Slots>} */
     this.shown = new Map(this.base);
     /** The entities that differ from the start. @type {Set<string>} */
     this.changed = new Set();

@@ -26,7 +26,7 @@ const SAME_S = 1e-6;
 export const ownRunId = signal(null);
 /** The id of the run whose robots are shown as ghosts; null without one. @type {Signal<string | null>} */
 export const ghostId = signal(null);
-/** What there is to play; null until it is known. @type {Signal<ReplayPlan | null>} */
+/** Plan of the replay; null until it is known. @type {Signal<ReplayPlan | null>} */
 export const plan = signal(null);
 /** Why the run cannot be played. @type {Signal<string | null>} */
 export const replayProblem = signal(null);
@@ -385,7 +385,7 @@ export function readReplayAddress() {
   else if (ownRunId.peek() !== null) closeReplay();
 }
 
-/** What is shown. @param {string} id @param {boolean} isHeld */
+/** Show a frame. @param {string} id @param {boolean} isHeld */
 const shownNow = (id, isHeld) => ({ id, ghost: ghostId.peek(), time_s: isHeld ? replayTime.peek() : null });
 
 /** A link to the moment that is shown. */

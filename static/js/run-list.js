@@ -54,7 +54,7 @@ const passes = (run) => {
   return ["", run.kind ?? kind].includes(kind) && ["", run.state].includes(state) && isFound && isTagged;
 };
 
-/** What the server has listed, and what has begun since, in the order of the list. */
+/** Runs that the server has listed, and those that have begun since, in the order of the list. */
 export const shownRuns = computed(() =>
   [...damagedRuns.value.values(), ...everyRun.value]
     .filter(passes)

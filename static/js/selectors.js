@@ -61,7 +61,7 @@ function readOwnRuns() {
 /** Whether the stage plays: one that shows the end of its run does not. */
 export const isPlaying = computed(() => stage.value !== null && stage.value.playing && !stage.value.ended);
 
-/** What plays: a live run is a picture of what happens, else it is a replay. */
+/** Kind of the picture: live of a run that goes on, else a replay. */
 export const playbackName = computed(() => (isActive(shownRun.value) ? "picture" : "replay"));
 
 /** The clock under which the stage times the race. */
@@ -238,7 +238,7 @@ export const stepShown = computed(() => {
   return walking.length ? Math.max(1, ...walking.map(({ step }) => step)) : null;
 });
 
-/** What holds in the step that is shown, of the run on stage, in words. */
+/** Conditions in the step that is shown, of the run on stage, in words. */
 export const conditionsShown = computed(() => {
   const run = shownRun.value;
   if (!run || run.kind === "experiment" || scene.value?.run_id !== run.id) return [];

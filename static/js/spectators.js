@@ -6,7 +6,7 @@ import { hasOwnSettings, isReadOnly } from "./page.js";
 import { shownRun, trainingIds } from "./selectors.js";
 import { runs } from "./store.js";
 
-/** What decides the settings of the run that is shown: the run, which of its trainings are known, and changes. */
+/** Key of the settings of the run that is shown: the run, which of its trainings are known, and changes. */
 const version = computed(() => {
   const run = shownRun.value;
   if (!run || run.kind === "experiment") return null;

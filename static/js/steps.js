@@ -46,7 +46,7 @@ export const moment = computed(() => {
   return chosen && chosen.run_id === shown?.run_id ? { ...chosen, lane: shown.lane } : shown;
 });
 
-/** How many steps of the run there are to look at. */
+/** Number of steps of the run there are to look at. */
 export const lastStep = computed(() => {
   const run = shownRun.value;
   const at = moment.value;
@@ -208,7 +208,7 @@ export const moveOf = (column, { cell_names }) =>
 
 // ---- the table
 
-/** What a cell of the table is. @typedef {"stays" | "untried" | "tried"} CellKind */
+/** Kind of a cell of the table. @typedef {"stays" | "untried" | "tried"} CellKind */
 
 /**
  * @param {StateTable} shown
@@ -237,7 +237,7 @@ export function valueRange(shown) {
   return low > high ? { low: 0, high: 0 } : { low, high };
 }
 
-/** How many of the moves that there are were tried. @param {StateTable} shown */
+/** Number of the moves that were tried, of those there are. @param {StateTable} shown */
 export function triedMoves(shown) {
   let [tried, all] = [0, 0];
   shown.values.forEach((row, at) =>

@@ -12,7 +12,7 @@ export const version = signal(null);
 export const isLockedOut = signal(false);
 /** Null until the first snapshot. @type {Signal<"operator" | "spectator" | null>} */
 export const role = signal(null);
-/** How many pages watch the stage. @type {Signal<number | null>} */
+/** Number of pages that watch the stage. @type {Signal<number | null>} */
 export const viewers = signal(null);
 /** Null until the server has answered. @type {Signal<Options | null>} */
 export const options = signal(null);
@@ -26,7 +26,7 @@ export const damagedRuns = signal(new Map());
 export const commonStage = signal(null);
 /** Its moment, updated about five times a second. @type {Signal<Scene | null>} */
 const commonScene = signal(null);
-/** What this page shows while it plays a run by itself, as the common stage has it. @type {Signal<Stage | null>} */
+/** The page's own stage while it plays a run by itself, shaped as the common one. @type {Signal<Stage | null>} */
 export const ownStage = signal(null);
 /** @type {Signal<Scene | null>} */
 export const ownScene = signal(null);
@@ -62,7 +62,7 @@ export const setEntry = (record, key, value) => {
   record.value = { ...record.value, [key]: value };
 };
 
-/** How many events came. */
+/** Number of events received. */
 let eventCount = 0;
 /** Run id, or "stage" → the number of its newest event. @type {Map<string, number>} */
 const newestEvents = new Map();

@@ -24,7 +24,7 @@ const SHARED = [
   ["side of the foot grid", ({ config }) => config.grid_side_m, ({ config }) => `${config.grid_side_m} m`],
 ];
 
-/** What the race takes from the first training, where others have another. @type {typeof SHARED} */
+/** Values that the race takes from the first training, where others have another. @type {typeof SHARED} */
 const FROM_FIRST = [
   ["robot", ({ config }) => formRobot(config.robot), ({ config }) => robotTitle(formRobot(config.robot))],
   ["simulator", ({ config }) => config.simulator, ({ config }) => simulatorTitle(config.simulator)],

@@ -32,14 +32,14 @@ const titleOfChoice = (field, choice) => {
 };
 /** @param {string} name */
 export const observationTitle = (name) => titleOfChoice("observation", name);
-/** What a search knows: "nominal model". @param {string} name */
+/** Model that a search plans with: "nominal model". @param {string} name */
 export const knowledgeTitle = (name) => titleOfChoice("plans_with", name);
 /** @param {string} name */
 export const simulatorTitle = (name) => find(options.value?.simulators, name)?.title ?? SIMULATORS[name] ?? name;
 /** @param {string} name */
 export const clockTitle = (name) => find(options.value?.clocks, name)?.title ?? CLOCKS[name] ?? name;
 
-/** What flat parts of a lane's line are under each clock. @type {Record<string, string>} */
+/** Meaning of flat parts of a lane's line under each clock. @type {Record<string, string>} */
 const FLAT_PARTS = {
   paper: "Flat parts are thinking, which takes as long as it did in the paper.",
   wall: "Flat parts are thinking, which takes as long as it did on this machine.",

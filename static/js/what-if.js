@@ -26,7 +26,7 @@ const settings = computed(() => JSON.stringify(whatIfBody()));
 /** The most steps of practice that the server tries; null without a limit. */
 export const mostSteps = computed(() => limitsOf("what_if_steps").maximum);
 export const isTooLong = computed(() => mostSteps.value !== null && form.value.steps > mostSteps.value);
-/** How many seeds an answer is of. */
+/** Number of seeds of an answer. */
 export const seeds = computed(() => options.value?.defaults.what_if.seeds ?? 0);
 /** Whether the answer is for the form's settings as they are. */
 export const isCurrent = computed(() => answer.value?.settings === settings.value);

@@ -34,7 +34,7 @@ def test_the_largest_change_comes_first_and_others_wait() -> None:
     resumed.learn(step(C, FIRST, 0.0, C))
     assert value(resumed, B, SECOND) == 1
     assert value(resumed, A, FIRST) == 0
-    # What leads to B is now worth 0.1 + 0.9 · 1.
+    # The pair that leads to B is now worth 0.1 + 0.9 · 1.
     assert resumed.state()["priorities"].tolist() == pytest.approx([1.0])
 
 

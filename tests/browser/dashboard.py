@@ -101,7 +101,7 @@ class Dashboard:
         return box
 
     def scroll_width(self) -> int:
-        """How wide the page is, scrolled or not."""
+        """Width of the page, scrolled or not [px]."""
         width: int = self.page.evaluate("document.documentElement.scrollWidth")
         return width
 

@@ -98,7 +98,7 @@ def test_runs_are_compared_side_by_side_and_raced(
     assert dashboard.violations() == []
     page.set_viewport_size({"width": 1280, "height": 720})
 
-    # What cannot be compared says why; the rest stays.
+    # A run that cannot be compared says why; the rest stays.
     page.goto(f"{shared_server.address}#compare?runs={one},gone,{other},{turned}")
     expect(page.get_by_role("alert").filter(has_text="There is no such run")).to_be_visible()
     dashboard.button("Leave out gone").click()

@@ -25,7 +25,7 @@ def test_the_last_picture_stays_until_it_is_back(dashboard: Dashboard, tmp_path:
     dashboard.primary.click()
     problem = page.locator(".actions").get_by_role("alert").filter(has_text="does not answer")
     expect(problem).to_be_visible()
-    # Nobody answered: the browser says so by itself, and cannot be kept from it.
+    # Without an answer the browser says so by itself, and cannot be kept from it.
     dashboard.complaints.clear()
 
     with serving(tmp_path, port, token="for-the-operator", spectators="token"):

@@ -1,4 +1,4 @@
-"""What happens to robots: a leg is broken in practice, and a race goes on from its middle."""
+"""Disturbances: a leg is broken in practice, and a race goes on from its middle."""
 
 import re
 from collections import Counter
@@ -90,7 +90,7 @@ def changes_its_ground(dashboard: Dashboard) -> None:
 
 
 def tells_others(browser: Browser, server: Serving) -> None:
-    """What happened is said over the picture, on a phone too."""
+    """Conditions are told over the picture, on a phone too."""
     with browser.new_context(viewport={"width": 390, "height": 844}) as context:
         other = Dashboard(context.new_page(), has_3d=False)
         other.open(server.address)

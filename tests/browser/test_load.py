@@ -1,4 +1,4 @@
-"""What a first visit transfers, without the 3D view."""
+"""Transfers of a first visit, without the 3D view."""
 
 from dataclasses import dataclass, field
 from typing import Any

@@ -91,7 +91,7 @@ def test_a_spectator_replays_a_race_while_the_stage_goes_on(
         page.get_by_label("Clock").select_option("free")
         dashboard.eventually(lambda: shown_time(page) <= ends[0][-1] + 1, "the same step")
 
-        # Nobody else has seen any of it.
+        # No other page has seen any of it.
         after = api.get("stage").json()
         assert {name: after[name] for name in ("run_id", "time_s", "playing", "clock")} == {
             name: common[name] for name in ("run_id", "time_s", "playing", "clock")

@@ -1,4 +1,4 @@
-"""What a person types or a link says is never changed; what is not valid is explained."""
+"""Typed text and links are never changed; invalid ones are explained."""
 
 import random
 import re

@@ -38,7 +38,7 @@ def test_a_slider_is_tried_out_and_gone_on_with(dashboard: Dashboard, server: Se
     practice = page.get_by_role("spinbutton", name="Practice, as a number")
     practice.fill("5000")
     expect(panel).to_contain_text("2000 steps at most")
-    # What is shown now is of other settings.
+    # The answer shown now is of other settings.
     expect(panel.locator(".trial.old")).to_be_visible()
     assert dashboard.violations() == []
     practice.fill("60")

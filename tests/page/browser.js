@@ -1,4 +1,4 @@
-// What the page's modules find in a browser when they are imported, as far as the tests need it.
+// Globals that the page's modules find in a browser when they are imported, as far as the tests need it.
 
 
 Object.assign(globalThis, {

@@ -1,4 +1,4 @@
-// What happens to robots: what holds in a step, its words, and its text.
+// Disturbances: conditions of a step, their words, and their text.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {

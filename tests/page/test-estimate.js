@@ -1,4 +1,4 @@
-// How long a start takes: asked once the form has come to rest, told only if it is long.
+// Estimates of a start: asked once the form has come to rest, told only if it is long.
 import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
 import { raceEstimate } from "../../static/js/estimate.js";

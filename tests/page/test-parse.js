@@ -1,4 +1,4 @@
-// What a person types, read as numbers, lists and choices, or refused with the reason.
+// Typed text, read as numbers, lists and choices, or refused with the reason.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import {

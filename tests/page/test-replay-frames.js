@@ -19,7 +19,7 @@ const place = (/** @type {string} */ name, /** @type {number} */ x) =>
   ({ type: "SetPositionMessage", name, position: [x, 0, 0] });
 const remove = (/** @type {string} */ name) => ({ type: "RemoveSceneNodeMessage", name });
 
-/** What a browser shows after messages: properties by node, as viser's client keeps them. */
+/** State of a browser after messages: properties by node, as viser's client keeps them. */
 class Browser {
   constructor() {
     /** @type {Map<string, object>} */

@@ -21,9 +21,9 @@ function encoded(time_s) {
   return data;
 }
 
-/** What was asked for, by the last part of the address. @type {string[]} */
+/** Requests, by the last part of the address. @type {string[]} */
 let asked = [];
-/** What moments are answered with. @type {(time_s: number) => Response} */
+/** Answers to requests for moments. @type {(time_s: number) => Response} */
 let moment = (time_s) => new Response(encoded(time_s));
 
 /** @param {URL} address */

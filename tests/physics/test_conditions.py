@@ -1,4 +1,4 @@
-"""What happens to a robot and the ground in MuJoCo, and that walks in it repeat to the last bit."""
+"""Conditions of a robot and the ground in MuJoCo, and that walks in it repeat to the last bit."""
 
 from dataclasses import replace
 

@@ -25,7 +25,7 @@ OBJECTIVES: Mapping[Objective, str] = {
     "distance": "distance after the practice",
     "area": "distance on average over the practice",
 }
-"""What is searched for: the mean over the seeds of the distance in an evaluation after the
+"""Objective of the search: the mean over the seeds of the distance in an evaluation after the
 practice, or of the area under the learning curve divided by its steps."""
 MAX_CANDIDATES = 10_000
 

@@ -23,9 +23,9 @@ from app.storage.database.schema import ABOUT
 from app.storage.errors import OwnershipLost, StorageFailed, StorageFull
 
 BUSY_S = 10.0
-"""How long to wait for a lock that another process holds on the database."""
+"""Time to wait for a lock that another process holds on the database."""
 POOL_WAIT_S = 5.0
-"""How long to wait for a connection from the exhausted PostgreSQL pool."""
+"""Time to wait for a connection from the exhausted PostgreSQL pool."""
 _FIRST_RETRY_S, _LAST_RETRY_S = 0.1, 1.0
 SQLITE_CONNECTIONS = 5
 """Concurrent connections to SQLite; further reads are queued."""

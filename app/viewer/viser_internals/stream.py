@@ -24,7 +24,7 @@ Message = dict[str, Any]
 """One decoded message; its `type` is the name of viser's class."""
 
 Entity = tuple[str, str, str]
-"""What a message is about: kind (`scene`, `gui`, …), name or UUID, and owner."""
+"""Subject of a message: kind (`scene`, `gui`, …), name or UUID, and owner."""
 
 Key = tuple[str, ...]
 

@@ -91,7 +91,7 @@ const loadGait = () => import("./gait.js").then(({ Gait }) => Gait);
 
 // ---- what is loaded when it is first opened: most visits do not
 
-/** What was loaded, by its name on the page. @type {Signal<Record<string, any>>} */
+/** Loaded components, by their names on the page. @type {Signal<Record<string, any>>} */
 const loaded = signal({});
 
 /** `load`: imports the module and returns its component. */

@@ -13,7 +13,7 @@ const TITLE_PX = 28;
 const ROW_PX = 20;
 const SAMPLE_PX = 24;
 const GAP_PX = 18;
-/** What the style sheet decides, and a file must bring along. */
+/** Properties that the style sheet decides, and a file must bring along. */
 const STYLES = [
   "fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "opacity",
   "font-family", "font-size", "font-weight", "paint-order", "dominant-baseline", "text-anchor",

@@ -183,7 +183,7 @@ export const bestKnownMark = (y, more = {}) => ({
   y, name: "Best known", kind: "best-known", ink: "--dim", share: 0.62, text: `best known: ${metres(y)}`, ...more,
 });
 
-/** What the thin line is, where its caption has no room. */
+/** Note on the thin line, where its caption has no room. */
 export const BestKnownKey = ({ distance }) => html`
   <p class="line-key dim">
     <i class="thin-line" aria-hidden="true"></i>

@@ -77,7 +77,7 @@ const Selection = ({ from, to }) => html`
   <i class="selection" style=${{ left: percent(from), right: percent(1 - to) }}></i>
 `;
 
-/** What is read at a position: each line, and each named level. */
+/** Readings at a position: of each line, and of each named level. */
 function readingOf({ lines, marks, x, y }, position) {
   const valueOf = (line) => {
     const value = valueAt(line, position);
@@ -142,7 +142,7 @@ function usePointer(props, setSelection) {
     onPointerUp: (event) => handlersOf(event).up(event),
     onPointerCancel: (event) => handlersOf(event).cancel(event),
     onPointerLeave() {
-      // What keys or a finger read stays until something else has the focus.
+      // A reading by keys or a finger stays until something else has the focus.
       if (crosshair.peek()?.isOfMouse) crosshair.value = null;
     },
     onDblClick: mouse.double,

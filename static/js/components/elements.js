@@ -104,7 +104,7 @@ export function Problem({ at }) {
 export const Mistake = ({ id, children }) =>
   children && html`<span class="mistake" role="alert" id=${id}>${children}</span>`;
 
-/** What the link says that the form does not know, until it is dismissed. `parts`: signal of texts. */
+/** Note on the parts of a link that the form does not know, until dismissed. `parts`: signal of texts. */
 export const UnknownParts = ({ parts }) =>
   parts.value.length > 0 && html`
     <div class="notice" role="status">
@@ -124,7 +124,7 @@ export const Held = ({ id, mistakes, onField, nameOf = labelOf }) => html`
   </ul>
 `;
 
-/** How long a start takes, if that is long. `words`: signal. */
+/** Estimated duration of a start, if that is long. `words`: signal. */
 export const EstimateNote = ({ words }) => html`<p class="estimate dim" role="status">${words}</p>`;
 
 /** Focus a field, in whatever is folded around it. @param {string} id */

@@ -46,7 +46,7 @@ function shownIn(field, setting, { value, draft, isOfForm }) {
   if (kept) return kept;
   const read = draft === null ? null : parseSetting(draft, setting);
   if (read && read.mistake !== undefined && !isOfForm) return { text: draft, mistake: read.mistake };
-  // What was typed is replaced only when the value has become another one, by a slider or a link.
+  // Typed text is replaced only when the value has become another one, by a slider or a link.
   const isValue = read !== null && read.mistake === undefined && read.value === value;
   return { text: isValue ? draft : String(value ?? ""), mistake: null };
 }

@@ -48,7 +48,7 @@ function viewOf(lane, isAround, { from, to }) {
   return { now, low: middle - BEFORE_S, high: middle + AFTER_S };
 }
 
-/** What does not depend on the moment is kept: the moment changes several times a second. */
+/** Drawings that do not depend on the moment are kept: it changes several times a second. */
 function Figures({ lanes, known }) {
   const isAround = !isWhole.value && known.part !== "evaluation";
   const from = Math.min(...lanes.map(({ figures }) => figures.from_s));
@@ -130,7 +130,7 @@ function Footfalls({ lane, view, step_s }) {
 
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 };
 
-/** What is drawn over time; a click, or an arrow key for a step, seeks where that is allowed. */
+/** Frame of the drawings over time; a click, or an arrow key for a step, seeks where that is allowed. */
 function Timeline({ lane, view, step_s, children }) {
   const { number, title, figures, recorded_to_s } = lane;
   const { now, low, high } = view;

@@ -1,4 +1,4 @@
-// What the learner in view has learned: its learning curve, and its action values in its present state.
+// Learning of the learner in view: its learning curve, and its action values in its present state.
 import { seekIn } from "../actions.js";
 import { changesInWords, rateInWords } from "../changes.js";
 import { inTime, inWords } from "../disturbances.js";

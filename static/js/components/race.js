@@ -14,7 +14,7 @@ import { html, Icon } from "./elements.js";
 
 // ---- the scoreboard: ranks, distances, decision times and simulated transitions
 
-/** How many steps the look-ahead agents simulate. */
+/** Number of steps that the look-ahead agents simulate. */
 const DEPTHS = { greedy: 1, "two-step": 2 };
 
 export function Scoreboard() {
@@ -34,7 +34,7 @@ export function Scoreboard() {
   `;
 }
 
-/** What happens in the race, and of which one it is a branch. */
+/** Disturbances of the race, and the race of which it is a branch. */
 function BranchWords() {
   const race = raceInView.value;
   const branch = race?.config.branch_from;
@@ -73,7 +73,7 @@ function Board({ rows }) {
   `;
 }
 
-/** What a wide search over the whole walk found: how far a robot can come in all its steps. */
+/** Best known distance: that of a wide search over the whole walk. */
 function BestKnown() {
   const best_m = raceInView.value?.best_known_m ?? null;
   return best_m !== null && html`
@@ -146,7 +146,7 @@ function postureOf({ fell_at_step, heading_deg }) {
   return sentence([fell, turned].filter(Boolean).join(", "));
 }
 
-/** What a search knows; empty if the agent does not search, or if nothing happens. */
+/** Model that a search plans with; empty if the agent does not search, or if nothing happens. */
 const knowledgeOf = ({ plans_with }) => (plans_with ? `plans with the ${knowledgeTitle(plans_with)}` : "");
 
 function activityOf(row) {
@@ -166,7 +166,7 @@ const reasonForMarching = ({ agent }) =>
     ? "under 1 cm in ten steps: moves that undo each other still have the highest values. More practice changes that."
     : "under 1 cm in ten steps: no move that it simulates gains distance on this robot.";
 
-/** How an agent decides, in a few words. */
+/** Decision rule of an agent, in a few words. */
 function agentSummary(agent, trainingId) {
   if (learns(agent)) {
     const training = runs.value.get(trainingId);

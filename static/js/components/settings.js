@@ -21,7 +21,7 @@ import { Happenings, WorldPicker } from "./world.js";
 
 /** @import { Run } from "../types.js" */
 
-/** What the slider of the practice reaches, which is less than the server accepts: any other number can be typed. */
+/** Maximum of the slider of the practice, less than the server accepts: any other number can be typed. */
 const PRACTICE = { min: 50, max: 2000, step: 50 };
 
 /** In the order of a thought: who learns, in what, against whom. Each group is one line when folded. */
@@ -125,7 +125,7 @@ function LearnerSettings() {
 /** The pace or a live setting now: of the training that runs. @type {(run: Run, name: string) => any} */
 const rateNow = (run, name) => presentRates(run)[name] ?? run.config[name];
 
-/** What the next training starts with, where the one that runs has other values. */
+/** Values that the next training starts with, where the one that runs has others. */
 function NextRates({ run }) {
   /** @type {Record<string, any>} */
   const values = form.value;

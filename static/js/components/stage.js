@@ -187,7 +187,7 @@ function SceneChips() {
   `;
 }
 
-/** Whose robots the ghosts are, and how far they have come. */
+/** Key of the ghosts: the run they are of, and their distances. */
 function GhostChip({ ghosts }) {
   const run = runs.value.get(ghostId.value ?? "");
   const title = run ? run.name || sentence(run.kind) : "another run";
@@ -197,7 +197,7 @@ function GhostChip({ ghosts }) {
   `;
 }
 
-/** What holds in the step that is shown, as on every page that watches. */
+/** Conditions in the step that is shown, as on every page that watches. */
 function WorldChip() {
   const words = conditionsShown.value;
   return words.length > 0 && html`<p class="chip happening">${sentence(words.join(", "))}</p>`;

@@ -84,7 +84,7 @@ const MARKS = {
   "evaluation": "Evaluation",
 };
 
-/** What a mark says, such as "Greedy crosses the line". */
+/** Text of a mark, such as "Greedy crosses the line". */
 function markTitle({ kind, lane, step, distance_m }) {
   const names = (shownRun.value?.config?.lanes ?? []).map((one) => agentOf(one.agent).title);
   if (kind === "evaluation") return `Evaluation after ${count(step, "step")}: ${metres(distance_m)}`;

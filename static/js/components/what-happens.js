@@ -1,4 +1,4 @@
-// What happens to a robot and its ground: a drawn hexapod whose legs are pressed, and sliders; for the training that
+// Disturbances of a robot and its ground: a drawn hexapod whose legs are pressed, and sliders; for the training that
 // runs, and for a race that is held, which is raced on from there.
 import { signal } from "@preact/signals";
 import { useRef, useState } from "preact/hooks";
@@ -61,7 +61,7 @@ export const classOf = (state) => (state ? state.split(" ").at(-1) : "");
 
 // ---- what a press on a leg does
 
-/** What can happen to legs, as the server lists it. */
+/** Kinds of disturbances of legs, as the server lists them. */
 const legKinds = () => served().disturbances.filter(({ fields }) => fields.legs || fields.leg);
 
 const NO_OWN_FIELDS = ["leg", "at_step", "until_step"];
@@ -123,7 +123,7 @@ function firstValue(field) {
 
 // ---- sliders for how much happens: slope, friction, payload, a push; below it, its other numbers
 
-/** What happens to more than a leg, as the server lists it. */
+/** Kinds of disturbances of more than a leg, as the server lists them. */
 const kindsWithSize = () => served().disturbances.filter(({ size, fields }) => size && !fields.legs);
 
 /** A place is exact, and no seed is near another: such numbers are typed. */
@@ -133,7 +133,7 @@ const PAUSE_MS = 500;
 
 const shareIn = (value, { min, max }) => ({ "--share": `${(100 * (value - min)) / (max - min)}%` });
 
-/** What a press on its button does. */
+/** Action of its button. */
 const PRESS_WORDS = { [PUSH]: "Push it", patch: "Lay it" };
 
 /** Whether it waits for its button: a push, and what has no size at which nothing happens. */
@@ -290,7 +290,7 @@ function WorldControls({ id, config, conditions, onHappen, sentenceOf, children 
   `;
 }
 
-/** What can happen to the training that runs. */
+/** Panel of the disturbances of the training that runs. */
 export function LiveWorld() {
   const run = liveTraining.value;
   if (!run) return null;

@@ -93,7 +93,7 @@ const Axis = ({ known, far }) => html`
   </p>
 `;
 
-/** How to read the answer, that one is computed, or why there is none; always two lines high. */
+/** State of the answer: a hint for reading it, that one is computed, or why there is none; always two lines high. */
 function Status({ known }) {
   if (hasMistakes()) {
     return html`<p class="what-if-words" role="status">Settings that are not valid are not tried.</p>`;

@@ -72,7 +72,7 @@ export const WorldPicker = () => html`
 
 const setHappenings = (texts) => setField("disturb", texts);
 
-/** What is to happen, each with its fields; a text that a link has and that is none stands as it is. */
+/** Disturbances to come, each with its fields; a text of a link that is no disturbance stands as it is. */
 export function Happenings() {
   const texts = form.value.disturb;
   const worlds = served().worlds.filter(({ disturbances }) => disturbances.length);

@@ -82,7 +82,7 @@ export const overrides = signal({});
  * @type {Signal<Record<string, string>>}
  */
 export const typed = signal({});
-/** What a link says that is no field of the form, as "alhpa=0.5". @type {Signal<string[]>} */
+/** Parts of a link that are no field of the form, as "alhpa=0.5". @type {Signal<string[]>} */
 export const unknownParts = signal([]);
 
 export const chosenExperiment = computed(() => experimentOf(chosenName.value));
@@ -202,7 +202,7 @@ export const wrong = computed(() => {
   for (const [field, text] of Object.entries(typed.value)) {
     if (field === "experiment" || takesField(field)) check(field, text);
   }
-  // What is valid for some agents only, after others were chosen.
+  // Values that are valid for some agents only, after others were chosen.
   for (const [field, value] of Object.entries(overrides.value)) {
     if (takesField(field) && !(field in typed.value)) check(field, joined(value, ", "));
   }

@@ -169,7 +169,7 @@ export const canStart = () =>
 /** Fewer trials are surely done soon. */
 const SHORT_TRIALS = 100;
 
-/** How long the form's experiment takes, in words. */
+/** Estimated duration of the form's experiment, in words. */
 export const experimentEstimate = makeEstimate(computed(() =>
   place.value === "experiments" && options.value && canStart() && trials.value > SHORT_TRIALS
     ? { path: "experiments", body: requestBody() }

@@ -37,7 +37,7 @@ export const loadTrials = ({ id }) =>
 /** Settings of which a single run repeats a trial: in blocks, none does. @param {Setting[]} settings */
 export const repeatable = (settings) => settings.filter(({ blocks, n }) => blocks <= 1 && n > 0);
 
-/** What the server notes of a run that it made of a trial. */
+/** Note of the server on a run that it made of a trial. */
 const NOTE = /Trial (.+#\d+) of experiment (\w+)\./;
 
 /** Experiment and trial → the newest run that was made of it. */

@@ -1,4 +1,4 @@
-// What a compared run is in charts and tables.
+// Number, colour and title of a compared run in charts and tables.
 import { html } from "../elements.js";
 
 /** Its line in the charts: colour and dashes. */

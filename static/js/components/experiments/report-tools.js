@@ -1,4 +1,4 @@
-// What stands over a report's figures: the choice of place and unit, and the legend of dot strips.
+// Tools over a report's figures: the choice of place and unit, and the legend of dot strips.
 import { unit, UNITS } from "../../experiments/distances.js";
 import { sentence } from "../../format.js";
 import { agentOf } from "../../settings.js";

@@ -93,7 +93,7 @@ const Head = ({ columns }) => html`
   </thead>
 `;
 
-/** What was varied, with its values: "Sarsa(λ), α 0.1". */
+/** Varied settings, with their values: "Sarsa(λ), α 0.1". */
 const nameOf = (setting, columns) =>
   columns.filter((field) => setting[field] !== null && setting[field] !== undefined)
     .map((field) => (isNamedByValue(field) ? "" : `${fieldTitle(field)}\u00a0`) + valueTitle(field, setting[field]))

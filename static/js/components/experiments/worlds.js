@@ -14,7 +14,7 @@ import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, UnitSwitch } from "./r
 
 const NOMINAL = "nominal";
 
-/** What each experiment is about. */
+/** Question of each experiment. */
 const TITLES = { league: "Who walks, in which world", recovery: "Who recovers, from what" };
 const STEPS_OF = { league: "steps of practice", recovery: "steps after it happened" };
 

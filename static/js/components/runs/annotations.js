@@ -1,4 +1,4 @@
-// What users say of a run: its name, tags and notes, each changed in its place.
+// Annotations of a run: its name, tags and notes, each changed in its place.
 import { signal } from "@preact/signals";
 import { useLayoutEffect, useRef, useState } from "preact/hooks";
 import { annotate } from "../../actions.js";
@@ -8,7 +8,7 @@ import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
 import { html, Icon } from "../elements.js";
 
-/** What is being changed: the id of a run and a field of it; null if nothing is. */
+/** Field being changed: the id of a run and the field's name; null if none is. */
 const edited = signal(/** @type {{ id: string, field: string } | null} */ (null));
 
 /** Change a field of a run in its place. */

@@ -67,7 +67,7 @@ const StateOf = ({ run: { state, queue_position } }) => html`
 function summaryOf(run) {
   const { config } = run;
   const { robot, simulator, agent } = served().defaults.training;
-  // What is as by default is not named.
+  // Defaults are not named.
   const learner = [undefined, agent].includes(config.agent) ? "" : agentOf(config.agent).title;
   const place = [
     isSame(formRobot(config.robot), robot) ? "" : robotTitle(config.robot),

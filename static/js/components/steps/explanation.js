@@ -36,7 +36,7 @@ function Happened({ told }) {
   `;
 }
 
-/** How often a move had been tried there; null where that is not counted. */
+/** Number of trials of a move there; null where they are not counted. */
 const triesOf = ({ visits }, [pair, cell]) => visits?.[pair]?.[cell] ?? null;
 
 const times = (visits) => (visits === 1 ? "once" : count(visits, "time"));

@@ -167,7 +167,7 @@ function Cells({ shown }) {
   return html`<canvas ref=${canvas} aria-hidden="true"></canvas>`;
 }
 
-/** What was never tried is hatched, as in the table of one state; the best move of a state has a dot. */
+/** Moves never tried are hatched, as in the table of one state; the best move of a state has a dot. */
 function draw(canvas, shown, width) {
   const rows = shown.values.length;
   const columns = shown.values[0].length;
