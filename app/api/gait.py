@@ -12,15 +12,14 @@ from app.api.descriptions import VALID
 from app.api.gait_answers import GaitView
 from app.api.runs import RunPath
 from app.runs.config import TrainingConfig
-from app.runs.gait_analysis import (
+from app.runs.gait_analysis import gait_figures, window_of
+from app.runs.race_config import RaceConfig
+from app.runs.recorded_walk import (
     RecordedWalk,
-    gait_figures,
     walk_of_evaluation,
     walk_of_lane,
     walk_of_practice,
-    window_of,
 )
-from app.runs.race_config import RaceConfig
 from app.storage.errors import Conflict, Damaged
 from app.storage.run import DamagedRun, Run, world_of
 

@@ -25,10 +25,11 @@ from app.runs.best_known import best_known_in_race_m
 from app.runs.clocks import CLOCKS, check_clock
 from app.runs.config import agent_settings
 from app.runs.config_json import as_json
-from app.runs.gait_analysis import gait_figures, gait_summary, walk_of_lane, window_of
+from app.runs.gait_analysis import gait_figures, gait_summary, window_of
 from app.runs.lane import LaneConfig, lane_config, observation_of
 from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
+from app.runs.recorded_walk import walk_of_lane
 from app.runs.recording import LaneRecording
 from app.runs.results import lane_details, race_result
 from app.runs.tables import Checkpoint

@@ -102,7 +102,7 @@ def _write(foxglove: Any, walks: RecordedWalks, clock: Clock, file: Any) -> None
 
 def _frames(lane: RecordedLane, number: int, step_s: float, clock: Clock) -> Iterator[_Frame]:
     """Yield the pose at rest, and each recorded frame of a lane."""
-    yield _Frame(0.0, number, 0, lane.rest_qpos.astype(float), None)
+    yield _Frame(0.0, number, 0, lane.start_qpos.astype(float), None)
     count = 0
     for index, start_s in enumerate(lane.starts_s(step_s, clock)):
         motion = lane.motion(index)

@@ -4,14 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import cast
 
-import numpy as np
-from numpy.typing import NDArray
-
 from app.domain.errors import InvalidInput
-from app.domain.simulator import Motion
 from app.runs.clocks import Clock, Timetable
 from app.runs.config import TrainingConfig, WalkingProblem
 from app.runs.race_config import RaceConfig
+from app.runs.recorded_walk import RecordedSteps
 from app.runs.records import LaneStep, StepTaken
 from app.storage.errors import Conflict, Damaged
 from app.storage.recordings import Recordings
@@ -19,32 +16,15 @@ from app.storage.run import NOT_ENDED, AnyRun, DamagedRun
 
 
 @dataclass(frozen=True)
-class RecordedLane:
-    """Recording of one robot.
+class RecordedLane(RecordedSteps):
+    """Recording of one robot; after the first 20 steps of a practice there may be a gap.
 
     Attributes:
         agent: name of its agent.
-        rest_qpos: pose on the start line, (7 + joints,).
-        steps: in order, each with its motion; after the first 20 of a practice there may be a gap.
     """
 
     agent: str
-    rest_qpos: NDArray[np.float32]
     steps: Sequence[LaneStep] | Sequence[StepTaken]
-
-    def motion(self, index: int) -> Motion:
-        """Return the motion of the step with this index in `steps`."""
-        return cast(Motion, self.steps[index].motion)
-
-    def pose_before(self, index: int) -> NDArray[np.float32]:
-        """Return the pose before the step with this index in `steps`, (7 + joints,)."""
-        if self.steps[index].step == 1:
-            return self.rest_qpos
-        if index and self.steps[index - 1].step == self.steps[index].step - 1:
-            last: NDArray[np.float32] = self.motion(index - 1).qpos[-1]
-            return last
-        first: NDArray[np.float32] = self.motion(index).qpos[0]
-        return first
 
     def starts_s(self, step_s: float, clock: Clock) -> list[float]:
         """Return when the motion of each step begins [s], in a race as a clock times it.
@@ -87,13 +67,13 @@ def recorded_walks(run: AnyRun, recordings: Recordings) -> RecordedWalks:
         )
     if isinstance(config, RaceConfig):
         race = recordings.race(run.id)
-        lanes = [RecordedLane(one.agent, one.rest_qpos, list(one.steps)) for one in race or ()]
+        lanes = [RecordedLane(one.rest_qpos, list(one.steps), one.agent) for one in race or ()]
     else:
         practice = recordings.training(run.id)
         lanes = []
         if practice is not None:
             steps = [step for step in practice.steps if step.motion is not None]
-            lanes = [RecordedLane(config.agent, practice.rest_qpos, steps)]
+            lanes = [RecordedLane(practice.rest_qpos, steps, config.agent)]
     if not any(lane.steps for lane in lanes):
         raise Conflict(f"{run.kind} {run.id} is {run.state} and has no recording", run.state)
     return RecordedWalks(config, lanes)

@@ -150,7 +150,7 @@ def _blocks(look: Look, lanes: Sequence[int], has_torque: bool) -> Iterator[_Blo
         walks = look()
         count, problem = len(walks.lanes[number].steps), walks.problem
         encode = _Encoder(number, problem.built_robot, problem.robot.step_s, has_torque)
-        rest = walks.lanes[number].rest_qpos
+        rest = walks.lanes[number].start_qpos
         del walks
         yield encode.rest(rest)
         for first in range(0, count, _STEPS_PER_BLOCK):

@@ -158,7 +158,7 @@ class _Track:
     def pose(self, time_s: float) -> FloatArray:
         index = bisect_right(self._starts_s, time_s) - 1
         if index < 0:
-            return self.lane.rest_qpos.astype(float)
+            return self.lane.start_qpos.astype(float)
         start = self.lane.pose_before(index)
         return pose_at(start, self.lane.motion(index), time_s - self._starts_s[index])
 

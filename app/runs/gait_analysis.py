@@ -11,7 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from itertools import takewhile
-from typing import Any, NamedTuple, Protocol, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,13 +20,10 @@ from app.domain.disturbances import Lost, Payload
 from app.domain.errors import InvalidInput
 from app.domain.kinematics import rotation_matrices
 from app.domain.robot import Robot
-from app.domain.simulator import Motion
-from app.domain.types import Action, Cells, FloatArray
+from app.domain.types import FloatArray
 from app.domain.world import World
-from app.runs.config import RACE_STEPS, WalkingProblem
 from app.runs.footfall import Interval, clearances_m, clipped, duty_factor, stance_intervals
-from app.runs.recording import LaneRecording, PracticeRecording
-from app.runs.records import Evaluated, StepTaken
+from app.runs.recorded_walk import RecordedWalk
 
 GRAVITY_M_S2 = 9.81
 MAX_WINDOW_S = 120.0
@@ -38,125 +35,8 @@ MIN_DISTANCE_M = 0.01
 CYCLE_REPEATS = 3
 """A sequence of steps is a cycle if it ends the walk so many times in a row."""
 MAX_CYCLE_STEPS = 200
-
-
 MAX_LOOKED_BACK = 10_000
 """So many steps from the end the repetitions of a cycle are counted."""
-
-
-class WalkedStep(Protocol):
-    """A recorded step: a `LaneStep`, a `StepTaken` with its motion, or one of an evaluation."""
-
-    @property
-    def step(self) -> int:
-        """Its number, counted from 1."""
-
-    @property
-    def observation(self) -> Cells | None:
-        """Observation before the action; None if it was not recorded."""
-
-    @property
-    def action(self) -> Action | None:
-        """The action; None if it was not recorded."""
-
-    @property
-    def motion(self) -> Motion | None:
-        """The motion, which all steps of a `RecordedWalk` have."""
-
-
-class EvaluatedStep(NamedTuple):
-    """A step of an evaluation, whose choice was not recorded."""
-
-    step: int
-    motion: Motion
-    observation: None = None
-    action: None = None
-
-
-@dataclass(frozen=True)
-class RecordedWalk:
-    """Consecutive recorded steps of one robot.
-
-    Attributes:
-        problem: the walking problem.
-        world: all that happens in the run.
-        start_qpos: the pose before the first of the steps, (7 + joints,).
-        steps: in order, without a gap.
-    """
-
-    problem: WalkingProblem
-    world: World
-    start_qpos: NDArray[np.float32]
-    steps: Sequence[WalkedStep]
-
-    @property
-    def from_s(self) -> float:
-        """Robot time at the beginning of the first step [s]."""
-        return (self.steps[0].step - 1) * self.problem.robot.step_s if self.steps else 0.0
-
-    @property
-    def to_s(self) -> float:
-        """Robot time at the end of the last step [s]."""
-        return self.steps[-1].step * self.problem.robot.step_s if self.steps else 0.0
-
-    def motion(self, index: int) -> Motion:
-        """Return the motion of the step with this index in `steps`."""
-        return cast(Motion, self.steps[index].motion)
-
-    def pose_before(self, index: int) -> NDArray[np.float32]:
-        """Return the pose before the step with this index in `steps`, (7 + joints,)."""
-        pose: NDArray[np.float32] = self.motion(index - 1).qpos[-1] if index else self.start_qpos
-        return pose
-
-
-def walk_of_lane(lane: LaneRecording, problem: WalkingProblem, world: World) -> RecordedWalk:
-    """Return the walk of a race's lane."""
-    return RecordedWalk(problem, world, lane.rest_qpos, list(lane.steps))
-
-
-def walk_of_practice(
-    recording: PracticeRecording,
-    problem: WalkingProblem,
-    world: World,
-    from_s: float | None = None,
-) -> RecordedWalk:
-    """Return steps of a practice that are recorded without a gap.
-
-    Args:
-        recording: the practice; of its first and its newest steps there are records.
-        problem: the walking problem.
-        world: all that happens in the practice.
-        from_s: a time before the end of those steps; None for the newest.
-    """
-    steps: list[StepTaken] = []
-    for taken in recording.steps:
-        if taken.motion is None:
-            continue
-        if steps and steps[-1].step != taken.step - 1:
-            if from_s is not None and from_s < steps[-1].step * problem.robot.step_s:
-                break
-            steps = []
-        steps.append(taken)
-    start_qpos = recording.rest_qpos
-    if steps and steps[0].step > 1:
-        start_qpos = cast(Motion, steps[0].motion).qpos[0]
-    return RecordedWalk(problem, world, start_qpos, steps)
-
-
-def walk_of_evaluation(
-    evaluated: Evaluated, recording: PracticeRecording, problem: WalkingProblem, world: World
-) -> RecordedWalk:
-    """Return the walk of an evaluation: 50 steps from rest in the world as it was then."""
-    motion, steps = evaluated.motion, list[WalkedStep]()
-    if motion is not None:
-        frames = len(motion.time_s) // RACE_STEPS
-        for number in range(RACE_STEPS):
-            part = slice(number * frames, (number + 1) * frames)
-            begin_s = np.float32(number * problem.robot.step_s)
-            own = Motion(motion.time_s[part] - begin_s, motion.qpos[part])
-            steps.append(EvaluatedStep(number + 1, own))
-    conditions = world.as_of(max(0, evaluated.step - 1))
-    return RecordedWalk(problem, conditions, recording.rest_qpos, steps)
 
 
 @dataclass(frozen=True)

@@ -13,10 +13,11 @@ from app.domain.gait import GaitSpec
 from app.domain.observation import legal_actions
 from app.domain.types import Action
 from app.runs.config import WalkingProblem, problem_of
-from app.runs.gait_analysis import gait_figures, walk_of_lane
+from app.runs.gait_analysis import gait_figures
 from app.runs.lane import LaneConfig, lane_config
 from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
+from app.runs.recorded_walk import walk_of_lane
 from app.runs.recording import LaneRecording
 
 RIPPLE = GaitSpec(1, 2, pairs=((1, 4), (5, 3), (6, 2)))

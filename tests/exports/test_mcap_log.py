@@ -58,7 +58,7 @@ def test_joint_states_are_the_recorded_angles(raced: RecordedWalks, messages: Me
     for number, lane in enumerate(raced.lanes):
         states = messages[f"/lane{number}/joint_states"]
         motions = [lane.motion(index) for index in range(6)]
-        recorded = np.concatenate([lane.rest_qpos[None], *(motion.qpos for motion in motions)])
+        recorded = np.concatenate([lane.start_qpos[None], *(motion.qpos for motion in motions)])
         assert [joint.name for joint in states[0].joints] == names
         written = np.array([[joint.position for joint in one.joints] for one in states])
         assert np.array_equal(written, recorded[:, 7:].astype(float))

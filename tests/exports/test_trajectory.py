@@ -36,7 +36,7 @@ def test_rows_of_csv_are_the_recorded_frames_to_the_last_bit(raced: RecordedWalk
     for number, lane in enumerate(raced.lanes):
         own = [row for row in rows if row[0] == str(number)]
         motions = [lane.motion(index) for index in range(6)]
-        recorded = np.concatenate([lane.rest_qpos[None], *(motion.qpos for motion in motions)])
+        recorded = np.concatenate([lane.start_qpos[None], *(motion.qpos for motion in motions)])
         written = np.array([row[3 : 10 + joints] for row in own], np.float32)
         assert np.array_equal(written, recorded)
         times = [0.0, *(k * step_s + t for k, one in enumerate(motions) for t in one.time_s)]

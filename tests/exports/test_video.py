@@ -45,7 +45,7 @@ def test_a_gif_opens_in_another_reader(raced: RecordedWalks) -> None:
 def test_pictures_show_the_recorded_poses(raced: RecordedWalks) -> None:
     step_s = raced.problem.robot.step_s
     track = video._Track(raced.lanes[1], step_s, "free")
-    assert np.array_equal(track.pose(0), raced.lanes[1].rest_qpos)
+    assert np.array_equal(track.pose(0), raced.lanes[1].start_qpos)
     for index in range(6):
         motion = raced.lanes[1].motion(index)
         for frame in (3, -1):

@@ -11,20 +11,17 @@ from app.domain.disturbances import Lost, Payload
 from app.domain.errors import InvalidInput
 from app.domain.world import UNDISTURBED, World
 from app.runs.config import WalkingProblem, training_config
-from app.runs.gait_analysis import (
-    MAX_SAMPLES,
-    MAX_WINDOW_S,
-    EvaluatedStep,
-    RecordedWalk,
-    gait_figures,
-    walk_of_evaluation,
-    walk_of_lane,
-    walk_of_practice,
-    window_of,
-)
+from app.runs.gait_analysis import MAX_SAMPLES, MAX_WINDOW_S, gait_figures, window_of
 from app.runs.lane import LaneConfig
 from app.runs.race_config import RaceConfig
 from app.runs.racing import record_race
+from app.runs.recorded_walk import (
+    EvaluatedStep,
+    RecordedWalk,
+    walk_of_evaluation,
+    walk_of_lane,
+    walk_of_practice,
+)
 from app.runs.recording import PracticeRecording
 from app.runs.records import Evaluated, StepTaken
 from app.runs.training import train
@@ -134,7 +131,7 @@ def test_pitch_is_positive_with_the_front_up_and_roll_with_the_left_side_up(
     poses = motion.qpos.copy()
     poses[:, 3:7] = turned
     step = EvaluatedStep(1, motion._replace(qpos=poses))
-    made = RecordedWalk(problem, UNDISTURBED, poses[0], [step])
+    made = RecordedWalk(poses[0], [step], problem, UNDISTURBED)
     figures = gait_figures(made, 0, STEP_S)
 
     assert figures is not None
