@@ -359,9 +359,13 @@ export function followReplay() {
       clock: clock.value,
     };
   });
-  // A server that was away may have come back without the run.
+  // A server that was away may have come back with the run.
+  let wasAway = false;
   effect(() => {
-    if (connection.value === "live" && replayProblem.peek() && ownRunId.peek()) readReplayAddress();
+    wasAway ||= connection.value === "reconnecting";
+    if (connection.value !== "live" || !wasAway) return;
+    wasAway = false;
+    if (replayProblem.peek() && ownRunId.peek()) readReplayAddress();
   });
   let isLooping = false;
   const loop = (/** @type {number} */ now) => {
@@ -385,7 +389,7 @@ export function readReplayAddress() {
   else if (ownRunId.peek() !== null) closeReplay();
 }
 
-/** Show a frame. @param {string} id @param {boolean} isHeld */
+/** Run, ghost and held moment, for an address. @param {string} id @param {boolean} isHeld */
 const shownNow = (id, isHeld) => ({ id, ghost: ghostId.peek(), time_s: isHeld ? replayTime.peek() : null });
 
 /** A link to the moment that is shown. */

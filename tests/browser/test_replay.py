@@ -112,6 +112,8 @@ def test_a_link_that_cannot_be_replayed_says_why(dashboard: Dashboard, shared_se
     page.goto(f"{shared_server.address}?run=gone&t=1")
     alert = page.get_by_role("alert").filter(has_text="gone")
     expect(alert).to_be_visible()
+    # The page asks for the run, its replay and its scene.
+    dashboard.eventually(lambda: len(dashboard.complaints) == 3, "three answers of 404")
     dashboard.complaints.clear()
     dashboard.button("Watch the stage").click()
     expect(alert).to_have_count(0)
