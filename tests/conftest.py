@@ -3,11 +3,12 @@
 `make test` runs the tests in several processes (pytest-xdist).
 """
 
+import gc
 from collections.abc import Iterator
 
 import hypothesis
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserType, Page, sync_playwright
 from xdist.remote import Producer
 
 from tests.in_parallel import FileByFile
@@ -27,6 +28,8 @@ _CHROMIUM_OPTIONS = [
     "--disable-component-update",
     "--disable-sync",
 ]
+_WITHOUT_WEBGL = ["--disable-gpu", "--disable-software-rasterizer"]
+"""A page without a 3D view is drawn with a sixth less work of the processor."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -38,10 +41,16 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """
 
     def place(item: pytest.Item) -> tuple[bool, int]:
-        is_last = "browser" in getattr(item, "fixturenames", ())
+        is_last = "chromium" in getattr(item, "fixturenames", ())
         return is_last, -item.path.stat().st_size if is_last else 0
 
     items.sort(key=place)
+
+
+def pytest_collection_finish() -> None:
+    """Take imported modules out of garbage collection, which would scan them again and again."""
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> FileByFile:
@@ -50,22 +59,41 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> FileByF
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
+def chromium() -> Iterator[BrowserType]:
+    """Playwright's driver of Chromium."""
+    with sync_playwright() as playwright:
+        yield playwright.chromium
+
+
+@pytest.fixture(scope="session")
+def browser(chromium: BrowserType) -> Iterator[Browser]:
     """Chromium with a fresh profile. Having none is a failure: these tests are never skipped."""
+    with _launched(chromium, _CHROMIUM_OPTIONS) as launched:
+        yield launched
+
+
+@pytest.fixture(scope="session")
+def flat_browser(chromium: BrowserType) -> Iterator[Browser]:
+    """Chromium that cannot draw in 3D."""
+    with _launched(chromium, _CHROMIUM_OPTIONS + _WITHOUT_WEBGL) as launched:
+        yield launched
+
+
+def _launched(chromium: BrowserType, options: list[str]) -> Browser:
     path = find_browser()
     if path is None:
         pytest.fail(HOW_TO_GET_ONE, pytrace=False)
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(
-            executable_path=path, headless=True, args=_CHROMIUM_OPTIONS
-        )
-        yield chromium
-        chromium.close()
+    return chromium.launch(executable_path=path, headless=True, args=options)
 
 
 @pytest.fixture
 def page(browser: Browser) -> Iterator[Page]:
-    """An empty tab with cookies and storage of its own.
+    """An empty tab with cookies and storage of its own."""
+    yield from new_page(browser)
+
+
+def new_page(browser: Browser) -> Iterator[Page]:
+    """Yield an empty tab with cookies and storage of its own, and close it.
 
     It has half as many pixels as it says: WebGL in software takes most of the time of these tests.
     """

@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from tests.api.conftest import api, data, serve, trained
-from tests.browser.conftest import dashboard, server
+from tests.browser.conftest import dashboard, page, server
 from tests.browser.serving import Serving, serving
 from tests.served import Served, serving_from
 
-__all__ = ["api", "dashboard", "data", "serve", "server", "trained"]
+__all__ = ["api", "dashboard", "data", "page", "serve", "server", "trained"]
 
 
 @pytest.fixture

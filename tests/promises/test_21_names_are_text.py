@@ -127,6 +127,7 @@ def payload_runs(server: Serving) -> list[dict[str, Any]]:
 
 
 @pytest.mark.timeout(900)
+@pytest.mark.looks_at_3d
 def test_no_payload_in_a_run_name_is_executed(
     page: Page, server: Serving, payload_runs: list[dict[str, Any]]
 ) -> None:
