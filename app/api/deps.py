@@ -10,6 +10,7 @@ from starlette.requests import ClientDisconnect
 from app.api.answer_cache import AnswerCache
 from app.api.auth import Role
 from app.api.descriptions import VALID
+from app.domain.types import Cells
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
 from app.exports.video_renderer import VideoRenderer
@@ -63,6 +64,9 @@ class ReplayFrames(Protocol):
         self, run_id: str, clock: Clock, level: int, number: int, ghost_id: str | None
     ) -> bytes:
         """Return the frames of a segment."""
+
+    def posture(self, run_id: str, clock: Clock, time_s: float, lane: int, cells: Cells) -> bytes:
+        """Return a ghost of a lane's robot in a state."""
 
 
 @dataclass(frozen=True)

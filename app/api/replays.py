@@ -21,6 +21,7 @@ router = APIRouter(prefix="/runs/{run_id}/replay", tags=["replays"])
 _MEDIA_TYPE = "application/octet-stream"
 _FRAMES = answers(200, {_MEDIA_TYPE: BINARY})
 _MAX_TIME_S = 1e9
+_CELLS = r"^[0-9]{1,4}(,[0-9]{1,4}){0,15}$"
 ClockQuery = Annotated[Clock, Query(description="times a race; a training has one clock")]
 GhostQuery = Annotated[RunId | None, Query(description=VALID["ghost"])]
 
@@ -62,6 +63,31 @@ def get_replay_moment(
 ) -> Response:
     """Return the frame at a time of the run, or at the nearest that is recorded."""
     return _response(request, services.replays.moment(run_id, clock, time_s, ghost))
+
+
+@router.get(
+    "/posture",
+    summary="A ghost of a robot in a state",
+    response_class=Response,
+    responses=_FRAMES,
+)
+def get_replay_posture(
+    *,
+    services: ServicesDep,
+    request: Request,
+    run_id: RunPath,
+    cells: Annotated[str, Query(pattern=_CELLS, description=VALID["cells"])],
+    lane: Annotated[int, Query(description="of a race, from 0 on")] = 0,
+    time_s: Annotated[float, Query(ge=0, le=_MAX_TIME_S, description=VALID["time_s"])] = 0.0,
+    clock: ClockQuery = "paper",
+) -> Response:
+    """Return messages that draw a lane's robot, translucent, with its feet in the given cells.
+
+    They draw it in the node of the lane's foot grid, so that it moves along with the robot. Legs
+    that are lost at the time are left out.
+    """
+    state = tuple(int(cell) for cell in cells.split(","))
+    return _response(request, services.replays.posture(run_id, clock, time_s, lane, state))
 
 
 class Place(NamedTuple):

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from app.domain.errors import InvalidInput
 from app.domain.feet import Feet
 from app.domain.gait import Gait
 from app.domain.grid import FootGrid
@@ -49,6 +50,24 @@ class KinematicSimulator:
 
     def rest(self) -> KinematicState:
         return KinematicState(self._motion.at_home())
+
+    def standing(self, cells: Cells) -> KinematicState:
+        """Return the state on the start line with the feet of each pair in a cell of the grid.
+
+        Raises:
+            InvalidInput: if that is not one cell of the grid for each pair.
+        """
+        pairs, last = len(self.gait.pairs), len(self.grid) - 1
+        if len(cells) != pairs:
+            raise InvalidInput(
+                f"cells must be {pairs} numbers, one for each pair, not {len(cells)}"
+            )
+        for cell in cells:
+            if not 0 <= cell <= last:
+                raise InvalidInput(f"each of the cells must be from 0 to {last}, not {cell}")
+        places = [self.grid.places_m[cell] for cell in cells]
+        lateral_m, forward_m = (tuple(place[axis] for place in places) for axis in (0, 1))
+        return KinematicState(Feet(tuple(cells), lateral_m, forward_m))
 
     def step(
         self,

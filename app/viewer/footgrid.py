@@ -18,7 +18,8 @@ _OTHER_RIM: Rgb = rgb("#4c8dff")
 _CURRENT_FILL: Rgb = (38, 42, 50)
 _UNTRIED_FILL: Rgb = rgb("#80868f")
 _CURRENT_RIM: Rgb = (255, 255, 255)
-_ABOVE_GROUND_M = 0.003
+ABOVE_GROUND_M = 0.003
+"""Height of the grid over the ground."""
 _LAYER_OFFSET = np.array([0.0, 0.0, 0.0006])
 """Offset of a layer over the one below, against z-fighting [m]."""
 
@@ -69,7 +70,7 @@ class FootGridDrawing:
         """Move the grid with the body, and colour its cells if the action values changed."""
         x, y = float(lane.qpos[0]) + self._x_m, float(lane.qpos[1])
         turn, z = yaw_rad(lane.qpos[3:7]) - self._forward_rad, lane.conditions.ground_m(0)
-        pose = (x, y, z + _ABOVE_GROUND_M, turn)
+        pose = (x, y, z + ABOVE_GROUND_M, turn)
         if pose != self._pose:
             self._frame.position = pose[:3]
             self._frame.wxyz = (math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2))

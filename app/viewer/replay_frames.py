@@ -12,14 +12,18 @@ import struct
 import threading
 from collections import OrderedDict
 from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import msgspec
 
+from app.domain.errors import InvalidInput
+from app.domain.types import Cells
 from app.runs.clocks import Clock
 from app.stage.playback import FRAMES_PER_S, SEGMENT_FRAMES, Replay, Replays
 from app.stage.stage_frame import StageFrame
-from app.viewer.scene import StageScene
+from app.viewer.posture import draw_posture
+from app.viewer.scene import StageScene, grid_root
 from app.viewer.stage_loop import SCENES_PER_S
 from app.viewer.track import WORLD
 from app.viewer.viser_internals.recorder import Recorded, recorder
@@ -83,6 +87,36 @@ class ReplayFrames:
         replay = self._replays.get(run_id, clock, ghost_id)
         with self._encoding:
             return _encode(_after_scene(replay, [time_s]))
+
+    def posture(self, run_id: str, clock: Clock, time_s: float, lane: int, cells: Cells) -> bytes:
+        """Return a ghost of a lane's robot in a state, as messages without `scene` and `follow`.
+
+        It is drawn in the node of the lane's foot grid, which carries it along with the robot.
+
+        Args:
+            run_id: id of a training or race.
+            clock: times a race.
+            time_s: whose conditions it is drawn in [s]: legs that are lost are left out.
+            lane: the lane, counted from 0.
+            cells: the cell of each pair.
+
+        Raises:
+            NotFound, Conflict: see `Replays.get`.
+            InvalidInput: likewise; or if there is no such lane, or no such state.
+            Unreachable: if the robot cannot stand in it.
+        """
+        frame = self._replays.get(run_id, clock).frame_at(time_s)
+        if not 0 <= lane < len(frame.lanes):
+            raise InvalidInput(f"lane must be from 0 to {len(frame.lanes) - 1}, not {lane}")
+        spec = replace(frame.spec, lane_specs=frame.spec.lane_specs[lane : lane + 1], ghosts=None)
+        root = f"{grid_root(lane)}/posture"
+        with self._encoding, in_process_viser() as server, recorder(server) as recording:
+            draw_posture(server, root, spec, cells, frame.lanes[lane].conditions)
+            messages, arrays = recording.take()
+            own = [
+                message for message in messages if f"{message.get('name')}/".startswith(f"{root}/")
+            ]
+            return _encode(iter([(Recorded(own, arrays), {"time_s": frame.time_s})]))
 
     def segment(
         self, run_id: str, clock: Clock, level: int, number: int, ghost_id: str | None = None

@@ -23,6 +23,11 @@ _LANES_IN_VIEW, _STEP_BACK_M = 3, 0.5
 """Lanes that fit into view, and the shift that moves the camera back for each further one [m]."""
 
 
+def grid_root(lane: int) -> str:
+    """Return the scene node of the foot grid of a lane, counted from 0, which follows the robot."""
+    return f"{SCENE_ROOT}/lane{lane}/grid"
+
+
 class StageScene:
     """The stage's scene graph on one viser server.
 
@@ -172,8 +177,7 @@ class _RunScene:
             self._pushes[number].draw(lane)
         for number, lane in enumerate(frame.lanes):
             if lane.knowledge is not None and number not in self._grids:
-                root = f"{SCENE_ROOT}/lane{number}/grid"
-                x = self.xs[number]
+                root, x = grid_root(number), self.xs[number]
                 self._grids[number] = FootGridDrawing(self._server, root, self.spec, x)
             if number in self._grids:
                 self._grids[number].draw(lane)

@@ -311,6 +311,14 @@ def test_replay_that_cannot_be_says_why(
     refused(api.call("GET", f"{path}/scene?ghost={trained['id']}"), 422, "choose another race")
     past = api.call("GET", f"{path}/moment?time_s=1e6")
     assert past.status_code == 200, "the last moment"
+    posture = f"{path}/posture?cells="
+    assert api.call("GET", f"{posture}1,2,3&lane=2&time_s=1.5").status_code == 200
+    refused(api.call("GET", f"{posture}1,2"), 422, "3 numbers, one for each pair, not 2")
+    refused(api.call("GET", f"{posture}1,2,5"), 422, "from 0 to 4, not 5")
+    refused(api.call("GET", f"{posture}1,,2"), 422, "cells must be a cell of the foot grid for")
+    refused(api.call("GET", f"{path}/posture"), 422, "cells is missing; it must be")
+    refused(api.call("GET", f"{posture}1,2,3&lane=3"), 422, "Lane must be from 0 to 2, not 3")
+    refused(api.call("GET", f"{posture}1,2,3&time_s=nan"), 422, "time_s must be a number")
     queued = api.race(lanes=[{"agent": "q-learning", "training": {"steps": 100_000}}])
     refused(api.call("GET", f"/runs/{queued['id']}/replay"), 409, "has no recording")
     api.stop(queued)
