@@ -97,6 +97,58 @@ def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_serve
     assert dashboard.violations() == []
 
 
+GHOST = "/world/cast/lane0/grid/posture"
+HAS_NODE = "name => Boolean(__viserMutable.nodeRefFromName[name])"
+# Of a cell of the foot grid in the window of the 3D view [px], as labels.js has that of labels.
+PLACE_OF_CELL = """([name, instance]) => {
+    const {camera, canvas, nodeRefFromName} = __viserMutable;
+    const {batched_positions} = __viserSceneTree.getState()[name].message.props;
+    const {buffer, byteOffset, byteLength} = batched_positions;
+    const at = new Float32Array(buffer.slice(byteOffset, byteOffset + byteLength))
+        .slice(3 * instance, 3 * instance + 3);
+    const {x, y} = camera.position.clone().set(...at)
+        .applyMatrix4(nodeRefFromName[name].matrixWorld).project(camera);
+    return {x: (x + 1) / 2 * canvas.clientWidth, y: (1 - y) / 2 * canvas.clientHeight};
+}"""
+
+
+@pytest.mark.looks_at_3d
+def test_a_state_is_shown_in_the_scene_and_found_from_it(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    page = dashboard.page
+    dashboard.open(shared_server.address)
+    run_id = finished(dashboard, "trainings", {"steps": 40, "agent": "q-learning"})
+    panel = explained(dashboard, run_id, 5.0)
+    grid, note = panel.get_by_role("grid"), panel.locator(".heat-note")
+    view = page.frame(url=re.compile("/viewer/"))
+    assert view is not None
+
+    # A click in the table draws the ghost; another moves it, and Escape takes it away.
+    grid.click(position={"x": 3, "y": 3})
+    expect(note).to_contain_text(
+        "The ghost in the scene stands in this state: legs 1+4 home, legs 2+5 home, legs 3+6 home"
+    )
+    view.wait_for_function(HAS_NODE, arg=f"{GHOST}/0")
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    expect(note).to_contain_text("legs 3+6 front left")
+    assert dashboard.violations() == []
+    page.keyboard.press("Escape")
+    view.wait_for_function(f"name => !({HAS_NODE})(name)", arg=GHOST)
+    expect(note).to_contain_text("A click puts a ghost")
+
+    # A cell in the scene is found in the table, whose panel opens.
+    panel.get_by_role("button", name="Close").click()
+    page.locator(".picture").scroll_into_view_if_needed()
+    cells = "/world/cast/lane0/grid/others/fills"
+    place = view.evaluate(PLACE_OF_CELL, [cells, 2 * 4 + 1])
+    page.locator(".picture iframe").click(position=place)
+    expect(note).to_contain_text("Clicked in the scene: legs 3+6 to front right.")
+    expect(panel.get_by_test_id("heat-read")).to_contain_text("Legs 3+6 to front right: ")
+    expect(grid).to_be_in_viewport()
+
+
 def test_lanes_of_a_race_are_explained(dashboard: Dashboard, shared_server: Serving) -> None:
     dashboard.open(shared_server.address)
     training = finished(dashboard, "trainings", {"steps": 60})

@@ -58,5 +58,8 @@ Assumed by `client`:
   canvas, the scene, of which `onAfterRender` is free, and the poses and objects of scene nodes by
   name. A playback pushes its messages to the `messageQueue` there, the first one again whenever it
   begins again; it is assigned to the window before the queue is read.
+- clicks_go_through_the_worker: `SetSceneNodeClickBindingsMessage` makes a node clickable, by button
+  and modifier; a click without a drag is sent through the worker as a `SceneNodeClickMessage`,
+  with the number of the instance of a batched mesh, so that `static/viewer/clicks.js` can keep it.
 - batched_colors_are_linear: colours of batched meshes are taken as linear, all others as sRGB.
 """

@@ -1,5 +1,5 @@
 // The page: header, the three views, the first lesson, keyboard shortcuts, the help dialog and messages.
-import { signal } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { primaryAction, runPrimaryAction, togglePause } from "../actions.js";
 import {
@@ -11,6 +11,7 @@ import { ownRunId, stepReplay } from "../replay.js";
 import { isOperator } from "../selectors.js";
 import { share, toastMessage } from "../share.js";
 import { connection, isLockedOut, options, setEntry, viewers } from "../store.js";
+import { clickedCell } from "../view-3d.js";
 import { Controls } from "./controls.js";
 import { html, Icon } from "./elements.js";
 import { LazyPanel } from "./lazy.js";
@@ -124,9 +125,15 @@ const loadSteps = () => import("./steps/steps.js").then(({ Steps }) => Steps);
 const stepsAreOpen = signal(false);
 
 function StepsPanel() {
+  const panel = useRef(/** @type {HTMLElement | null} */ (null));
   const isOpen = stepsAreOpen.value;
+  useEffect(() => effect(() => {
+    if (!clickedCell.value || isPresenting.peek()) return;
+    stepsAreOpen.value = true;
+    panel.current?.scrollIntoView({ block: "start" });
+  }), []);
   return html`
-    <section class="panel steps" aria-labelledby="steps-title">
+    <section class="panel steps" aria-labelledby="steps-title" ref=${panel}>
       <div class="steps-head">
         <h2 id="steps-title">Step by step</h2>
         <p class="dim">Why it took each step, how its values changed, and its whole table</p>

@@ -9,6 +9,7 @@ import { closeReplay, drawIn, ghostId, isBuffering, ownRunId, replayProblem } fr
 import { conditionsShown, playbackName, raceScene } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { connection, runs, scene, stage } from "../store.js";
+import { clickedCell, drawHere } from "../view-3d.js";
 import { html } from "./elements.js";
 import { Transport } from "./transport.js";
 
@@ -29,9 +30,14 @@ export function Stage() {
   useEffect(() => {
     const onMessage = ({ origin, source, data }) => {
       if (origin !== location.origin || source !== frame.current?.contentWindow) return;
+      if (data?.type === "hexapods:click") {
+        clickedCell.value = { node: data.node, instance: data.instance, run_id: scene.peek()?.run_id ?? null };
+      }
       if (data?.type !== "hexapods:status") return;
       setStatus(data.status);
-      if (data.status === "connected") drawIn(send);
+      if (data.status !== "connected") return;
+      drawIn(send);
+      drawHere.value = (messages) => send(messages);
     };
     const send = (messages) =>
       frame.current?.contentWindow?.postMessage({ type: "hexapods:draw", messages }, location.origin);

@@ -441,6 +441,27 @@ def test_labels_are_taken_out(client: str) -> None:
     assert ".onAfterRender=" not in client
 
 
+def test_clicks_go_through_the_worker(client: str) -> None:
+    from viser import _messages
+
+    binding = _messages.DragBinding("left", None)
+    message = _messages.SetSceneNodeClickBindingsMessage("/a", (binding,)).as_serializable_dict()
+    script = (assets.static_dir() / "viewer" / "clicks.js").read_text("utf-8")
+
+    assert dataclasses.asdict(binding) == {"button": "left", "modifier": None}
+    assert set(message) == {"type", "name", "bindings", "owner"}
+    assert {"name", "instance_index"} <= set(_messages.SceneNodeClickMessage.__annotations__)
+    assert re.search(r"case`SetSceneNodeClickBindingsMessage`:.{,200}clickBindings:", client)
+    assert re.search(
+        r"computeClickInstanceIndexFromInstanceId:\w\.type===`BatchedMeshesMessage`\?(\w)=>\1:",
+        client,
+    )
+    assert re.search(r"instance_index:(\w)===void 0\?null:\1\(\w\.instanceId\)", client)
+    assert re.search(r"sendMessage=(\w)=>\{.{,150}\(\{type:`send`,message:\1\}\)", client)
+    for message_type in ("SetSceneNodeClickBindingsMessage", "SceneNodeClickMessage"):
+        assert message_type in script
+
+
 def test_batched_colors_are_linear(viser_server: InProcessViser, page: Page) -> None:
     from app.viewer.hub import Hub
     from app.viewer.viser_internals.client import batch_colors

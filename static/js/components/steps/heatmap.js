@@ -2,11 +2,12 @@
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { valueColours } from "../../scale.js";
 import {
-  cellInWords, cellKind, columnOf, fineMillimetres, stateIndex, triedMoves, valueRange,
+  cellInWords, cellKind, columnOf, fineMillimetres, moveOf, stateCells, stateIndex, triedMoves, valueRange,
 } from "../../steps.js";
 import { percentage, sentence, whole } from "../../format.js";
 import { theme } from "../../page.js";
 import { html } from "../elements.js";
+import { ChosenStateNote } from "./chosen-state.js";
 
 const ROW_PX = 12;
 const GAP_PX = 2;
@@ -35,57 +36,95 @@ const clamped = (value, last) => Math.min(Math.max(value, 0), last);
  * @param {import("../../types.js").StateTable} props.shown
  * @param {number[] | null} props.cells the state that is looked at: the cell of each pair
  * @param {import("../../types.js").Move | null} props.move the move that was made there
+ * @param {import("../../posture.js").ChosenState | null} props.chosen the state and move that were chosen with a click
+ * @param {(cells: number[], move: import("../../types.js").Move) => void} props.onChoose
+ * @param {() => void} props.onGiveUp
  */
-export function Heatmap({ shown, cells, move }) {
-  const [chosen, setChosen] = useState(/** @type {Place | null} */ (null));
+export function Heatmap({ shown, cells, move, chosen, onChoose, onGiveUp }) {
+  const [read, setRead] = useState(/** @type {Place | null} */ (null));
   const last = { row: shown.values.length - 1, column: shown.values[0].length - 1 };
-  const row = cells === null ? -1 : stateIndex(cells, shown.cell_names.length) - shown.first;
-  const marked = row >= 0 && row <= last.row ? row : null;
+  const marked = rowOf(cells, shown);
   const column = move && marked !== null ? columnOf(move, shown) : null;
-  const at = chosen ?? { row: marked ?? 0, column: column ?? 0 };
+  const chosenRow = rowOf(chosen?.cells ?? null, shown);
+  const held = chosen && chosenRow !== null ? { row: chosenRow, column: columnOf(chosen.move, shown) } : null;
+  const at = read ?? held ?? { row: marked ?? 0, column: column ?? 0 };
   const place = { row: clamped(at.row, last.row), column: clamped(at.column, last.column) };
   const words = cellInWords(shown, place.row, place.column);
+  const choose = (one) => onChoose(stateCells(shown.first + one.row, shown), moveOf(one.column, shown));
+  const giveUp = (event) => {
+    event.currentTarget.closest(".heat").querySelector("[role=grid]").focus({ preventScroll: true });
+    setRead(null);
+    onGiveUp();
+  };
+  const onKeyDown = (event) => {
+    if (event.key !== "Escape" || !chosen) return;
+    event.preventDefault();
+    giveUp(event);
+  };
   return html`
-    <div class="heat">
+    <div class="heat" onKeyDown=${onKeyDown}>
       <p class="heat-read" data-testid="heat-read">
         <b>${sentence(words.move)}: ${words.worth}</b><span class="dim">, ${words.about}</span>
         <span class="dim heat-state">where ${words.state}</span>
       </p>
+      <${ChosenStateNote} chosen=${chosen} grid=${shown} isRead=${place.row === held?.row} onGiveUp=${giveUp} />
       <${Columns} shown=${shown} />
       <${Grid} shown=${shown} last=${last} place=${place} words=${words} marked=${marked} column=${column}
-        onPlace=${setChosen} isChosen=${chosen !== null} />
+        held=${held} isFromScene=${chosen?.from === "scene"} onPlace=${setRead} onChoose=${choose}
+        isChosen=${(read ?? held) !== null} />
       <${Key} shown=${shown} />
     </div>
   `;
 }
 
-/** The cells, with frames around the state that is looked at, the move made there, and the cell that is read. */
-function Grid({ shown, last, place, words, onPlace, isChosen, marked, column }) {
+/** The row of a state; null where it is not among those that are shown. */
+function rowOf(cells, shown) {
+  if (cells === null) return null;
+  const row = stateIndex(cells, shown.cell_names.length) - shown.first;
+  return row >= 0 && row < shown.values.length ? row : null;
+}
+
+/**
+ * The cells, with frames around the state that is looked at, the move made there, the cell that is read, and the state
+ * that was chosen.
+ */
+function Grid({ shown, last, place, words, onPlace, onChoose, isChosen, held, isFromScene, marked, column }) {
   const scroller = useRef(/** @type {HTMLElement | null} */ (null));
   useLayoutEffect(() => {
     if (marked !== null && !isChosen) scrollTo(scroller.current, marked);
   }, [marked, shown.first, isChosen]);
+  const heldRow = held?.row ?? null;
+  useLayoutEffect(() => {
+    if (heldRow === null) return;
+    scrollTo(scroller.current, heldRow);
+    if (isFromScene) scroller.current?.closest(".heat")?.scrollIntoView({ block: "nearest" });
+  }, [heldRow, held?.column, isFromScene]);
   const onKeyDown = (event) => {
+    if (event.key === "Enter") onChoose(place);
     const next = placeByKey(event, place, last);
-    if (next === undefined) return;
+    // The heatmap around it gives up what was chosen.
+    if (next === undefined || (next === null && held)) return;
     event.preventDefault();
     event.stopPropagation();
     onPlace(next);
     if (next) scrollTo(scroller.current, next.row);
   };
-  const label = `Values of ${whole(shown.values.length)} states; arrow keys read other cells`;
+  const label = `Values of ${whole(shown.values.length)} states; arrow keys read other cells, ` +
+    "Enter puts a ghost of the robot into the state";
   return html`
     <div class="heat-scroll" ref=${scroller}>
       <div class="heat-body" role="grid" tabindex="0" aria-label=${label}
         aria-rowcount=${shown.states} aria-colcount=${last.column + 1} aria-activedescendant=${idOf(place)}
         style=${{ height: `${ROW_PX * (last.row + 1)}px` }} onKeyDown=${onKeyDown} onBlur=${() => onPlace(null)}
-        ...${pointerHandlers(last, onPlace)}>
+        ...${pointerHandlers(last, onPlace, onChoose)}>
         <${Cells} shown=${shown} />
         ${marked !== null && html`<${Frame} name="heat-row" row=${marked} last=${last} />`}
+        ${held && heldRow !== marked && html`<${Frame} name="heat-chosen" row=${held.row} last=${last} />`}
         ${column !== null && html`<${Frame} name="heat-move" row=${marked} column=${column} last=${last} />`}
         ${isChosen && html`<${Frame} name="heat-cell" ...${place} last=${last} />`}
         <div role="row" class="sr-only" aria-rowindex=${shown.first + place.row + 1}>
-          <div role="gridcell" id=${idOf(place)} key=${idOf(place)} aria-colindex=${place.column + 1}>
+          <div role="gridcell" id=${idOf(place)} key=${idOf(place)} aria-colindex=${place.column + 1}
+            aria-selected=${place.row === heldRow ? "true" : "false"}>
             ${words.move} where ${words.state}: ${words.worth}, ${words.about}
           </div>
         </div>
@@ -104,20 +143,27 @@ function placeByKey({ key, ctrlKey, altKey, metaKey }, place, last) {
   return { row: clamped(next.row, last.row), column: clamped(next.column, last.column) };
 }
 
-function pointerHandlers(last, onPlace) {
-  const read = ({ currentTarget, clientX, clientY }) => {
+function pointerHandlers(last, onPlace, onChoose) {
+  const placeAt = ({ currentTarget, clientX, clientY }) => {
     const { left, top, width, height } = currentTarget.getBoundingClientRect();
-    if (!(width > 0 && height > 0)) return;
-    onPlace({
+    return width > 0 && height > 0 ? {
       row: clamped(Math.floor(((clientY - top) / height) * (last.row + 1)), last.row),
       column: clamped(Math.floor(((clientX - left) / width) * (last.column + 1)), last.column),
-    });
+    } : null;
+  };
+  const read = (event) => {
+    const place = placeAt(event);
+    if (place) onPlace(place);
+  };
+  const choose = (event) => {
+    const place = placeAt(event);
+    if (place) onChoose(place);
   };
   const leave = ({ pointerType, currentTarget }) => {
     // A finger that is lifted leaves the cell until another is touched.
     if (pointerType === "mouse" && document.activeElement !== currentTarget) onPlace(null);
   };
-  return { onPointerMove: read, onPointerDown: read, onPointerLeave: leave };
+  return { onPointerMove: read, onPointerDown: read, onPointerLeave: leave, onClick: choose };
 }
 
 const idOf = ({ row, column }) => `heat-${row}-${column}`;

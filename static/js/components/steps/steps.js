@@ -2,6 +2,7 @@
 import { useEffect } from "preact/hooks";
 import { setStage } from "../../actions.js";
 import { whole } from "../../format.js";
+import { chooseState, chosenState, followChosenState, giveUpState } from "../../posture.js";
 import { canPlay, shownRun } from "../../selectors.js";
 import { scene } from "../../store.js";
 import {
@@ -15,6 +16,7 @@ import { Heatmap } from "./heatmap.js";
 
 export function Steps() {
   useEffect(followMoment, []);
+  useEffect(followChosenState, []);
   const at = moment.value;
   if (!at) return html`<p class="dim">Once a run is on stage, each of its steps is explained here.</p>`;
   return html`
@@ -124,16 +126,19 @@ const TableTime = ({ wanted }) => wanted && html`
 function TableOfStates({ at, shown }) {
   const told = explanation.value.answer;
   const seen = told?.run_id === at.run_id ? told : null;
-  const index = seen ? stateIndex(seen.observation, shown.cell_names.length) : null;
+  const chosen = chosenState.value;
+  const cells = chosen?.cells ?? seen?.observation;
+  const index = cells ? stateIndex(cells, shown.cell_names.length) : null;
   const rows = shown.values.length;
   useEffect(() => {
     // Of a large table the part is shown in which the state is.
     const isOutside = index !== null && (index < shown.first || index >= shown.first + rows);
     if (isOutside && isFollowing.value) firstState.value = Math.floor(index / rows) * rows;
-  }, [index, shown]);
+  }, [index, shown.states]);
   return html`
     ${shown.states > rows && html`<${Parts} shown=${shown} />`}
-    <${Heatmap} shown=${shown} cells=${seen?.observation ?? null} move=${seen?.action ?? null} />
+    <${Heatmap} shown=${shown} cells=${seen?.observation ?? null} move=${seen?.action ?? null}
+      chosen=${chosen} onChoose=${chooseState} onGiveUp=${giveUpState} />
   `;
 }
 

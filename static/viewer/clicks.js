@@ -1,0 +1,38 @@
+// Clicks on the cells of the foot grids, which the page around this one is told; the server hears nothing of them.
+// What it assumes of viser's client is listed and tested in app/viewer/viser_internals.
+//
+//   to the parent     {type: "hexapods:click", node, instance}: the name of a node of footgrid.py, and the number of
+//                     the cell in its batch
+(() => {
+  "use strict";
+
+  const CELLS = /\/grid\/(home|others)\/fills$/;
+  const BINDINGS = [{ button: "left", modifier: null }];
+
+  /** The messages that make the cells among new nodes clickable. */
+  const bindingsOf = (messages) => messages
+    .filter(({ type, name }) => type === "BatchedMeshesMessage" && CELLS.test(name))
+    .map(({ name }) => ({ type: "SetSceneNodeClickBindingsMessage", name, bindings: BINDINGS, owner: "" }));
+
+  window.Worker = class extends Worker {
+    constructor(...args) {
+      super(...args);
+      // Before the client's own listener, which gets the same object.
+      this.addEventListener("message", ({ data }) => {
+        if (data?.type === "message_batch") data.messages.push(...bindingsOf(data.messages));
+      });
+    }
+
+    postMessage(message, ...rest) {
+      const { type, name, instance_index } = message?.message ?? {};
+      if (message?.type !== "send" || type !== "SceneNodeClickMessage") return super.postMessage(message, ...rest);
+      const click = { type: "hexapods:click", node: name, instance: instance_index };
+      if (parent !== window) parent.postMessage(click, location.origin);
+      return undefined;
+    }
+  };
+
+  // After that of labels.js, which draws them.
+  addEventListener("hexapods:draw", ({ detail }) =>
+    window.__viserMutable?.messageQueue.push(...bindingsOf(detail.messages)));
+})();
