@@ -4,17 +4,17 @@ import { batch, computed, effect, signal } from "@preact/signals";
 import { getReplay, getReplayFrames } from "./api.js";
 import { readReplay, replayAddress, view, writeReplay } from "./page.js";
 import { decode, Follower, inRecording, SceneState } from "./replay-frames.js";
+import { Segments } from "./replay-segments.js";
 import { connection, ownScene, ownStage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { Frame, Frames, Message } from "./replay-frames.js" */
+/** @import { Frame, Message } from "./replay-frames.js" */
 /** @import { Clock, ReplayPlan, Scene } from "./types.js" */
 
 const FIRST_SPEED = 2;
-const KEPT_SEGMENTS = 60;
 const SCENES_PER_S = 5;
-/** A run that is still computed is asked for more after so long. */
+/** At its end, a run that is still computed is asked for more after so long. */
 const GROWTH_MS = 1000;
 const RETRY_MS = 1500;
 const ADDRESS_MS = 250;
@@ -49,13 +49,17 @@ const hasEnded = computed(() => plan.value?.complete === true && replayTime.valu
 let draw = () => {};
 /** @type {SceneState | null} */
 let scene = null;
-/** Address → frames; null while they are requested. @type {Map<string, Frames | null>} */
-const segments = new Map();
+const segments = new Segments(
+  (address) => load(address, { clock: clock.peek() }),
+  (error, again) => retryAfter(error, opening, again),
+);
 const NOTHING = { address: "", index: -1, time_s: NaN, frame: /** @type {Frame | null} */ (null), view: "" };
 /** The newest frame that is drawn, by its segment and index or by its time, and the view that it is centred for. */
 let shown = NOTHING;
 /** Whether a moment is requested, or not to be requested again yet. */
 let isMomentPending = false;
+/** Whether the plan is requested again, as for a moment. */
+let isGrowthPending = false;
 /** Counts the runs and clocks that were opened: late answers are of an older one. */
 let opening = 0;
 let sceneSentAt = -Infinity;
@@ -125,6 +129,7 @@ function forget(id, ghost) {
   segments.clear();
   shown = NOTHING;
   isMomentPending = false;
+  isGrowthPending = false;
   ownRunId.value = id;
   ghostId.value = ghost;
   plan.value = null;
@@ -235,6 +240,8 @@ export function tick(now) {
   }
   if (playing.peek() && !hasEnded.peek()) playFrame(known, now, elapsed_s);
   else showMoment(now);
+  const isNearEnd = endTime.peek() - replayTime.peek() <= speed.peek() * GROWTH_MS / 1000;
+  if (!known.complete && isNearEnd) grow(now);
   if (shown.frame && shown.view !== view.peek()) {
     draw([follower.centring(scene, shown.frame, view.peek(), Infinity)]);
     shown = { ...shown, view: view.peek() };
@@ -245,7 +252,9 @@ export function tick(now) {
 function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /** @type {number} */ elapsed_s) {
   const level = Math.min(Math.max(Math.round(Math.log2(speed.peek())), known.lowest_level), known.highest_level);
   const interval_s = known.frame_s * 2 ** level;
-  const frame = Math.floor(replayTime.peek() / interval_s + SAME_S);
+  const rounded = Math.floor(replayTime.peek() / interval_s + SAME_S);
+  // The server has no frame after the end, however close.
+  const frame = rounded * interval_s > endTime.peek() ? rounded - 1 : rounded;
   const number = Math.floor(frame / known.segment_frames);
   const address = addressOf(level, number);
   const loaded = request(address);
@@ -255,7 +264,6 @@ function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /
     return;
   }
   const index = Math.min(frame % known.segment_frames, loaded.frames.length - 1);
-  if (index < frame % known.segment_frames && !known.complete) grow(address);
   isBuffering.value = false;
   if (index >= known.segment_frames / 2 && (number + 1) * known.segment_frames * interval_s <= endTime.peek()) {
     request(addressOf(level, number + 1));
@@ -272,42 +280,25 @@ function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /
 /** @type {(level: number, number: number) => string} */
 const addressOf = (level, number) => `segments/${level}/${number}`;
 
-/** Frames that are loaded; requests them if they are not. @param {string} address */
-function request(address) {
-  const known = segments.get(address);
-  if (known !== undefined) {
-    // The newest are kept.
-    segments.delete(address);
-    segments.set(address, known);
-    return known;
-  }
-  segments.set(address, null);
-  for (const oldest of segments.keys()) {
-    if (segments.size <= KEPT_SEGMENTS) break;
-    segments.delete(oldest);
-  }
-  const own = opening;
-  load(address, { clock: clock.peek() }).then(
-    (frames) => own === opening && segments.set(address, frames),
-    (error) => retryAfter(error, own, () => segments.delete(address)),
-  );
-  return null;
-}
+/** @param {string} address */
+const request = (address) => segments.get(address, plan.peek()?.segment_frames ?? 0, endTime.peek());
 
 let grewAt = -Infinity;
 
-/** Request what a run has computed since. @param {string} address */
-async function grow(address) {
-  if (performance.now() - grewAt < GROWTH_MS) return;
-  grewAt = performance.now();
+/** Request the plan of a run that has computed more since. */
+async function grow(/** @type {number} */ now) {
+  if (isGrowthPending || now - grewAt < GROWTH_MS) return;
+  grewAt = now;
+  isGrowthPending = true;
   const own = opening;
-  const id = /** @type {string} */ (ownRunId.peek());
-  const [answer, frames] = await Promise.all([
-    getReplay(id, clock.peek(), ghostId.peek()), load(address, { clock: clock.peek() }),
-  ]).catch(() => []);
-  if (own !== opening || !answer || !frames) return;
-  segments.set(address, frames);
-  plan.value = answer;
+  try {
+    const answer = await getReplay(/** @type {string} */ (ownRunId.peek()), clock.peek(), ghostId.peek());
+    if (own !== opening) return;
+    isGrowthPending = false;
+    plan.value = answer;
+  } catch (error) {
+    retryAfter(error, own, () => (isGrowthPending = false));
+  }
 }
 
 /** Show the very moment of the position: while it is held, or until its segment is there. */
