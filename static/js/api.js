@@ -27,6 +27,11 @@ export class RequestError extends Error {
   }
 }
 
+const LASTING = [403, 404, 409, 410, 422];
+
+/** Whether a request would be refused again. @param {RequestError} error */
+export const isLasting = ({ status }) => LASTING.includes(status);
+
 /** No answer came: the server or the network is down. */
 class Unreachable extends RequestError {
   constructor() {

@@ -2,11 +2,40 @@
 // recorded more.
 
 /** @import { Frames } from "./replay-frames.js" */
+/** @import { ReplayPlan } from "./types.js" */
 
 /** A segment; `end_s` is the end of the recording when it was last requested. */
 /** @typedef {{ frames: Frames | null, end_s: number, isPending: boolean }} Segment */
 
 const KEPT_SEGMENTS = 60;
+const SAME_S = 1e-6;
+
+/** The last moment that is recorded [s]. @param {ReplayPlan} plan */
+export const endOf = ({ recorded_s }) => recorded_s.at(-1)?.[1] ?? 0;
+
+/** @type {(level: number, number: number) => string} */
+const addressOf = (level, number) => `segments/${level}/${number}`;
+
+/**
+ * The place of a moment's frame: its index in a segment of the level that fits a speed. `next` is the segment after
+ * that, null where none is recorded.
+ * @type {(plan: ReplayPlan, speed: number, time_s: number) => { address: string, next: string | null, index: number }}
+ */
+export function placeOf(plan, speed, time_s) {
+  const { frame_s, segment_frames, lowest_level, highest_level } = plan;
+  const level = Math.min(Math.max(Math.round(Math.log2(speed)), lowest_level), highest_level);
+  const interval_s = frame_s * 2 ** level;
+  // The server has no frame after the end, however close.
+  const isRecorded = (/** @type {number} */ frame) => frame * interval_s <= endOf(plan);
+  const rounded = Math.floor(time_s / interval_s + SAME_S);
+  const frame = isRecorded(rounded) ? rounded : rounded - 1;
+  const number = Math.floor(frame / segment_frames);
+  return {
+    address: addressOf(level, number),
+    next: isRecorded((number + 1) * segment_frames) ? addressOf(level, number + 1) : null,
+    index: frame % segment_frames,
+  };
+}
 
 export class Segments {
   /**

@@ -1,10 +1,10 @@
 // A replay of this page's own: it plays a run by itself, without the stage that all pages share.
 // The server gives frames (`replay-frames.js`); position, speed and clock are kept here and in the address.
 import { batch, computed, effect, signal } from "@preact/signals";
-import { getReplay, getReplayFrames } from "./api.js";
+import { getReplay, getReplayFrames, isLasting } from "./api.js";
 import { readReplay, replayAddress, view, writeReplay } from "./page.js";
 import { decode, Follower, inRecording, SceneState } from "./replay-frames.js";
-import { Segments } from "./replay-segments.js";
+import { endOf, placeOf, Segments } from "./replay-segments.js";
 import { connection, ownScene, ownStage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -40,7 +40,7 @@ const speed = signal(FIRST_SPEED);
 const clock = signal("paper");
 
 /** The last moment that can be shown [s]. */
-export const endTime = computed(() => plan.value?.recorded_s.at(-1)?.[1] ?? 0);
+export const endTime = computed(() => (plan.value ? endOf(plan.value) : 0));
 const hasEnded = computed(() => plan.value?.complete === true && replayTime.value >= endTime.value - SAME_S);
 
 // ---- what is loaded
@@ -101,12 +101,10 @@ export async function openReplay(id, at = {}) {
  */
 function retryAfter(error, own, again) {
   if (own !== opening) return;
-  const { status, message } = /** @type {RequestError} */ (error);
-  if (LASTING.includes(status)) replayProblem.value = message;
+  const refused = /** @type {RequestError} */ (error);
+  if (isLasting(refused)) replayProblem.value = refused.message;
   else setTimeout(() => own === opening && again(), RETRY_MS);
 }
-
-const LASTING = [403, 404, 409, 410, 422];
 
 /** Show the stage again that all pages share. */
 export function closeReplay() {
@@ -192,16 +190,28 @@ export function playReplay(isOn) {
 /** @param {number} times */
 export const setReplaySpeed = (times) => (speed.value = times);
 
-/** Time the race by another clock, from the same step of the first lane on. @param {Clock} name */
+/** Counts the choices of a clock: only the newest is obeyed. */
+let clockChoice = 0;
+
+/**
+ * Time the race by another clock, from the same step of the first lane on.
+ * @param {Clock} name
+ * @throws {RequestError} if that cannot be had; the clock stays as it is
+ */
 export async function setReplayClock(name) {
-  const before = plan.peek();
-  const id = ownRunId.peek();
-  if (!before || !id || name === clock.peek()) return;
-  const step = stepOf(before.step_ends_s[0] ?? [], replayTime.peek());
-  const ghost = ghostId.peek();
-  const after = await getReplay(id, name, ghost).catch(() => null);
-  const time_s = after?.step_ends_s[0]?.[step - 1] ?? 0;
-  await openReplay(id, { time_s, isPlaying: playing.peek(), clock: name, ghost });
+  clockChoice += 1;
+  const [own, choice, id, ghost] = [opening, clockChoice, ownRunId.peek(), ghostId.peek()];
+  if (!plan.peek() || !id || name === clock.peek()) return;
+  const isObeyed = () => own === opening && choice === clockChoice;
+  try {
+    const after = await getReplay(id, name, ghost);
+    if (!isObeyed()) return;
+    const step = stepOf(plan.peek()?.step_ends_s[0] ?? [], replayTime.peek());
+    const time_s = after.step_ends_s[0]?.[step - 1] ?? 0;
+    await openReplay(id, { time_s, isPlaying: playing.peek(), clock: name, ghost });
+  } catch (error) {
+    if (isObeyed()) throw error;
+  }
 }
 
 /** @type {(ends: number[], time_s: number) => number} */
@@ -250,24 +260,16 @@ export function tick(now) {
 
 /** Show the frame at the position, of a segment at the level that fits the speed. */
 function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /** @type {number} */ elapsed_s) {
-  const level = Math.min(Math.max(Math.round(Math.log2(speed.peek())), known.lowest_level), known.highest_level);
-  const interval_s = known.frame_s * 2 ** level;
-  const rounded = Math.floor(replayTime.peek() / interval_s + SAME_S);
-  // The server has no frame after the end, however close.
-  const frame = rounded * interval_s > endTime.peek() ? rounded - 1 : rounded;
-  const number = Math.floor(frame / known.segment_frames);
-  const address = addressOf(level, number);
+  const { address, next, index: wanted } = placeOf(known, speed.peek(), replayTime.peek());
   const loaded = request(address);
   if (!loaded) {
     isBuffering.value = true;
     showMoment(now);
     return;
   }
-  const index = Math.min(frame % known.segment_frames, loaded.frames.length - 1);
+  const index = Math.min(wanted, loaded.frames.length - 1);
   isBuffering.value = false;
-  if (index >= known.segment_frames / 2 && (number + 1) * known.segment_frames * interval_s <= endTime.peek()) {
-    request(addressOf(level, number + 1));
-  }
+  if (next && index >= known.segment_frames / 2) request(next);
   if (shown.address === address && shown.index === index) return;
   const state = /** @type {SceneState} */ (scene);
   const newest = loaded.frames[index];
@@ -276,9 +278,6 @@ function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /
   shown = { address, index, time_s: newest.time_s, frame: newest, view: view.peek() };
   tell(loaded.frames.slice(0, index + 1).findLast((one) => one.scene) ?? newest, now);
 }
-
-/** @type {(level: number, number: number) => string} */
-const addressOf = (level, number) => `segments/${level}/${number}`;
 
 /** @param {string} address */
 const request = (address) => segments.get(address, plan.peek()?.segment_frames ?? 0, endTime.peek());

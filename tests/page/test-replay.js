@@ -1,10 +1,13 @@
 // A replay of the page's own: what it asks the server for, and what it draws.
 import assert from "node:assert/strict";
 import { afterEach, test } from "node:test";
+import { problems, setStage } from "../../static/js/actions.js";
 import { view } from "../../static/js/page.js";
 import {
-  closeReplay, drawIn, endTime, openReplay, playReplay, replayProblem, replayTime, seekReplay, setReplaySpeed, tick,
+  closeReplay, drawIn, endTime, followReplay, openReplay, ownRunId, playReplay, replayProblem, replayTime, seekReplay,
+  setReplaySpeed, tick,
 } from "../../static/js/replay.js";
+import { stage } from "../../static/js/store.js";
 
 const PLAN = {
   run_id: "a", kind: "race", complete: true, duration_s: 4, recorded_s: [[0, 4]], step_ends_s: [[1, 2, 3, 4]],
@@ -29,6 +32,11 @@ let asked = [];
 let moment = (time_s) => new Response(encoded(time_s));
 /** The run as it is recorded now. @type {Partial<typeof PLAN>} */
 let recorded = {};
+/** Answers to requests for plans. @type {(clock: string) => Response | Promise<Response>} */
+let plan = recordedPlan;
+function recordedPlan() {
+  return new Response(JSON.stringify({ ...PLAN, ...recorded }));
+}
 
 /** @type {(level: number, number: number) => Response} */
 function segment(level, number) {
@@ -42,13 +50,15 @@ function segment(level, number) {
 function answerTo({ pathname, searchParams }) {
   const [level, last] = pathname.split("/").slice(-2);
   asked.push(last);
-  if (pathname.endsWith("/replay")) return new Response(JSON.stringify({ ...PLAN, ...recorded }));
+  if (pathname.endsWith("/replay")) return plan(searchParams.get("clock") ?? "");
   if (pathname.endsWith("/scene")) return new Response(encoded(0));
   if (pathname.includes("/segments/")) return segment(Number(level), Number(last));
   return moment(Number(searchParams.get("time_s")));
 }
 globalThis.fetch = (address) => Promise.resolve(answerTo(new URL(String(address))));
 globalThis.history.pushState = () => {};
+globalThis.requestAnimationFrame = () => 0;
+followReplay();
 
 /** Messages that the 3D view got. @type {Record<string, any>[]} */
 const drawn = [];
@@ -69,6 +79,7 @@ afterEach(() => {
   closeReplay();
   asked = [];
   recorded = {};
+  plan = recordedPlan;
   moment = (time_s) => new Response(encoded(time_s));
 });
 
@@ -155,4 +166,50 @@ test("no frame is requested beyond the last, however close", async () => {
   await wait(10);
   setReplaySpeed(2);
   assert.equal(replayProblem.value, null);
+});
+
+/** Clock → lets its plan come. @type {Record<string, () => void>} */
+const arrive = {};
+/** A network on which plans come when the test lets them. @type {(clock: string) => Promise<Response>} */
+const slowPlan = (clock) => new Promise((resolve) => {
+  arrive[clock] = () => resolve(recordedPlan());
+});
+/** Let answers that have come be read. */
+const settle = () => wait(3);
+
+for (const order of [["wall", "free"], ["free", "wall"]]) {
+  test(`of clocks that are chosen quickly the last one times the race: ${order} arrive`, async () => {
+    await openReplay("a", { time_s: 2.5, isPlaying: false, clock: "paper" });
+    plan = slowPlan;
+    setStage({ clock: "wall" });
+    setStage({ clock: "free" });
+    plan = recordedPlan;
+    for (const one of order) {
+      arrive[one]();
+      await settle();
+    }
+    assert.equal(stage.value?.clock, "free");
+    assert.equal(replayTime.value, 2, "at the end of the same step");
+  });
+}
+
+test("a clock whose plan comes after the replay was left does not open it again", async () => {
+  await openReplay("a", { clock: "paper" });
+  plan = slowPlan;
+  setStage({ clock: "wall" });
+  closeReplay();
+  plan = recordedPlan;
+  arrive.wall();
+  await settle();
+  assert.equal(ownRunId.value, null);
+});
+
+test("a clock whose plan cannot be had leaves the clock and the moment as they were", async () => {
+  await openReplay("a", { time_s: 2.5, isPlaying: false, clock: "paper" });
+  plan = () => new Response(JSON.stringify({ detail: "The server is busy." }), { status: 503 });
+  await setStage({ clock: "wall" });
+  assert.equal(problems.value.stage?.message, "The server is busy.");
+  assert.deepEqual([stage.value?.clock, replayTime.value], ["paper", 2.5]);
+  setStage({ speed: 2 });
+  assert.equal(problems.value.stage, null);
 });
