@@ -50,6 +50,7 @@ from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
 from app.exports.video_renderer import VideoRenderer
 from app.jobs.jobs import Jobs
+from app.jobs.process_pool import ProcessPool
 from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
 from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
@@ -70,7 +71,6 @@ from app.viewer.replay_page import replay_page
 from app.viewer.service import ViewerService, viewer_routes
 from app.viewer.session import websocket_options
 from app.what_if.estimate import Estimates
-from app.what_if.trial_pool import TrialPool
 from app.what_if.what_if import WhatIf
 
 GRACE_S = 3
@@ -128,9 +128,9 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         replays=replays,
         replay_page=partial(replay_page, replays),
         videos=VideoRenderer(),
-        what_if=WhatIf(TrialPool()),
+        what_if=WhatIf(ProcessPool()),
         explanations=Explanations(store, recordings),
-        estimates=Estimates(TrialPool(count=1), jobs.cores),
+        estimates=Estimates(ProcessPool(count=1), jobs.cores),
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
     app.state.metrics = metrics.registry_of(app.state.services)
@@ -192,6 +192,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
             services.bus.close()
             await asyncio.to_thread(services.what_if.close)
             await asyncio.to_thread(services.estimates.close)
+            await asyncio.to_thread(services.videos.close)
             await asyncio.to_thread(services.jobs.close)
 
 

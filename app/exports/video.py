@@ -70,24 +70,30 @@ class VideoOptions:
 
 
 def render_video(walks: RecordedWalks, options: VideoOptions) -> bytes:
-    """Render the film of a run.
+    """Return the film of a run; raises as `write_video`."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / f"video{options.ending}"
+        write_video(walks, options, file)
+        return file.read_bytes()
+
+
+def write_video(walks: RecordedWalks, options: VideoOptions, file: Path) -> None:
+    """Render the film of a run to a file.
 
     Raises:
         MissingExtra: if a package of the extra, or OpenGL, is not installed.
         InvalidInput: if it would be too long.
+        OSError: if it cannot be encoded or written.
     """
     ffmpeg = import_extra("imageio_ffmpeg", VIDEO_EXTRA, "a video")
     times_s = _times_s(walks, options, MAX_FRAMES)
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / f"video{options.ending}"
-        writer = ffmpeg.write_frames(str(file), (options.width, options.height), **_coding(options))
-        writer.send(None)
-        try:
-            for picture in _pictures(walks, options, times_s):
-                writer.send(np.ascontiguousarray(picture))
-        finally:
-            writer.close()
-        return file.read_bytes()
+    writer = ffmpeg.write_frames(str(file), (options.width, options.height), **_coding(options))
+    writer.send(None)
+    try:
+        for picture in _pictures(walks, options, times_s):
+            writer.send(np.ascontiguousarray(picture))
+    finally:
+        writer.close()
 
 
 def check_length(walks: RecordedWalks, options: VideoOptions, max_frames: int) -> None:

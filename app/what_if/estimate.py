@@ -15,6 +15,7 @@ from app.agents.registry import learns
 from app.assembly import build_learner, build_walkers
 from app.experiments.config import ExperimentConfig
 from app.experiments.plan import Plan
+from app.jobs.process_pool import ProcessPool
 from app.jobs.submissions import (
     ExperimentStart,
     LaneStart,
@@ -31,7 +32,6 @@ from app.runs.racing import race
 from app.runs.records import StepTaken
 from app.runs.training import train
 from app.storage.errors import Busy
-from app.what_if.trial_pool import TrialPool
 
 MEASURE_S = 0.25
 """For how long the steps of an agent are timed [s]."""
@@ -69,7 +69,7 @@ class _Part(NamedTuple):
 class Estimates:
     """Estimates durations from timed steps, which are cached for a while. Thread-safe."""
 
-    def __init__(self, pool: TrialPool, cores: int) -> None:
+    def __init__(self, pool: ProcessPool, cores: int) -> None:
         """Create the service with an empty cache.
 
         Args:

@@ -12,18 +12,18 @@ import pytest
 from app.assembly import build_learner
 from app.domain.errors import InvalidInput
 from app.experiments.config import experiment_config
+from app.jobs.process_pool import ProcessPool
 from app.jobs.submissions import ExperimentStart, LaneStart, RaceStart, TrainingStart
 from app.runs.config import WalkingProblem, training_config
 from app.runs.training import train
 from app.storage.errors import Busy
 from app.what_if.estimate import MAX_AT_ONCE, Estimates, Steps
-from app.what_if.trial_pool import TrialPool
 from tests.jobs.waiting import wait_until
 
 WALK = WalkingProblem(gait="left-right-origin", simulator="kinematic")
 
 
-class TimedPool(TrialPool):
+class TimedPool(ProcessPool):
     """A pool in which a step takes 0.1 s, with look-ahead 1 s; it remembers what it timed."""
 
     def __init__(self) -> None:
@@ -102,7 +102,7 @@ def test_more_than_one_request_that_waits_is_refused_as_busy() -> None:
 
 @pytest.fixture(scope="module")
 def estimates() -> Iterator[Estimates]:
-    made = Estimates(TrialPool(count=1), cores=1)
+    made = Estimates(ProcessPool(count=1), cores=1)
     yield made
     made.close()
 
