@@ -190,10 +190,14 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
             yield
         finally:
             services.bus.close()
-            await asyncio.to_thread(services.what_if.close)
-            await asyncio.to_thread(services.estimates.close)
-            await asyncio.to_thread(services.videos.close)
+            await _close_pools(services)
             await asyncio.to_thread(services.jobs.close)
+
+
+async def _close_pools(services: Services) -> None:
+    """Kill the processes that requests wait for, which are answered then."""
+    for user in (services.what_if, services.estimates, services.videos):
+        await asyncio.to_thread(user.close)
 
 
 def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> None:
@@ -273,9 +277,11 @@ class _Server(uvicorn.Server):
         return await super().on_tick(counter) or self._lost.is_set()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        # uvicorn waits for all connections, and an event stream would not end by itself.
+        # uvicorn waits for all connections: an event stream would not end by itself, and a film
+        # not in time.
         self._app.state.services.bus.close()
         await self._app.state.viewer.hub.stop()
+        await _close_pools(self._app.state.services)
         await super().shutdown(sockets)
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
