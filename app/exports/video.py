@@ -22,7 +22,7 @@ from PIL import Image, ImageDraw, ImageFont
 from app.agents.appearance import colors_of, title_of
 from app.domain.errors import InvalidInput
 from app.domain.types import FloatArray
-from app.exports.extras import NoOpenGL, import_extra
+from app.exports.extras import import_extra, no_opengl
 from app.exports.recorded_lanes import RecordedLane, RecordedWalks
 from app.physics.mjcf import VISIBLE_GROUP, is_painted, robot_spec
 from app.runs.clocks import FINISH_LINE_M, Clock
@@ -200,7 +200,7 @@ def _gl_context(width: int, height: int) -> Any:
         context.make_current()
     # PyOpenGL raises errors of many kinds where the library is missing.
     except Exception as error:
-        raise NoOpenGL(error) from error
+        raise no_opengl(error) from error
     return _Closing(context)
 
 

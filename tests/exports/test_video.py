@@ -1,6 +1,7 @@
 """Films of a recorded walk: another reader opens them, and they show the recorded poses."""
 
 import io
+import pickle
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
@@ -130,8 +131,9 @@ def test_what_cannot_be_rendered_is_refused(
         check_length(raced, SMALL, 5)
     monkeypatch.delenv("MUJOCO_GL", raising=False)
     monkeypatch.setitem(sys.modules, "mujoco.egl", None)
-    with pytest.raises(MissingExtra, match="apt-get install libegl1 libgl1-mesa-dri"):
+    with pytest.raises(MissingExtra, match="apt-get install libegl1 libgl1-mesa-dri") as error:
         render_video(raced, SMALL)
+    assert str(pickle.loads(pickle.dumps(error.value))) == str(error.value)
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     with pytest.raises(MissingExtra, match=r"pip install 'racing-hexapods\[video\]'"):
         render_video(raced, SMALL)
