@@ -34,6 +34,22 @@ def test_starts_per_minute_are_limited_by_address(serve: Serve) -> None:
         assert api.call(method, path, json={}).status_code != 429
 
 
+def test_every_route_that_starts_something_is_limited(serve: Serve) -> None:
+    api = serve(starts_per_minute=1)
+    refused(api.call("POST", "/trainings", json={}), 422)
+    starts, limited = set(), set()
+    for path, methods in api.client.get("/openapi.json").json()["paths"].items():
+        if "post" not in methods:
+            continue
+        headers = {one["name"] for one in methods["post"].get("parameters", ())}
+        if "idempotency-key" in headers or path.endswith(("/resume", "/video")):
+            starts.add(path)
+        if api.client.post(path.replace("{run_id}", "x"), json={}).status_code == 429:
+            limited.add(path)
+    assert "/api/v1/runs/{run_id}/again" in starts
+    assert limited - {"/api/v1/runs/import"} == starts - {"/api/v1/runs/import"}
+
+
 def test_spectators_have_a_token_bucket_of_their_own(serve: Serve) -> None:
     api = serve(starts_per_minute=1, token=TOKEN)
     film = "/races/x/recording?format=viser"
