@@ -8,7 +8,7 @@ from app.domain.errors import InvalidInput
 
 
 class MissingExtra(InvalidInput):
-    """A package of an extra, or of the system, is not installed; the message says how to install it."""
+    """A package of an extra, or of the system, is missing; the message says how to install it."""
 
 
 def no_opengl(error: Exception) -> MissingExtra:
