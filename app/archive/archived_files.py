@@ -1,5 +1,6 @@
 """Artifact files of a run in its archive: select them for export, validate them on import."""
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
@@ -152,6 +153,7 @@ def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
         if len(lane.steps) > config.steps:
             raise ValueError("it has more steps than the race")
         _check_poses(lane.rest_qpos[None], config)
+        msgspec.convert(math.fsum(step.decision_s for step in lane.steps), Seconds)
         for step in lane.steps:
             msgspec.convert((step.reward_m, step.distance_m), tuple[Metres, Metres])
             msgspec.convert((step.decision_s, step.transitions), tuple[Seconds, Large])

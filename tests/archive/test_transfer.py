@@ -464,6 +464,7 @@ def test_invalid_recordings_are_refused(source: RunStore) -> None:
         put("lane0.action", lambda a: a - 100),
         put("lane0.action", lambda a: a * 0.5),
         put("lane0.scalars", lambda a: a * np.nan),
+        put("lane0.scalars", lambda a: a * [1, 1, 1, 0] + [0, 0, 0, 9e8]),
         put("lane0.values", lambda a: a[:, :1]),
         put("lane1.futures", lambda a: a + 1),
         put("lane1.future_actions", lambda a: a + 100),
