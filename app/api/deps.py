@@ -23,7 +23,7 @@ from app.settings import Settings
 from app.stage.race_show import Original
 from app.stage.stage import Stage
 from app.storage.database.store import RunStore
-from app.storage.idempotency import Idempotency, Start
+from app.storage.idempotency import Idempotency, Import, Start
 from app.storage.recordings import Recordings
 from app.storage.run import Run
 from app.what_if.estimate import Estimates
@@ -126,7 +126,15 @@ class StartRequest(NamedTuple):
 
     def start(self, services: Services, start: Start) -> Run:
         """Return the run that `start` creates, or that an earlier request with this key created."""
-        return services.idempotency.run(self.key, self.address.encode() + b"\n" + self.body, start)
+        return services.idempotency.run(self.key, self._bytes, start)
+
+    def import_runs(self, services: Services, create: Import) -> Sequence[Run]:
+        """Return the runs that `create` creates, or that an earlier request with this key did."""
+        return services.idempotency.runs(self.key, self._bytes, create)
+
+    @property
+    def _bytes(self) -> bytes:
+        return self.address.encode() + b"\n" + self.body
 
 
 def _services(request: Request) -> Services:
@@ -158,6 +166,5 @@ async def _start_request(
 
 
 ServicesDep = Annotated[Services, Depends(_services)]
-BodyDep = Annotated[bytes, Depends(_body)]
 StartRequestDep = Annotated[StartRequest, Depends(_start_request)]
 RoleDep = Annotated[Role, Depends(_role)]

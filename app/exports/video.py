@@ -22,7 +22,7 @@ from PIL import Image, ImageDraw, ImageFont
 from app.agents.appearance import colors_of, title_of
 from app.domain.errors import InvalidInput
 from app.domain.types import FloatArray
-from app.exports.extras import NoOpenGL, import_extra
+from app.exports.extras import import_extra, no_opengl
 from app.exports.recorded_lanes import RecordedLane, RecordedWalks
 from app.physics.mjcf import VISIBLE_GROUP, is_painted, robot_spec
 from app.runs.clocks import FINISH_LINE_M, Clock
@@ -70,24 +70,30 @@ class VideoOptions:
 
 
 def render_video(walks: RecordedWalks, options: VideoOptions) -> bytes:
-    """Render the film of a run.
+    """Return the film of a run; raises as `write_video`."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / f"video{options.ending}"
+        write_video(walks, options, file)
+        return file.read_bytes()
+
+
+def write_video(walks: RecordedWalks, options: VideoOptions, file: Path) -> None:
+    """Render the film of a run to a file.
 
     Raises:
         MissingExtra: if a package of the extra, or OpenGL, is not installed.
         InvalidInput: if it would be too long.
+        OSError: if it cannot be encoded or written.
     """
     ffmpeg = import_extra("imageio_ffmpeg", VIDEO_EXTRA, "a video")
     times_s = _times_s(walks, options, MAX_FRAMES)
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / f"video{options.ending}"
-        writer = ffmpeg.write_frames(str(file), (options.width, options.height), **_coding(options))
-        writer.send(None)
-        try:
-            for picture in _pictures(walks, options, times_s):
-                writer.send(np.ascontiguousarray(picture))
-        finally:
-            writer.close()
-        return file.read_bytes()
+    writer = ffmpeg.write_frames(str(file), (options.width, options.height), **_coding(options))
+    writer.send(None)
+    try:
+        for picture in _pictures(walks, options, times_s):
+            writer.send(np.ascontiguousarray(picture))
+    finally:
+        writer.close()
 
 
 def check_length(walks: RecordedWalks, options: VideoOptions, max_frames: int) -> None:
@@ -194,7 +200,7 @@ def _gl_context(width: int, height: int) -> Any:
         context.make_current()
     # PyOpenGL raises errors of many kinds where the library is missing.
     except Exception as error:
-        raise NoOpenGL(error) from error
+        raise no_opengl(error) from error
     return _Closing(context)
 
 

@@ -27,6 +27,18 @@ export class RequestError extends Error {
   }
 }
 
+const LASTING = [403, 404, 409, 410, 422];
+
+/** Whether a request would be refused again. @param {RequestError} error */
+export const isLasting = ({ status }) => LASTING.includes(status);
+
+/** After so long the server is asked again for an answer that takes it long to prepare. */
+export const AGAIN_MS = 1000;
+const TOO_EARLY = 429;
+
+/** Whether the server needs longer for an answer. @param {RequestError} error */
+export const needsLonger = ({ status }) => status === TOO_EARLY;
+
 /** No answer came: the server or the network is down. */
 class Unreachable extends RequestError {
   constructor() {
