@@ -7,9 +7,9 @@ from typing import Annotated, Any, NamedTuple, Protocol
 from fastapi import Depends, Header, HTTPException, Request
 from starlette.requests import ClientDisconnect
 
-from app.api.answer_cache import AnswerCache
 from app.api.auth import Role
 from app.api.descriptions import VALID
+from app.cache import BytesCache
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
 from app.exports.video_renderer import VideoRenderer
@@ -106,7 +106,7 @@ class Services:
     estimates: Estimates
     listeners: ClientSlots["Listener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
-    gaits: AnswerCache = field(default_factory=AnswerCache)
+    gaits: BytesCache = field(default_factory=lambda: BytesCache(8 << 20))
 
 
 class Listener:

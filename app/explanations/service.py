@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 from app.agents import registry
 from app.agents.protocol import Tabular, Valuing
 from app.assembly import rebuild_lane, rebuild_learner
+from app.cache import BytesCache
 from app.domain.errors import InvalidInput
-from app.explanations.answer_cache import AnswerCache
 from app.explanations.plain import Search, explanation_as_json, table_as_json
 from app.explanations.rebuilt_practice import Changes, RebuiltPractice, Steps
 from app.runs.config import TrainingConfig
@@ -28,6 +28,8 @@ from app.storage.stored_tables import load_table
 
 MAX_PRACTICES = 4
 """Walks that are kept; the one asked for least recently is dropped."""
+MAX_ANSWER_BYTES = 16_000_000
+"""Of all answers that are kept."""
 MAX_WAITING = 8
 MAX_TABLE_VALUES = 16_000_000
 """Largest table of a learner that is built again, about 200 MB."""
@@ -43,7 +45,7 @@ class Explanations:
     def __init__(self, store: RunStore, recordings: Recordings) -> None:
         self._store, self._recordings = store, recordings
         self._practices: OrderedDict[Hashable, RebuiltPractice] = OrderedDict()
-        self._answers = AnswerCache()
+        self._answers = BytesCache(MAX_ANSWER_BYTES)
         self._lock, self._count_lock, self._waiting = threading.Lock(), threading.Lock(), 0
 
     def explain(self, run_id: str, step: int | None, lane: int) -> bytes:
@@ -135,7 +137,10 @@ class Explanations:
         with self._one_at_a_time():
             # Another request may have asked for the same meanwhile.
             known = self._answers.get(key)
-            return self._answers.put(key, answer()) if known is None else known
+            if known is None:
+                known = json.dumps(answer(), ensure_ascii=False, allow_nan=False).encode()
+                self._answers.put(key, known)
+            return known
 
     def _explain_lane(self, run: Run, config: RaceConfig, step: int | None, lane: int) -> bytes:
         lanes = self._recordings.race(run.id)

@@ -29,10 +29,10 @@ from app.runs.clocks import FINISH_LINE_M, Clock
 from app.runs.recording import pose_at
 
 VIDEO_EXTRA = "video"
-MAX_WIDTH, MAX_HEIGHT, MAX_FPS = 1920, 1080, 60
+MIN_SIDE, MAX_WIDTH, MAX_HEIGHT, MAX_FPS = 64, 1920, 1080, 60
+MIN_SPEED, MAX_SPEED = 0.05, 64
 MAX_FRAMES = 9000
 """Pictures of one film; each takes about 0.1 s in software."""
-ENDINGS = (".mp4", ".gif")
 _GAP_M = 0.25
 _SMOOTHING_S = 0.25
 _BACKGROUND, _GROUND, _GROUND_LINES = (0.05, 0.07, 0.1), (0.16, 0.2, 0.26), (0.3, 0.36, 0.44)
@@ -59,14 +59,17 @@ class VideoOptions:
     clock: Clock = "paper"
 
     def __post_init__(self) -> None:
-        limits = {"width": (64, MAX_WIDTH), "height": (64, MAX_HEIGHT), "fps": (1, MAX_FPS)}
+        limits = {
+            "width": (MIN_SIDE, MAX_WIDTH),
+            "height": (MIN_SIDE, MAX_HEIGHT),
+            "fps": (1, MAX_FPS),
+            "speed": (MIN_SPEED, MAX_SPEED),
+        }
         for name, (low, high) in limits.items():
             if not low <= getattr(self, name) <= high:
                 raise InvalidInput(f"{name} must be from {low} to {high}")
         if self.width % 2 or self.height % 2:
             raise InvalidInput("width and height must be even")
-        if not 0.05 <= self.speed <= 64:
-            raise InvalidInput("speed must be from 0.05 to 64")
 
 
 def render_video(walks: RecordedWalks, options: VideoOptions) -> bytes:

@@ -13,6 +13,7 @@ from typing import Any
 
 from app import assets
 from app.runs.clocks import Clock
+from app.runs.recording import FIRST_STEPS, NEWEST_STEPS
 from app.stage.playback import HIGHEST_LEVEL
 from app.storage.errors import Conflict
 from app.viewer.replay_frames import ReplayFrames
@@ -117,7 +118,10 @@ def _notes(plan: dict[str, Any], level: int) -> list[str]:
         rate = 1 / (plan["frame_s"] * 2**level)
         notes.append(f"{rate:.3g} pictures a second of the run's time, so that the file is small.")
     if len(plan["recorded_s"]) > 1:
-        notes.append("Only the first 20 and the newest 500 steps of this practice are recorded.")
+        notes.append(
+            f"Only the first {FIRST_STEPS} and the newest {NEWEST_STEPS} steps of this practice "
+            "are recorded."
+        )
     return notes
 
 

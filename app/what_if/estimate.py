@@ -40,7 +40,7 @@ MAX_MEASURED = 12
 MAX_CACHED = 256
 CACHED_S = 600.0
 """After this time the machine may be busier, or less."""
-MAX_AT_ONCE = 2
+MAX_AT_ONCE = 4
 """Requests whose steps are timed, or wait for that; each holds a thread of the server."""
 
 

@@ -39,6 +39,26 @@ const TOO_EARLY = 429;
 /** Whether the server needs longer for an answer. @param {RequestError} error */
 export const needsLonger = ({ status }) => status === TOO_EARLY;
 
+/**
+ * Ask, and again while the server needs longer; null once the answer is wanted no more.
+ * @template Answer
+ * @param {() => Promise<Answer>} ask
+ * @param {() => boolean} isWanted
+ * @returns {Promise<Answer | null>}
+ */
+export async function patiently(ask, isWanted) {
+  if (!isWanted()) return null;
+  try {
+    return await ask();
+  } catch (error) {
+    if (!needsLonger(/** @type {RequestError} */ (error))) throw error;
+  }
+  await new Promise((resolve) => {
+    setTimeout(resolve, AGAIN_MS);
+  });
+  return patiently(ask, isWanted);
+}
+
 /** No answer came: the server or the network is down. */
 class Unreachable extends RequestError {
   constructor() {

@@ -1,6 +1,6 @@
 // The tables of two trainings, and the states in which their best moves differ.
 import { effect, signal } from "@preact/signals";
-import { AGAIN_MS, getTable, isLasting, needsLonger } from "./api.js";
+import { getTable, isLasting, patiently } from "./api.js";
 import { isSame } from "./robots.js";
 import { columnOf } from "./steps.js";
 import { connection } from "./store.js";
@@ -98,7 +98,8 @@ async function wholeTable(id, isWanted) {
   let first = 0;
   do {
     // All parts are of the same moment, however far the training gets meanwhile.
-    const part = await patiently({ training_id: id, step: parts[0]?.step ?? null, first }, isWanted);
+    const step = parts[0]?.step ?? null;
+    const part = await patiently(() => getTable({ training_id: id, step, first }), isWanted);
     if (!part) return null;
     parts.push(part);
     first += part.values.length;
@@ -109,23 +110,6 @@ async function wholeTable(id, isWanted) {
     values: parts.flatMap(({ values }) => values), visits: parts.flatMap(({ visits }) => visits),
     best: parts.flatMap(({ best }) => best),
   };
-}
-
-/**
- * Ask, and again while the server needs longer; null once the answer is wanted no more.
- * @type {(part: Parameters<typeof getTable>[0], isWanted: () => boolean) => Promise<StateTable | null>}
- */
-async function patiently(part, isWanted) {
-  if (!isWanted()) return null;
-  try {
-    return await getTable(part);
-  } catch (error) {
-    if (!needsLonger(/** @type {RequestError} */ (error))) throw error;
-  }
-  await new Promise((resolve) => {
-    setTimeout(resolve, AGAIN_MS);
-  });
-  return patiently(part, isWanted);
 }
 
 /**
