@@ -21,6 +21,9 @@ from app.viewer.viser_internals.client import OFFLINE_SCRIPTS, content_policy, p
 
 MAX_BYTES = 15_000_000
 """Maximum size of a page; a longer run has fewer frames in a second."""
+MAX_SEGMENTS = 1000
+"""Maximum number of segments, 35 minutes at 30 frames a second: a robot that stands still is small,
+and takes as long to encode as one that walks."""
 _PLAYER = "js/offline/player.js"
 _STYLE = "style/offline.css"
 _IMPORT = re.compile(r'^import \{[^}]*\} from "(?P<path>\.[^"]*)";\n', re.MULTILINE)
@@ -81,6 +84,8 @@ def _segments_that_fit(
     """Return the lowest level from 0 on whose segments fit, and their numbers."""
     for level in range(HIGHEST_LEVEL + 1):
         numbers, size = _recorded_segments(plan, level), 0
+        if len(numbers) > MAX_SEGMENTS:
+            continue
         for number in numbers:
             size += len(_block(f"segment-{number}", b""))
             size += 4 * -(-len(frames.segment(run_id, clock, level, number)) // 3)
@@ -96,12 +101,14 @@ def _segments_that_fit(
 
 
 def _recorded_segments(plan: dict[str, Any], level: int) -> list[int]:
-    """Return the numbers of the segments that have recorded frames."""
+    """Return the numbers of the segments that have recorded frames, `MAX_SEGMENTS` + 1 at most."""
     segment_s = plan["frame_s"] * plan["segment_frames"] * 2**level
-    numbers: set[int] = set()
+    numbers: list[int] = []
     for from_s, to_s in plan["recorded_s"]:
-        numbers.update(range(int(from_s / segment_s), int(to_s / segment_s) + 1))
-    return sorted(number for number in numbers if number * segment_s <= plan["recorded_s"][-1][1])
+        first = max(int(from_s / segment_s), numbers[-1] + 1 if numbers else 0)
+        last = int(to_s / segment_s)
+        numbers += range(first, min(last, first + MAX_SEGMENTS - len(numbers)) + 1)
+    return [number for number in numbers if number * segment_s <= plan["recorded_s"][-1][1]]
 
 
 def _notes(plan: dict[str, Any], level: int) -> list[str]:
