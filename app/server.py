@@ -50,6 +50,7 @@ from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
 from app.exports.video_renderer import VideoRenderer
 from app.jobs.jobs import Jobs
+from app.jobs.process_pool import ProcessPool
 from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
 from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
@@ -70,7 +71,6 @@ from app.viewer.replay_page import replay_page
 from app.viewer.service import ViewerService, viewer_routes
 from app.viewer.session import websocket_options
 from app.what_if.estimate import Estimates
-from app.what_if.trial_pool import TrialPool
 from app.what_if.what_if import WhatIf
 
 GRACE_S = 3
@@ -128,9 +128,9 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         replays=replays,
         replay_page=partial(replay_page, replays),
         videos=VideoRenderer(),
-        what_if=WhatIf(TrialPool()),
+        what_if=WhatIf(ProcessPool()),
         explanations=Explanations(store, recordings),
-        estimates=Estimates(TrialPool(count=1), jobs.cores),
+        estimates=Estimates(ProcessPool(count=1), jobs.cores),
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
     app.state.metrics = metrics.registry_of(app.state.services)
@@ -190,9 +190,14 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
             yield
         finally:
             services.bus.close()
-            await asyncio.to_thread(services.what_if.close)
-            await asyncio.to_thread(services.estimates.close)
+            await _close_pools(services)
             await asyncio.to_thread(services.jobs.close)
+
+
+async def _close_pools(services: Services) -> None:
+    """Kill the processes that requests wait for, which are answered then."""
+    for user in (services.what_if, services.estimates, services.videos):
+        await asyncio.to_thread(user.close)
 
 
 def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> None:
@@ -272,9 +277,11 @@ class _Server(uvicorn.Server):
         return await super().on_tick(counter) or self._lost.is_set()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        # uvicorn waits for all connections, and an event stream would not end by itself.
+        # uvicorn waits for all connections: an event stream would not end by itself, and a film
+        # not in time.
         self._app.state.services.bus.close()
         await self._app.state.viewer.hub.stop()
+        await _close_pools(self._app.state.services)
         await super().shutdown(sockets)
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:

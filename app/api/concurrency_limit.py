@@ -12,7 +12,7 @@ from typing import TypeVar
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.auth import Role
+from app.api.auth import PUBLIC_PATHS, Role
 from app.api.rate_limit import is_spectators_what_if
 from app.limits.addresses import client_of
 
@@ -21,6 +21,9 @@ SLOTS: dict[Role, int] = {"operator": 16, "spectator": 2}
 WHAT_IF_SLOTS = 1
 """Slots of spectators' what-ifs, each of which takes a second of all cores: they do not delay what
 other spectators read, and an operator's what-if waits for one of them at most."""
+PROBE_SLOTS = 2
+"""Slots of liveness and readiness probes, which take milliseconds: a server with long requests in
+progress is not taken for a dead one."""
 _EVENT_STREAM = "text/event-stream"
 T = TypeVar("T")
 
@@ -77,20 +80,26 @@ class ConcurrencyLimit:
         self._app = app
         self._semaphores = {role: RoundRobinSemaphore(size) for role, size in SLOTS.items()}
         self._what_ifs = RoundRobinSemaphore(WHAT_IF_SLOTS)
+        self._probes = RoundRobinSemaphore(PROBE_SLOTS)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Wait for a slot, and call the app."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        is_what_if = is_spectators_what_if(scope)
-        semaphore = self._what_ifs if is_what_if else self._semaphores[scope["state"]["role"]]
-        slot = _Slot(semaphore, client_of(scope))
+        slot = _Slot(self._semaphore_of(scope), client_of(scope))
         await slot.acquire()
         try:
             await self._app(scope, slot.wrap_receive(receive), slot.wrap_send(send))
         finally:
             slot.close()
+
+    def _semaphore_of(self, scope: Scope) -> RoundRobinSemaphore:
+        if scope["path"] in PUBLIC_PATHS:
+            return self._probes
+        if is_spectators_what_if(scope):
+            return self._what_ifs
+        return self._semaphores[scope["state"]["role"]]
 
 
 class _Slot:

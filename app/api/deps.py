@@ -7,9 +7,9 @@ from typing import Annotated, Any, NamedTuple, Protocol
 from fastapi import Depends, Header, HTTPException, Request
 from starlette.requests import ClientDisconnect
 
-from app.api.answer_cache import AnswerCache
 from app.api.auth import Role
 from app.api.descriptions import VALID
+from app.cache import BytesCache
 from app.domain.types import Cells
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
@@ -24,7 +24,7 @@ from app.settings import Settings
 from app.stage.race_show import Original
 from app.stage.stage import Stage
 from app.storage.database.store import RunStore
-from app.storage.idempotency import Idempotency, Start
+from app.storage.idempotency import Idempotency, Import, Start
 from app.storage.recordings import Recordings
 from app.storage.run import Run
 from app.what_if.estimate import Estimates
@@ -110,7 +110,7 @@ class Services:
     estimates: Estimates
     listeners: ClientSlots["Listener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
-    gaits: AnswerCache = field(default_factory=AnswerCache)
+    gaits: BytesCache = field(default_factory=lambda: BytesCache(8 << 20))
 
 
 class Listener:
@@ -130,7 +130,15 @@ class StartRequest(NamedTuple):
 
     def start(self, services: Services, start: Start) -> Run:
         """Return the run that `start` creates, or that an earlier request with this key created."""
-        return services.idempotency.run(self.key, self.address.encode() + b"\n" + self.body, start)
+        return services.idempotency.run(self.key, self._bytes, start)
+
+    def import_runs(self, services: Services, create: Import) -> Sequence[Run]:
+        """Return the runs that `create` creates, or that an earlier request with this key did."""
+        return services.idempotency.runs(self.key, self._bytes, create)
+
+    @property
+    def _bytes(self) -> bytes:
+        return self.address.encode() + b"\n" + self.body
 
 
 def _services(request: Request) -> Services:
@@ -162,6 +170,5 @@ async def _start_request(
 
 
 ServicesDep = Annotated[Services, Depends(_services)]
-BodyDep = Annotated[bytes, Depends(_body)]
 StartRequestDep = Annotated[StartRequest, Depends(_start_request)]
 RoleDep = Annotated[Role, Depends(_role)]

@@ -12,12 +12,13 @@ from app.domain.settings import declared_fields
 from app.domain.text import MAX_NAME, MAX_TAG, NAMES, NOTES, TAGS
 from app.domain.world import MAX_DISTURBANCES, WORLDS
 from app.experiments.config import EXPERIMENTS, MAX_SEEDS
-from app.exports.video import MAX_FPS, MAX_HEIGHT, MAX_WIDTH
+from app.exports.video import MAX_FPS, MAX_HEIGHT, MAX_SPEED, MAX_WIDTH, MIN_SIDE, MIN_SPEED
 from app.runs.clocks import CLOCKS
 from app.runs.config import SIMULATORS, TrainingConfig
 from app.runs.gait_analysis import MAX_WINDOW_S
 from app.runs.lane import LaneConfig
 from app.runs.race_config import MAX_LANES
+from app.stage import show
 from app.stage.playback import HIGHEST_LEVEL, LOWEST_LEVEL
 from app.storage.run import KINDS, SORTS, STATES
 
@@ -82,7 +83,7 @@ VALID: Mapping[str, str] = {
     "ghost": "the id of another run of the same kind that has ended",
     "time_s": "a number of seconds, 0 or more",
     "playing": "true or false",
-    "speed": "a number from 0.25 to 64, or time-lapse",
+    "speed": f"a number from {show.MIN_SPEED} to {show.MAX_SPEED}, or {show.TIME_LAPSE}",
     "clock": _one_of(CLOCKS),
     "kind": _one_of(KINDS),
     "state": _one_of(STATES),
@@ -104,10 +105,10 @@ VALID: Mapping[str, str] = {
         f"a number of seconds of robot time over from_s, at most {MAX_WINDOW_S:g} s later; by "
         "default the end of the walk"
     ),
-    "width": f"an even number of pixels from 64 to {MAX_WIDTH}",
-    "height": f"an even number of pixels from 64 to {MAX_HEIGHT}",
+    "width": f"an even number of pixels from {MIN_SIDE} to {MAX_WIDTH}",
+    "height": f"an even number of pixels from {MIN_SIDE} to {MAX_HEIGHT}",
     "fps": f"a whole number of pictures a second from 1 to {MAX_FPS}",
-    "playback_speed": "a number from 0.05 to 64, times the run's own time",
+    "playback_speed": f"a number from {MIN_SPEED} to {MAX_SPEED}, times the run's own time",
     "part": "practice, or evaluation for the newest one; of a training",
     "key": "the key of a trial, as GET …/trials has it: the setting and the seed's number",
     "format": "a format that the description of the route names",

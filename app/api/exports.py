@@ -18,7 +18,16 @@ from app.exports.trajectory import (
     trajectory_csv,
     trajectory_parquet,
 )
-from app.exports.video import MAX_FPS, MAX_HEIGHT, MAX_WIDTH, VideoOptions
+from app.exports.video import (
+    MAX_FPS,
+    MAX_HEIGHT,
+    MAX_SPEED,
+    MAX_WIDTH,
+    MIN_SIDE,
+    MIN_SPEED,
+    VideoOptions,
+)
+from app.exports.video_renderer import MAX_SERVED_FRAMES
 from app.storage.run import AnyRun
 
 router = APIRouter(prefix="/runs/{run_id}", tags=["exports"])
@@ -27,10 +36,10 @@ router = APIRouter(prefix="/runs/{run_id}", tags=["exports"])
 def _video_options(
     *,
     format: Annotated[Literal["mp4", "gif"], Query()] = "mp4",  # noqa: A002
-    width: Annotated[int, Query(ge=64, le=MAX_WIDTH, multiple_of=2)] = 640,
-    height: Annotated[int, Query(ge=64, le=MAX_HEIGHT, multiple_of=2)] = 360,
+    width: Annotated[int, Query(ge=MIN_SIDE, le=MAX_WIDTH, multiple_of=2)] = 640,
+    height: Annotated[int, Query(ge=MIN_SIDE, le=MAX_HEIGHT, multiple_of=2)] = 360,
     fps: Annotated[int, Query(ge=1, le=MAX_FPS)] = 30,
-    playback_speed: Annotated[float, Query(ge=0.05, le=64)] = 1.0,
+    playback_speed: Annotated[float, Query(ge=MIN_SPEED, le=MAX_SPEED)] = 1.0,
     clock: ClockQuery = "paper",
 ) -> VideoOptions:
     return VideoOptions(f".{format}", width, height, fps, playback_speed, clock)
@@ -79,8 +88,7 @@ def get_trajectory(
 def get_page(services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper") -> Response:
     """Return an HTML file that plays offline, and in an iframe of any page.
 
-    It is at most 15 MB, with up to 30 pictures a second of the run's time; `docs/exports.md`
-    describes its interface.
+    `docs/exports.md` describes its size and its interface.
     """
     run = services.store.get(run_id)
     _walks(services, run)
@@ -110,12 +118,14 @@ def get_mcap(services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper"
     summary="A film of the run",
     response_class=Response,
     responses=answers(200, {"video/mp4": BINARY, "image/gif": BINARY}, headers=ATTACHMENT),
+    description=(
+        f"Render an MP4 or GIF of at most {MAX_SERVED_FRAMES} pictures, which takes up to minutes; "
+        "one at a time.\n\nIt needs `racing-hexapods[video]` and OpenGL on the server; "
+        "`docs/exports.md` tells how."
+    ),
 )
 def render(services: ServicesDep, run_id: RunPath, options: VideoDep) -> Response:
-    """Render an MP4 or GIF of at most 900 pictures, which takes up to minutes; one at a time.
-
-    It needs `racing-hexapods[video]` and OpenGL on the server; `docs/exports.md` tells how.
-    """
+    """Return a film of the run."""
     run = services.store.get(run_id)
     video = services.videos.render(_walks(services, run), options)
     media_type = "image/gif" if options.ending == ".gif" else "video/mp4"

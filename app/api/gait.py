@@ -57,7 +57,7 @@ def get_gait(
     recorded = tuple((walk.from_s, walk.to_s) for walk in shown.walks)
     key = (run.id, shown.part, window, recorded, shown.step, len(run.changes))
     return Response(
-        services.gaits.get(key, lambda: _answer(shown, *window)), media_type="application/json"
+        services.gaits.computed(key, lambda: _answer(shown, *window)), media_type="application/json"
     )
 
 

@@ -44,6 +44,7 @@ from app.runs.config import (
     training_config,
 )
 from app.runs.config_json import as_json
+from app.runs.gait_analysis import MAX_WINDOW_S
 from app.runs.lane import LaneConfig
 from app.runs.race_config import MAX_LANES, MAX_RACE_STEPS, RaceConfig
 from app.stage.scene_spec import PAPERS_LANES
@@ -139,6 +140,7 @@ _HELP = {
     "notes": "What is worth remembering about a run.",
     "import_bytes": "How large a file may be that is imported.",
     "archive_runs": "How many runs one archive holds.",
+    "gait_window_s": "How much of a walk is analysed at once, in seconds of robot time.",
     "agent": "Which agent learns.",
     "seeds": "How often each setting is tried, each time with other random numbers.",
     "gaits": "Which gaits are tried.",
@@ -364,6 +366,7 @@ def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | N
         "notes": [0, MAX_NOTES],
         "import_bytes": [1, MAX_FILE_BYTES],
         "archive_runs": [1, MAX_RUNS],
+        "gait_window_s": [0, MAX_WINDOW_S],
         "seeds": [1, MAX_SEEDS],
         "trials": [1, MAX_TRIALS],
         "settings": [1, MAX_SETTINGS],

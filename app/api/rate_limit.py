@@ -12,7 +12,8 @@ from app.limits.addresses import client_of
 from app.limits.token_bucket import RateLimiter
 from app.settings import PREFIX, Settings
 
-_STARTS = re.compile(r"/api/v1/(?!stage$|events$)\w+(/import|/[^/]+/resume)?")
+_STARTS_NOTHING = re.compile(r"/api/v1/(what-if|.*/(estimate|stop|pause|disturbances))")
+"""Every other POST counts, so that a new route is limited unless it is added here."""
 _RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")
 _ENCODED = re.compile(r"/api/v1/runs/[^/]+/(mcap|page|video)")
 WHAT_IF = "/api/v1/what-if"
@@ -23,7 +24,7 @@ class RateLimit:
     """Middleware that limits starts per minute, by client address and role.
 
     Besides runs it counts imports, resumes, and what takes seconds to encode: a race's recorded
-    stream, pages that need no server, videos and logs. What-ifs of spectators have a limit of their
+    stream, pages that need no server, films and logs. What-ifs of spectators have a limit of their
     own; those of operators have none.
     """
 
@@ -83,7 +84,7 @@ def _whole_seconds(wait_s: float) -> int:
 def _starts_work(scope: Scope) -> bool:
     if scope["type"] != "http":
         return False
-    if scope["method"] == "POST" and _STARTS.fullmatch(scope["path"]) is not None:
+    if scope["method"] == "POST" and _STARTS_NOTHING.fullmatch(scope["path"]) is None:
         return True
     if _ENCODED.fullmatch(scope["path"]) is not None:
         return True

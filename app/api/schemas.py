@@ -46,6 +46,7 @@ from app.runs.config import (
     training_config,
 )
 from app.runs.race_config import MAX_RACE_STEPS, Branch
+from app.stage.show import MAX_SPEED, MIN_SPEED
 from app.storage.run import ANNOTATIONS
 
 WorldName = Annotated[
@@ -303,5 +304,7 @@ class StageBody(Body):
     run_id: RunId | None = None
     time_s: Annotated[float, number(ge=0)] | None = None
     playing: Annotated[bool, Field(strict=True)] | None = None
-    speed: Literal["time-lapse"] | Annotated[float, number(ge=0.25, le=64)] | None = None
+    speed: Literal["time-lapse"] | Annotated[float, number(ge=MIN_SPEED, le=MAX_SPEED)] | None = (
+        None
+    )
     clock: Clock | None = None

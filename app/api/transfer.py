@@ -7,7 +7,7 @@ from starlette.responses import JSONResponse, Response
 
 from app.api.answers import ExperimentView, ImportedView, RaceView, TrainingView
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
-from app.api.deps import BodyDep, ServicesDep, StartRequestDep
+from app.api.deps import ServicesDep, StartRequestDep
 from app.api.formats import attachment
 from app.api.runs import RunIdsQuery, RunPath, find, phrase
 from app.archive import archive
@@ -67,10 +67,13 @@ def export_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
     response_model=ImportedView,
     openapi_extra=takes_file("application/octet-stream"),
 )
-def import_archive_of_runs(services: ServicesDep, body: BodyDep) -> Response:
+def import_archive_of_runs(services: ServicesDep, start_request: StartRequestDep) -> Response:
     """Import the body, an archive, whole or not at all; otherwise as `POST /import`."""
+    body = _not_empty(start_request.body)
     store, agents, ids = services.store, services.agents, services.jobs.new_id
-    runs = import_runs(store, _not_empty(body), ids, agents, "the archive")
+    runs = start_request.import_runs(
+        services, lambda key: import_runs(store, body, ids, agents, "the archive", key=key)
+    )
     views = [run_view(run) for run in runs]
     for view in views:
         services.bus.publish("run", view, view["id"])
@@ -94,11 +97,10 @@ def import_archive(
     A repeated request with the same `Idempotency-Key` returns the run that it imported first. The
     run keeps its id if that is free here and not in the future; the response has the actual id.
     """
-    _not_empty(start_request.body)
+    body = _not_empty(start_request.body)
     store, agents, ids = services.store, services.agents, services.jobs.new_id
     run = start_request.start(
-        services,
-        lambda key: import_run(store, start_request.body, ids, agents, "the archive", key=key),
+        services, lambda key: import_run(store, body, ids, agents, "the archive", key=key)
     )
     services.bus.publish("run", run_view(run), run.id)
     location = request.url_for(f"get_{run.kind}", run_id=run.id).path

@@ -1,5 +1,6 @@
 """Artifact files of a run in its archive: select them for export, validate them on import."""
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
@@ -11,13 +12,21 @@ from numpy.typing import NDArray
 from app.archive.archive import Member
 from app.archive.archived_trials import check_report_files, is_report_file, report_files
 from app.archive.imported_tables import checked_table
-from app.archive.untrusted_input import Large, Metres, PortableText, Seconds, Share, Step
+from app.archive.untrusted_input import (
+    MAX_M,
+    Large,
+    Metres,
+    PortableText,
+    Seconds,
+    Share,
+    Step,
+)
 from app.domain.errors import DamagedFile, HexapodError
 from app.domain.simulator import Motion
 from app.domain.types import Action, Cells
 from app.experiments.config import ExperimentConfig
 from app.runs import tables
-from app.runs.config import TrainingConfig, WalkingProblem
+from app.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem
 from app.runs.race_config import RaceConfig
 from app.runs.recording import race_recording
 from app.runs.records import ActionValues
@@ -37,6 +46,8 @@ from app.storage.stored_recordings import (
 MAX_EVALUATION_FILES = 100
 MAX_TRANSITION_FILES = MAX_LOGGED_STEPS // TRANSITIONS_PER_FILE
 _EVALUATIONS = re.compile(r"evaluations-\d{4}\.npz", re.ASCII)
+_TIME_TOLERANCE, _MIN_QUATERNION = 1.001, 0.5
+"""For sums of rounded times, and for rounded unit quaternions."""
 _TRANSITIONS = re.compile(r"transitions-\d{4}\.npz", re.ASCII)
 
 
@@ -142,17 +153,18 @@ def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
         if len(lane.steps) > config.steps:
             raise ValueError("it has more steps than the race")
         _check_poses(lane.rest_qpos[None], config)
+        msgspec.convert(math.fsum(step.decision_s for step in lane.steps), Seconds)
         for step in lane.steps:
             msgspec.convert((step.reward_m, step.distance_m), tuple[Metres, Metres])
             msgspec.convert((step.decision_s, step.transitions), tuple[Seconds, Large])
-            _check_motion(step.motion, config)
+            _check_motion(step.motion, config, 1)
             _check_choice(step.observation, step.action, step.knowledge, config)
             for future in step.futures:
                 _check_choice(step.observation, future.action, None, config)
                 msgspec.convert((future.reward_m, future.return_m), tuple[Metres, Metres])
 
 
-def _check_practice(config: WalkingProblem, files: Mapping[str, bytes]) -> None:
+def _check_practice(config: TrainingConfig, files: Mapping[str, bytes]) -> None:
     if PRACTICE not in files:
         return
     names = sorted(name for name in files if _EVALUATIONS.fullmatch(name))
@@ -161,16 +173,24 @@ def _check_practice(config: WalkingProblem, files: Mapping[str, bytes]) -> None:
     evaluations = [tables.read_arrays(files[name]) for name in names]
     recording = practice_recording(tables.read_arrays(files[PRACTICE]), evaluations)
     _check_poses(recording.rest_qpos[None], config)
+    numbers = [step.step for step in recording.steps]
+    evaluated = [evaluation.step for evaluation in recording.evaluations]
+    if numbers != sorted(set(numbers)) or evaluated != sorted(evaluated):
+        raise ValueError("its steps are in no order")
+    if not all(1 <= number <= config.steps for number in numbers):
+        raise ValueError(f"its steps are not from 1 to {config.steps}")
+    if not all(0 <= number <= config.steps for number in evaluated):
+        raise ValueError(f"its evaluations are not of steps from 0 to {config.steps}")
     for step in recording.steps:
-        msgspec.convert((step.step, step.episode), tuple[Step, Step])
+        msgspec.convert(step.episode, Step)
         msgspec.convert((step.reward_m, step.distance_m), tuple[Metres, Metres])
         msgspec.convert(step.epsilon, Share)
-        _check_motion(step.motion, config)
+        _check_motion(step.motion, config, 1)
         _check_choice(step.observation, step.action, step.knowledge, config)
     for evaluation in recording.evaluations:
-        msgspec.convert((evaluation.step, evaluation.epsilon), tuple[Step, Share])
+        msgspec.convert(evaluation.epsilon, Share)
         msgspec.convert(evaluation.distance_m, Metres)
-        _check_motion(evaluation.motion, config)
+        _check_motion(evaluation.motion, config, RACE_STEPS)
 
 
 def _check_transitions(config: WalkingProblem, files: Mapping[str, bytes]) -> None:
@@ -186,7 +206,8 @@ def _check_transitions(config: WalkingProblem, files: Mapping[str, bytes]) -> No
             raise ValueError("it has more steps than a file holds")
 
 
-def _check_motion(motion: Motion | None, walk: WalkingProblem) -> None:
+def _check_motion(motion: Motion | None, walk: WalkingProblem, steps: int) -> None:
+    """Check the motion of at most so many steps."""
     if motion is None:
         return
     _check_poses(motion.qpos, walk)
@@ -195,6 +216,8 @@ def _check_motion(motion: Motion | None, walk: WalkingProblem) -> None:
         raise ValueError("its times are none")
     if (np.diff(times) <= 0).any() or times[0] <= 0:
         raise ValueError("its time does not go on")
+    if times[-1] > steps * walk.robot.step_s * _TIME_TOLERANCE:
+        raise ValueError("its steps take longer than the robot's")
     _check_effort(motion)
 
 
@@ -217,8 +240,11 @@ def _check_poses(qpos: NDArray[np.float32], walk: WalkingProblem) -> None:
     """Check poses, (frames, 7 + joints): position, unit quaternion, three joint angles per leg."""
     if qpos.shape[1:] != (7 + 3 * len(walk.robot.legs),) or not len(qpos):
         raise ValueError("its robot has other joints")
-    if qpos.dtype.kind != "f" or not np.isfinite(qpos).all():
+    # NaN is not below either.
+    if qpos.dtype.kind != "f" or not (np.abs(qpos) < MAX_M).all():
         raise ValueError("its poses are none")
+    if (np.linalg.norm(qpos[:, 3:7], axis=1) < _MIN_QUATERNION).any():
+        raise ValueError("its torso has no rotation")
 
 
 def _check_choice(

@@ -164,7 +164,13 @@ def import_run(
 
 
 def import_runs(
-    store: RunStore, data: bytes, ids: RunIds, agents: Collection[str], label: str
+    store: RunStore,
+    data: bytes,
+    ids: RunIds,
+    agents: Collection[str],
+    label: str,
+    *,
+    key: IdempotencyKey | None = None,
 ) -> list[Run]:
     """Validate an archive of one run or several, and add all of them to a store, or none.
 
@@ -174,6 +180,7 @@ def import_runs(
         ids: generator of ids for this store.
         agents: names of the registered agents.
         label: name of the archive for error messages.
+        key: idempotency key of the request, stored with the runs.
 
     Returns:
         the runs as stored.
@@ -191,7 +198,7 @@ def import_runs(
             _checked(archive.unpack(one, label, _is_member_name), ids, agents, label)
             for label, one in ((f"{name} of {label}", one) for name, one in members.items())
         ]
-    return list(store.add_all(checked, ids))
+    return list(store.add_all(checked, ids, key))
 
 
 def _checked(

@@ -9,7 +9,7 @@ from msgspec import Meta
 from app.runs.config import MAX_STEPS
 from app.runs.race_config import MAX_LANES
 
-_MAX_M = 1e6
+MAX_M = 1e6
 _MAX_S = 1e9
 _EARLIEST = datetime(1970, 1, 1, tzinfo=UTC)
 _MAX_CLOCK_LEAD = timedelta(days=1)
@@ -20,7 +20,7 @@ Count = Annotated[int, Meta(ge=0, le=MAX_STEPS * MAX_LANES)]
 Step = Annotated[int, Meta(ge=0, le=MAX_STEPS)]
 Large = Annotated[int, Meta(ge=0, le=2**53)]
 """Any other count, up to JavaScript's largest exact integer."""
-Metres = Annotated[float, Meta(ge=-_MAX_M, le=_MAX_M)]
+Metres = Annotated[float, Meta(ge=-MAX_M, le=MAX_M)]
 Seconds = Annotated[float, Meta(ge=0, le=_MAX_S)]
 Share = Annotated[float, Meta(ge=0, le=1)]
 Name = Annotated[str, Meta(max_length=100)]

@@ -121,13 +121,13 @@ def _page(source: Source, options: argparse.Namespace) -> Iterable[bytes]:
 
 
 def _video(source: Source, options: argparse.Namespace) -> Iterable[bytes]:
-    from app.exports.extras import NoOpenGL  # noqa: PLC0415
+    from app.exports.extras import no_opengl  # noqa: PLC0415
 
     try:
         from app.exports.video import VideoOptions, render_video  # noqa: PLC0415
     # MuJoCo loads the OpenGL of MUJOCO_GL when it is imported, and PyOpenGL fails in many ways.
     except (ImportError, AttributeError, RuntimeError) as error:
-        raise NoOpenGL(error) from error
+        raise no_opengl(error) from error
     film = VideoOptions(
         ending=Path(options.out).suffix,
         width=options.width,

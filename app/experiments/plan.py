@@ -1,8 +1,10 @@
 """Plan of an experiment: expands its config to settings and trials, in execution order."""
 
+import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import chain, product
 from typing import Any, Literal, NamedTuple
 
@@ -80,14 +82,27 @@ class Setting:
         return self.training.resolved_gait.name
 
 
-class Trial(NamedTuple):
-    """One trial of a plan."""
+@dataclass(frozen=True)
+class Trial:
+    """One trial of a plan.
+
+    Attributes:
+        key: key of the setting and number of the seed: `…#12`.
+        setting: its setting.
+        seed_number: counted from 0.
+        seed: of its training.
+    """
 
     key: str
-    """Key of the setting and number of the seed: `…#12`."""
     setting: Setting
     seed_number: int
-    config: TrialConfig
+    seed: int
+
+    @cached_property
+    def config(self) -> TrialConfig:
+        """Config of the trial; made when it is first read, since it is all checked again."""
+        training = replace(self.setting.training, seed=self.seed)
+        return replace(self.setting.trial, training=training)
 
 
 class Plan:
@@ -126,14 +141,28 @@ class Plan:
             for seed_number in range(max((self.count(s) for _, s in numbered), default=0)):
                 for index, setting in numbered:
                     if seed_number < self.count(setting):
-                        yield self._trial(index, setting, seed_number)
+                        yield self._trial(index, seed_number)
 
-    def _trial(self, index: int, setting: Setting, seed_number: int) -> Trial:
+    def find(self, key: str) -> Trial | None:
+        """Return the trial with a key; None if there is none."""
+        setting_key, _, number = key.rpartition("#")
+        index = self._indices.get(setting_key)
+        # Longer ones are no number of a seed, and Python refuses to read very long ones.
+        if index is None or not re.fullmatch("0|[1-9][0-9]{0,8}", number):
+            return None
+        has_it = int(number) < self.count(self.settings[index])
+        return self._trial(index, int(number)) if has_it else None
+
+    @cached_property
+    def _indices(self) -> Mapping[str, int]:
+        return {setting.key: index for index, setting in enumerate(self.settings)}
+
+    def _trial(self, index: int, seed_number: int) -> Trial:
         # Where the seed draws the robot, all agents walk with the same ones.
         spawned = 0 if self.config.experiment in DISTURBED else index
         seed = trial_seed(self.config.seed, spawned, seed_number)
-        config = replace(setting.trial, training=replace(setting.training, seed=seed))
-        return Trial(f"{setting.key}#{seed_number}", setting, seed_number, config)
+        setting = self.settings[index]
+        return Trial(f"{setting.key}#{seed_number}", setting, seed_number, seed)
 
 
 def trial_seed(seed: int, setting: int, seed_number: int) -> int:

@@ -23,10 +23,6 @@ Changes = Sequence[Mapping[str, Any]]
 class Steps(Protocol):
     """Steps of a walk, from its start."""
 
-    @property
-    def source(self) -> object:
-        """File or run that they are read from."""
-
     def __len__(self) -> int:
         """Return their number so far."""
 
@@ -35,34 +31,38 @@ class Steps(Protocol):
 
 
 class RebuiltPractice:
-    """A learner that can be moved to any step of its walk. Not thread-safe."""
+    """A learner that can be moved to any step of its walk. Not thread-safe.
 
-    def __init__(self, new: Callable[[], RebuiltLearner], steps: Steps) -> None:
+    It is given the steps with each call, since they take much more memory than the learner.
+    """
+
+    def __init__(self, new: Callable[[], RebuiltLearner]) -> None:
         """Start before the first step.
 
         Args:
             new: makes the learner as it was before the first step.
-            steps: what it did.
         """
-        self.steps = steps
         self._new, self._learner = new, new()
         self._changes: Changes = ()
         self._snapshots: list[Snapshot] = []
         self._spacing_s, self._worked_s = SNAPSHOT_EVERY_S, 0.0
 
-    def fits(self, source: object, changes: Changes) -> bool:
-        """Whether it is still of this walk: a training that resumes may have forgotten steps."""
+    def fits(self, steps: Steps, changes: Changes) -> bool:
+        """Whether it has taken only steps of its walk as this is now.
+
+        A training that resumes may have forgotten steps, and changes of settings may follow.
+        """
         reached = max(self._learner.step, *(one.step for one in self._snapshots[-1:]), 0)
         tuned = max(self._learner.tuned, *(one.tuned for one in self._snapshots[-1:]), 0)
         known = self._changes[:tuned]
-        is_same = source is self.steps.source and len(self.steps) >= reached
-        return is_same and list(changes[: len(known)]) == list(known)
+        return len(steps) >= reached and list(changes[: len(known)]) == list(known)
 
-    def learner_at(self, step: int, changes: Changes) -> RebuiltLearner:
+    def learner_at(self, step: int, steps: Steps, changes: Changes) -> RebuiltLearner:
         """Return the learner after so many steps; valid until the next call.
 
         Args:
             step: number of steps, up to the length of the walk.
+            steps: the walk.
             changes: changes of settings during the walk, in order, each with its `step`.
 
         Raises:
@@ -70,10 +70,10 @@ class RebuiltPractice:
             NotRebuilt: if the learner does not do what it did in the walk.
         """
         self._changes = changes
-        self._go_to(step)
+        self._go_to(step, steps)
         return self._learner
 
-    def explain(self, step: int, changes: Changes) -> ExplainedStep:
+    def explain(self, step: int, steps: Steps, changes: Changes) -> ExplainedStep:
         """Explain a step, counted from 1.
 
         Raises:
@@ -83,11 +83,11 @@ class RebuiltPractice:
         if not (self._learner.step == step - 1 and self._learner.can_explain):
             # A learner that chooses early chooses in the step before.
             early = self._learner.chooses_early and step > 1
-            self._go_to(step - 1 - early)
+            self._go_to(step - 1 - early, steps)
             if early:
-                self._take(explain_next=True)
+                self._take(steps, explain_next=True)
         self._tune()
-        logged = self.steps.step(step - 1)
+        logged = steps.step(step - 1)
         with self._starting_anew_if_broken(step):
             explained = self._learner.explain(logged)
         if not logged.next_observation:
@@ -95,7 +95,7 @@ class RebuiltPractice:
             self._learner, self._worked_s = self._new(), 0.0
         return explained
 
-    def _go_to(self, step: int) -> None:
+    def _go_to(self, step: int, steps: Steps) -> None:
         place = bisect_right(self._snapshots, step, key=lambda one: one.step) - 1
         nearest = self._snapshots[place] if place >= 0 else None
         if self._learner.step > step or (nearest and nearest.step > self._learner.step):
@@ -105,7 +105,7 @@ class RebuiltPractice:
         began_s = time.perf_counter()
         while self._learner.step < step:
             taken_s = time.perf_counter()
-            self._take()
+            self._take(steps)
             now_s = time.perf_counter()
             self._worked_s += now_s - taken_s
             if self._worked_s > self._spacing_s:
@@ -117,11 +117,11 @@ class RebuiltPractice:
                     1,
                 )
 
-    def _take(self, explain_next: bool = False) -> None:
+    def _take(self, steps: Steps, explain_next: bool = False) -> None:
         self._tune()
         number = self._learner.step
         with self._starting_anew_if_broken(number + 1):
-            self._learner.take(self.steps.step(number), explain_next=explain_next)
+            self._learner.take(steps.step(number), explain_next=explain_next)
 
     @contextmanager
     def _starting_anew_if_broken(self, step: int) -> Iterator[None]:

@@ -1,18 +1,19 @@
 """Explanation service: explains steps of trainings and races, and shows tables of any moment."""
 
+import json
 import threading
 from collections import OrderedDict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from app.agents import registry
 from app.agents.protocol import Tabular, Valuing
 from app.assembly import rebuild_lane, rebuild_learner
+from app.cache import BytesCache
 from app.domain.errors import InvalidInput
-from app.explanations.answer_cache import AnswerCache
 from app.explanations.plain import Search, explanation_as_json, table_as_json
-from app.explanations.rebuilt_practice import Changes, RebuiltPractice
+from app.explanations.rebuilt_practice import Changes, RebuiltPractice, Steps
 from app.runs.config import TrainingConfig
 from app.runs.race_config import RaceConfig
 from app.runs.rebuilding import ExplainedStep, NotRebuilt, RebuiltLearner
@@ -27,6 +28,8 @@ from app.storage.stored_tables import load_table
 
 MAX_PRACTICES = 4
 """Walks that are kept; the one asked for least recently is dropped."""
+MAX_ANSWER_BYTES = 16_000_000
+"""Of all answers that are kept."""
 MAX_WAITING = 8
 MAX_TABLE_VALUES = 16_000_000
 """Largest table of a learner that is built again, about 200 MB."""
@@ -41,8 +44,8 @@ class Explanations:
 
     def __init__(self, store: RunStore, recordings: Recordings) -> None:
         self._store, self._recordings = store, recordings
-        self._practices: OrderedDict[tuple[str, int], RebuiltPractice] = OrderedDict()
-        self._answers = AnswerCache()
+        self._practices: OrderedDict[Hashable, RebuiltPractice] = OrderedDict()
+        self._answers = BytesCache(MAX_ANSWER_BYTES)
         self._lock, self._count_lock, self._waiting = threading.Lock(), threading.Lock(), 0
 
     def explain(self, run_id: str, step: int | None, lane: int) -> bytes:
@@ -71,13 +74,15 @@ class Explanations:
             raise InvalidInput("a training has one lane, 0")
         config, log = run.config, self._log(run)
         number = _checked_step(step, len(log))
+        # Read after the log, when all changes before its last step are stored.
+        run, steps = self._store.get(run_id), _TrainingSteps(log)
 
         def answer() -> dict[str, Any]:
-            practice, changes = _in(run, lambda: self._practice(run, log))
-            explained = _in(run, lambda: practice.explain(number, changes))
+            practice = _in(run, lambda: self._practice(run, config, steps))
+            explained = _in(run, lambda: practice.explain(number, steps, run.changes))
             return explanation_as_json(run_id, config, config.agent, explained)
 
-        return self._answer((run_id, 0, number), log, answer)
+        return self._answer((_version(run, number, steps), number), answer)
 
     def table(self, run_id: str, step: int | None, first: int, count: int) -> bytes:
         """Return the values, visits and best actions of some states, as a learner has them.
@@ -102,14 +107,16 @@ class Explanations:
         number = len(log) if step is None else step
         if not 0 <= number <= len(log):
             raise InvalidInput(f"step must be from 0 to {len(log):,}, not {number}")
+        # Read after the log, when all changes before its last step are stored.
+        run, steps = self._store.get(run_id), _TrainingSteps(log)
         pairs, cells = len(config.resolved_gait.pairs), len(config.grid)
         if not 0 <= first < cells**pairs:
             raise InvalidInput(f"first must be from 0 to {cells**pairs - 1:,}, not {first}")
         count = min(count, MAX_VALUES_SHOWN // (pairs * cells))
 
         def answer() -> dict[str, Any]:
-            practice, changes = _in(run, lambda: self._practice(run, log))
-            learner = _in(run, lambda: practice.learner_at(number, changes))
+            practice = _in(run, lambda: self._practice(run, config, steps))
+            learner = _in(run, lambda: practice.learner_at(number, steps, run.changes))
             if not isinstance(learner.agent, Tabular) or not isinstance(learner.agent, Valuing):
                 raise Conflict(
                     f"{config.agent} keeps no table: it generalises over all states", run.state
@@ -120,19 +127,20 @@ class Explanations:
             return table_as_json(config, learner.agent, states, **shown)
 
         # After the last step settings may still be changed, which changes no value.
-        return self._answer((run_id, "table", number, first, count), log, answer)
+        return self._answer((_version(run, number, steps), "table", number, first, count), answer)
 
-    def _answer(
-        self, key: tuple[str | int, ...], source: object, answer: Callable[[], dict[str, Any]]
-    ) -> bytes:
+    def _answer(self, key: Hashable, answer: Callable[[], dict[str, Any]]) -> bytes:
         """Return a known answer, or a new one."""
-        known = self._answers.get(key, source)
+        known = self._answers.get(key)
         if known is not None:
             return known
         with self._one_at_a_time():
             # Another request may have asked for the same meanwhile.
-            known = self._answers.get(key, source)
-            return self._answers.put(key, source, answer()) if known is None else known
+            known = self._answers.get(key)
+            if known is None:
+                known = json.dumps(answer(), ensure_ascii=False, allow_nan=False).encode()
+                self._answers.put(key, known)
+            return known
 
     def _explain_lane(self, run: Run, config: RaceConfig, step: int | None, lane: int) -> bytes:
         lanes = self._recordings.race(run.id)
@@ -142,14 +150,16 @@ class Explanations:
             raise InvalidInput(f"lane must be from 0 to {len(lanes) - 1}, not {lane}")
         recording, own = lanes[lane], config.lanes[lane]
         number = _checked_step(step, len(recording.steps))
+        steps = LaneSteps(recording, own.observation == "measured")
 
         def answer() -> dict[str, Any]:
-            steps, why = LaneSteps(recording, own.observation == "measured"), None
+            why = None
             explained = ExplainedStep(number, steps.step(number - 1), None, None, None)
             search = _search_of(own.agent, recording.steps[number - 1])
             if search is None:
                 try:
-                    explained = self._lane_practice(run, config, lane, steps).explain(number, ())
+                    practice = self._lane_practice(run, config, lane, steps)
+                    explained = practice.explain(number, steps, ())
                 except (Conflict, InvalidInput, NotRebuilt) as error:
                     why = str(error)
             return explanation_as_json(
@@ -157,8 +167,8 @@ class Explanations:
             )
 
         # The update by the newest step of a race that runs is told with the next one.
-        key = (run.id, lane, number, number < len(recording.steps))
-        return self._answer(key, recording, answer)
+        is_newest = number == len(recording.steps)
+        return self._answer((_version(run, number, steps), lane, number, is_newest), answer)
 
     def _log(self, run: Run) -> TransitionLog:
         log = self._recordings.transitions(run.id)
@@ -170,12 +180,8 @@ class Explanations:
             )
         return log
 
-    def _practice(self, run: Run, log: TransitionLog) -> tuple[RebuiltPractice, Changes]:
-        """Return the learner of a training, and the changes of its settings so far."""
-        # Read after the log: every change before its last step is known then.
-        run = self._store.get(run.id)
-        config = run.config
-        assert isinstance(config, TrainingConfig)  # noqa: S101 - no run changes its kind
+    def _practice(self, run: Run, config: TrainingConfig, steps: Steps) -> RebuiltPractice:
+        """Return the learner of a training."""
 
         def new() -> RebuiltLearner:
             table = (
@@ -185,20 +191,19 @@ class Explanations:
 
         def make() -> RebuiltPractice:
             pairs, cells = len(config.resolved_gait.pairs), len(config.grid)
-            rows = cells**pairs if run.continued_from else min(cells**pairs, len(log))
+            rows = cells**pairs if run.continued_from else min(cells**pairs, len(steps))
             if rows * pairs * cells > MAX_TABLE_VALUES:
                 raise Conflict(
                     f"the table of training {run.id} is too large to be built again: it may have "
                     f"{rows * pairs * cells:,} values, and the most is {MAX_TABLE_VALUES:,}",
                     run.state,
                 )
-            return RebuiltPractice(new, _TrainingSteps(log))
+            return RebuiltPractice(new)
 
-        practice = self._kept((run.id, 0), log, run.changes, make)
-        return practice, run.changes
+        return self._kept((run.id, run.created_at), steps, run.changes, make)
 
     def _lane_practice(
-        self, run: Run, config: RaceConfig, lane: int, steps: "LaneSteps"
+        self, run: Run, config: RaceConfig, lane: int, steps: Steps
     ) -> RebuiltPractice:
         training_id = run.lane_training_ids[lane]
 
@@ -206,18 +211,19 @@ class Explanations:
             table = None if training_id is None else load_table(self._store, training_id)
             return rebuild_lane(config, lane, table)
 
-        return self._kept((run.id, lane), steps.lane, (), lambda: RebuiltPractice(new, steps))
+        key = (run.id, run.created_at, lane)
+        return self._kept(key, steps, (), lambda: RebuiltPractice(new))
 
     def _kept(
         self,
-        key: tuple[str, int],
-        source: object,
+        key: Hashable,
+        steps: Steps,
         changes: Changes,
         make: Callable[[], RebuiltPractice],
     ) -> RebuiltPractice:
         """Return a practice that is kept, or a new one if it is not or does not fit any more."""
         practice = self._practices.pop(key, None)
-        if practice is None or not practice.fits(source, changes):
+        if practice is None or not practice.fits(steps, changes):
             practice = make()
         self._practices[key] = practice
         while len(self._practices) > MAX_PRACTICES:
@@ -242,18 +248,18 @@ class _TrainingSteps:
     """The steps of a training's log, read in blocks."""
 
     def __init__(self, log: TransitionLog) -> None:
-        self.source = log
+        self._log = log
         self._block = log.part(0, 0)
 
     def __len__(self) -> int:
-        return len(self.source)
+        return len(self._log)
 
     def step(self, number: int) -> Logged:
         """Return the step of an index, from 0 on."""
         place = number - self._block.first
         if not 0 <= place < len(self._block.rewards_m):
             first = number - number % _BLOCK_STEPS
-            self._block, place = self.source.part(first, first + _BLOCK_STEPS), number - first
+            self._block, place = self._log.part(first, first + _BLOCK_STEPS), number - first
         return self._block.step(place)
 
 
@@ -267,22 +273,29 @@ class LaneSteps:
             lane: the recording.
             is_measured: whether the lane observed where its feet are.
         """
-        self.lane, self._is_measured = lane, is_measured
-
-    @property
-    def source(self) -> LaneRecording:
-        """The recording."""
-        return self.lane
+        self._lane, self._is_measured = lane, is_measured
 
     def __len__(self) -> int:
-        return len(self.lane.steps)
+        return len(self._lane.steps)
 
     def step(self, number: int) -> Logged:
         """Return the step of an index, from 0 on; the last one has no next observation."""
-        one, rest = self.lane.steps[number], self.lane.steps[number + 1 : number + 2]
+        one, rest = self._lane.steps[number], self._lane.steps[number + 1 : number + 2]
         after = rest[0].observation if rest else ()
         measured = (one.observation, after) if self._is_measured else ((), ())
         return Logged(one.observation, measured[0], one.action, one.reward_m, after, measured[1])
+
+
+def _version(run: Run, step: int, steps: Steps) -> Hashable:
+    """Return all that the learner after a step depends on, but for its number and the lane.
+
+    A run repeats its steps where it resumes, unless its agent has another source of randomness;
+    changes of settings may be others then. Not the log itself, which is large, and another object
+    each time that it is read.
+    """
+    changes = [change for change in run.changes if change["step"] < step]
+    taken = steps.step(step - 1) if step else None
+    return (run.id, run.created_at, json.dumps(changes, default=str), taken)
 
 
 def _search_of(agent: str, step: LaneStep) -> Search | None:

@@ -8,20 +8,18 @@ from app.domain.errors import InvalidInput
 
 
 class MissingExtra(InvalidInput):
-    """A package of an extra is not installed; the message says how to install it."""
+    """A package of an extra, or of the system, is missing; the message says how to install it."""
 
 
-class NoOpenGL(MissingExtra):
-    """OpenGL cannot draw off screen here; the message names the packages of the system."""
-
-    def __init__(self, error: Exception) -> None:
-        backend = os.environ.get("MUJOCO_GL", "")
-        by = f" by {backend}" if backend else ""
-        super().__init__(
-            f"a video needs OpenGL, which does not work here{by} ({error}); "
-            "on Debian `apt-get install libegl1 libgl1-mesa-dri`, or `apt-get install libosmesa6` "
-            "and set MUJOCO_GL=osmesa"
-        )
+def no_opengl(error: Exception) -> MissingExtra:
+    """Return the error that OpenGL cannot draw off screen here."""
+    backend = os.environ.get("MUJOCO_GL", "")
+    by = f" by {backend}" if backend else ""
+    return MissingExtra(
+        f"a video needs OpenGL, which does not work here{by} ({error}); "
+        "on Debian `apt-get install libegl1 libgl1-mesa-dri`, or `apt-get install libosmesa6` "
+        "and set MUJOCO_GL=osmesa"
+    )
 
 
 def import_extra(module: str, extra: str, purpose: str) -> Any:

@@ -17,7 +17,7 @@ from app.storage.run import NOT_ENDED, AnyRun, DamagedRun
 
 @dataclass(frozen=True)
 class RecordedLane(RecordedSteps):
-    """Recording of one robot; after the first 20 steps of a practice there may be a gap.
+    """Recording of one robot; after the first steps of a practice there may be a gap.
 
     Attributes:
         agent: name of its agent.

@@ -22,17 +22,17 @@ from PIL import Image, ImageDraw, ImageFont
 from app.agents.appearance import colors_of, title_of
 from app.domain.errors import InvalidInput
 from app.domain.types import FloatArray
-from app.exports.extras import NoOpenGL, import_extra
+from app.exports.extras import import_extra, no_opengl
 from app.exports.recorded_lanes import RecordedLane, RecordedWalks
 from app.physics.mjcf import VISIBLE_GROUP, is_painted, robot_spec
 from app.runs.clocks import FINISH_LINE_M, Clock
 from app.runs.recording import pose_at
 
 VIDEO_EXTRA = "video"
-MAX_WIDTH, MAX_HEIGHT, MAX_FPS = 1920, 1080, 60
+MIN_SIDE, MAX_WIDTH, MAX_HEIGHT, MAX_FPS = 64, 1920, 1080, 60
+MIN_SPEED, MAX_SPEED = 0.05, 64
 MAX_FRAMES = 9000
 """Pictures of one film; each takes about 0.1 s in software."""
-ENDINGS = (".mp4", ".gif")
 _GAP_M = 0.25
 _SMOOTHING_S = 0.25
 _BACKGROUND, _GROUND, _GROUND_LINES = (0.05, 0.07, 0.1), (0.16, 0.2, 0.26), (0.3, 0.36, 0.44)
@@ -59,35 +59,44 @@ class VideoOptions:
     clock: Clock = "paper"
 
     def __post_init__(self) -> None:
-        limits = {"width": (64, MAX_WIDTH), "height": (64, MAX_HEIGHT), "fps": (1, MAX_FPS)}
+        limits = {
+            "width": (MIN_SIDE, MAX_WIDTH),
+            "height": (MIN_SIDE, MAX_HEIGHT),
+            "fps": (1, MAX_FPS),
+            "speed": (MIN_SPEED, MAX_SPEED),
+        }
         for name, (low, high) in limits.items():
             if not low <= getattr(self, name) <= high:
                 raise InvalidInput(f"{name} must be from {low} to {high}")
         if self.width % 2 or self.height % 2:
             raise InvalidInput("width and height must be even")
-        if not 0.05 <= self.speed <= 64:
-            raise InvalidInput("speed must be from 0.05 to 64")
 
 
 def render_video(walks: RecordedWalks, options: VideoOptions) -> bytes:
-    """Render the film of a run.
+    """Return the film of a run; raises as `write_video`."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / f"video{options.ending}"
+        write_video(walks, options, file)
+        return file.read_bytes()
+
+
+def write_video(walks: RecordedWalks, options: VideoOptions, file: Path) -> None:
+    """Render the film of a run to a file.
 
     Raises:
         MissingExtra: if a package of the extra, or OpenGL, is not installed.
         InvalidInput: if it would be too long.
+        OSError: if it cannot be encoded or written.
     """
     ffmpeg = import_extra("imageio_ffmpeg", VIDEO_EXTRA, "a video")
     times_s = _times_s(walks, options, MAX_FRAMES)
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / f"video{options.ending}"
-        writer = ffmpeg.write_frames(str(file), (options.width, options.height), **_coding(options))
-        writer.send(None)
-        try:
-            for picture in _pictures(walks, options, times_s):
-                writer.send(np.ascontiguousarray(picture))
-        finally:
-            writer.close()
-        return file.read_bytes()
+    writer = ffmpeg.write_frames(str(file), (options.width, options.height), **_coding(options))
+    writer.send(None)
+    try:
+        for picture in _pictures(walks, options, times_s):
+            writer.send(np.ascontiguousarray(picture))
+    finally:
+        writer.close()
 
 
 def check_length(walks: RecordedWalks, options: VideoOptions, max_frames: int) -> None:
@@ -194,7 +203,7 @@ def _gl_context(width: int, height: int) -> Any:
         context.make_current()
     # PyOpenGL raises errors of many kinds where the library is missing.
     except Exception as error:
-        raise NoOpenGL(error) from error
+        raise no_opengl(error) from error
     return _Closing(context)
 
 

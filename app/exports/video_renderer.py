@@ -1,48 +1,79 @@
 """Renders films for a server: one at a time, in a process of lower priority."""
 
 import os
+import tempfile
 import threading
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
+from pathlib import Path
+from typing import NamedTuple
 
 from app.domain.errors import HexapodError
 from app.exports.recorded_lanes import RecordedWalks
-from app.exports.video import VideoOptions, check_length, render_video
+from app.exports.video import VideoOptions, check_length, write_video
+from app.jobs.process_pool import ProcessPool
 from app.storage.errors import Busy
 
 MAX_SERVED_FRAMES = 900
 """Pictures of a film over REST, half a minute at 30 a second."""
-_NICENESS = 10
+TIMEOUT_S = 900.0
+"""A second for each picture; a large one takes about 0.4 s in software."""
+_IDLE_S = 10.0
 _RETRY_S = 20
+
+
+class _Film(NamedTuple):
+    walks: RecordedWalks
+    options: VideoOptions
+    file: Path
 
 
 class VideoRenderer:
     """Renders in a process of its own, since OpenGL in software takes all cores. Thread-safe."""
 
-    def __init__(self) -> None:
-        """Create a renderer that is free; it starts a process for each film."""
+    def __init__(self, timeout_s: float = TIMEOUT_S) -> None:
+        """Create a renderer that is free; the first film starts its process.
+
+        Args:
+            timeout_s: time after which a film is given up [s].
+        """
         self._rendering = threading.Lock()
+        self._pool = ProcessPool(count=1, idle_s=_IDLE_S, timeout_s=timeout_s)
 
     def render(self, walks: RecordedWalks, options: VideoOptions) -> bytes:
         """Render the film of a run.
 
         Raises:
-            Busy: if another one is being rendered.
-            InvalidInput, MissingExtra: as `render_video`.
+            Busy: if another one is being rendered, its process ends, it takes too long, or the
+                renderer is closed.
+            InvalidInput, MissingExtra: as `write_video`.
+            HexapodError: if it cannot be encoded or written.
         """
         check_length(walks, options, MAX_SERVED_FRAMES)
         if not self._rendering.acquire(blocking=False):
             raise Busy("another film is being rendered; try again in a moment", _RETRY_S)
         try:
-            with ProcessPoolExecutor(1, get_context("spawn"), _lower_priority) as pool:
-                return pool.submit(render_video, walks, options).result()
-        except BrokenProcessPool as error:
-            raise HexapodError("the process that renders films ended; the log says why") from error
+            # Made here, so that it is removed even if the process is killed.
+            with tempfile.TemporaryDirectory() as folder:
+                film = _Film(walks, options, Path(folder) / f"video{options.ending}")
+                (failure,) = self._pool.map(_write, [film])
+                if failure is not None:
+                    raise HexapodError(f"a film failed: {failure}")
+                return film.file.read_bytes()
         finally:
             self._rendering.release()
 
+    def close(self) -> None:
+        """Kill the process, and refuse further films."""
+        self._pool.close()
 
-def _lower_priority() -> None:
-    if hasattr(os, "nice"):
-        os.nice(_NICENESS)
+
+def _write(film: _Film) -> str | None:
+    """Write a film in a worker; return what failed, if it is none of the errors for users."""
+    # Keeps the encoder in the process group of the worker, with which it is killed.
+    os.environ["IMAGEIO_FFMPEG_NO_PREVENT_SIGINT"] = "1"
+    try:
+        write_video(*film)
+    except HexapodError:
+        raise
+    except Exception as error:
+        return f"{type(error).__name__}: {error}"
+    return None

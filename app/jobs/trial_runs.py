@@ -31,7 +31,7 @@ def trial_start(config: ExperimentConfig, experiment_id: str, key: str) -> Trial
     Raises:
         InvalidInput: if the experiment has no such trial, or no single run is the same.
     """
-    trial = next((one for one in plan_of(config).trials() if one.key == key), None)
+    trial = plan_of(config).find(key)
     if trial is None:
         raise InvalidInput(
             f"the experiment has no trial {key[:200]!r}; GET …/trials lists those that it has done"

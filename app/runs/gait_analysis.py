@@ -189,11 +189,15 @@ def gait_figures(walk: RecordedWalk, from_s: float, to_s: float) -> GaitFigures 
         to_s: its end.
 
     Returns:
-        None if nothing of the walk lies in that part.
+        None if no recorded frame of the walk lies in that part.
     """
     from_s, to_s = max(from_s, walk.from_s), min(to_s, walk.to_s)
     frames = _frames(walk, from_s, to_s)
-    if frames is None or to_s - from_s < walk.problem.robot.dt_s:
+    if frames is None:
+        return None
+    inside = (frames.times_s >= from_s) & (frames.times_s <= to_s)
+    # The first frame is the pose before the steps, at which nothing was done.
+    if to_s <= from_s or not inside[1:].any():
         return None
     robot = walk.problem.built_robot
     clearance = clearances_m(robot, frames.poses, frames.steps, walk.world)
@@ -208,7 +212,6 @@ def gait_figures(walk: RecordedWalk, from_s: float, to_s: float) -> GaitFigures 
     is_gone = np.asarray(np.isinf(clearance).all(axis=0))
     duties = [one.duty_factor for one, gone in zip(legs, is_gone, strict=True) if not gone]
     mass = _mean_mass_kg(robot, walk.world, frames.steps)
-    inside = (frames.times_s >= from_s) & (frames.times_s <= to_s)
     return GaitFigures(
         from_s=from_s,
         to_s=to_s,
@@ -384,7 +387,7 @@ def _effort(
     if frames.torque_nm is None or frames.work_j is None:
         return None
     inside = inside.copy()
-    inside[0] = False  # the pose before the first step, at which nothing was done
+    inside[0] = False
     times, torque = frames.times_s[inside], np.abs(frames.torque_nm[inside]).max(axis=1)
     work, lasted = frames.work_j[inside], np.diff(frames.times_s, prepend=0.0)[inside]
     begins = np.arange(0, len(times), -(-len(times) // MAX_SAMPLES))

@@ -80,7 +80,7 @@ class PracticeRecording:
 
     @property
     def steps(self) -> list[StepTaken]:
-        """The stored steps, in order; there may be a gap after the first 20."""
+        """The stored steps, in order; there may be a gap after the first `FIRST_STEPS`."""
         return [*self._first, *list(self._newest)]
 
     @property

@@ -1,13 +1,15 @@
 """Interface of playbacks on the stage (`Show`), and the playback of the idle stage."""
 
 from dataclasses import dataclass
-from typing import Literal, NamedTuple, Protocol, get_args
+from typing import Literal, NamedTuple, Protocol
 
 from app.runs.clocks import Clock
 from app.stage.scene_spec import idle_scene, rest_pose
 from app.stage.stage_frame import LaneView, SceneSpec, StageFrame
 
 TIME_LAPSE = "time-lapse"
+MIN_SPEED, MAX_SPEED = 0.25, 64
+"""Speeds that a user may choose, times real time."""
 
 
 @dataclass(frozen=True)
@@ -21,7 +23,6 @@ class RunLabel:
 
 
 MarkKind = Literal["time-out", "crossing", "fall", "disturbance", "evaluation"]
-MARK_KINDS: tuple[MarkKind, ...] = get_args(MarkKind)
 
 
 class Mark(NamedTuple):

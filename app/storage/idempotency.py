@@ -1,13 +1,13 @@
-"""Idempotency keys: a repeated start returns the run that it created first.
+"""Idempotency keys: a repeated start or import returns the runs that it created first.
 
-The key is stored in the transaction that creates the run. So neither is ever stored without the
+The key is stored in the transaction that creates the runs. So neither is ever stored without the
 other, even if the server crashes in between, and a retry after a restart finds the run.
 """
 
 import hashlib
 import threading
 from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
@@ -18,6 +18,8 @@ from app.storage.run import IdempotencyKey, Run
 
 Start = Callable[[IdempotencyKey | None], Run]
 """Creates a run, and passes the key to the store in the same call."""
+Import = Callable[[IdempotencyKey | None], Sequence[Run]]
+"""Creates several runs in the same way."""
 
 
 @dataclass
@@ -55,25 +57,32 @@ class Idempotency:
             InvalidInput: if this key came with another request before.
             Gone: if the run that this key started was deleted.
         """
+        return self.runs(key, request, lambda key: [start(key)])[0]
+
+    def runs(self, key: str | None, request: bytes, create: Import) -> Sequence[Run]:
+        """Return the runs that this key created before, or create them now; otherwise as `run`."""
         if key is None:
-            return start(None)
+            return create(None)
         digest = hashlib.sha256(request).hexdigest()
         with self._locked(key):
             record = self._store.find_key(key)
             if record is None:
-                return start(IdempotencyKey(key, digest))
+                return create(IdempotencyKey(key, digest))
             if record.digest != digest:
                 raise InvalidInput(
                     "this Idempotency-Key came with another request before; send a new key with "
                     "each new request, and the same only to repeat one"
                 )
-            try:
-                return self._store.get(record.run_id)
-            except NotFound as error:
-                raise Gone(
-                    f"run {record.run_id}, which this Idempotency-Key started, was deleted; send "
-                    "a new key to start another"
-                ) from error
+            return [self._run(run_id) for run_id in record.run_ids]
+
+    def _run(self, run_id: str) -> Run:
+        try:
+            return self._store.get(run_id)
+        except NotFound as error:
+            raise Gone(
+                f"run {run_id}, which this Idempotency-Key started, was deleted; send a new key "
+                "to start another"
+            ) from error
 
     @contextmanager
     def _locked(self, key: str) -> Iterator[None]:

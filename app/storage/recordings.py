@@ -16,6 +16,7 @@ from app.storage.stored_recordings import StoredRecordings
 
 MAX_EVALUATION_MOTIONS = 1000
 """Evaluations of one training whose motion is kept, about 80 MB; later ones keep the distance."""
+_NOT_GROWING = TransitionLog()
 
 
 class Recordings:
@@ -46,9 +47,8 @@ class Recordings:
 
     def transitions(self, run_id: str) -> TransitionLog | None:
         """Return the log of a training's transitions; None if there is none, or it is damaged."""
-        if run_id in self._logs:
-            return self._logs[run_id]
-        return self._stored.transitions(run_id)
+        growing = self._logs.get(run_id, _NOT_GROWING)
+        return self._stored.transitions(run_id) if growing is _NOT_GROWING else growing
 
     def begin_training(
         self, run_id: str, rest_qpos: NDArray[np.float32], after_step: int = 0

@@ -147,10 +147,10 @@ class IdempotencyKey(NamedTuple):
 
 
 class KeyRecord(NamedTuple):
-    """A used idempotency key's record: digest of its request and id of the run it created."""
+    """A used idempotency key's record: digest of its request and ids of the runs it created."""
 
     digest: str
-    run_id: str
+    run_ids: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True)

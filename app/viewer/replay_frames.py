@@ -10,13 +10,13 @@ be at any moment of it, and the server keeps nothing for it.
 import gzip
 import struct
 import threading
-from collections import OrderedDict
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
 import msgspec
 
+from app.cache import BytesCache
 from app.domain.errors import InvalidInput
 from app.domain.types import Cells
 from app.runs.clocks import Clock
@@ -53,7 +53,7 @@ class ReplayFrames:
     def __init__(self, replays: Replays) -> None:
         self._replays = replays
         self._encoding = threading.Lock()
-        self._segments = _SegmentCache(_CACHE_BYTES)
+        self._segments = BytesCache(_CACHE_BYTES)
 
     def plan(self, run_id: str, clock: Clock, ghost_id: str | None = None) -> dict[str, Any]:
         """Return what a page needs to play a run, in plain types: see `ReplayView` of the API.
@@ -147,28 +147,6 @@ class ReplayFrames:
             if replay.is_complete or len(times_s) == SEGMENT_FRAMES:
                 self._segments.put(key, encoded)
         return encoded
-
-
-class _SegmentCache:
-    """Segments by what they are made from, the least recently used dropped first. Thread-safe."""
-
-    def __init__(self, max_bytes: int) -> None:
-        self._max_bytes, self._bytes = max_bytes, 0
-        self._segments: OrderedDict[Hashable, bytes] = OrderedDict()
-        self._lock = threading.Lock()
-
-    def get(self, key: Hashable) -> bytes | None:
-        with self._lock:
-            if key in self._segments:
-                self._segments.move_to_end(key)
-            return self._segments.get(key)
-
-    def put(self, key: Hashable, segment: bytes) -> None:
-        with self._lock:
-            self._bytes += len(segment) - len(self._segments.pop(key, b""))
-            self._segments[key] = segment
-            while self._bytes > self._max_bytes:
-                self._bytes -= len(self._segments.popitem(last=False)[1])
 
 
 def _after_scene(replay: Replay, times_s: Sequence[float]) -> Iterator[tuple[Recorded, Any]]:

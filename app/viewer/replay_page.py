@@ -13,6 +13,7 @@ from typing import Any
 
 from app import assets
 from app.runs.clocks import Clock
+from app.runs.recording import FIRST_STEPS, NEWEST_STEPS
 from app.stage.playback import HIGHEST_LEVEL
 from app.storage.errors import Conflict
 from app.viewer.replay_frames import ReplayFrames
@@ -20,6 +21,9 @@ from app.viewer.viser_internals.client import OFFLINE_SCRIPTS, content_policy, p
 
 MAX_BYTES = 15_000_000
 """Maximum size of a page; a longer run has fewer frames in a second."""
+MAX_SEGMENTS = 1000
+"""Maximum number of segments, 35 minutes at 30 frames a second: a robot that stands still is small,
+and takes as long to encode as one that walks."""
 _PLAYER = "js/offline/player.js"
 _STYLE = "style/offline.css"
 _IMPORT = re.compile(r'^import \{[^}]*\} from "(?P<path>\.[^"]*)";\n', re.MULTILINE)
@@ -80,6 +84,8 @@ def _segments_that_fit(
     """Return the lowest level from 0 on whose segments fit, and their numbers."""
     for level in range(HIGHEST_LEVEL + 1):
         numbers, size = _recorded_segments(plan, level), 0
+        if len(numbers) > MAX_SEGMENTS:
+            continue
         for number in numbers:
             size += len(_block(f"segment-{number}", b""))
             size += 4 * -(-len(frames.segment(run_id, clock, level, number)) // 3)
@@ -95,12 +101,14 @@ def _segments_that_fit(
 
 
 def _recorded_segments(plan: dict[str, Any], level: int) -> list[int]:
-    """Return the numbers of the segments that have recorded frames."""
+    """Return the numbers of the segments that have recorded frames, `MAX_SEGMENTS` + 1 at most."""
     segment_s = plan["frame_s"] * plan["segment_frames"] * 2**level
-    numbers: set[int] = set()
+    numbers: list[int] = []
     for from_s, to_s in plan["recorded_s"]:
-        numbers.update(range(int(from_s / segment_s), int(to_s / segment_s) + 1))
-    return sorted(number for number in numbers if number * segment_s <= plan["recorded_s"][-1][1])
+        first = max(int(from_s / segment_s), numbers[-1] + 1 if numbers else 0)
+        last = int(to_s / segment_s)
+        numbers += range(first, min(last, first + MAX_SEGMENTS - len(numbers)) + 1)
+    return [number for number in numbers if number * segment_s <= plan["recorded_s"][-1][1]]
 
 
 def _notes(plan: dict[str, Any], level: int) -> list[str]:
@@ -110,7 +118,10 @@ def _notes(plan: dict[str, Any], level: int) -> list[str]:
         rate = 1 / (plan["frame_s"] * 2**level)
         notes.append(f"{rate:.3g} pictures a second of the run's time, so that the file is small.")
     if len(plan["recorded_s"]) > 1:
-        notes.append("Only the first 20 and the newest 500 steps of this practice are recorded.")
+        notes.append(
+            f"Only the first {FIRST_STEPS} and the newest {NEWEST_STEPS} steps of this practice "
+            "are recorded."
+        )
     return notes
 
 

@@ -3,5 +3,4 @@
 `what_if` runs 30 seeds with the chosen settings and 30 with the defaults, limits the number of
 waiting requests, and caches results.
 `estimate` times a few steps, and says from that how long a run would take.
-`trial_pool` is the pool of worker processes that run the trials; it shuts down when idle.
 """

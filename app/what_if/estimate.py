@@ -3,8 +3,10 @@
 import threading
 import time
 from collections import OrderedDict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +15,7 @@ from app.agents.registry import learns
 from app.assembly import build_learner, build_walkers
 from app.experiments.config import ExperimentConfig
 from app.experiments.plan import Plan
+from app.jobs.process_pool import ProcessPool
 from app.jobs.submissions import (
     ExperimentStart,
     LaneStart,
@@ -28,7 +31,7 @@ from app.runs.race_config import RaceConfig
 from app.runs.racing import race
 from app.runs.records import StepTaken
 from app.runs.training import train
-from app.what_if.trial_pool import TrialPool
+from app.storage.errors import Busy
 
 MEASURE_S = 0.25
 """For how long the steps of an agent are timed [s]."""
@@ -37,6 +40,8 @@ MAX_MEASURED = 12
 MAX_CACHED = 256
 CACHED_S = 600.0
 """After this time the machine may be busier, or less."""
+MAX_AT_ONCE = 4
+"""Requests whose steps are timed, or wait for that; each holds a thread of the server."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +69,7 @@ class _Part(NamedTuple):
 class Estimates:
     """Estimates durations from timed steps, which are cached for a while. Thread-safe."""
 
-    def __init__(self, pool: TrialPool, cores: int) -> None:
+    def __init__(self, pool: ProcessPool, cores: int) -> None:
         """Create the service with an empty cache.
 
         Args:
@@ -73,25 +78,31 @@ class Estimates:
         """
         self._pool, self._cores = pool, cores
         self._cache: OrderedDict[Steps, tuple[float, float]] = OrderedDict()
-        self._lock = threading.Lock()
+        self._lock, self._timing = threading.Lock(), threading.Lock()
+        self._free = threading.BoundedSemaphore(MAX_AT_ONCE)
 
     def of(self, start: TrainingStart | RaceStart | ExperimentStart) -> float:
         """Return how long a run would take once it has a core [s].
 
         Raises:
             InvalidInput: if an agent fails at once.
-            Busy: if its first step takes too long to be timed, or the pool is closed.
+            Busy: if its first step takes too long to be timed, others wait for that, or the pool
+                is closed.
         """
         if isinstance(start, ExperimentStart):
             return self._experiment_s(start.config, start.workers or self._cores)
         if isinstance(start, TrainingStart):
             check_training(start.config)
-            return self._seconds([*_practice(start.config)])
+            parts = [*_practice(start.config)]
+            return _seconds(parts, self._measured(one.steps for one in parts))
         check_walk(start.walk)
-        practices = [one.training.config for one in start.lanes if one.training is not None]
-        alone = [self._seconds([*_practice(config)]) for config in practices]
+        lanes = [_lane(one, start) for one in start.lanes]
+        trainings = (one.training for one in start.lanes if one.training is not None)
+        practices = [[*_practice(training.config)] for training in trainings]
+        measured = self._measured(one.steps for one in chain(lanes, *practices))
+        alone = [_seconds(parts, measured) for parts in practices]
         at_once = max([*alone, sum(alone) / self._cores], default=0.0)
-        return at_once + self._seconds([_lane(one, start) for one in start.lanes])
+        return at_once + _seconds(lanes, measured)
 
     def close(self) -> None:
         """Shut down the pool."""
@@ -100,33 +111,51 @@ class Estimates:
     def _experiment_s(self, config: ExperimentConfig, workers: int) -> float:
         plan = plan_of(config)
         parts = [*_trials(plan)]
-        measured = self._measured(dict.fromkeys(one.steps for one in parts))
+        measured = self._measured(one.steps for one in parts)
         mean = sum(measured.values()) / max(len(measured), 1)
         total = sum(one.number * measured.get(one.steps, mean) for one in parts)
         return total / max(1, min(workers, plan.total))
 
-    def _seconds(self, parts: list[_Part]) -> float:
-        measured = self._measured(dict.fromkeys(one.steps for one in parts))
-        return sum(one.number * max(one.paced_s, measured[one.steps]) for one in parts)
-
-    def _measured(self, wanted: Iterable[Steps]) -> dict[Steps, float]:
+    def _measured(self, wanted: Iterable[Steps]) -> Mapping[Steps, float]:
         """Return the time of a step of each kind [s], of the first `MAX_MEASURED` kinds."""
-        kinds, now = list(wanted)[:MAX_MEASURED], time.monotonic()
+        kinds = list(dict.fromkeys(wanted))[:MAX_MEASURED]
+        known = self._known(kinds)
+        if len(known) < len(kinds):
+            with self._turn():
+                # A request that was answered meanwhile may have timed the same.
+                known = self._known(kinds)
+                missing = [kind for kind in kinds if kind not in known]
+                known |= zip(missing, self._pool.map(step_s_of, missing), strict=True)
+                self._keep({kind: known[kind] for kind in missing})
+        return known
+
+    @contextmanager
+    def _turn(self) -> Iterator[None]:
+        """Wait until no other request times steps, unless another one waits for that."""
+        if not self._free.acquire(blocking=False):
+            raise Busy("other estimates are waiting; ask again in a moment", 1)
+        try:
+            with self._timing:
+                yield
+        finally:
+            self._free.release()
+
+    def _known(self, kinds: Iterable[Steps]) -> dict[Steps, float]:
+        now = time.monotonic()
         with self._lock:
-            known = {
-                kind: step_s
-                for kind, (step_s, measured_s) in self._cache.items()
-                if now - measured_s < CACHED_S
-            }
-        missing = [kind for kind in kinds if kind not in known]
-        if missing:
-            timed = dict(zip(missing, self._pool.map(step_s_of, missing), strict=True))
-            known |= timed
-            with self._lock:
-                self._cache |= {kind: (step_s, now) for kind, step_s in timed.items()}
-                while len(self._cache) > MAX_CACHED:
-                    self._cache.popitem(last=False)
-        return {kind: known[kind] for kind in kinds}
+            cached = {kind: self._cache[kind] for kind in kinds if kind in self._cache}
+        return {kind: step_s for kind, (step_s, at_s) in cached.items() if now - at_s < CACHED_S}
+
+    def _keep(self, timed: Mapping[Steps, float]) -> None:
+        now = time.monotonic()
+        with self._lock:
+            self._cache |= {kind: (step_s, now) for kind, step_s in timed.items()}
+            while len(self._cache) > MAX_CACHED:
+                self._cache.popitem(last=False)
+
+
+def _seconds(parts: Iterable[_Part], measured: Mapping[Steps, float]) -> float:
+    return sum(one.number * max(one.paced_s, measured[one.steps]) for one in parts)
 
 
 def step_s_of(steps: Steps) -> float:

@@ -15,11 +15,11 @@ from app.domain.errors import InvalidInput
 from app.domain.settings import SettingValues
 from app.domain.world import check_ends
 from app.experiments.plan import trial_seed
-from app.experiments.trial import TrialConfig, TrialResult
+from app.experiments.trial import TrialConfig, TrialResult, run_trial
+from app.jobs.process_pool import ProcessPool
 from app.jobs.submissions import check_training
 from app.runs.config import TrainingConfig, training_config
 from app.storage.errors import Busy
-from app.what_if.trial_pool import TrialPool
 
 SEEDS = 30
 MAX_STEPS = 2_000
@@ -32,7 +32,7 @@ MAX_CACHED = 512
 class WhatIf:
     """Answers what-if requests by kinematic trials, one at a time; bounded cache. Thread-safe."""
 
-    def __init__(self, pool: TrialPool) -> None:
+    def __init__(self, pool: ProcessPool) -> None:
         """Create the service with an empty cache.
 
         Args:
@@ -115,7 +115,7 @@ class WhatIf:
 
     def _run_trials(self, missing: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
         trials = [(one, seeded) for one in missing for seeded in _with_seeds(one)]
-        results = self._pool.run([seeded for _, seeded in trials])
+        results = self._pool.map(run_trial, [seeded for _, seeded in trials])
         distances: dict[TrialConfig, tuple[float, ...]] = dict.fromkeys(missing, ())
         for (one, _), result in zip(trials, results, strict=True):
             distances[one] += (_distance_m(result),)

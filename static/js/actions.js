@@ -258,11 +258,13 @@ export const branchRace = (race, step, disturbances) =>
 export function setStage(changes) {
   if (ownRunId.value === null) return attempt("stage", () => requestStage(() => api.putStage(changes)));
   const { time_s, playing, speed, clock } = changes;
-  if (clock !== undefined) setReplayClock(clock);
+  setEntry(problems, "stage", null);
   if (typeof speed === "number") setReplaySpeed(speed);
   if (time_s !== undefined) seekReplay(time_s);
   if (playing !== undefined) playReplay(playing);
-  return Promise.resolve();
+  if (clock === undefined) return Promise.resolve();
+  // Not one at a time: the newest choice is obeyed.
+  return setReplayClock(clock).catch((error) => setEntry(problems, "stage", error));
 }
 
 /** The newest moment to be shown that is not sent yet [s]. @type {Signal<number | null>} */

@@ -27,6 +27,38 @@ export class RequestError extends Error {
   }
 }
 
+const LASTING = [403, 404, 409, 410, 422];
+
+/** Whether a request would be refused again. @param {RequestError} error */
+export const isLasting = ({ status }) => LASTING.includes(status);
+
+/** After so long the server is asked again for an answer that takes it long to prepare. */
+export const AGAIN_MS = 1000;
+const TOO_EARLY = 429;
+
+/** Whether the server needs longer for an answer. @param {RequestError} error */
+export const needsLonger = ({ status }) => status === TOO_EARLY;
+
+/**
+ * Ask, and again while the server needs longer; null once the answer is wanted no more.
+ * @template Answer
+ * @param {() => Promise<Answer>} ask
+ * @param {() => boolean} isWanted
+ * @returns {Promise<Answer | null>}
+ */
+export async function patiently(ask, isWanted) {
+  if (!isWanted()) return null;
+  try {
+    return await ask();
+  } catch (error) {
+    if (!needsLonger(/** @type {RequestError} */ (error))) throw error;
+  }
+  await new Promise((resolve) => {
+    setTimeout(resolve, AGAIN_MS);
+  });
+  return patiently(ask, isWanted);
+}
+
 /** No answer came: the server or the network is down. */
 class Unreachable extends RequestError {
   constructor() {

@@ -1,8 +1,9 @@
 // The tables of two trainings, and the states in which their best moves differ.
 import { effect, signal } from "@preact/signals";
-import { getTable } from "./api.js";
+import { getTable, isLasting, patiently } from "./api.js";
 import { isSame } from "./robots.js";
 import { columnOf } from "./steps.js";
+import { connection } from "./store.js";
 import { messageOf } from "./titles.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -11,8 +12,8 @@ import { messageOf } from "./titles.js";
 
 /** More rows are not asked for, as a large table has many answers. */
 export const MOST_STATES = 5000;
-const AGAIN_MS = 1000;
-const TOO_EARLY = 429;
+/** The table of a training that runs is asked for again after so long at the earliest. */
+const EVERY_MS = 3000;
 
 /** A table as far as it is compared: rows from the first state on. @typedef {FootCells & Rows} WholeTable */
 /**
@@ -22,37 +23,67 @@ const TOO_EARLY = 429;
  * @property {(number | null)[][]} visits
  * @property {Move[]} best
  */
-/** @typedef {{ table: WholeTable | null, problem: string | null }} Answer */
+/**
+ * The newest whole table of a training, or why there is none. `done` is the number of steps that were done when it was
+ * asked for; null where it is to be asked for again.
+ * @typedef {{ table: WholeTable | null, problem: string | null, done: number | null }} Answer
+ */
 
-/** Run id and steps done → its table, or why there is none. @type {Signal<Map<string, Answer>>} */
+/** By run id, of the trainings that are compared. @type {Signal<Map<string, Answer>>} */
 const answers = signal(new Map());
-/** Requests under way. @type {Set<string>} */
-const asked = new Set();
 
-/** @param {Run} run */
-const keyOf = ({ id, progress }) => `${id} ${progress.done}`;
+/** The table of a training, or why there is none; null while the first one loads. @param {Run} run */
+export const tableOf = ({ id }) => answers.value.get(id) ?? null;
 
-/** The table of a training, or why there is none; null while it loads. @param {Run} run */
-export const tableOf = (run) => answers.value.get(keyOf(run)) ?? null;
+/**
+ * Load the table of each training, and again when it has changed, until the function that is returned is called. Of a
+ * training one table at a time is loaded; the one before stays until it is whole.
+ * @param {() => Run[]} trainings
+ */
+export function followTables(trainings) {
+  /** Those whose table is loaded, or was a short time ago. @type {Set<string>} */
+  const busy = new Set();
+  let isOver = false;
+  const isWanted = (/** @type {string} */ id) => !isOver && trainings().some((run) => run.id === id);
 
-/** Load the tables of trainings whenever they change. @param {() => Run[]} trainings */
-export const followTables = (trainings) =>
-  effect(() => {
-    for (const run of trainings()) {
-      const key = keyOf(run);
-      if (!answers.value.has(key) && !asked.has(key)) load(run.id, key);
+  /** @type {(id: string, done: number) => Promise<void>} */
+  async function load(id, done) {
+    busy.add(id);
+    const answer = await wholeTable(id, () => isWanted(id)).then(
+      (table) => ({ table, problem: null, done }),
+      (/** @type {RequestError} */ error) => afterError(error, id, done),
+    );
+    if (isWanted(id) && (answer.table ?? answer.problem)) {
+      const others = [...answers.value].filter(([other]) => isWanted(other));
+      answers.value = new Map([...others, [id, answer]]);
     }
-  });
+    setTimeout(() => {
+      busy.delete(id);
+      look();
+    }, EVERY_MS);
+  }
 
-/** @param {string} id @param {string} key */
-async function load(id, key) {
-  asked.add(key);
-  const answer = await wholeTable(id).then(
-    (table) => ({ table, problem: null }),
-    (/** @type {RequestError} */ error) => ({ table: null, problem: messageOf(error) }),
-  );
-  asked.delete(key);
-  answers.value = new Map(answers.value).set(key, answer);
+  function look() {
+    if (isOver || connection.value !== "live") return;
+    for (const { id, progress } of trainings()) {
+      const known = answers.value.get(id);
+      const isRefused = known?.problem && known.done !== null;
+      if (!busy.has(id) && !isRefused && known?.done !== progress.done) load(id, progress.done);
+    }
+  }
+
+  const stop = effect(look);
+  return () => {
+    isOver = true;
+    stop();
+  };
+}
+
+/** @type {(error: RequestError, id: string, done: number) => Answer} */
+function afterError(error, id, done) {
+  if (isLasting(error)) return { table: null, problem: messageOf(error), done };
+  const table = answers.value.get(id)?.table ?? null;
+  return { table, problem: table ? null : messageOf(error), done: null };
 }
 
 /** Ask again for what could not be had. */
@@ -60,13 +91,16 @@ export const askAgain = () => {
   answers.value = new Map([...answers.value].filter(([, { table }]) => table !== null));
 };
 
-/** @param {string} id @returns {Promise<WholeTable>} */
-async function wholeTable(id) {
+/** @type {(id: string, isWanted: () => boolean) => Promise<WholeTable | null>} */
+async function wholeTable(id, isWanted) {
   /** @type {StateTable[]} */
   const parts = [];
   let first = 0;
   do {
-    const part = await patiently(() => getTable({ training_id: id, step: null, first }));
+    // All parts are of the same moment, however far the training gets meanwhile.
+    const step = parts[0]?.step ?? null;
+    const part = await patiently(() => getTable({ training_id: id, step, first }), isWanted);
+    if (!part) return null;
     parts.push(part);
     first += part.values.length;
   } while (first < Math.min(parts[0].states, MOST_STATES));
@@ -76,24 +110,6 @@ async function wholeTable(id) {
     values: parts.flatMap(({ values }) => values), visits: parts.flatMap(({ visits }) => visits),
     best: parts.flatMap(({ best }) => best),
   };
-}
-
-/**
- * Ask, and again while the server needs longer.
- * @template Answered
- * @param {() => Promise<Answered>} ask
- * @returns {Promise<Answered>}
- */
-async function patiently(ask) {
-  try {
-    return await ask();
-  } catch (error) {
-    if (/** @type {RequestError} */ (error).status !== TOO_EARLY) throw error;
-  }
-  await new Promise((resolve) => {
-    setTimeout(resolve, AGAIN_MS);
-  });
-  return patiently(ask);
 }
 
 /**

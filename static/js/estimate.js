@@ -25,15 +25,19 @@ export function makeEstimate(start) {
   const key = computed(() => (connection.value === "live" && start.value ? JSON.stringify(start.value) : ""));
   /** @type {Signal<{ key: string, seconds: number }>} */
   const answer = signal({ key: "", seconds: 0 });
+  let newest = Promise.resolve();
   effect(() => {
     const asked = key.value;
     if (!asked) return undefined;
-    const timer = setTimeout(async () => {
+    const isWanted = () => asked === key.peek();
+    const ask = async () => {
       const { path, body } = JSON.parse(asked);
       // Without an answer nothing is told: the start itself says what is wrong.
-      const seconds = await api.estimate(path, body).then((told) => told.seconds, () => 0);
-      if (asked === key.peek()) answer.value = { key: asked, seconds };
-    }, QUIET_MS);
+      const told = await api.patiently(() => api.estimate(path, body), isWanted).catch(() => null);
+      if (told && isWanted()) answer.value = { key: asked, seconds: told.seconds };
+    };
+    // One request at a time: each may hold a thread of the server.
+    const timer = setTimeout(() => (newest = newest.then(ask)), QUIET_MS);
     return () => clearTimeout(timer);
   });
   return computed(() => {

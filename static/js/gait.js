@@ -2,20 +2,24 @@
 // words. Times are robot time: motion only, without the time that decisions take.
 import { computed, effect, signal } from "@preact/signals";
 import { setStage } from "./actions.js";
-import { getGait } from "./api.js";
+import { getGait, isLasting } from "./api.js";
 import { count } from "./format.js";
 import { shownTime, timeline, timeSpent } from "./race.js";
 import { canPlay, raceInView, shownRun } from "./selectors.js";
+import { limitsOf } from "./settings.js";
 import { connection, options, scene, stage } from "./store.js";
+import { messageOf } from "./titles.js";
 
 /** @import { Signal } from "@preact/signals" */
+/** @import { RequestError } from "./api.js" */
 /** @import { GaitAnalysis, GaitFigures, GaitLane, Run, TimelineLane } from "./types.js" */
 
 const MINUS = "\u2212";
 const PAUSE_MS = 1000;
-/** The server analyses at most so much at once [s]; of a longer walk parts are requested that overlap by half. */
-const WINDOW_S = 120;
-const PART_S = WINDOW_S / 2;
+/** The server analyses at most so much at once [s]. */
+const longestWindow = () => limitsOf("gait_window_s").maximum ?? Infinity;
+/** Of a longer walk parts are requested that overlap by half. */
+const partLength = () => longestWindow() / 2;
 /** Time shown before and after the present moment [s]. */
 export const BEFORE_S = 3;
 export const AFTER_S = 1.5;
@@ -47,6 +51,16 @@ const known = computed(() => {
 
 /** The analysis of the subject, null while it is not known. */
 export const analysis = computed(() => known.value?.answer ?? null);
+
+/** The error of the last request. @type {Signal<{ id: string, part: string, error: RequestError } | null>} */
+const failure = signal(null);
+
+/** Why the subject is not analysed, or not any more; null where it is, or will be once the server answers again. */
+export const problem = computed(() => {
+  const { id, part: asked, error } = failure.value ?? {};
+  const isAbout = id === subject.value?.run.id && asked === subject.value?.part;
+  return error && isAbout && (isLasting(error) || !known.value) ? messageOf(error) : null;
+});
 
 // ---- the moment that is shown
 
@@ -98,13 +112,13 @@ export function seek(number, walked) {
 const partShown = computed(() => {
   const moment = momentOf(0) ?? 0;
   const isElsewhere = (/** @type {GaitLane} */ { recorded_from_s: from, recorded_to_s: to }) =>
-    to - from > WINDOW_S + 1e-6 || moment < from || (moment > to && subject.value?.part === "practice");
+    to - from > longestWindow() + 1e-6 || moment < from || (moment > to && subject.value?.part === "practice");
   const isInParts = known.value && (known.value.number !== null || known.value.answer.lanes.some(isElsewhere));
-  return isInParts ? Math.floor(moment / PART_S) : null;
+  return isInParts ? Math.floor(moment / partLength()) : null;
 });
 
 /** The beginning of what is requested of such a walk [s]. @param {number} shown */
-const beginOf = (shown) => Math.max(0, (shown - 0.5) * PART_S);
+const beginOf = (shown) => Math.max(0, (shown - 0.5) * partLength());
 
 /** Next request: one each time the run has grown, or the moment that is shown has left the part that is known. */
 const wanted = computed(() => {
@@ -114,26 +128,38 @@ const wanted = computed(() => {
   return [run.id, about.part, run.state, run.progress.done, partShown.value].join(" ");
 });
 
-/** Request the analysis whenever it has changed; one request at a time. */
+/** Request the analysis whenever it has changed, one at a time, until the function that is returned is called. */
 export function followGait() {
   let isBusy = false;
   let isStale = false;
+  let isOver = false;
   const load = async () => {
     isStale = isBusy;
     const about = subject.peek();
-    if (isBusy || !wanted.peek() || !about) return;
+    if (isBusy || isOver || !wanted.peek() || !about) return;
     isBusy = true;
-    const shown = partShown.peek();
-    const answer = await getGait(about.run.id, about.part, shown === null ? null : beginOf(shown)).catch(() => null);
-    if (answer) newest.value = { id: about.run.id, number: shown, answer };
+    const [{ id }, shown] = [about.run, partShown.peek()];
+    try {
+      const answer = await getGait(id, about.part, shown === null ? null : beginOf(shown));
+      newest.value = { id, number: shown, answer };
+      failure.value = null;
+    } catch (refused) {
+      const error = /** @type {RequestError} */ (refused);
+      failure.value = { id, part: about.part, error };
+      isStale ||= !isLasting(error);
+    }
     setTimeout(() => {
       isBusy = false;
       if (isStale) load();
     }, PAUSE_MS);
   };
-  return effect(() => {
+  const stop = effect(() => {
     if (wanted.value) load();
   });
+  return () => {
+    isOver = true;
+    stop();
+  };
 }
 
 // ---- what is drawn

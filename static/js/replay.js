@@ -1,20 +1,20 @@
 // A replay of this page's own: it plays a run by itself, without the stage that all pages share.
 // The server gives frames (`replay-frames.js`); position, speed and clock are kept here and in the address.
 import { batch, computed, effect, signal } from "@preact/signals";
-import { getReplay, getReplayFrames } from "./api.js";
+import { getReplay, getReplayFrames, isLasting } from "./api.js";
 import { readReplay, replayAddress, view, writeReplay } from "./page.js";
 import { decode, Follower, inRecording, SceneState } from "./replay-frames.js";
+import { endOf, placeOf, Segments } from "./replay-segments.js";
 import { connection, ownScene, ownStage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { Frame, Frames, Message } from "./replay-frames.js" */
+/** @import { Frame, Message } from "./replay-frames.js" */
 /** @import { Clock, ReplayPlan, Scene } from "./types.js" */
 
 const FIRST_SPEED = 2;
-const KEPT_SEGMENTS = 60;
 const SCENES_PER_S = 5;
-/** A run that is still computed is asked for more after so long. */
+/** At its end, a run that is still computed is asked for more after so long. */
 const GROWTH_MS = 1000;
 const RETRY_MS = 1500;
 const ADDRESS_MS = 250;
@@ -40,7 +40,7 @@ const speed = signal(FIRST_SPEED);
 const clock = signal("paper");
 
 /** The last moment that can be shown [s]. */
-export const endTime = computed(() => plan.value?.recorded_s.at(-1)?.[1] ?? 0);
+export const endTime = computed(() => (plan.value ? endOf(plan.value) : 0));
 const hasEnded = computed(() => plan.value?.complete === true && replayTime.value >= endTime.value - SAME_S);
 
 // ---- what is loaded
@@ -49,13 +49,17 @@ const hasEnded = computed(() => plan.value?.complete === true && replayTime.valu
 let draw = () => {};
 /** @type {SceneState | null} */
 let scene = null;
-/** Address → frames; null while they are requested. @type {Map<string, Frames | null>} */
-const segments = new Map();
+const segments = new Segments(
+  (address) => load(address, { clock: clock.peek() }),
+  (error, again) => retryAfter(error, opening, again),
+);
 const NOTHING = { address: "", index: -1, time_s: NaN, frame: /** @type {Frame | null} */ (null), view: "" };
 /** The newest frame that is drawn, by its segment and index or by its time, and the view that it is centred for. */
 let shown = NOTHING;
 /** Whether a moment is requested, or not to be requested again yet. */
 let isMomentPending = false;
+/** Whether the plan is requested again, as for a moment. */
+let isGrowthPending = false;
 /** Counts the runs and clocks that were opened: late answers are of an older one. */
 let opening = 0;
 let sceneSentAt = -Infinity;
@@ -97,12 +101,10 @@ export async function openReplay(id, at = {}) {
  */
 function retryAfter(error, own, again) {
   if (own !== opening) return;
-  const { status, message } = /** @type {RequestError} */ (error);
-  if (LASTING.includes(status)) replayProblem.value = message;
+  const refused = /** @type {RequestError} */ (error);
+  if (isLasting(refused)) replayProblem.value = refused.message;
   else setTimeout(() => own === opening && again(), RETRY_MS);
 }
-
-const LASTING = [403, 404, 409, 410, 422];
 
 /** Show the stage again that all pages share. */
 export function closeReplay() {
@@ -125,6 +127,7 @@ function forget(id, ghost) {
   segments.clear();
   shown = NOTHING;
   isMomentPending = false;
+  isGrowthPending = false;
   ownRunId.value = id;
   ghostId.value = ghost;
   plan.value = null;
@@ -187,16 +190,28 @@ export function playReplay(isOn) {
 /** @param {number} times */
 export const setReplaySpeed = (times) => (speed.value = times);
 
-/** Time the race by another clock, from the same step of the first lane on. @param {Clock} name */
+/** Counts the choices of a clock: only the newest is obeyed. */
+let clockChoice = 0;
+
+/**
+ * Time the race by another clock, from the same step of the first lane on.
+ * @param {Clock} name
+ * @throws {RequestError} if that cannot be had; the clock stays as it is
+ */
 export async function setReplayClock(name) {
-  const before = plan.peek();
-  const id = ownRunId.peek();
-  if (!before || !id || name === clock.peek()) return;
-  const step = stepOf(before.step_ends_s[0] ?? [], replayTime.peek());
-  const ghost = ghostId.peek();
-  const after = await getReplay(id, name, ghost).catch(() => null);
-  const time_s = after?.step_ends_s[0]?.[step - 1] ?? 0;
-  await openReplay(id, { time_s, isPlaying: playing.peek(), clock: name, ghost });
+  clockChoice += 1;
+  const [own, choice, id, ghost] = [opening, clockChoice, ownRunId.peek(), ghostId.peek()];
+  if (!plan.peek() || !id || name === clock.peek()) return;
+  const isObeyed = () => own === opening && choice === clockChoice;
+  try {
+    const after = await getReplay(id, name, ghost);
+    if (!isObeyed()) return;
+    const step = stepOf(plan.peek()?.step_ends_s[0] ?? [], replayTime.peek());
+    const time_s = after.step_ends_s[0]?.[step - 1] ?? 0;
+    await openReplay(id, { time_s, isPlaying: playing.peek(), clock: name, ghost });
+  } catch (error) {
+    if (isObeyed()) throw error;
+  }
 }
 
 /** @type {(ends: number[], time_s: number) => number} */
@@ -235,6 +250,8 @@ export function tick(now) {
   }
   if (playing.peek() && !hasEnded.peek()) playFrame(known, now, elapsed_s);
   else showMoment(now);
+  const isNearEnd = endTime.peek() - replayTime.peek() <= speed.peek() * GROWTH_MS / 1000;
+  if (!known.complete && isNearEnd) grow(now);
   if (shown.frame && shown.view !== view.peek()) {
     draw([follower.centring(scene, shown.frame, view.peek(), Infinity)]);
     shown = { ...shown, view: view.peek() };
@@ -243,23 +260,16 @@ export function tick(now) {
 
 /** Show the frame at the position, of a segment at the level that fits the speed. */
 function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /** @type {number} */ elapsed_s) {
-  const level = Math.min(Math.max(Math.round(Math.log2(speed.peek())), known.lowest_level), known.highest_level);
-  const interval_s = known.frame_s * 2 ** level;
-  const frame = Math.floor(replayTime.peek() / interval_s + SAME_S);
-  const number = Math.floor(frame / known.segment_frames);
-  const address = addressOf(level, number);
+  const { address, next, index: wanted } = placeOf(known, speed.peek(), replayTime.peek());
   const loaded = request(address);
   if (!loaded) {
     isBuffering.value = true;
     showMoment(now);
     return;
   }
-  const index = Math.min(frame % known.segment_frames, loaded.frames.length - 1);
-  if (index < frame % known.segment_frames && !known.complete) grow(address);
+  const index = Math.min(wanted, loaded.frames.length - 1);
   isBuffering.value = false;
-  if (index >= known.segment_frames / 2 && (number + 1) * known.segment_frames * interval_s <= endTime.peek()) {
-    request(addressOf(level, number + 1));
-  }
+  if (next && index >= known.segment_frames / 2) request(next);
   if (shown.address === address && shown.index === index) return;
   const state = /** @type {SceneState} */ (scene);
   const newest = loaded.frames[index];
@@ -269,45 +279,25 @@ function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /
   tell(loaded.frames.slice(0, index + 1).findLast((one) => one.scene) ?? newest, now);
 }
 
-/** @type {(level: number, number: number) => string} */
-const addressOf = (level, number) => `segments/${level}/${number}`;
-
-/** Frames that are loaded; requests them if they are not. @param {string} address */
-function request(address) {
-  const known = segments.get(address);
-  if (known !== undefined) {
-    // The newest are kept.
-    segments.delete(address);
-    segments.set(address, known);
-    return known;
-  }
-  segments.set(address, null);
-  for (const oldest of segments.keys()) {
-    if (segments.size <= KEPT_SEGMENTS) break;
-    segments.delete(oldest);
-  }
-  const own = opening;
-  load(address, { clock: clock.peek() }).then(
-    (frames) => own === opening && segments.set(address, frames),
-    (error) => retryAfter(error, own, () => segments.delete(address)),
-  );
-  return null;
-}
+/** @param {string} address */
+const request = (address) => segments.get(address, plan.peek()?.segment_frames ?? 0, endTime.peek());
 
 let grewAt = -Infinity;
 
-/** Request what a run has computed since. @param {string} address */
-async function grow(address) {
-  if (performance.now() - grewAt < GROWTH_MS) return;
-  grewAt = performance.now();
+/** Request the plan of a run that has computed more since. */
+async function grow(/** @type {number} */ now) {
+  if (isGrowthPending || now - grewAt < GROWTH_MS) return;
+  grewAt = now;
+  isGrowthPending = true;
   const own = opening;
-  const id = /** @type {string} */ (ownRunId.peek());
-  const [answer, frames] = await Promise.all([
-    getReplay(id, clock.peek(), ghostId.peek()), load(address, { clock: clock.peek() }),
-  ]).catch(() => []);
-  if (own !== opening || !answer || !frames) return;
-  segments.set(address, frames);
-  plan.value = answer;
+  try {
+    const answer = await getReplay(/** @type {string} */ (ownRunId.peek()), clock.peek(), ghostId.peek());
+    if (own !== opening) return;
+    isGrowthPending = false;
+    plan.value = answer;
+  } catch (error) {
+    retryAfter(error, own, () => (isGrowthPending = false));
+  }
 }
 
 /** Show the very moment of the position: while it is held, or until its segment is there. */

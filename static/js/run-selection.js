@@ -65,9 +65,9 @@ export const deleteSelected = () =>
     for (let at = 0; at < all.length; at += most ?? all.length) {
       const { deleted, kept } = await api.deleteRuns(all.slice(at, at + (most ?? all.length)));
       deleted.forEach(markDeleted);
+      select([...ids.value].filter((id) => !deleted.includes(id)));
       reasons.push(...kept.map(({ reason }) => reason));
     }
-    select([...ids.value].filter((id) => !all.includes(id)));
     if (reasons.length) throw new api.RequestError(`Not deleted: ${listed(reasons)}.`);
   });
 

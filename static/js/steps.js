@@ -1,13 +1,14 @@
 // One step of a run and its table: which step is looked at, its explanation, and how the table is drawn and read.
 import { computed, effect, signal } from "@preact/signals";
-import { getExplanation, getTable } from "./api.js";
+import { AGAIN_MS, getExplanation, getTable, needsLonger } from "./api.js";
 import { count, THIN_SPACE } from "./format.js";
 import { isPlaying, shownRun } from "./selectors.js";
 import { connection, scene } from "./store.js";
 import { placeName } from "./training.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { Explanation, FootCells, Move, Run, StateTable } from "./types.js" */
+/** @import { RequestError } from "./api.js" */
+/** @import { Explanation, FootCells, Move, StateTable } from "./types.js" */
 
 /**
  * A step to look at: counted from 1; 0 is before the first.
@@ -21,8 +22,6 @@ import { placeName } from "./training.js";
 
 /** While the stage plays, answers are asked for at most so often [ms]. */
 const EVERY_MS = 500;
-const AGAIN_MS = 1000;
-const TOO_EARLY = 429;
 
 // ---- the step that is looked at: that of the stage, or one that was chosen
 
@@ -107,8 +106,8 @@ export function keepAnswer(keyOf, ask, reply) {
       reply.value = { answer: await ask(key), error: null, again: false };
       known = key;
     } catch (failure) {
-      const error = /** @type {Error & { status?: number }} */ (failure);
-      const again = error.status === TOO_EARLY;
+      const error = /** @type {RequestError} */ (failure);
+      const again = needsLonger(error);
       reply.value = { answer: again ? reply.value.answer : null, error, again };
       if (again) wait = AGAIN_MS;
       else known = key;
@@ -307,6 +306,3 @@ export function comparedNumber(value, other) {
   }
   return String(value);
 }
-
-/** @param {Run | null} run */
-export const canBeExplained = (run) => run?.kind === "training" || run?.kind === "race";

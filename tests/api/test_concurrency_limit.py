@@ -5,6 +5,7 @@ import asyncio
 from starlette.types import Message, Receive, Scope, Send
 
 from app.api.concurrency_limit import (
+    PROBE_SLOTS,
     SLOTS,
     WHAT_IF_SLOTS,
     ConcurrencyLimit,
@@ -90,6 +91,32 @@ def test_what_ifs_of_spectators_do_not_delay_what_spectators_read() -> None:
         return working
 
     assert asyncio.run(scenario()) == {"what-if": WHAT_IF_SLOTS, "read": 1}
+
+
+def test_requests_do_not_delay_probes() -> None:
+    """A probe with the address of a client that has many requests in progress is answered."""
+
+    async def scenario() -> int:
+        probed = 0
+
+        async def work(scope: Scope, receive: Receive, send: Send) -> None:
+            nonlocal probed
+            probed += scope["path"] == "/readyz"
+            await asyncio.Event().wait()
+
+        app = ConcurrencyLimit(work)
+        paths = ["/"] * 50 + ["/readyz"] * 50
+        tasks = [
+            asyncio.ensure_future(app(scope("spectator", "a", path=path), nothing, ignore))
+            for path in paths
+        ]
+        await asyncio.sleep(0.01)
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        return probed
+
+    assert asyncio.run(scenario()) == PROBE_SLOTS
 
 
 def test_slow_readers_and_streams_hold_no_slot() -> None:

@@ -1,12 +1,20 @@
 """Rate limits, metrics and idempotency keys."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+import pytest
 from prometheus_client.parser import text_string_to_metric_families
+from starlette.testclient import TestClient
 
 from app.api.auth import WRONG_TOKENS
-from tests.api.calls import WALK, Api, refused
+from app.api.deps import Services
+from app.server import create_app
+from app.settings import Settings
+from app.storage.errors import Busy
+from tests.api.calls import ADDRESS, WALK, Api, refused
+from tests.storage.stores import temporary_store
 
 TOKEN = "a-token-for-tests"
 Serve = Callable[..., Api]
@@ -24,6 +32,22 @@ def test_starts_per_minute_are_limited_by_address(serve: Serve) -> None:
     refused(api.call("GET", film), 429)
     for method, path in (("GET", "/trainings"), ("POST", "/trainings/x/stop"), ("PUT", "/stage")):
         assert api.call(method, path, json={}).status_code != 429
+
+
+def test_every_route_that_starts_something_is_limited(serve: Serve) -> None:
+    api = serve(starts_per_minute=1)
+    refused(api.call("POST", "/trainings", json={}), 422)
+    starts, limited = set(), set()
+    for path, methods in api.client.get("/openapi.json").json()["paths"].items():
+        if "post" not in methods:
+            continue
+        headers = {one["name"] for one in methods["post"].get("parameters", ())}
+        if "idempotency-key" in headers or path.endswith(("/resume", "/video")):
+            starts.add(path)
+        if api.client.post(path.replace("{run_id}", "x"), json={}).status_code == 429:
+            limited.add(path)
+    assert "/api/v1/runs/{run_id}/again" in starts
+    assert limited == starts
 
 
 def test_spectators_have_a_token_bucket_of_their_own(serve: Serve) -> None:
@@ -104,3 +128,13 @@ def test_invalid_idempotency_key_is_refused(api: Api) -> None:
     for key in ("", "a b", "x" * 201):
         headers = {"Idempotency-Key": key}
         refused(api.call("POST", "/trainings", json=WALK, headers=headers), 422, "idempotency-key")
+
+
+def test_pools_of_processes_are_closed_with_the_server(tmp_path: Path) -> None:
+    with temporary_store() as store:
+        app = create_app(Settings(data=tmp_path), store)
+        with TestClient(app, base_url=ADDRESS):
+            services: Services = app.state.services
+        for user in (services.what_if, services.estimates, services.videos):
+            with pytest.raises(Busy, match="the server is stopping"):
+                user._pool.map(abs, [-1])

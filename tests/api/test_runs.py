@@ -92,6 +92,13 @@ def test_several_runs_are_exported_deleted_and_taken_in_again(api: Api) -> None:
     taken = api.call("POST", "/runs/import", content=exported.content)
     assert taken.status_code == 201
     assert taken.json()["items"] == runs
+    once = {"content": exported.content, "headers": {"Idempotency-Key": "taken-once"}}
+    copies, again = (api.call("POST", "/runs/import", **once) for _ in range(2))
+    assert copies.json() == again.json()
+    assert len({run["id"] for run in [*runs, *copies.json()["items"]]}) == 4
+    refused(api.call("POST", "/runs/import", **{**once, "content": b"PK"}), 422, "another request")
+    api.call("DELETE", f"/runs?id={copies.json()['items'][0]['id']}")
+    refused(api.call("POST", "/runs/import", **once), 410, "was deleted; send a new key")
     assert {event.run_id for event in events.drain()} >= {run["id"] for run in runs}
     refused(api.call("POST", "/runs/import", content=b"PK"), 422, "no archive of a run")
     refused(api.call("POST", "/runs/import", content=b""), 422, "end the .zip file")

@@ -27,7 +27,7 @@ from app.storage.errors import Conflict, NotFound, StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run, State
 from app.storage.run_ids import RunIds
-from app.storage.stored_recordings import PRACTICE, RACE, transitions_file
+from app.storage.stored_recordings import PRACTICE, RACE, evaluations_file, transitions_file
 from tests.storage.ended import ended_race, ended_training
 from tests.storage.stores import ODD, opened, temporary_store, training
 
@@ -445,6 +445,8 @@ def test_invalid_recordings_are_refused(source: RunStore) -> None:
         put("lane0.qpos", lambda a: a[:, :-3]),
         put("lane0.qpos", lambda a: a * np.nan),
         put("lane0.qpos", lambda a: a.astype(str)),
+        put("lane0.qpos", lambda a: a * 1e30),
+        put("lane0.qpos", lambda a: a * 0),
         put("lane0.rest_qpos", lambda a: a[:-1]),
         put("lane0.time_s", lambda a: a[::-1]),
         put("lane0.time_s", lambda a: a * 0),
@@ -462,6 +464,7 @@ def test_invalid_recordings_are_refused(source: RunStore) -> None:
         put("lane0.action", lambda a: a - 100),
         put("lane0.action", lambda a: a * 0.5),
         put("lane0.scalars", lambda a: a * np.nan),
+        put("lane0.scalars", lambda a: a * [1, 1, 1, 0] + [0, 0, 0, 9e8]),
         put("lane0.values", lambda a: a[:, :1]),
         put("lane1.futures", lambda a: a + 1),
         put("lane1.future_actions", lambda a: a + 100),
@@ -476,6 +479,37 @@ def test_invalid_recordings_are_refused(source: RunStore) -> None:
     np.savez_compressed(buffer, meta=np.zeros(10_000_000))
     bomb = repacked(export_run(source, RACED), race_npz=buffer.getvalue())
     assert "compressed" in refusal(bomb)
+
+
+def test_recordings_of_another_length_than_their_runs_are_refused(source: RunStore) -> None:
+    """Replays would go on for years, or begin before their runs."""
+
+    def scalars(column: int, change: Change) -> Change:
+        def apply(table: Any) -> Any:
+            table[:, column] = change(table[:, column])
+            return table
+
+        return apply
+
+    def changed(name: str, part: str, change: Change) -> bytes:
+        with np.load(io.BytesIO(source.artifact(TRAINING, name) or b"")) as file:
+            arrays = {key: file[key] for key in file.files}
+        arrays[part] = change(arrays[part])
+        buffer = io.BytesIO()
+        np.savez(buffer, **arrays)
+        return repacked(export_run(source, TRAINING), **{name.replace(".", "_"): buffer.getvalue()})
+
+    for name, part, change in (
+        (PRACTICE, "scalars", scalars(0, lambda steps: steps * 1000)),
+        (PRACTICE, "scalars", scalars(0, lambda steps: steps - 1)),
+        (PRACTICE, "scalars", scalars(0, lambda steps: steps[::-1])),
+        (evaluations_file(0), "scalars", scalars(0, lambda steps: steps * 1000)),
+        (evaluations_file(0), "scalars", scalars(0, lambda steps: steps[::-1])),
+    ):
+        assert "cannot be shown" in refusal(changed(name, part, change)), (name, part)
+    lane = "lane0.time_s"
+    slow = _race_with(source, lambda arrays: arrays.update({lane: arrays[lane] * 2}))
+    assert "take longer" in refusal(slow)
 
 
 def test_invalid_logs_of_steps_are_refused(source: RunStore) -> None:

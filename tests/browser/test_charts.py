@@ -21,7 +21,7 @@ SHORT = {
     "simulator": "kinematic",
     "lanes": "q-learning,greedy",
 }
-PHONE: ViewportSize = {"width": 390, "height": 844}
+PHONE: ViewportSize = {"width": 360, "height": 780}
 PNG = b"\x89PNG"
 
 

@@ -92,9 +92,9 @@ def test_runs_are_compared_side_by_side_and_raced(
         policies.get_by_role("button", name=f"Show all {differ}").click()
     expect(policies.locator("tbody tr")).to_have_count(differ)
     assert dashboard.violations() == []
-    page.set_viewport_size({"width": 390, "height": 844})
+    page.set_viewport_size({"width": 360, "height": 780})
     page.emulate_media(color_scheme="dark")
-    assert dashboard.scroll_width() == 390
+    assert dashboard.scroll_width() == 360
     assert dashboard.violations() == []
     page.set_viewport_size({"width": 1280, "height": 720})
 

@@ -91,12 +91,12 @@ def changes_its_ground(dashboard: Dashboard) -> None:
 
 def tells_others(browser: Browser, server: Serving) -> None:
     """Conditions are told over the picture, on a phone too."""
-    with browser.new_context(viewport={"width": 390, "height": 844}) as context:
+    with browser.new_context(viewport={"width": 360, "height": 780}) as context:
         other = Dashboard(context.new_page(), has_3d=False)
         other.open(server.address)
         chip = other.page.locator(".chip.happening")
         expect(chip).to_contain_text(re.compile(r"^Legs\s3, 6 limp"))
-        assert other.scroll_width() == 390
+        assert other.scroll_width() == 360
         assert other.complaints == []
 
 

@@ -16,7 +16,7 @@ from tests.browser.serving import Serving, serving
 
 pytestmark = pytest.mark.timeout(300)
 
-PHONE: ViewportSize = {"width": 390, "height": 844}
+PHONE: ViewportSize = {"width": 360, "height": 780}
 THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 CORNER = {
     "simulator": "kinematic",

@@ -75,6 +75,6 @@ def follows_and_seeks(dashboard: Dashboard, address: str) -> None:
     expect(leg).to_contain_text(re.compile(r"\d\.\d\d–\d\.\d\d"))
     assert dashboard.violations() == []
     page.emulate_media(color_scheme="dark")
-    page.set_viewport_size({"width": 390, "height": 844})
+    page.set_viewport_size({"width": 360, "height": 780})
     assert dashboard.violations() == []
-    assert dashboard.scroll_width() == 390
+    assert dashboard.scroll_width() == 360

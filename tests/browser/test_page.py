@@ -12,7 +12,7 @@ from tests.browser.serving import Serving, serving
 
 pytestmark = pytest.mark.timeout(300)
 
-PHONE: ViewportSize = {"width": 390, "height": 844}
+PHONE: ViewportSize = {"width": 360, "height": 780}
 
 
 @pytest.mark.looks_at_3d

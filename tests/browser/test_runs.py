@@ -197,8 +197,8 @@ def test_several_runs_are_tagged_taken_away_as_a_file_and_brought_back(
     expect(page.locator(".imports .problem")).to_have_count(2)
     assert [complaint[:3] for complaint in dashboard.complaints] == ["422", "422"]
     dashboard.complaints.clear()
-    page.set_viewport_size({"width": 390, "height": 844})
-    assert dashboard.scroll_width() == 390
+    page.set_viewport_size({"width": 360, "height": 780})
+    assert dashboard.scroll_width() == 360
     assert dashboard.violations() == []
     expect(rows).to_have_count(2)
 

@@ -90,9 +90,9 @@ def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_serve
 
     panel.get_by_role("button", name="Follow the stage").click()
     expect(step).to_have_value(str(number))
-    page.set_viewport_size({"width": 390, "height": 844})
+    page.set_viewport_size({"width": 360, "height": 780})
     expect(grid).to_be_visible()
-    assert dashboard.scroll_width() == 390
+    assert dashboard.scroll_width() == 360
     page.emulate_media(color_scheme="dark")
     assert dashboard.violations() == []
 

@@ -93,7 +93,8 @@ def test_a_trial_is_set_aside_after_three_dead_workers_or_one_exception(
 def test_a_trial_whose_agent_cannot_be_imported_on_workers_is_set_aside() -> None:
     trial = trials_of(small(seeds=1))[-1]
     training = replace(trial.config.training, agent="nowhere:Agent")
-    lost = trial._replace(config=replace(trial.config, training=training))
+    setting = replace(trial.setting, trial=replace(trial.config, training=training))
+    lost = replace(trial, setting=setting)
     (outcome,) = run_trials([lost], ONE)
     assert outcome.set_aside is not None
     assert "cannot import nowhere" in outcome.set_aside

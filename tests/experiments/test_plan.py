@@ -54,6 +54,21 @@ def test_a_key_names_everything_that_differs_from_the_paper() -> None:
     assert plan("figure4").settings[-1].key.endswith("/q-learning/8x250")
 
 
+@pytest.mark.parametrize("experiment", ["table1", "league"])
+def test_a_trial_is_found_by_its_key(experiment: str) -> None:
+    laid_out = plan(experiment, seeds=2)
+    for trial in laid_out.trials():
+        found = laid_out.find(trial.key)
+        assert found == trial
+        assert "config" not in vars(found), "which takes twenty times as long as the rest"
+        assert found.config == trial.config
+    learner = trial.setting.key
+    for number in ("2", "-1", "+1", "01", " 1", "1 ", "١", "1_0", "9" * 5000, "", "x"):
+        assert laid_out.find(f"{learner}#{number}") is None
+    for key in ("", "#0", learner, f"{learner}#0#0"):
+        assert laid_out.find(key) is None
+
+
 def test_adding_seeds_does_not_change_the_trials_of_earlier_seeds() -> None:
     few, many = (
         {trial.key: trial.config for trial in plan("figure4", seeds=seeds).trials()}

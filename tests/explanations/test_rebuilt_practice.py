@@ -20,7 +20,6 @@ class Steps:
     """Steps of a training, as the service reads them from its log."""
 
     def __init__(self, log: Transitions) -> None:
-        self.source: object = log
         self._steps = steps_of(log)
 
     def __len__(self) -> int:
@@ -30,8 +29,12 @@ class Steps:
         return self._steps[number]
 
 
+def steps_by(agent: str) -> Steps:
+    return Steps(practised(agent)[1])
+
+
 def practice_of(agent: str) -> RebuiltPractice:
-    return RebuiltPractice(lambda: rebuild_learner(config_of(agent)), Steps(practised(agent)[1]))
+    return RebuiltPractice(lambda: rebuild_learner(config_of(agent)))
 
 
 def states_after(agent: str, steps: int) -> dict[str, bytes]:
@@ -44,15 +47,15 @@ def test_any_order_of_moments_shows_the_same_learner(
     agent: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(rebuilt_practice, "SNAPSHOT_EVERY_S", 0.001)
-    practice, order = practice_of(agent), random.Random(3)
+    practice, steps, order = practice_of(agent), steps_by(agent), random.Random(3)
     for _ in range(12):
         step = order.randint(1, 80)
-        explained = practice.explain(step, ())
+        explained = practice.explain(step, steps, ())
         assert explained.step == step
         assert explained.choice is not None
-        assert explained.choice.action == steps_of(practised(agent)[1])[step - 1].action
+        assert explained.choice.action == steps.step(step - 1).action
         moment = order.randint(0, 80)
-        learner = practice.learner_at(moment, ())
+        learner = practice.learner_at(moment, steps, ())
         assert agent_state(learner.agent) == states_after(agent, moment)
 
 
@@ -64,8 +67,8 @@ def test_stepping_back_begins_at_the_nearest_snapshot(monkeypatch: pytest.Monkey
         made.append(1)
         return rebuild_learner(config_of("q-learning"))
 
-    practice = RebuiltPractice(new, Steps(practised("q-learning")[1]))
-    practice.learner_at(80, ())
+    practice, steps = RebuiltPractice(new), steps_by("q-learning")
+    practice.learner_at(80, steps, ())
     nearest = max(one.step for one in practice._snapshots if one.step <= 60)
     restored: list[int] = []
     restore: Callable[..., None] = RebuiltLearner.restore
@@ -75,8 +78,8 @@ def test_stepping_back_begins_at_the_nearest_snapshot(monkeypatch: pytest.Monkey
         restore(learner, snapshot)
 
     monkeypatch.setattr(RebuiltLearner, "restore", spy)
-    practice.learner_at(60, ())
-    practice.learner_at(61, ())
+    practice.learner_at(60, steps, ())
+    practice.learner_at(61, steps, ())
 
     assert len(made) == 2
     assert restored == [nearest]
@@ -85,19 +88,19 @@ def test_stepping_back_begins_at_the_nearest_snapshot(monkeypatch: pytest.Monkey
 def test_snapshots_are_thinned_out_to_their_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rebuilt_practice, "SNAPSHOT_EVERY_S", 0.0)
     monkeypatch.setattr(rebuilt_practice, "MAX_SNAPSHOT_BYTES", 30_000)
-    practice = practice_of("q-learning")
-    practice.learner_at(80, ())
+    practice, steps = practice_of("q-learning"), steps_by("q-learning")
+    practice.learner_at(80, steps, ())
 
     assert sum(one.size for one in practice._snapshots) <= 30_000
-    assert agent_state(practice.learner_at(30, ()).agent) == states_after("q-learning", 30)
+    assert agent_state(practice.learner_at(30, steps, ()).agent) == states_after("q-learning", 30)
 
 
 def test_a_long_way_is_gone_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rebuilt_practice, "WORK_S", 0.0)
-    practice, refusals = practice_of("q-learning"), []
+    practice, steps, refusals = practice_of("q-learning"), steps_by("q-learning"), []
     for _ in range(500):
         try:
-            learner = practice.learner_at(40, ())
+            learner = practice.learner_at(40, steps, ())
             break
         except Busy as busy:
             refusals.append(str(busy))
@@ -108,44 +111,45 @@ def test_a_long_way_is_gone_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_practice_that_forgot_steps_or_changes_is_another() -> None:
-    practice = practice_of("q-learning")
+    practice, steps = practice_of("q-learning"), steps_by("q-learning")
     change = {"step": 5, "alpha": 0.5}
-    practice.learner_at(4, (change,))
-    assert practice.fits(practice.steps.source, (change,))
-    assert practice.fits(practice.steps.source, ())  # it was not made yet
-    assert not practice.fits(object(), (change,))
-    practice.learner_at(6, (change,))
-    assert practice.fits(practice.steps.source, (change, {"step": 9, "alpha": 0.1}))
-    assert not practice.fits(practice.steps.source, ())
+    practice.learner_at(4, steps, (change,))
+    assert practice.fits(steps, (change,))
+    assert practice.fits(steps, ())  # it was not made yet
+    practice.learner_at(6, steps, (change,))
+    assert practice.fits(steps, (change, {"step": 9, "alpha": 0.1}))
+    assert not practice.fits(steps, ())
+    fewer = steps_by("q-learning")
+    del fewer._steps[5:]
+    assert not practice.fits(fewer, (change,))
     with pytest.raises(NotRebuilt, match=r"step \d+ cannot be explained"):
-        practice.learner_at(80, (change,))
+        practice.learner_at(80, steps, (change,))
 
 
 def test_an_agent_that_breaks_is_told_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
-    practice = practice_of("q-learning")
-    learner = practice.learner_at(3, ())
+    practice, steps = practice_of("q-learning"), steps_by("q-learning")
+    learner = practice.learner_at(3, steps, ())
 
     def breaks(*given: object) -> None:
         raise ZeroDivisionError("no luck")
 
     monkeypatch.setattr(learner.agent, "learn", breaks)
     with pytest.raises(HexapodError, match=r"step 4 .* failed .*ZeroDivisionError: no luck"):
-        practice.learner_at(5, ())
-    assert agent_state(practice.learner_at(5, ()).agent) == states_after("q-learning", 5)
+        practice.learner_at(5, steps, ())
+    assert agent_state(practice.learner_at(5, steps, ()).agent) == states_after("q-learning", 5)
 
 
 @pytest.mark.parametrize("agent", ["q-learning", "sarsa"])
 def test_the_newest_step_of_a_walk_is_learned_from_once_it_is_known_what_followed(
     agent: str,
 ) -> None:
-    steps = Steps(practised(agent)[1])
-    practice = RebuiltPractice(lambda: rebuild_learner(config_of(agent)), steps)
+    practice, steps = practice_of(agent), steps_by(agent)
     newest = steps._steps[20]
     steps._steps[20] = newest._replace(next_observation=(), next_measured=())
-    assert practice.explain(21, ()).update is None
+    assert practice.explain(21, steps, ()).update is None
     steps._steps[20] = newest
 
-    assert agent_state(practice.learner_at(30, ()).agent) == states_after(agent, 30)
+    assert agent_state(practice.learner_at(30, steps, ()).agent) == states_after(agent, 30)
 
 
 def test_states_differ_between_moments() -> None:

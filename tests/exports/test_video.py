@@ -1,20 +1,28 @@
 """Films of a recorded walk: another reader opens them, and they show the recorded poses."""
 
 import io
+import pickle
 import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
 
 import av
 import numpy as np
+import psutil
 import pytest
 from PIL import Image, ImageSequence
 
-from app.domain.errors import InvalidInput
+from app.domain.errors import HexapodError, InvalidInput
 from app.exports import video
 from app.exports.extras import MissingExtra
 from app.exports.recorded_lanes import RecordedWalks, recorded_walks
 from app.exports.video import VideoOptions, check_length, render_video
 from app.exports.video_renderer import VideoRenderer
 from app.storage.errors import Busy
+from tests.jobs.waiting import wait_until
+from tests.patience import LONG_S
 from tests.stage.stage_parts import StageParts
 
 SMALL = VideoOptions(width=160, height=120, fps=5, clock="free")
@@ -22,9 +30,11 @@ PICTURES = 11  # 6 steps of 0.32 s at 5 a second, and the end
 
 
 def test_an_mp4_opens_in_another_reader_and_moves(raced: RecordedWalks) -> None:
-    with av.open(io.BytesIO(VideoRenderer().render(raced, SMALL)), "r") as film:
+    renderer = VideoRenderer()
+    with av.open(io.BytesIO(renderer.render(raced, SMALL)), "r") as film:
         stream = film.streams.video[0]
         pictures = [frame.to_ndarray(format="rgb24").astype(int) for frame in film.decode(stream)]
+    renderer.close()
 
     assert (stream.codec_context.name, stream.width, stream.height) == ("h264", 160, 120)
     assert stream.average_rate == 5
@@ -61,6 +71,51 @@ def test_a_gap_in_a_practice_is_left_out(parts: StageParts) -> None:
     assert len(times_s) == pytest.approx(520 * 0.32, abs=2)
 
 
+def test_a_film_that_is_rendered_ends_with_the_renderer(
+    raced: RecordedWalks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    renderer = VideoRenderer()
+    long = replace(SMALL, width=1920, height=1080, speed=0.05)
+    with ThreadPoolExecutor(1) as threads:
+        rendered = threads.submit(renderer.render, raced, long)
+        wait_until(lambda: [*tmp_path.rglob("video.mp4")])
+        (worker,) = map(psutil.Process, renderer._pool.pids)
+        worker_and_encoder = [worker, *worker.children()]
+        assert len(worker_and_encoder) == 2
+        with pytest.raises(Busy, match="another film is being rendered"):
+            renderer.render(raced, SMALL)
+        renderer.close()
+        with pytest.raises(Busy, match="one of them ended"):
+            rendered.result()
+    assert [*tmp_path.iterdir()] == []
+    assert psutil.wait_procs(worker_and_encoder, LONG_S)[1] == []
+    with pytest.raises(Busy, match="the server is stopping"):
+        renderer.render(raced, SMALL)
+
+
+def test_a_film_that_takes_too_long_or_cannot_be_encoded_fails_alone(
+    raced: RecordedWalks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    encoder = tmp_path / "encoder"
+    encoder.write_text(f"#!/bin/sh\necho $$ > {tmp_path / 'pid'}\nexec sleep 600")
+    encoder.chmod(0o700)
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(encoder))
+    stuck = VideoRenderer(timeout_s=2.0)
+    with pytest.raises(Busy, match="it took over 2 s"):
+        stuck.render(raced, SMALL)
+    assert not stuck._rendering.locked()
+    pid = (tmp_path / "pid").read_text() if (tmp_path / "pid").exists() else ""
+    wait_until(lambda: not pid or not psutil.pid_exists(int(pid)))
+    stuck.close()
+    encoder.write_text("#!/bin/sh\nexit 1")
+    renderer = VideoRenderer()
+    with pytest.raises(HexapodError, match="a film failed: OSError") as failure:
+        renderer.render(raced, SMALL)
+    assert not isinstance(failure.value, InvalidInput)
+    renderer.close()
+
+
 def test_what_cannot_be_rendered_is_refused(
     raced: RecordedWalks, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -74,14 +129,11 @@ def test_what_cannot_be_rendered_is_refused(
             VideoOptions(**wrong)
     with pytest.raises(InvalidInput, match="more than 5 pictures; choose a higher speed"):
         check_length(raced, SMALL, 5)
-    renderer = VideoRenderer()
-    renderer._rendering.acquire()
-    with pytest.raises(Busy, match="another film is being rendered"):
-        renderer.render(raced, SMALL)
     monkeypatch.delenv("MUJOCO_GL", raising=False)
     monkeypatch.setitem(sys.modules, "mujoco.egl", None)
-    with pytest.raises(MissingExtra, match="apt-get install libegl1 libgl1-mesa-dri"):
+    with pytest.raises(MissingExtra, match="apt-get install libegl1 libgl1-mesa-dri") as error:
         render_video(raced, SMALL)
+    assert str(pickle.loads(pickle.dumps(error.value))) == str(error.value)
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     with pytest.raises(MissingExtra, match=r"pip install 'racing-hexapods\[video\]'"):
         render_video(raced, SMALL)

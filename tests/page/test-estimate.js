@@ -11,14 +11,15 @@ mock.timers.enable({ apis: ["setTimeout"] });
 /** @type {any[]} */
 let asked = [];
 let seconds = 0;
+let status = 200;
 globalThis.fetch = /** @type {any} */ ((/** @type {URL} */ { pathname }, /** @type {any} */ { body }) => {
   asked.push([pathname, JSON.parse(body).lanes[0].training.steps]);
-  return Promise.resolve(new Response(JSON.stringify({ seconds })));
+  return Promise.resolve(new Response(JSON.stringify({ seconds, detail: "others wait" }), { status }));
 });
 
 async function rest() {
   mock.timers.tick(1000);
-  for (let turn = 0; turn < 10; turn += 1) await Promise.resolve();
+  for (let turn = 0; turn < 20; turn += 1) await Promise.resolve();
 }
 
 beforeEach(() => {
@@ -46,6 +47,20 @@ test("a long one is asked about once it has come to rest, and told in words", as
   seconds = 12;
   await rest();
   assert.equal(raceEstimate.value, "", "it is short");
+});
+
+test("it is asked again while other estimates wait, unless the form has changed", async () => {
+  [seconds, status] = [150, 429];
+  setField("steps", 70_000);
+  await rest();
+  await rest();
+  assert.equal(raceEstimate.value, "");
+  setField("steps", 80_000);
+  status = 200;
+  await rest();
+  await rest();
+  assert.equal(raceEstimate.value, "Takes about 3 min on this machine.");
+  assert.deepEqual(asked.map(([, steps]) => steps), [70_000, 70_000, 80_000]);
 });
 
 test("a form that is not valid, or of a spectator, is not asked about", async () => {

@@ -1,11 +1,11 @@
 // The gait of a race: the moments of its lanes, its footfalls, and its figures in words.
 import assert from "node:assert/strict";
-import { beforeEach, test } from "node:test";
+import { beforeEach, mock, test } from "node:test";
 import {
-  canSeek, cycleSentence, extentOf, FIGURES, legsInOrder, legsInTheAir, lineOf, momentOf, raceTimeAt, rangeInWords,
-  SERIES, subject, swingsOf,
+  analysis, canSeek, cycleSentence, extentOf, FIGURES, followGait, isWatched, legsInOrder, legsInTheAir, lineOf,
+  momentOf, part, problem, raceTimeAt, rangeInWords, SERIES, subject, swingsOf,
 } from "../../static/js/gait.js";
-import { applyEvent, options } from "../../static/js/store.js";
+import { applyEvent, connection, options } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 /** @import { GaitFigures } from "../../static/js/types.js" */
@@ -111,4 +111,40 @@ test("a cycle is told by the legs that move", () => {
   assert.equal(cycleSentence(FIGURES_OF_A_WALK, legs),
     "From step 6 on it repeats 2 steps of 3.1\u00a0cm in all; legs 2 and 5, then 1 and 4.");
   assert.equal(cycleSentence({ ...FIGURES_OF_A_WALK, cycle: null }, legs), "");
+});
+
+test("an error is shown, and the request repeated if that can be of use", async () => {
+  mock.timers.enable({ apis: ["setTimeout"] });
+  [connection.value, isWatched.value] = ["live", true];
+  applyEvent("snapshot", { role: "operator", runs: [TRAINING], stage: { ...STAGE, run_id: "training" }, scene: null });
+  /** @type {(string | null)[]} */
+  const asked = [];
+  const answers = [[503, { detail: "Busy." }], [200, { part: "practice", step_s: 1, lanes: [] }],
+    [409, { detail: "Not evaluated." }]];
+  globalThis.fetch = (address) => {
+    asked.push(new URL(String(address)).searchParams.get("part"));
+    const [status, body] = answers[asked.length - 1];
+    return Promise.resolve(new Response(JSON.stringify(body), { status: Number(status) }));
+  };
+  const pass = async () => {
+    for (let turn = 0; turn < 3; turn += 1) {
+      await new Promise((resolve) => {
+        setImmediate(resolve);
+      });
+    }
+    mock.timers.tick(1000);
+  };
+  const stop = followGait();
+  await pass();
+  assert.equal(problem.value, "Busy.");
+  await pass();
+  assert.deepEqual([problem.value, analysis.value?.part], [null, "practice"]);
+  part.value = "evaluation";
+  for (let n = 0; n < 3; n += 1) await pass();
+  assert.deepEqual([problem.value, analysis.value], ["Not evaluated.", null]);
+  assert.deepEqual(asked, ["practice", "practice", "evaluation"]);
+  part.value = "practice";
+  assert.equal(problem.value, null, "it is about the other part");
+  stop();
+  mock.timers.reset();
 });

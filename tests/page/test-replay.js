@@ -1,20 +1,25 @@
 // A replay of the page's own: what it asks the server for, and what it draws.
 import assert from "node:assert/strict";
 import { afterEach, test } from "node:test";
+import { problems, setStage } from "../../static/js/actions.js";
 import { view } from "../../static/js/page.js";
 import {
-  closeReplay, drawIn, openReplay, playReplay, replayProblem, replayTime, seekReplay, tick,
+  closeReplay, drawIn, endTime, followReplay, openReplay, ownRunId, playReplay, replayProblem, replayTime, seekReplay,
+  setReplaySpeed, tick,
 } from "../../static/js/replay.js";
+import { stage } from "../../static/js/store.js";
 
 const PLAN = {
   run_id: "a", kind: "race", complete: true, duration_s: 4, recorded_s: [[0, 4]], step_ends_s: [[1, 2, 3, 4]],
   marks: [], frame_s: 1 / 30, segment_frames: 64, lowest_level: -3, highest_level: 7,
 };
 
-/** A frame as the server encodes it. @param {number} time_s */
-function encoded(time_s) {
-  const frame = { time_s, follow: { leader: [0, time_s], 2: [1, time_s] }, scene: null, messages: [] };
-  const head = new TextEncoder().encode(JSON.stringify({ lengths: [], world: "/world", frames: [frame] }));
+/** Frames as the server encodes them. @param {number[]} times_s */
+function encoded(...times_s) {
+  const frames = times_s.map((time_s) => (
+    { time_s, follow: { leader: [time_s, time_s], 2: [1, time_s] }, scene: null, messages: [] }
+  ));
+  const head = new TextEncoder().encode(JSON.stringify({ lengths: [], world: "/world", frames }));
   const data = new Uint8Array(4 + head.length);
   new DataView(data.buffer).setUint32(0, head.length, true);
   data.set(head, 4);
@@ -25,16 +30,39 @@ function encoded(time_s) {
 let asked = [];
 /** Answers to requests for moments. @type {(time_s: number) => Response} */
 let moment = (time_s) => new Response(encoded(time_s));
+/** The run as it is recorded now. @type {Partial<typeof PLAN>} */
+let recorded = {};
+/** Answers to requests for plans. @type {(clock: string) => Response | Promise<Response>} */
+let plan = recordedPlan;
+function recordedPlan() {
+  return new Response(JSON.stringify({ ...PLAN, ...recorded }));
+}
+
+/** @type {(level: number, number: number) => Response} */
+function segment(level, number) {
+  const { recorded_s: [[, end]], frame_s, segment_frames } = { ...PLAN, ...recorded };
+  const times = Array.from({ length: segment_frames }, (_, n) => (number * segment_frames + n) * frame_s * 2 ** level);
+  const shown = times.filter((time) => time <= end);
+  return shown.length ? new Response(encoded(...shown)) : new Response("{}", { status: 404 });
+}
 
 /** @param {URL} address */
 function answerTo({ pathname, searchParams }) {
-  asked.push(/** @type {string} */ (pathname.split("/").at(-1)));
-  if (pathname.endsWith("/replay")) return new Response(JSON.stringify(PLAN));
+  const [level, last] = pathname.split("/").slice(-2);
+  asked.push(last);
+  if (pathname.endsWith("/replay")) return plan(searchParams.get("clock") ?? "");
   if (pathname.endsWith("/scene")) return new Response(encoded(0));
+  if (pathname.includes("/segments/")) return segment(Number(level), Number(last));
   return moment(Number(searchParams.get("time_s")));
 }
 globalThis.fetch = (address) => Promise.resolve(answerTo(new URL(String(address))));
 globalThis.history.pushState = () => {};
+globalThis.requestAnimationFrame = () => 0;
+followReplay();
+
+/** Messages that the 3D view got. @type {Record<string, any>[]} */
+const drawn = [];
+drawIn((messages) => drawn.push(...messages));
 
 let now = 0;
 /** Let so many pictures pass. @param {number} pictures */
@@ -50,6 +78,8 @@ async function wait(pictures) {
 afterEach(() => {
   closeReplay();
   asked = [];
+  recorded = {};
+  plan = recordedPlan;
   moment = (time_s) => new Response(encoded(time_s));
 });
 
@@ -80,9 +110,6 @@ test("a run that was deleted meanwhile is told, and asked for no more", async ()
 });
 
 test("a held replay follows another robot at once", async () => {
-  /** @type {any[]} */
-  const drawn = [];
-  drawIn((messages) => drawn.push(...messages));
   await openReplay("a", { time_s: 3, isPlaying: false });
   await wait(5);
   view.value = "2";
@@ -96,4 +123,93 @@ test("played again at its end it begins anew", async () => {
   playReplay(true);
   assert.equal(replayTime.value, 0);
   playReplay(false);
+});
+
+/** Number of requests for plans. */
+const plansAsked = () => asked.filter((one) => one === "replay").length;
+
+test("a run that still computes is played as far as it has come, until it ends", async () => {
+  recorded = { complete: false, recorded_s: [[0, 1]] };
+  await openReplay("a");
+  await wait(200);
+  assert.equal(replayTime.value, 1, "it waits for more");
+  recorded = { complete: false, recorded_s: [[0, 3]] };
+  await wait(200);
+  assert.equal(replayTime.value, 3);
+  assert.equal(endTime.value, 3);
+  assert.ok(drawn.at(-1)?.position[0] < -2.9, "the newest frame is drawn");
+  recorded = { complete: true, recorded_s: [[0, 3.5]] };
+  await wait(200);
+  assert.equal(replayTime.value, 3.5);
+  const before = plansAsked();
+  assert.ok(before <= 12, `about one plan a second, not ${before}`);
+  await wait(200);
+  assert.equal(plansAsked(), before, "it computes no more");
+  playReplay(true);
+  assert.equal(replayTime.value, 0, "it has ended");
+});
+
+test("a run that still computes has a longer time bar while it is held at the end", async () => {
+  recorded = { complete: false, recorded_s: [[0, 1]] };
+  await openReplay("a", { time_s: 1, isPlaying: false });
+  await wait(5);
+  recorded = { complete: false, recorded_s: [[0, 3]] };
+  await wait(70);
+  assert.deepEqual([endTime.value, replayTime.value], [3, 1]);
+});
+
+test("no frame is requested beyond the last, however close", async () => {
+  // As a sum of steps, which can be a little less than a product: the frame of 6.4 s begins a segment.
+  recorded = { complete: false, recorded_s: [[0, 6.4 - 1e-12]] };
+  setReplaySpeed(1);
+  await openReplay("a", { time_s: 7 });
+  await wait(10);
+  setReplaySpeed(2);
+  assert.equal(replayProblem.value, null);
+});
+
+/** Clock → lets its plan come. @type {Record<string, () => void>} */
+const arrive = {};
+/** A network on which plans come when the test lets them. @type {(clock: string) => Promise<Response>} */
+const slowPlan = (clock) => new Promise((resolve) => {
+  arrive[clock] = () => resolve(recordedPlan());
+});
+/** Let answers that have come be read. */
+const settle = () => wait(3);
+
+for (const order of [["wall", "free"], ["free", "wall"]]) {
+  test(`of clocks that are chosen quickly the last one times the race: ${order} arrive`, async () => {
+    await openReplay("a", { time_s: 2.5, isPlaying: false, clock: "paper" });
+    plan = slowPlan;
+    setStage({ clock: "wall" });
+    setStage({ clock: "free" });
+    plan = recordedPlan;
+    for (const one of order) {
+      arrive[one]();
+      await settle();
+    }
+    assert.equal(stage.value?.clock, "free");
+    assert.equal(replayTime.value, 2, "at the end of the same step");
+  });
+}
+
+test("a clock whose plan comes after the replay was left does not open it again", async () => {
+  await openReplay("a", { clock: "paper" });
+  plan = slowPlan;
+  setStage({ clock: "wall" });
+  closeReplay();
+  plan = recordedPlan;
+  arrive.wall();
+  await settle();
+  assert.equal(ownRunId.value, null);
+});
+
+test("a clock whose plan cannot be had leaves the clock and the moment as they were", async () => {
+  await openReplay("a", { time_s: 2.5, isPlaying: false, clock: "paper" });
+  plan = () => new Response(JSON.stringify({ detail: "The server is busy." }), { status: 503 });
+  await setStage({ clock: "wall" });
+  assert.equal(problems.value.stage?.message, "The server is busy.");
+  assert.deepEqual([stage.value?.clock, replayTime.value], ["paper", 2.5]);
+  setStage({ speed: 2 });
+  assert.equal(problems.value.stage, null);
 });

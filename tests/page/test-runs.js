@@ -120,6 +120,7 @@ test("what is deleted goes, and what is kept is told with its reason", async () 
   await deleteSelected();
   assert.deepEqual(shown({}), [RACE.id, UNKNOWN.id]);
   assert.equal(problems.value.selection?.message, "Not deleted: a race waits for it.");
+  assert.deepEqual(selected.value.map(({ id }) => id), [UNKNOWN.id], "it stays selected");
 });
 
 test("each file tells what came of it, and a large one is not even sent", async () => {

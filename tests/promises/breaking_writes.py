@@ -234,7 +234,7 @@ def inspect_store(store: RunStore, folder: Path) -> dict[str, Any]:
     key = store.find_key(KEY.key)
     return {
         "runs": sorted(runs, key=lambda run: str(run["name"])),
-        "key_is_of": None if key is None else store.get(key.run_id).name,
+        "key_is_of": None if key is None else store.get(key.run_ids[-1]).name,
         "missing_files": len(set(referenced) - set(on_disk)),
         "files_of_nobody": len(set(on_disk) - set(referenced)),
     }

@@ -85,6 +85,23 @@ def test_a_window_may_begin_and_end_within_a_step(greedy: RecordedWalk) -> None:
     assert [(part.from_s, part.to_s) for part in parts if part] == [(0, 1.13), (1.13, 3.0)]
 
 
+@pytest.mark.parametrize("window", [(0.005, 0.015), (0.0, 0.01), (0.0, 0.004), (3.201, 3.219)])
+def test_a_window_between_two_frames_has_no_figures(
+    greedy: RecordedWalk, with_physics: RecordedWalk, window: tuple[float, float]
+) -> None:
+    """Frames are 0.02 s apart."""
+    assert gait_figures(greedy, *window) is None
+    assert gait_figures(with_physics, *window) is None
+
+
+def test_a_window_with_one_frame_has_figures(with_physics: RecordedWalk) -> None:
+    for window in ((0.015, 0.025), (0.0, 0.02), (0.999, 1.001)):
+        figures = gait_figures(with_physics, *window)
+        assert figures is not None
+        assert figures.effort is not None
+        assert len(figures.posture.time_s) <= 2
+
+
 def test_the_cycle_is_the_sequence_that_ends_the_walk(greedy: RecordedWalk) -> None:
     figures = gait_figures(greedy, 0, 1)  # of the whole walk, whatever the window is
 

@@ -198,3 +198,18 @@ def test_damaged_recording_is_returned_as_none(store: RunStore, tmp_path: Path) 
     (file,) = (path for path in tmp_path.rglob("artifacts/*/*") if path.is_file())
     file.write_bytes(file.read_bytes()[:-1])
     assert Recordings(store).race("a") is None
+
+
+def test_a_log_can_be_read_while_its_training_ends(store: RunStore) -> None:
+    store.create(training("a"))
+    recordings = Recordings(store)
+
+    class EndsOnceSeen(dict[str, TransitionLog | None]):
+        def __contains__(self, run_id: object) -> bool:
+            was_there = super().__contains__(run_id)
+            recordings._drop(str(run_id))
+            return was_there
+
+    recordings._logs = EndsOnceSeen()
+    recordings.begin_training("a", np.zeros(8, np.float32))
+    assert recordings.transitions("a") is not None

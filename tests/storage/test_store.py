@@ -1,10 +1,14 @@
 """The run store, on SQLite and PostgreSQL."""
 
+import base64
+import contextlib
+import json
 import math
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta, timezone
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +19,7 @@ from app.domain.errors import InvalidInput
 from app.domain.world import World
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
-from app.storage.run import LIVE, NOT_ENDED, QUEUED, RUNNING, AnyRun, Run, State
+from app.storage.run import LIVE, NOT_ENDED, QUEUED, RUNNING, SORTS, AnyRun, Run, State
 from app.storage.run_ids import RunIds
 from tests.storage.stores import (
     BACKENDS,
@@ -192,7 +196,22 @@ def test_lists_are_sorted_by_name_distance_and_time_page_by_page(store: RunStore
         "b",
         "d",
     ]
-    for cursor in ("a", "\ud800", "WyJhIiwgMV0=", page.next_cursor):
+    for cursor in ("a", "\ud800", page.next_cursor):
+        with pytest.raises(InvalidInput, match="cursor must be the next_cursor"):
+            store.list(sort="distance", cursor=cursor)
+
+
+def test_a_forged_cursor_is_taken_or_refused(store: RunStore) -> None:
+    store.create(training("a"), training("b"))
+    keys = [0.5, 5, -0.0, 1e999, math.nan, True, None, "b", "a\0", "\ud800", [0.5], {"a": "b"}]
+    ids = ["a", "", 5, True, None, "a\0", "\ud800", "damaged-", [0.5]]
+    for given in [*product(keys, ids), ["b"], [0.5, "b", "c"], {"a": 1, "b": 2}, 7, "ab"]:
+        cursor = base64.urlsafe_b64encode(json.dumps(given).encode()).decode()
+        for sort in SORTS:
+            with contextlib.suppress(InvalidInput):
+                store.list(sort=sort, cursor=cursor)
+    for text in ("[" * 1400, "9" * 1400, "[0.5, ", "\xff"):
+        cursor = base64.urlsafe_b64encode(text.encode("latin-1")).decode()
         with pytest.raises(InvalidInput, match="cursor must be the next_cursor"):
             store.list(sort="distance", cursor=cursor)
 

@@ -10,7 +10,7 @@ import pytest
 from app.stage.playback import FRAMES_PER_S, SEGMENT_FRAMES, Replays
 from app.storage.errors import Conflict
 from app.viewer.replay_frames import ReplayFrames
-from app.viewer.replay_page import _notes, _recorded_segments, replay_page
+from app.viewer.replay_page import MAX_SEGMENTS, _notes, _recorded_segments, replay_page
 from app.viewer.robot_mesh import RobotMesh
 from app.viewer.scene import SCENE_ROOT
 from tests.stage.stage_parts import StageParts
@@ -85,6 +85,16 @@ def test_a_long_practice_has_the_segments_of_its_recorded_steps(parts: StagePart
     assert _recorded_segments(plan, 4) == [0, 1, 2, 3, 4, 5, 6]
     assert _recorded_segments(plan, 2) == [0, *range(7, 27)]
     assert "Only the first 20 and the newest 500 steps" in _notes(plan, 0)[0]
+
+
+def test_a_run_of_years_is_not_enumerated(parts: StageParts) -> None:
+    """Of an imported run, whose decisions may have taken any time: its segments fill memory."""
+    plan = frames_of(parts).plan(parts.finished_race(LANES).id, "paper")
+    years = {**plan, "recorded_s": [[0.0, 1.0], [5.0, 1e11]]}
+    assert len(_recorded_segments(years, 0)) == MAX_SEGMENTS + 1
+    hour = {**plan, "recorded_s": [[0.0, 3600.0]]}
+    assert len(_recorded_segments(hour, 0)) > MAX_SEGMENTS
+    assert _recorded_segments(hour, 1) == list(range(844))
 
 
 def test_a_race_under_way_has_no_page(parts: StageParts) -> None:

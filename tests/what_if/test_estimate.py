@@ -1,7 +1,10 @@
 """Estimates of how long runs take: steps of each kind are timed once, and added up."""
 
+import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager
 from typing import Any
 
 import pytest
@@ -9,24 +12,35 @@ import pytest
 from app.assembly import build_learner
 from app.domain.errors import InvalidInput
 from app.experiments.config import experiment_config
+from app.jobs.process_pool import ProcessPool
 from app.jobs.submissions import ExperimentStart, LaneStart, RaceStart, TrainingStart
 from app.runs.config import WalkingProblem, training_config
 from app.runs.training import train
-from app.what_if.estimate import Estimates, Steps
-from app.what_if.trial_pool import TrialPool
+from app.storage.errors import Busy
+from app.what_if.estimate import MAX_AT_ONCE, Estimates, Steps
+from tests.jobs.waiting import wait_until
 
 WALK = WalkingProblem(gait="left-right-origin", simulator="kinematic")
 
 
-class TimedPool(TrialPool):
+class TimedPool(ProcessPool):
     """A pool in which a step takes 0.1 s, with look-ahead 1 s; it remembers what it timed."""
 
     def __init__(self) -> None:
         super().__init__(count=1)
         self.timed: list[str] = []
+        self._free = threading.Lock()
+
+    def held(self) -> AbstractContextManager[object]:
+        """Return a context in which it answers no request."""
+        return self._free
 
     def map(self, function: Callable[[Any], Any], arguments: Sequence[Any]) -> list[Any]:
         kinds: Sequence[Steps] = arguments
+        with self._free:
+            return self._times_of(kinds)
+
+    def _times_of(self, kinds: Sequence[Steps]) -> list[Any]:
         self.timed += [one.training.agent for one in kinds]
         return [0.1 if one.practises else 1.0 for one in kinds]
 
@@ -67,9 +81,28 @@ def test_trials_are_divided_among_the_workers() -> None:
     )
 
 
+def test_more_than_one_request_that_waits_is_refused_as_busy() -> None:
+    pool = TimedPool()
+    estimates = Estimates(pool, cores=1)
+    known_s = estimates.of(training(steps=100))
+    with ThreadPoolExecutor(MAX_AT_ONCE) as threads, pool.held():
+        asked = [
+            threads.submit(estimates.of, training(steps=100, agent="sarsa"))
+            for _ in range(MAX_AT_ONCE)
+        ]
+        wait_until(lambda: estimates._free._value == 0)
+        with pytest.raises(Busy, match="other estimates are waiting") as busy:
+            estimates.of(training(steps=100, agent="dyna-q"))
+        assert busy.value.retry_after_s > 0
+        assert estimates.of(training(steps=100)) == known_s
+    assert [one.result() for one in asked] == [known_s] * MAX_AT_ONCE
+    assert pool.timed == ["q-learning", "sarsa"]
+    assert estimates.of(training(steps=100, agent="dyna-q")) == known_s
+
+
 @pytest.fixture(scope="module")
 def estimates() -> Iterator[Estimates]:
-    made = Estimates(TrialPool(count=1), cores=1)
+    made = Estimates(ProcessPool(count=1), cores=1)
     yield made
     made.close()
 

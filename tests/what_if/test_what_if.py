@@ -3,7 +3,6 @@
 import os
 import signal
 import threading
-import time
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
@@ -19,13 +18,12 @@ from app.domain.errors import InvalidInput
 from app.domain.world import World
 from app.experiments.plan import trial_seed
 from app.experiments.trial import TrialConfig, run_trial
+from app.jobs.process_pool import ProcessPool
 from app.runs.config import TrainingConfig, training_config
 from app.storage.errors import Busy
-from app.what_if.trial_pool import TrialPool
 from app.what_if.what_if import MAX_WAITING, SEEDS, WhatIf, _interquartile_mean
 
 SHORT = training_config(gait="left-right-origin", steps=40)
-LONG_S = 60.0
 
 
 def changed(settings: dict[str, float], **fields: Any) -> TrainingConfig:
@@ -34,14 +32,14 @@ def changed(settings: dict[str, float], **fields: Any) -> TrainingConfig:
 
 
 @pytest.fixture(scope="module")
-def pool() -> Iterator[TrialPool]:
-    made = TrialPool(count=2)
+def pool() -> Iterator[ProcessPool]:
+    made = ProcessPool(count=2)
     yield made
     made.close()
 
 
 @pytest.fixture(scope="module")
-def what_if(pool: TrialPool) -> WhatIf:
+def what_if(pool: ProcessPool) -> WhatIf:
     return WhatIf(pool)
 
 
@@ -92,7 +90,7 @@ def test_any_learner_can_be_asked_about(agent: str, what_if: WhatIf) -> None:
     assert training.settings.keys() <= answer["chosen"].keys()
 
 
-def test_cached_trials_are_not_run_again(what_if: WhatIf, pool: TrialPool) -> None:
+def test_cached_trials_are_not_run_again(what_if: WhatIf, pool: ProcessPool) -> None:
     first = what_if.ask(SHORT)
     pids = pool.pids
     # Neither seed, pace nor simulator counts.
@@ -129,7 +127,7 @@ def test_invalid_training_is_refused_with_the_reason(
     assert what_if.ask(SHORT)["seeds"] == 30
 
 
-def test_killed_worker_fails_one_request_only(what_if: WhatIf, pool: TrialPool) -> None:
+def test_killed_worker_fails_one_request_only(what_if: WhatIf, pool: ProcessPool) -> None:
     what_if.ask(changed({"alpha": 0.31}))
     for pid in pool.pids:
         os.kill(pid, signal.SIGKILL)
@@ -160,44 +158,3 @@ def test_too_many_waiting_requests_are_refused_as_busy(what_if: WhatIf) -> None:
     assert len(answers) == 2 * MAX_WAITING
     assert MAX_WAITING - 1 <= len(told) <= MAX_WAITING
     assert all(busy.retry_after_s > 0 for busy in told)
-
-
-def test_workers_exit_when_idle_and_when_closed() -> None:
-    pool = TrialPool(count=1, idle_s=0.3)
-    trial = TrialConfig(training=replace(SHORT, simulator="kinematic", evaluate_every=0))
-    assert pool.pids == [], "nobody has asked"
-    pool.run([trial])
-    (first,) = pool.pids
-    deadline = time.monotonic() + LONG_S
-    while psutil.pid_exists(first):
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
-    pool.run([trial])
-    (second,) = pool.pids
-    pool.close()
-    assert not psutil.pid_exists(second)
-    with pytest.raises(Busy, match="stopping"):
-        pool.run([trial])
-
-
-def test_closing_rejects_requests_that_wait_and_starts_no_more_workers() -> None:
-    pool = TrialPool(count=1)
-    refused: list[float] = []
-
-    def ask() -> None:
-        with pytest.raises(Busy):
-            pool.map(time.sleep, [LONG_S])
-        refused.append(time.monotonic())
-
-    threads = [threading.Thread(target=ask) for _ in range(3)]
-    for thread in threads:
-        thread.start()
-    deadline = time.monotonic() + LONG_S
-    while not pool.pids:
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
-    pool.close()
-    for thread in threads:
-        thread.join(LONG_S / 2)
-    assert len(refused) == 3
-    assert pool.pids == []

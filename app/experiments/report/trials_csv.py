@@ -52,7 +52,7 @@ def trials_csv(
 
 
 def _rows(trial: Trial, result: TrialResult, more: Sequence[str]) -> Iterator[list[Any]]:
-    training, setting = trial.config.training, trial.setting
+    setting, training = trial.setting, trial.setting.training
     learns = setting.role != "reference"
     named = [trial.key, setting.role, setting.gait, training.observation, setting.robot]
     varied = [value for name, value in setting.parameters.items() if name != "steps"]
@@ -63,7 +63,7 @@ def _rows(trial: Trial, result: TrialResult, more: Sequence[str]) -> Iterator[li
             *(text_cell(getattr(setting, name)) for name in more),
             *(text_cell(value) if isinstance(value, str) else value for value in varied),
             trial.seed_number,
-            training.seed,
+            trial.seed,
             _practised_steps(trial, block) if learns else 0,
             distance_m,
             result.finished_distance_m,
@@ -75,5 +75,5 @@ def _rows(trial: Trial, result: TrialResult, more: Sequence[str]) -> Iterator[li
 
 def _practised_steps(trial: Trial, number: int) -> int:
     """Return the steps of practice before one of a trial's distances."""
-    points = trial.config.evaluations
-    return points[number] if points else trial.config.training.steps * (1 + number)
+    points = trial.setting.trial.evaluations
+    return points[number] if points else trial.setting.training.steps * (1 + number)

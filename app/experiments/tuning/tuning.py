@@ -122,7 +122,7 @@ class Tuning:
             "search", values, points if self.config.objective == "area" else points[-1:]
         )
         return [
-            Trial(f"{setting.key}#{number}", setting, number, _with_seed(setting.trial, seed))
+            Trial(f"{setting.key}#{number}", setting, number, seed)
             for number, seed in enumerate(search_seeds(self.config))
         ]
 
@@ -227,7 +227,3 @@ def _remaining(trials: Iterable[Trial], progress: Progress, retry: bool = False)
         for key, trial in by_key.items()
         if key not in progress.results and (retry or key not in progress.set_aside)
     ]
-
-
-def _with_seed(trial: TrialConfig, seed: int) -> TrialConfig:
-    return replace(trial, training=replace(trial.training, seed=seed))

@@ -1,5 +1,9 @@
-"""Rows of the `idempotency_keys` table: which request started which run."""
+"""Rows of the `idempotency_keys` table: which request created which runs.
 
+`run_id` has the ids of an import of several, separated by spaces.
+"""
+
+from collections.abc import Iterable
 from datetime import UTC, datetime
 
 from sqlalchemy import Connection, delete, insert, select
@@ -18,8 +22,10 @@ class Keys:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def insert(self, connection: Connection, key: IdempotencyKey | None, run_id: str) -> None:
-        """Insert a key within the transaction that inserts its run; delete expired keys."""
+    def insert(
+        self, connection: Connection, key: IdempotencyKey | None, run_ids: Iterable[str]
+    ) -> None:
+        """Insert a key within the transaction that inserts its runs; delete expired keys."""
         if key is None:
             return
         now = datetime.now(UTC)
@@ -31,7 +37,8 @@ class Keys:
             (created < now - KEY_LIFETIME) | (created < oldest_kept) | (_KEYS.c.key == key.key)
         )
         connection.execute(delete(_KEYS).where(is_expired))
-        connection.execute(insert(_KEYS), [{**key._asdict(), "run_id": run_id, "created_at": now}])
+        row = {**key._asdict(), "run_id": " ".join(run_ids), "created_at": now}
+        connection.execute(insert(_KEYS), [row])
 
     def find(self, key: str) -> KeyRecord | None:
         """See `RunStore.find_key`."""
@@ -40,4 +47,4 @@ class Keys:
             _KEYS.c.key == key, _KEYS.c.created_at >= since
         )
         rows = self._database.read(lambda connection: fetch_rows(connection, query))
-        return KeyRecord(**rows[0]) if rows else None
+        return KeyRecord(rows[0]["digest"], tuple(rows[0]["run_id"].split())) if rows else None

@@ -141,8 +141,10 @@ def _encode_cursor(key: object, run_id: str) -> str:
 def _decode_cursor(cursor: str, kind: type) -> tuple[Any, str]:
     try:
         value, run_id = json.loads(base64.urlsafe_b64decode(cursor.encode("ascii")))
+        if not isinstance(value, kind) or not isinstance(run_id, str) or not run_id:
+            raise ValueError
         # No database takes NUL, or what is not UTF-8.
-        if not isinstance(value, kind) or not run_id or b"\0" in f"{value}{run_id}".encode():
+        if b"\0" in f"{value}{run_id}".encode():
             raise ValueError
     except (ValueError, TypeError, binascii.Error, RecursionError) as error:
         raise InvalidInput(

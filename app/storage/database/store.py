@@ -97,7 +97,7 @@ class RunStore:
 
         def work(connection: Connection) -> None:
             connection.execute(insert(RUNS), rows)
-            self._keys.insert(connection, key, runs[-1].id)
+            self._keys.insert(connection, key, [runs[-1].id])
 
         self._database.write(work)
 
@@ -123,8 +123,7 @@ class RunStore:
             imported: each run, which keeps its id if that is free in this store, and its curve,
                 trials and artifacts.
             new_id: creates an id if a run's own is already in use.
-            key: idempotency key of the request, for the last of them, stored in the same
-                transaction.
+            key: idempotency key of the request, stored in the same transaction.
 
         Returns:
             the runs as stored.
@@ -139,7 +138,7 @@ class RunStore:
             added = []
             for (run, content), files in zip(imported, stored, strict=True):
                 added.append(self._insert(connection, run, content, files, new_id))
-            self._keys.insert(connection, key, added[-1].id)
+            self._keys.insert(connection, key, [run.id for run in added])
             return added
 
         try:

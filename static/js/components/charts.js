@@ -1,8 +1,9 @@
 // Charts: lines over an axis with a crosshair, zoom, table and files, and the placeholder of a chart without data.
-import { useRef, useState } from "preact/hooks";
+import { useMemo, useRef, useState } from "preact/hooks";
 import { crosshair, fileNameOf, tableOf, thinnedPath, valuesIn, within, zoomOf } from "../chart.js";
 import { metres, sentence, whole as wholeNumber } from "../format.js";
 import { placeCaptions } from "../labels.js";
+import { isPresenting } from "../page.js";
 import { thinned, ticks } from "../scale.js";
 import { Crosshair, readIndex, zoomBy } from "./crosshair.js";
 import { html, useWidth } from "./elements.js";
@@ -174,7 +175,10 @@ const USUAL_FONT_PX = 16;
  */
 function useSize() {
   const [host, width] = useWidth();
-  const larger = parseFloat(getComputedStyle(document.documentElement).fontSize) / USUAL_FONT_PX;
+  // Not at each drawing, which would compute styles in between.
+  const larger = useMemo(
+    () => parseFloat(getComputedStyle(document.documentElement).fontSize) / USUAL_FONT_PX, [width, isPresenting.value],
+  );
   return [host, Math.round(width / larger), larger];
 }
 

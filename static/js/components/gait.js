@@ -3,7 +3,7 @@ import { useEffect, useMemo } from "preact/hooks";
 import { count } from "../format.js";
 import {
   AFTER_S, analysis, BEFORE_S, canSeek, colorOf, cycleSentence, extentOf, FIGURES, followGait, isWatched, isWhole,
-  legsInOrder, legsInTheAir, lineOf, momentOf, part, rangeInWords, seek, SERIES, subject, swingsOf,
+  legsInOrder, legsInTheAir, lineOf, momentOf, part, problem, rangeInWords, seek, SERIES, subject, swingsOf,
 } from "../gait.js";
 import { percent, shareOf, ticks } from "../scale.js";
 import { agentOf, laneTitle } from "../settings.js";
@@ -19,10 +19,12 @@ export function Gait({ isNear }) {
   }, [isNear]);
   useEffect(followGait, []);
   const known = analysis.value;
-  const run = subject.value?.run;
+  const { run, part: shown } = subject.value ?? {};
   const lanes = useMemo(() => known && lanesOf(known, run), [known, run?.config, colorOf(0)]);
   return html`
     <p class="dim">When each foot is on the ground, in robot time: without the time that decisions take</p>
+    ${run && run.progress.done > 0 && html`<${Choices} shown=${shown} />`}
+    <div role="alert">${problem.value && html`<p class="problem">${problem.value}</p>`}</div>
     ${lanes?.length
       ? html`<${Figures} lanes=${lanes} known=${known} />`
       : html`<${Empty} words=${known ? "Nothing is recorded of this part of the walk." : INVITATION} />`}
@@ -62,7 +64,6 @@ function Figures({ lanes, known }) {
       rows=${() => rowsOf(lanes)} />
   `, [lanes]);
   return html`
-    <${Choices} known=${known} />
     ${lanes.map((lane, n) => html`
       <${Footfalls} key=${lane.number} lane=${lane} view=${views[n]} step_s=${known.step_s} />
     `)}
@@ -74,13 +75,13 @@ function Figures({ lanes, known }) {
   `;
 }
 
-const Choices = ({ known }) => html`
+const Choices = ({ shown }) => html`
   <div class="walk-choices">
-    ${known.part !== "race" && html`
-      <${Segments} label="Part of the training" value=${known.part} onValue=${(value) => (part.value = value)}
+    ${shown !== "race" && html`
+      <${Segments} label="Part of the training" value=${shown} onValue=${(value) => (part.value = value)}
         choices=${[["practice", "Practice"], ["evaluation", "Newest test"]]} />
     `}
-    ${known.part !== "evaluation" && html`
+    ${shown !== "evaluation" && html`
       <${Segments} label="Time shown" value=${isWhole.value} onValue=${(value) => (isWhole.value = value)}
         choices=${[[false, "Around now"], [true, "Whole walk"]]} />
     `}

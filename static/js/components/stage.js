@@ -1,6 +1,6 @@
 // The 3D stage in its frame, with labels over it.
 import { computed, signal } from "@preact/signals";
-import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { form } from "../form.js";
 import { metres, sentence, times, whole } from "../format.js";
 import { isPresenting, shownTheme, view } from "../page.js";
@@ -141,7 +141,8 @@ function StageLabels() {
   const thinking = (raceScene.value && standings.value?.filter((row) => row.isThinking)) || [];
   const labels = useRef(/** @type {HTMLElement | null} */ (null));
   const measure = () => measureChips(/** @type {HTMLElement} */ (labels.current));
-  useLayoutEffect(measure);
+  // After the page is painted: before, the browser would lay it out twice.
+  useEffect(measure);
   useEffect(() => {
     addEventListener("resize", measure);
     return () => removeEventListener("resize", measure);

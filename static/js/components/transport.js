@@ -174,16 +174,23 @@ function Seek({ now }) {
   `;
 }
 
-const Choice = ({ label, name, value, choices, onValue, title }) => html`
-  <label class="choice" title=${title}>
-    <span>${label}</span>
-    <select name=${name} onChange=${({ target }) => onValue(target.value)}>
-      ${choices.map(([one, words]) => html`
-        <option value=${String(one)} selected=${String(one) === String(value)}>${words}</option>
-      `)}
-    </select>
-  </label>
-`;
+function Choice({ label, name, getValue, choices, onValue, title }) {
+  const change = async ({ target }) => {
+    await onValue(target.value);
+    // A choice that was refused is undone.
+    target.value = String(getValue());
+  };
+  return html`
+    <label class="choice" title=${title}>
+      <span>${label}</span>
+      <select name=${name} onChange=${change}>
+        ${choices.map(([one, words]) => html`
+          <option value=${String(one)} selected=${String(one) === String(getValue())}>${words}</option>
+        `)}
+      </select>
+    </label>
+  `;
+}
 
 function Follow() {
   const lanes = scene.value?.lanes ?? shownRun.value?.config?.lanes ?? [];
@@ -191,21 +198,22 @@ function Follow() {
   const choices = [["leader", "leader"], ...robots, ["free", "free camera"]];
   if (!choices.some(([one]) => one === view.value)) choices.push([view.value, `lane ${view.value}`]);
   return html`
-    <${Choice} label="Follow" name="follow" value=${view.value} choices=${choices}
+    <${Choice} label="Follow" name="follow" getValue=${() => view.value} choices=${choices}
       title="The robot that your camera follows; keys 1 to 8, 0 for a free camera"
       onValue=${(value) => (view.value = value)} />
   `;
 }
 
 function Speed() {
-  const speed = stage.value?.speed ?? 1;
+  const getSpeed = () => stage.value?.speed ?? 1;
+  const speed = getSpeed();
   const isOther = typeof speed === "number" && !SPEEDS.includes(speed);
   const numbers = isOther ? [...SPEEDS, speed].sort((a, b) => a - b) : SPEEDS;
   const isOwn = ownRunId.value !== null;
   const automatic = isOwn ? [] : [["time-lapse", "auto"]];
   const choices = [...automatic, ...numbers.map((n) => [n, `×${n}`])];
   return html`
-    <${Choice} label="Speed" name="speed" value=${speed} choices=${choices}
+    <${Choice} label="Speed" name="speed" getValue=${getSpeed} choices=${choices}
       title=${isOwn ? "On this page" : "For every page"}
       onValue=${(value) => setStage({ speed: value === "time-lapse" ? value : Number(value) })} />
   `;
@@ -214,7 +222,8 @@ function Speed() {
 function ClockChoice() {
   const about = options.value?.clocks.find(({ name }) => name === clock.value)?.description ?? "";
   return html`
-    <${Choice} label="Clock" name="clock" value=${clock.value} title=${`${sentence(clockTitle(clock.value))}. ${about}`}
+    <${Choice} label="Clock" name="clock" getValue=${() => clock.value}
+      title=${`${sentence(clockTitle(clock.value))}. ${about}`}
       choices=${choicesOf(options.value?.clocks, clockTitle)} onValue=${(value) => setStage({ clock: value })} />
   `;
 }

@@ -1,15 +1,24 @@
 // The trials of the chosen experiment by setting and seed, and the runs that were made of them.
-import { computed, signal } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import { adopt, attempt } from "../actions.js";
 import * as api from "../api.js";
+import { isLasting } from "../api.js";
 import { isActive } from "../selectors.js";
-import { requestRuns, runs, setEntry } from "../store.js";
+import { connection, requestRuns, runs } from "../store.js";
+import { messageOf } from "../titles.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { Run, Setting, Trial } from "../types.js" */
+/** @import { RequestError } from "../api.js" */
+/** @import { Page, Run, Setting, Trial } from "../types.js" */
 
-/** Run id → its trials, once they were requested. @type {Signal<Record<string, Trial[]>>} */
-const trials = signal({});
+/** The trials of an experiment by setting, as far as they were requested. */
+/** @type {Signal<{ id: string, trials: Map<string, Trial[]> } | null>} */
+const newest = signal(null);
+/** The error of the last request. @type {Signal<{ id: string, error: RequestError } | null>} */
+const failure = signal(null);
+
+/** Why the trials of an experiment, or their runs, cannot be had; null where they can. @param {string} id */
+export const problemOf = (id) => (failure.value?.id === id ? messageOf(failure.value.error) : null);
 
 /** The setting whose seeds are shown, and the one of them that was asked for. Empty before a choice. */
 export const chosen = signal({ setting: "", distance_m: /** @type {number | null} */ (null) });
@@ -26,13 +35,97 @@ export function showSeed({ key }, distance_m) {
   requestAnimationFrame(() => document.getElementById("seeds")?.scrollIntoView({ block: "nearest" }));
 }
 
-/** Request the trials that an experiment has done, and the runs that were made of them. @param {Run} experiment */
-export const loadTrials = ({ id }) =>
-  attempt("trials", async () => {
-    const answer = await api.getTrials(id);
-    setEntry(trials, id, answer.trials);
-    await requestRuns(() => api.listRuns({ search: id }));
+// ---- the trials and their runs, requested while the section is open
+
+/** All trials are one answer, which may be large: of an experiment that runs it is requested now and then. */
+const PAUSE_MS = 10_000;
+
+/**
+ * Keep the trials of an experiment, and the runs that were made of them, until the function that is returned is called.
+ * @param {() => Run | null} experiment
+ */
+export function followTrials(experiment) {
+  let [isBusy, isResting, isOver] = [false, false, false];
+  /** Experiment and progress of which the trials are known. */
+  let known = "";
+  /** The experiment of which the runs are known; events tell of later ones. */
+  let listed = "";
+
+  const wanted = computed(() => {
+    const run = experiment();
+    return run && connection.value === "live" ? [run.id, isActive(run) ? run.progress.done : "ended"].join(" ") : "";
   });
+
+  const load = async () => {
+    const now = wanted.peek();
+    const [id, progress] = now.split(" ");
+    const isUrgent = progress === "ended" || !known.startsWith(`${id} `);
+    if (!now || now === known || isBusy || isOver || (isResting && !isUrgent)) return;
+    isBusy = true;
+    try {
+      const answer = await api.getTrials(id);
+      newest.value = { id, trials: bySetting(answer.trials) };
+      if (listed !== id) await requestEveryRun(`of experiment ${id}`);
+      [known, listed] = [now, id];
+      failure.value = null;
+    } catch (error) {
+      failure.value = { id, error: /** @type {RequestError} */ (error) };
+      known = isLasting(failure.value.error) ? now : `${id} `;
+    }
+    [isBusy, isResting] = [false, true];
+    clearTimeout(timer);
+    timer = setTimeout(rest, PAUSE_MS);
+    if (wanted.peek() !== now) load();
+  };
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
+  const rest = () => {
+    isResting = false;
+    load();
+  };
+
+  const stops = [
+    effect(() => {
+      // The snapshot after a reconnection has the newest runs only.
+      if (connection.value !== "live") [known, listed] = ["", ""];
+    }),
+    effect(() => {
+      if (wanted.value) load();
+    }),
+  ];
+  return () => {
+    isOver = true;
+    clearTimeout(timer);
+    stops.forEach((stop) => stop());
+  };
+}
+
+/** Take in all runs that a search finds, page by page. @param {string} search */
+async function requestEveryRun(search) {
+  /** @type {string | null} */
+  let cursor = null;
+  do {
+    const query = { search, cursor };
+    /** @type {Page<Run>} */
+    const page = await requestRuns(() => api.listRuns(query));
+    cursor = page.next_cursor;
+  } while (cursor);
+}
+
+/** @type {(trials: Trial[]) => Map<string, Trial[]>} */
+function bySetting(trials) {
+  /** @type {Map<string, Trial[]>} */
+  const found = new Map();
+  for (const trial of trials) {
+    const setting = trial.key.slice(0, trial.key.lastIndexOf("#"));
+    const own = found.get(setting);
+    if (own) own.push(trial);
+    else found.set(setting, [trial]);
+  }
+  return found;
+}
+
+// ---- what is shown of them
 
 /** Settings of which a single run repeats a trial: in blocks, none does. @param {Setting[]} settings */
 export const repeatable = (settings) => settings.filter(({ blocks, n }) => blocks <= 1 && n > 0);
@@ -58,13 +151,14 @@ const runsOfTrials = computed(() => {
  * @param {string} setting
  */
 export function seedsOf(id, setting) {
-  const own = trials.value[id]?.filter(({ key }) => key.slice(0, key.lastIndexOf("#")) === setting);
-  return own?.map(({ key, result }) => ({
+  if (newest.value?.id !== id) return null;
+  const own = newest.value.trials.get(setting) ?? [];
+  return own.map(({ key, result }) => ({
     key,
     number: Number(key.slice(key.lastIndexOf("#") + 1)),
     distance_m: result?.distances_m?.at(-1) ?? null,
     run: runsOfTrials.value.get(`${id} ${key}`) ?? null,
-  })).sort((a, b) => a.number - b.number) ?? null;
+  })).sort((a, b) => a.number - b.number);
 }
 
 /** Run a trial here, and go to the stage, which shows it. @type {(experiment: Run, key: string) => unknown} */

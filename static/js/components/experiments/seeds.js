@@ -3,7 +3,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { pending } from "../../actions.js";
 import { chosenRun } from "../../experiments/runs.js";
 import {
-  chosen, hasReplay, isOpen, loadTrials, repeatable, runTrial, seedsOf,
+  chosen, followTrials, hasReplay, isOpen, problemOf, repeatable, runTrial, seedsOf,
 } from "../../experiments/seeds.js";
 import { count, metres } from "../../format.js";
 import { isOperator } from "../../selectors.js";
@@ -18,7 +18,7 @@ export function Seeds({ known }) {
       <details open=${isOpen.value} onToggle=${({ target }) => (isOpen.value = target.open)}>
         <summary><h2 id="seeds-title">One seed, run here</h2></summary>
         ${isOpen.value && html`
-          <${Chosen} settings=${settings} parameters=${known.parameters} trials=${known.trials.done} />
+          <${Chosen} settings=${settings} parameters=${known.parameters} />
         `}
       </details>
     </section>
@@ -35,16 +35,15 @@ const nameOf = (setting, varied) => {
   return [valueTitle("agent", setting.agent), ...words].join(", ");
 };
 
-function Chosen({ settings, parameters, trials }) {
+function Chosen({ settings, parameters }) {
   const run = chosenRun.value;
-  useEffect(() => {
-    if (run) loadTrials(run);
-  }, [run?.id, trials]);
+  useEffect(() => followTrials(() => chosenRun.value), []);
   const { setting, distance_m } = chosen.value;
   const first = settings.find(({ role }) => role === "learner") ?? settings[0];
   const { key } = settings.find((one) => one.key === setting) ?? first;
   const varied = variedFields(settings, ["gait", "agent", "observation", "robot", "world", ...parameters]);
   const seeds = run && seedsOf(run.id, key);
+  const problem = run && problemOf(run.id);
   return html`
     <p class="dim">
       A trial is repeated as a run of its own, to the last bit: with its learning curve, its table and its replay.
@@ -59,9 +58,11 @@ function Chosen({ settings, parameters, trials }) {
       </select>
     </label>
     <${Problem} at="trials" />
-    ${seeds
-      ? html`<${Table} experiment=${run} seeds=${seeds} distance_m=${distance_m} />`
-      : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the trials…</p>`}
+    <div role="alert">${problem && html`<p class="problem">${problem}</p>`}</div>
+    ${seeds && html`<${Table} experiment=${run} seeds=${seeds} distance_m=${distance_m} />`}
+    ${!seeds && !problem && html`
+      <p role="status"><span class="spinner" aria-hidden="true"></span> Loading the trials…</p>
+    `}
   `;
 }
 

@@ -66,12 +66,13 @@ function TagThem() {
 
 function DeleteThem() {
   const { length } = deletable.value;
-  // Asked for this many: another selection is asked about again.
-  const [sureOf, setSureOf] = useState(0);
-  const isSure = sureOf === length;
+  const ids = deletable.value.map(({ id }) => id).join();
+  // The runs that were asked about: another selection is asked about again.
+  const [sureOf, setSureOf] = useState("");
+  const isSure = sureOf === ids;
   return html`
     <button class="secondary compact bad" disabled=${pending.value.selection}
-      onClick=${() => (isSure ? deleteSelected() : setSureOf(length))}>
+      onClick=${() => (isSure ? deleteSelected() : setSureOf(ids))}>
       ${isSure ? `Delete ${count(length, "run")} for good?` : `Delete ${length}`}
     </button>
   `;

@@ -1,8 +1,9 @@
-"""Pool of worker processes that run trials for interactive requests, and shut down when idle."""
+"""Pool of worker processes for interactive requests, which shut down when idle."""
 
 import multiprocessing
 import os
 import queue
+import signal
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -13,7 +14,6 @@ from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 from app.domain.errors import HexapodError, InvalidInput
-from app.experiments.trial import TrialConfig, TrialResult, run_trial
 from app.jobs.process_setup import set_up_process
 from app.storage.errors import Busy
 
@@ -33,24 +33,34 @@ class _Request(NamedTuple):
     future: "Future[list[Any]]"
 
 
-class TrialPool:
+class _Failure(NamedTuple):
+    """Reason why a call failed, in a sentence, since not all errors can be unpickled."""
+
+    reason: str
+
+
+class ProcessPool:
     """Worker processes, started on the first request and shut down after an idle timeout.
 
     They die with the server, however that ends.
     """
 
-    def __init__(self, count: int | None = None, idle_s: float = IDLE_S) -> None:
+    def __init__(
+        self, count: int | None = None, idle_s: float = IDLE_S, timeout_s: float = TIMEOUT_S
+    ) -> None:
         """Create the pool; the first request starts the processes.
 
         Args:
             count: number of processes; by default one per core.
             idle_s: time without a request after which they are shut down [s].
+            timeout_s: time after which a request is given up, and its processes are killed [s].
         """
         self._count, self._idle_s = count or os.cpu_count() or 1, idle_s
+        self._timeout_s = timeout_s
         self._requests: queue.SimpleQueue[_Request | None] = queue.SimpleQueue()
         self._executor: ProcessPoolExecutor | None = None
         # PR_SET_PDEATHSIG kills a child when the *thread* that started it ends. The executor starts
-        # processes in the thread that submits, so one long-lived thread submits all trials.
+        # processes in the thread that submits, so one long-lived thread submits all calls.
         self._thread: threading.Thread | None = None
         self._lock = threading.Lock()
         self._closed = False
@@ -62,28 +72,25 @@ class TrialPool:
         # Private, since the executor offers no way to kill its processes before Python 3.14.
         return [] if executor is None else list(executor._processes or ())  # noqa: SLF001
 
-    def run(self, configs: Sequence[TrialConfig]) -> list[TrialResult]:
-        """Run trials and wait for them; callable from any thread, requests are serialised.
+    def map(self, function: Callable[[T], R], arguments: Sequence[T]) -> list[R]:
+        """Call a function of a module with each of some arguments, and wait.
 
-        Args:
-            configs: the trials.
+        Callable from any thread; requests are serialised.
 
         Returns:
-            their results, in the same order.
+            what it returned, in the same order.
 
         Raises:
-            InvalidInput: if a trial is invalid.
+            InvalidInput: if a call fails.
             Busy: if a worker exits, the timeout passes, or the pool is closed.
         """
-        return self.map(run_trial, configs)
-
-    def map(self, function: Callable[[T], R], arguments: Sequence[T]) -> list[R]:
-        """Call a function of a module with each of some arguments; raises as `run`."""
         request = _Request(function, arguments, Future())
         with self._lock:
             self._check_open()
             if self._thread is None:
-                self._thread = threading.Thread(target=self._serve, name="trial pool", daemon=True)
+                self._thread = threading.Thread(
+                    target=self._serve, name="process pool", daemon=True
+                )
                 self._thread.start()
             self._requests.put(request)
         return request.future.result()
@@ -122,9 +129,11 @@ class TrialPool:
             except (BrokenProcessPool, TimeoutError, OSError) as error:
                 self._stop_workers()
                 timed_out = isinstance(error, TimeoutError)
-                reason = f"it takes over {TIMEOUT_S:.0f} s" if timed_out else "one of them ended"
-                message = f"the processes that try it are gone ({reason}); try again"
+                reason = f"it took over {self._timeout_s:g} s" if timed_out else "one of them ended"
+                message = f"the processes that tried it are gone ({reason}); try again"
                 request.future.set_exception(Busy(message, 1))
+            except Exception as error:  # such as an argument or result that cannot be pickled
+                request.future.set_exception(error)
 
     def _run(self, function: Callable[[Any], Any], arguments: Sequence[Any]) -> list[Any]:
         if self._executor is None:
@@ -134,11 +143,11 @@ class TrialPool:
         results = []
         guarded = partial(_guarded, function)
         for reply in self._executor.map(
-            guarded, arguments, timeout=TIMEOUT_S, chunksize=_CHUNK_SIZE
+            guarded, arguments, timeout=self._timeout_s, chunksize=_CHUNK_SIZE
         ):
-            if isinstance(reply, str):
-                # All trials of a request share it; leaving the iteration cancels the others.
-                raise InvalidInput(reply)
+            if isinstance(reply, _Failure):
+                # All calls of a request share it; leaving the iteration cancels the others.
+                raise InvalidInput(reply.reason)
             results.append(reply)
         return results
 
@@ -152,11 +161,16 @@ class TrialPool:
         executor = self._executor
         for process in list((executor._processes or {}).values()) if executor else ():  # noqa: SLF001
             with suppress(ValueError):  # it has exited, and its handle is closed
-                process.kill()
+                if process.pid is not None and process.is_alive():
+                    with suppress(ProcessLookupError):  # it has no group of its own yet
+                        os.killpg(process.pid, signal.SIGKILL)
+                    process.kill()
 
 
 def _set_up_worker() -> None:
     set_up_process(NICENESS)
+    # With processes that it starts itself, such as an encoder, it is killed as a group.
+    os.setpgrp()
     threading.Thread(target=_exit_with_parent, daemon=True).start()
 
 
@@ -169,11 +183,11 @@ def _exit_with_parent() -> None:
 
 
 def _guarded(function: Callable[[Any], Any], argument: Any) -> Any:
-    """Call a function in a worker; return a sentence if it fails, since not all errors unpickle."""
+    """Call a function in a worker; return a `_Failure` if it fails."""
     try:
         return function(argument)
     except HexapodError as error:
-        return str(error)
+        return _Failure(str(error))
     # User-supplied agents are untrusted code: they may raise anything, and call `sys.exit`.
     except (Exception, SystemExit) as error:
-        return f"something in it broke ({type(error).__name__}: {error})"
+        return _Failure(f"something in it broke ({type(error).__name__}: {error})")

@@ -1,0 +1,38 @@
+"""Commands of the README and the documentation are ones that the command line takes.
+
+Those of the tutorial also run (`test_tutorial.py`); the others may take hours, or need a cluster.
+"""
+
+import re
+import shlex
+
+import pytest
+
+from app.cli import _parser
+from tests.cli.running import ROOT
+
+_PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+_BLOCK = re.compile(r"^```(?:sh|console)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def commands() -> list[str]:
+    """Return every command that begins with `hexapods`, continued lines joined."""
+    found = []
+    for page in _PAGES:
+        for block in _BLOCK.findall(page.read_text("utf-8")):
+            lines = block.replace("\\\n", " ").splitlines()
+            found += [line for line in lines if line.startswith("hexapods ")]
+    return found
+
+
+def test_there_are_commands() -> None:
+    assert len(commands()) > 40
+
+
+@pytest.mark.parametrize("command", commands())
+def test_a_documented_command_is_valid(command: str) -> None:
+    # What follows is of the shell: other commands, and a variable of the page.
+    own = re.split(r" [|>] ", command.replace("$agents", "q-learning"))[0]
+    words = shlex.split(own, comments=True)[1:]
+    options = _parser(words).parse_args(words)
+    assert options.command == words[0]

@@ -1,0 +1,92 @@
+"""Explanations of stored runs: what is kept of them, and for how long."""
+
+import gc
+import weakref
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.assembly import rebuild_learner
+from app.explanations import service
+from app.explanations.service import Explanations
+from app.runs.rebuilding import RebuiltLearner
+from app.runs.transition_log import TransitionLog
+from app.storage.database.store import RunStore
+from app.storage.recordings import Recordings
+from tests.runs.test_rebuilding import config_of, practised
+from tests.stage.stage_parts import StageParts
+from tests.storage.stores import temporary_store, training
+
+
+@pytest.fixture
+def store() -> Iterator[RunStore]:
+    with temporary_store() as opened:
+        yield opened
+
+
+def stored_training(store: RunStore, recordings: Recordings, **fields: Any) -> str:
+    """Store a training of 80 steps with its log, as its job does, and return its id."""
+    fields = {"state": "running", "config": config_of("q-learning"), "total": 80, **fields}
+    store.create(training("a1", **fields))
+    recordings.begin_training("a1", np.zeros(25, np.float32))
+    recordings.log("a1", practised("q-learning")[1])
+    recordings.finish("a1")
+    return "a1"
+
+
+def the_log(recordings: Recordings, run_id: str) -> TransitionLog:
+    log = recordings.transitions(run_id)
+    assert log is not None
+    return log
+
+
+def test_an_answer_outlives_the_log_that_it_was_read_from(
+    store: RunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recordings = Recordings(store)
+    run_id, explanations = stored_training(store, recordings), Explanations(store, recordings)
+    built: list[int] = []
+
+    def rebuilt(*given: Any) -> RebuiltLearner:
+        built.append(1)
+        return rebuild_learner(*given)
+
+    monkeypatch.setattr(service, "rebuild_learner", rebuilt)
+    first = the_log(recordings, run_id)
+    step, table = explanations.explain(run_id, 40, 0), explanations.table(run_id, 40, 0, 9)
+    recordings.discard(run_id)  # from memory, as others are looked at
+
+    assert the_log(recordings, run_id) is not first
+    is_there = weakref.ref(first)
+    del first
+    gc.collect()
+    assert is_there() is None, "a log takes up to 24 MB"
+    assert explanations.explain(run_id, 40, 0) is step
+    assert explanations.table(run_id, 40, 0, 9) is table
+    explanations.explain(run_id, 41, 0)
+    assert built == [1], "the learner goes on where it was"
+
+
+def test_an_answer_is_new_where_the_run_was_changed_before(store: RunStore) -> None:
+    recordings = Recordings(store)
+    run_id, explanations = stored_training(store, recordings), Explanations(store, recordings)
+    steps = [explanations.explain(run_id, number, 0) for number in (40, 50)]
+    store.update(run_id, changes=({"step": 45, "alpha": 0.9},))
+
+    assert explanations.explain(run_id, 40, 0) is steps[0]
+    assert explanations.explain(run_id, 50, 0) != steps[1]
+
+
+def test_an_answer_is_of_the_steps_that_a_race_took_now(store: RunStore) -> None:
+    parts = StageParts(store)
+    run, explanations = parts.finished_race(("greedy",)), Explanations(store, parts.recordings)
+    known = explanations.explain(run.id, 3, 0)
+    assert explanations.explain(run.id, 3, 0) is known
+    lanes = parts.recordings.race(run.id)
+    assert lanes is not None
+    other = lanes[0].steps[2]
+    lanes[0].steps[2] = type(other)(**{**vars(other), "reward_m": -0.5})
+
+    assert b"-0.5" in explanations.explain(run.id, 3, 0)

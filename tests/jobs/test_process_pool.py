@@ -1,0 +1,63 @@
+"""The pool of processes for requests that wait: it idles, is closed, and survives what fails."""
+
+import threading
+import time
+
+import psutil
+import pytest
+
+from app.domain.errors import InvalidInput
+from app.jobs.process_pool import ProcessPool
+from app.storage.errors import Busy
+from tests.jobs.waiting import wait_until
+from tests.patience import LONG_S
+
+
+def test_workers_exit_when_idle_and_when_closed() -> None:
+    pool = ProcessPool(count=1, idle_s=0.3)
+    assert pool.pids == [], "nobody has asked"
+    assert pool.map(str, [-1, 2]) == ["-1", "2"]
+    (first,) = pool.pids
+    wait_until(lambda: not psutil.pid_exists(first))
+    pool.map(abs, [-1])
+    (second,) = pool.pids
+    pool.close()
+    assert not psutil.pid_exists(second)
+    with pytest.raises(Busy, match="stopping"):
+        pool.map(abs, [-1])
+
+
+def test_closing_rejects_requests_that_wait_and_starts_no_more_workers() -> None:
+    pool = ProcessPool(count=1)
+    refused: list[float] = []
+
+    def ask() -> None:
+        with pytest.raises(Busy):
+            pool.map(time.sleep, [LONG_S])
+        refused.append(time.monotonic())
+
+    threads = [threading.Thread(target=ask) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    wait_until(lambda: pool.pids)
+    pool.close()
+    for thread in threads:
+        thread.join(LONG_S / 2)
+    assert len(refused) == 3
+    assert pool.pids == []
+
+
+def test_what_fails_or_takes_too_long_fails_one_request_only() -> None:
+    pool = ProcessPool(count=1, timeout_s=LONG_S)
+    with pytest.raises(InvalidInput, match=r"it broke \(ValueError"):
+        pool.map(int, ["x"])
+    with pytest.raises(Exception, match="pickle"):
+        pool.map(lambda one: one, [1])
+    assert pool.map(abs, [-1]) == [1]
+    pool._timeout_s = 0.1
+    with pytest.raises(Busy, match=r"it took over 0\.1 s"):
+        pool.map(time.sleep, [LONG_S])
+    assert pool.pids == []
+    pool._timeout_s = LONG_S
+    assert pool.map(abs, [-1]) == [1]
+    pool.close()
