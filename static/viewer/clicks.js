@@ -6,6 +6,8 @@
 (() => {
   "use strict";
 
+  if (parent === window) return;
+
   const CELLS = /\/grid\/(home|others)\/fills$/;
   const BINDINGS = [{ button: "left", modifier: null }];
 
@@ -26,8 +28,7 @@
     postMessage(message, ...rest) {
       const { type, name, instance_index } = message?.message ?? {};
       if (message?.type !== "send" || type !== "SceneNodeClickMessage") return super.postMessage(message, ...rest);
-      const click = { type: "hexapods:click", node: name, instance: instance_index };
-      if (parent !== window) parent.postMessage(click, location.origin);
+      parent.postMessage({ type: "hexapods:click", node: name, instance: instance_index }, location.origin);
       return undefined;
     }
   };

@@ -130,6 +130,10 @@ def test_a_state_is_shown_in_the_scene_and_found_from_it(
         "The ghost in the scene stands in this state: legs 1+4 home, legs 2+5 home, legs 3+6 home"
     )
     view.wait_for_function(HAS_NODE, arg=f"{GHOST}/0")
+    grid.hover(position={"x": 3, "y": 40})
+    expect(note).to_contain_text("stands in the chosen state")
+    note.hover()
+    expect(panel.locator(".heat-state")).to_contain_text("legs 3+6 home")
     page.keyboard.press("ArrowDown")
     page.keyboard.press("Enter")
     expect(note).to_contain_text("legs 3+6 front left")

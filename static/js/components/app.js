@@ -128,7 +128,7 @@ function StepsPanel() {
   const panel = useRef(/** @type {HTMLElement | null} */ (null));
   const isOpen = stepsAreOpen.value;
   useEffect(() => effect(() => {
-    if (!clickedCell.value || isPresenting.peek()) return;
+    if (!clickedCell.value) return;
     stepsAreOpen.value = true;
     panel.current?.scrollIntoView({ block: "start" });
   }), []);

@@ -30,7 +30,7 @@ export function Stage() {
   useEffect(() => {
     const onMessage = ({ origin, source, data }) => {
       if (origin !== location.origin || source !== frame.current?.contentWindow) return;
-      if (data?.type === "hexapods:click") {
+      if (data?.type === "hexapods:click" && !isPresenting.peek()) {
         clickedCell.value = { node: data.node, instance: data.instance, run_id: scene.peek()?.run_id ?? null };
       }
       if (data?.type !== "hexapods:status") return;

@@ -70,7 +70,7 @@ export function Heatmap({ shown, cells, move, chosen, onChoose, onGiveUp }) {
       <${ChosenStateNote} chosen=${chosen} grid=${shown} isRead=${place.row === held?.row} onGiveUp=${giveUp} />
       <${Columns} shown=${shown} />
       <${Grid} shown=${shown} last=${last} place=${place} words=${words} marked=${marked} column=${column}
-        held=${held} isFromScene=${chosen?.from === "scene"} onPlace=${setRead} onChoose=${choose}
+        chosen=${chosen} held=${held} onPlace=${setRead} onChoose=${choose}
         isChosen=${(read ?? held) !== null} />
       <${Key} shown=${shown} />
     </div>
@@ -88,7 +88,7 @@ function rowOf(cells, shown) {
  * The cells, with frames around the state that is looked at, the move made there, the cell that is read, and the state
  * that was chosen.
  */
-function Grid({ shown, last, place, words, onPlace, onChoose, isChosen, held, isFromScene, marked, column }) {
+function Grid({ shown, last, place, words, onPlace, onChoose, isChosen, chosen, held, marked, column }) {
   const scroller = useRef(/** @type {HTMLElement | null} */ (null));
   useLayoutEffect(() => {
     if (marked !== null && !isChosen) scrollTo(scroller.current, marked);
@@ -97,13 +97,13 @@ function Grid({ shown, last, place, words, onPlace, onChoose, isChosen, held, is
   useLayoutEffect(() => {
     if (heldRow === null) return;
     scrollTo(scroller.current, heldRow);
-    if (isFromScene) scroller.current?.closest(".heat")?.scrollIntoView({ block: "nearest" });
-  }, [heldRow, held?.column, isFromScene]);
+    if (chosen?.from === "scene") scroller.current?.closest(".heat")?.scrollIntoView({ block: "nearest" });
+  }, [heldRow, held?.column, chosen?.from]);
   const onKeyDown = (event) => {
     if (event.key === "Enter") onChoose(place);
     const next = placeByKey(event, place, last);
     // The heatmap around it gives up what was chosen.
-    if (next === undefined || (next === null && held)) return;
+    if (next === undefined || (next === null && chosen)) return;
     event.preventDefault();
     event.stopPropagation();
     onPlace(next);
@@ -116,7 +116,7 @@ function Grid({ shown, last, place, words, onPlace, onChoose, isChosen, held, is
       <div class="heat-body" role="grid" tabindex="0" aria-label=${label}
         aria-rowcount=${shown.states} aria-colcount=${last.column + 1} aria-activedescendant=${idOf(place)}
         style=${{ height: `${ROW_PX * (last.row + 1)}px` }} onKeyDown=${onKeyDown} onBlur=${() => onPlace(null)}
-        ...${pointerHandlers(last, onPlace, onChoose)}>
+        ...${pointerHandlers(last, onPlace, onChoose, held !== null)}>
         <${Cells} shown=${shown} />
         ${marked !== null && html`<${Frame} name="heat-row" row=${marked} last=${last} />`}
         ${held && heldRow !== marked && html`<${Frame} name="heat-chosen" row=${held.row} last=${last} />`}
@@ -143,7 +143,7 @@ function placeByKey({ key, ctrlKey, altKey, metaKey }, place, last) {
   return { row: clamped(next.row, last.row), column: clamped(next.column, last.column) };
 }
 
-function pointerHandlers(last, onPlace, onChoose) {
+function pointerHandlers(last, onPlace, onChoose, isHeld) {
   const placeAt = ({ currentTarget, clientX, clientY }) => {
     const { left, top, width, height } = currentTarget.getBoundingClientRect();
     return width > 0 && height > 0 ? {
@@ -161,7 +161,7 @@ function pointerHandlers(last, onPlace, onChoose) {
   };
   const leave = ({ pointerType, currentTarget }) => {
     // A finger that is lifted leaves the cell until another is touched.
-    if (pointerType === "mouse" && document.activeElement !== currentTarget) onPlace(null);
+    if (pointerType === "mouse" && (isHeld || document.activeElement !== currentTarget)) onPlace(null);
   };
   return { onPointerMove: read, onPointerDown: read, onPointerLeave: leave, onClick: choose };
 }
