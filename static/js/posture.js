@@ -2,18 +2,18 @@
 // in the 3D view; one on a foot grid in the 3D view chooses the present state and that move.
 import { batch, computed, effect, signal } from "@preact/signals";
 import { getReplayFrames } from "./api.js";
+import { clickedCell, drawHere } from "./page.js";
 import { ownRunId, plan } from "./replay.js";
 import { decode } from "./replay-frames.js";
 import { clock, conditionsShown } from "./selectors.js";
 import { chosenLane, explanation, followStage, keepAnswer, stageMoment } from "./steps.js";
 import { scene } from "./store.js";
-import { clickedCell, drawHere } from "./view-3d.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Frames, Message } from "./replay-frames.js" */
 /** @import { Reply } from "./steps.js" */
 /** @import { FootCells, Move } from "./types.js" */
-/** @import { Click } from "./view-3d.js" */
+/** @import { Click } from "./page.js" */
 
 /**
  * @typedef {object} ChosenState

@@ -4,10 +4,10 @@ import { afterEach, beforeEach, test } from "node:test";
 import {
   chosenState, chooseState, followChosenState, giveUpState, moveAt, whyNoGhost,
 } from "../../static/js/posture.js";
+import { clickedCell, drawHere } from "../../static/js/page.js";
 import { ownRunId } from "../../static/js/replay.js";
 import { chosenLane, chosenMoment } from "../../static/js/steps.js";
 import { applyEvent, options } from "../../static/js/store.js";
-import { clickedCell, drawHere } from "../../static/js/view-3d.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 /** @import { Message } from "../../static/js/replay-frames.js" */

@@ -3,15 +3,14 @@ import { effect, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { primaryAction, runPrimaryAction, togglePause } from "../actions.js";
 import {
-  closeLesson, helpIsOpen, isNarrow, isPresenting, leavePresenter, lesson, nextTheme, openLesson, place, present,
-  setShortcuts, shortcuts, theme, view,
+  clickedCell, closeLesson, helpIsOpen, isNarrow, isPresenting, leavePresenter, lesson, nextTheme, openLesson,
+  place, present, setShortcuts, shortcuts, theme, view,
 } from "../page.js";
 import { announcement } from "../race.js";
 import { ownRunId, stepReplay } from "../replay.js";
 import { isOperator } from "../selectors.js";
 import { share, toastMessage } from "../share.js";
 import { connection, isLockedOut, options, setEntry, viewers } from "../store.js";
-import { clickedCell } from "../view-3d.js";
 import { Controls } from "./controls.js";
 import { html, Icon } from "./elements.js";
 import { LazyPanel } from "./lazy.js";

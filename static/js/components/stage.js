@@ -3,13 +3,12 @@ import { computed, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { form } from "../form.js";
 import { metres, sentence, times, whole } from "../format.js";
-import { isPresenting, shownTheme, view } from "../page.js";
+import { clickedCell, drawHere, isPresenting, shownTheme, view } from "../page.js";
 import { standings } from "../race.js";
 import { closeReplay, drawIn, ghostId, isBuffering, ownRunId, replayProblem } from "../replay.js";
 import { conditionsShown, playbackName, raceScene } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { connection, runs, scene, stage } from "../store.js";
-import { clickedCell, drawHere } from "../view-3d.js";
 import { html } from "./elements.js";
 import { Transport } from "./transport.js";
 
