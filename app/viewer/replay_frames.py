@@ -11,11 +11,13 @@ import gzip
 import struct
 import threading
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import msgspec
 
 from app.cache import BytesCache
+from app.jobs.stopping import Stopping
 from app.runs.clocks import Clock
 from app.stage.playback import FRAMES_PER_S, SEGMENT_FRAMES, Replay, Replays
 from app.stage.stage_frame import StageFrame
@@ -44,11 +46,13 @@ class ReplayFrames:
 
     Args:
         replays: makes the replays.
+        stopping: whether the server stops, which encodes no more then.
     """
 
-    def __init__(self, replays: Replays) -> None:
+    def __init__(self, replays: Replays, stopping: Stopping | None = None) -> None:
         self._replays = replays
-        self._encoding = threading.Lock()
+        self._stopping = stopping or Stopping()
+        self._lock = threading.Lock()
         self._segments = BytesCache(_CACHE_BYTES)
 
     def plan(self, run_id: str, clock: Clock, ghost_id: str | None = None) -> dict[str, Any]:
@@ -67,9 +71,10 @@ class ReplayFrames:
 
         Raises:
             NotFound, InvalidInput, Conflict: see `Replays.get`.
+            Busy: if the server stops, as in the methods below.
         """
         replay = self._replays.get(run_id, "paper", ghost_id)
-        with self._encoding:
+        with self._encoding():
             return _encode(_frames(replay, ()), lifecycles=LIFECYCLES, world=WORLD)
 
     def moment(
@@ -81,7 +86,7 @@ class ReplayFrames:
             NotFound, InvalidInput, Conflict: see `Replays.get`.
         """
         replay = self._replays.get(run_id, clock, ghost_id)
-        with self._encoding:
+        with self._encoding():
             return _encode(_after_scene(replay, [time_s]))
 
     def segment(
@@ -105,7 +110,7 @@ class ReplayFrames:
         if (kept := self._segments.get(key)) is not None:
             return kept
         times_s = replay.segment_times_s(level, number)
-        with self._encoding:
+        with self._encoding():
             # Another request for it may have been encoded while this one waited.
             if (kept := self._segments.get(key)) is not None:
                 return kept
@@ -113,6 +118,12 @@ class ReplayFrames:
             if replay.is_complete or len(times_s) == SEGMENT_FRAMES:
                 self._segments.put(key, encoded)
         return encoded
+
+    @contextmanager
+    def _encoding(self) -> Iterator[None]:
+        with self._lock:
+            self._stopping.check()
+            yield
 
 
 def _after_scene(replay: Replay, times_s: Sequence[float]) -> Iterator[tuple[Recorded, Any]]:
