@@ -58,7 +58,11 @@ def mcap_log(
     import_extra("foxglove.messages", MCAP_EXTRA, "an MCAP file")
     import_extra("foxglove.channels", MCAP_EXTRA, "an MCAP file")
     file = tempfile.TemporaryFile()  # noqa: SIM115 - closed when all was read
-    _write(foxglove, walks, clock, file, stopping or Stopping())
+    try:
+        _write(foxglove, walks, clock, file, stopping or Stopping())
+    except BaseException:
+        file.close()
+        raise
     return _chunks(file)
 
 
