@@ -43,6 +43,7 @@ from app.api.problem_pages import ProblemPages
 from app.api.rate_limit import RateLimit
 from app.api.security_headers import SecurityHeaders
 from app.api.starts import start_routes
+from app.api.unfinished import Unfinished
 from app.api.wellformed import WellFormed
 from app.domain.errors import HexapodError
 from app.events import logs
@@ -150,6 +151,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     sessions = None if settings.token is None else Sessions(store.sessions, settings.token)
     app.add_middleware(TokenGuard, settings=settings, sessions=sessions)
     app.add_middleware(HostGuard, settings=settings)
+    app.add_middleware(Unfinished)
     app.add_middleware(ProblemPages)
     app.add_middleware(WellFormed)
     app.add_middleware(SecurityHeaders)
