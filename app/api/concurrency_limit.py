@@ -13,7 +13,7 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.auth import Role
-from app.api.rate_limit import is_spectators_what_if
+from app.api.rate_limit import is_encoding, is_spectators_what_if
 from app.limits.addresses import client_of
 
 SLOTS: dict[Role, int] = {"operator": 16, "spectator": 2}
@@ -21,6 +21,9 @@ SLOTS: dict[Role, int] = {"operator": 16, "spectator": 2}
 WHAT_IF_SLOTS = 1
 """Slots of spectators' what-ifs, each of which takes a second of all cores: they do not delay what
 other spectators read, and an operator's what-if waits for one of them at most."""
+ENCODING_SLOTS: dict[Role, int] = {"operator": 2, "spectator": 1}
+"""Slots of files of long runs, which take up to minutes: they delay neither what a spectator reads
+nor what an operator commands."""
 _EVENT_STREAM = "text/event-stream"
 T = TypeVar("T")
 
@@ -76,6 +79,7 @@ class ConcurrencyLimit:
         """Wrap an app; to be installed inside `TokenGuard`, which sets the role."""
         self._app = app
         self._semaphores = {role: RoundRobinSemaphore(size) for role, size in SLOTS.items()}
+        self._encodings = {role: RoundRobinSemaphore(n) for role, n in ENCODING_SLOTS.items()}
         self._what_ifs = RoundRobinSemaphore(WHAT_IF_SLOTS)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -83,14 +87,18 @@ class ConcurrencyLimit:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        is_what_if = is_spectators_what_if(scope)
-        semaphore = self._what_ifs if is_what_if else self._semaphores[scope["state"]["role"]]
-        slot = _Slot(semaphore, client_of(scope))
+        slot = _Slot(self._semaphore_of(scope), client_of(scope))
         await slot.acquire()
         try:
             await self._app(scope, slot.wrap_receive(receive), slot.wrap_send(send))
         finally:
             slot.close()
+
+    def _semaphore_of(self, scope: Scope) -> RoundRobinSemaphore:
+        if is_spectators_what_if(scope):
+            return self._what_ifs
+        semaphores = self._encodings if is_encoding(scope) else self._semaphores
+        return semaphores[scope["state"]["role"]]
 
 
 class _Slot:
