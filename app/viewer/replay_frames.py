@@ -105,10 +105,11 @@ class ReplayFrames:
             NotFound: if there is no such run, or the segment is past its end.
             InvalidInput, Conflict: see `Replays.get`.
         """
+        version = self._replays.version(run_id, ghost_id)
+        if (kept := self._segments.get((version, clock, level, number))) is not None:
+            return kept
         replay = self._replays.get(run_id, clock, ghost_id)
         key = (replay.version, clock, level, number)
-        if (kept := self._segments.get(key)) is not None:
-            return kept
         times_s = replay.segment_times_s(level, number)
         with self._encoding():
             # Another request for it may have been encoded while this one waited.
