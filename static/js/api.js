@@ -265,9 +265,10 @@ const exportOf = ({ id }, rest) => new URL(`runs/${encodeURIComponent(id)}/${res
 /**
  * The files of a run that can be downloaded: [label, address].
  * @param {RunKey & { started_at?: string | null }} run
+ * @param {boolean} [hasTable] whether a training has stored a table: not one that was interrupted, or failed
  * @returns {[string, string][]}
  */
-export function downloads(run) {
+export function downloads(run, hasTable = true) {
   if (run.kind === "experiment") {
     return [
       ["Every trial (CSV)", addressOf(run, "trials?format=csv")],
@@ -281,12 +282,12 @@ export function downloads(run) {
     ["Offline replay (HTML)", exportOf(run, "page")],
   ];
   if (run.kind === "race") return [["Recording", addressOf(run, "recording")], ...walk];
-  return [
-    ["Curve (CSV)", addressOf(run, "curve?format=csv")],
+  /** @type {[string, string][]} */
+  const table = hasTable ? [
     ["Q-table (CSV)", addressOf(run, "q-table?format=csv")],
     ["Q-table (npz)", addressOf(run, "q-table?format=npz")],
-    ...walk,
-  ];
+  ] : [];
+  return [["Curve (CSV)", addressOf(run, "curve?format=csv")], ...table, ...walk];
 }
 
 /**

@@ -32,6 +32,8 @@ test("addresses of files are escaped part by part", () => {
     ["Recording", "Joints and feet (CSV)", "Offline replay (HTML)"]);
   assert.equal(downloads({ ...run, kind: "training" }).length, 5);
   assert.equal(downloads({ ...run, kind: "training", started_at: null }).length, 3);
+  assert.deepEqual(downloads({ ...run, kind: "training" }, false).map(([label]) => label),
+    ["Curve (CSV)", "Joints and feet (CSV)", "Offline replay (HTML)"]);
 });
 
 test("names of the vocabulary, unless the server has a title", () => {
