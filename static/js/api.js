@@ -108,13 +108,7 @@ const pathOf = ({ kind, id }) => `${collection(kind ?? "training")}/${encodeURIC
 /** @returns {Promise<Options>} */
 export const getOptions = () => call("GET", "options");
 
-/** @type {(run: RunKey) => Promise<Run>} */
-export const getRun = (run) => call("GET", pathOf(run));
-
-/**
- * A run of which only the id is known.
- * @type {(id: string) => Promise<Run>}
- */
+/** @type {(id: string) => Promise<Run>} */
 export const getAnyRun = (id) => call("GET", `runs/${encodeURIComponent(id)}`);
 
 /**
