@@ -43,6 +43,7 @@ from app.api.problem_pages import ProblemPages
 from app.api.rate_limit import RateLimit
 from app.api.security_headers import SecurityHeaders
 from app.api.starts import start_routes
+from app.api.unfinished import Unfinished
 from app.api.wellformed import WellFormed
 from app.domain.errors import HexapodError
 from app.events import logs
@@ -51,6 +52,7 @@ from app.explanations.service import Explanations
 from app.exports.video_renderer import VideoRenderer
 from app.jobs.jobs import Jobs
 from app.jobs.process_pool import ProcessPool
+from app.jobs.stopping import Stopping
 from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
 from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
@@ -92,12 +94,14 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         store: store of the runs, which must stay open until the application has stopped.
     """
     recordings, bus = Recordings(store), RunMetrics()
+    stopping = Stopping()
     stage_service = Stage(store, recordings, bus)
     viewer = ViewerService(
         stage_service,
         bus,
         max_viewers=settings.max_viewers,
         max_per_address=settings.viewers_per_address,
+        stopping=stopping,
     )
     jobs = Jobs(
         store, recordings, bus, on_queued=stage_service.offer, niceness=settings.job_niceness
@@ -112,7 +116,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         redoc_url=None,
     )
     app.state.viewer = viewer
-    replays = ReplayFrames(Replays(store, recordings))
+    replays = ReplayFrames(Replays(store, recordings), stopping)
     app.state.services = Services(
         settings=settings,
         store=store,
@@ -131,6 +135,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         what_if=WhatIf(ProcessPool()),
         explanations=Explanations(store, recordings),
         estimates=Estimates(ProcessPool(count=1), jobs.cores),
+        stopping=stopping,
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
     app.state.metrics = metrics.registry_of(app.state.services)
@@ -146,6 +151,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     sessions = None if settings.token is None else Sessions(store.sessions, settings.token)
     app.add_middleware(TokenGuard, settings=settings, sessions=sessions)
     app.add_middleware(HostGuard, settings=settings)
+    app.add_middleware(Unfinished)
     app.add_middleware(ProblemPages)
     app.add_middleware(WellFormed)
     app.add_middleware(SecurityHeaders)
@@ -190,12 +196,13 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
             yield
         finally:
             services.bus.close()
-            await _close_pools(services)
+            await _end_long_requests(services)
             await asyncio.to_thread(services.jobs.close)
 
 
-async def _close_pools(services: Services) -> None:
-    """Kill the processes that requests wait for, which are answered then."""
+async def _end_long_requests(services: Services) -> None:
+    """Answer what computes in threads, or waits for processes, which are killed."""
+    services.stopping.set()
     for user in (services.what_if, services.estimates, services.videos):
         await asyncio.to_thread(user.close)
 
@@ -277,11 +284,11 @@ class _Server(uvicorn.Server):
         return await super().on_tick(counter) or self._lost.is_set()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        # uvicorn waits for all connections: an event stream would not end by itself, and a film
-        # not in time.
+        # uvicorn waits for all connections: an event stream would not end by itself, and a film or
+        # an export not in time.
         self._app.state.services.bus.close()
         await self._app.state.viewer.hub.stop()
-        await _close_pools(self._app.state.services)
+        await _end_long_requests(self._app.state.services)
         await super().shutdown(sockets)
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:

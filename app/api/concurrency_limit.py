@@ -13,7 +13,7 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.auth import PUBLIC_PATHS, Role
-from app.api.rate_limit import is_spectators_what_if
+from app.api.rate_limit import is_encoding, is_spectators_what_if
 from app.limits.addresses import client_of
 
 SLOTS: dict[Role, int] = {"operator": 16, "spectator": 2}
@@ -21,6 +21,9 @@ SLOTS: dict[Role, int] = {"operator": 16, "spectator": 2}
 WHAT_IF_SLOTS = 1
 """Slots of spectators' what-ifs, each of which takes a second of all cores: they do not delay what
 other spectators read, and an operator's what-if waits for one of them at most."""
+ENCODING_SLOTS: dict[Role, int] = {"operator": 2, "spectator": 1}
+"""Slots of files of long runs, which take up to minutes: they delay neither what a spectator reads
+nor what an operator commands."""
 PROBE_SLOTS = 2
 """Slots of liveness and readiness probes, which take milliseconds: a server with long requests in
 progress is not taken for a dead one."""
@@ -79,6 +82,7 @@ class ConcurrencyLimit:
         """Wrap an app; to be installed inside `TokenGuard`, which sets the role."""
         self._app = app
         self._semaphores = {role: RoundRobinSemaphore(size) for role, size in SLOTS.items()}
+        self._encodings = {role: RoundRobinSemaphore(n) for role, n in ENCODING_SLOTS.items()}
         self._what_ifs = RoundRobinSemaphore(WHAT_IF_SLOTS)
         self._probes = RoundRobinSemaphore(PROBE_SLOTS)
 
@@ -99,7 +103,8 @@ class ConcurrencyLimit:
             return self._probes
         if is_spectators_what_if(scope):
             return self._what_ifs
-        return self._semaphores[scope["state"]["role"]]
+        semaphores = self._encodings if is_encoding(scope) else self._semaphores
+        return semaphores[scope["state"]["role"]]
 
 
 class _Slot:

@@ -15,6 +15,7 @@ from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
 from app.exports.video_renderer import VideoRenderer
 from app.jobs.jobs import Jobs
+from app.jobs.stopping import Stopping
 from app.limits.client_slots import ClientSlots
 from app.limits.memory_budget import MemoryBudget
 from app.runs.clocks import Clock
@@ -86,6 +87,7 @@ class Services:
         replays: encodes frames of runs for pages that play them by themselves.
         replay_page: builds pages that need no server.
         videos: renders films.
+        stopping: ends what takes long in threads when the server stops.
         listeners: slots of event streams.
         exports: memory budget of exports that clients are still reading.
         gaits: gait analyses, which all pages that watch a run request at once.
@@ -108,6 +110,7 @@ class Services:
     what_if: WhatIf
     explanations: Explanations
     estimates: Estimates
+    stopping: Stopping
     listeners: ClientSlots["Listener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
     gaits: BytesCache = field(default_factory=lambda: BytesCache(8 << 20))

@@ -109,7 +109,7 @@ def get_mcap(services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper"
     It needs `racing-hexapods[mcap]` on the server.
     """
     run = services.store.get(run_id)
-    chunks = mcap_log(_walks(services, run), clock)
+    chunks = mcap_log(_walks(services, run), clock, services.stopping)
     return attachment(chunks, MCAP_TYPE, f"{run.kind}-{run.id}.mcap")
 
 

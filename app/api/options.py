@@ -36,6 +36,7 @@ from app.experiments.config import (
 )
 from app.experiments.config import as_json as experiment_as_json
 from app.jobs.submissions import MAX_SETTINGS, TITLES
+from app.runs import best_known
 from app.runs.config import (
     RACE_STEPS,
     TrainingConfig,
@@ -140,6 +141,8 @@ _HELP = {
     "notes": "What is worth remembering about a run.",
     "import_bytes": "How large a file may be that is imported.",
     "archive_runs": "How many runs one archive holds.",
+    "best_known": best_known.DEFINITION,
+    "best_known_where": best_known.COVERAGE,
     "gait_window_s": "How much of a walk is analysed at once, in seconds of robot time.",
     "agent": "Which agent learns.",
     "seeds": "How often each setting is tried, each time with other random numbers.",

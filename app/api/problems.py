@@ -80,13 +80,14 @@ def problem(
 
 def install(app: FastAPI) -> None:
     """Register the exception handlers of an app."""
-    app.add_exception_handler(HexapodError, _hexapod_error)
+    app.add_exception_handler(HexapodError, hexapod_error)
     app.add_exception_handler(RequestValidationError, _validation_error)
     app.add_exception_handler(HTTPException, _http_error)
     app.add_exception_handler(Exception, _unexpected)
 
 
-async def _hexapod_error(request: Request, error: Exception) -> Response:
+async def hexapod_error(request: Request, error: Exception) -> Response:
+    """Return the problem that an error of the product is answered with."""
     message = str(error)
     sentence = message[:1].upper() + message[1:] + ("" if message.endswith((".", "!")) else ".")
     status = next((code for kind, code in STATUSES.items() if isinstance(error, kind)), None)

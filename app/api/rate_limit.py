@@ -15,7 +15,7 @@ from app.settings import PREFIX, Settings
 _STARTS_NOTHING = re.compile(r"/api/v1/(what-if|.*/(estimate|stop|pause|disturbances))")
 """Every other POST counts, so that a new route is limited unless it is added here."""
 _RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")
-_ENCODED = re.compile(r"/api/v1/runs/[^/]+/(mcap|page|video)")
+_ENCODED = re.compile(r"/api/v1/runs/[^/]+/(mcap|page)")
 WHAT_IF = "/api/v1/what-if"
 """Path of what-ifs: its POST changes nothing, so spectators may use it, too."""
 
@@ -86,6 +86,13 @@ def _starts_work(scope: Scope) -> bool:
         return False
     if scope["method"] == "POST" and _STARTS_NOTHING.fullmatch(scope["path"]) is None:
         return True
+    return is_encoding(scope)
+
+
+def is_encoding(scope: Scope) -> bool:
+    """Whether a request asks for a file that takes seconds to minutes to encode."""
+    if scope["type"] != "http":
+        return False
     if _ENCODED.fullmatch(scope["path"]) is not None:
         return True
     if _RECORDING.fullmatch(scope["path"]) is None:

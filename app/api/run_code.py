@@ -27,6 +27,9 @@ from app.storage.database.store import RunStore
 from app.storage.errors import Damaged, NotFound
 from app.storage.run import Run, world_of
 
+MAX_CONTINUED = 100
+"""Trainings that continue each other and are practised again; of an earlier one the table is
+downloaded."""
 _WALK = {one.name: one.default for one in fields(WalkingProblem)}
 _NOT_IN_COMMANDS = ("pace", "agent", "settings", "seed", *_WALK)
 
@@ -72,22 +75,38 @@ class _Practices:
 
     def add_id(self, training_id: str) -> None:
         """Add a training whose table is needed; what cannot be practised again, as a file."""
-        try:
-            run = self._store.get(training_id)
-        except (NotFound, Damaged):
-            run = None
-        # An imported table was never practised here.
-        if run is None or run.state != "finished" or run.started_at is None:
+        run = self._practised(training_id)
+        if run is None:
             self._add_file(training_id)
         else:
             self.add(run)
 
+    def _practised(self, training_id: str) -> Run | None:
+        """Return a training that can be practised again; None if it cannot."""
+        try:
+            run = self._store.get(training_id)
+        except (NotFound, Damaged):
+            return None
+        # An imported table was never practised here.
+        is_whole = run.state == "finished" and run.started_at is not None
+        return run if is_whole and isinstance(run.config, TrainingConfig) else None
+
     def add(self, run: Run) -> None:
-        """Add a training, after the one that it continues."""
+        """Add a training, after those that it continues."""
+        runs = {run.id: run}
+        while (before := run.continued_from) is not None and before not in self._ids:
+            earlier = self._practised(before)
+            # An imported run may say that it continues itself.
+            if earlier is None or before in runs or len(runs) >= MAX_CONTINUED:
+                self._add_file(before)
+                break
+            runs[before] = run = earlier
+        for one in reversed(runs.values()):
+            self._add(one)
+
+    def _add(self, run: Run) -> None:
         if run.id in self._ids or not isinstance(run.config, TrainingConfig):
             return
-        if run.continued_from is not None:
-            self.add_id(run.continued_from)
         self._ids.append(run.id)
         rates = [c for c in run.changes if set(c) - {"step", "pace", "disturbance"}]
         if rates:

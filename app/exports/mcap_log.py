@@ -18,6 +18,7 @@ from app.domain.types import FloatArray
 from app.exports.extras import import_extra
 from app.exports.recorded_lanes import RecordedLane, RecordedWalks
 from app.exports.trajectory import joint_names
+from app.jobs.stopping import Stopping
 from app.physics.mjcf import compile_visual_model
 from app.runs.clocks import Clock
 
@@ -39,21 +40,29 @@ class _Frame(NamedTuple):
     torque_nm: FloatArray | None
 
 
-def mcap_log(walks: RecordedWalks, clock: Clock) -> Iterator[bytes]:
+def mcap_log(
+    walks: RecordedWalks, clock: Clock, stopping: Stopping | None = None
+) -> Iterator[bytes]:
     """Yield an MCAP file in chunks; time 0 of the run is the epoch.
 
     Args:
         walks: the recorded walks.
         clock: times a race.
+        stopping: whether the server stops, which writes no more then.
 
     Raises:
         MissingExtra: at the call, if the Foxglove SDK is not installed.
+        Busy: at the call, if the server stops.
     """
     foxglove = import_extra("foxglove", MCAP_EXTRA, "an MCAP file")
     import_extra("foxglove.messages", MCAP_EXTRA, "an MCAP file")
     import_extra("foxglove.channels", MCAP_EXTRA, "an MCAP file")
     file = tempfile.TemporaryFile()  # noqa: SIM115 - closed when all was read
-    _write(foxglove, walks, clock, file)
+    try:
+        _write(foxglove, walks, clock, file, stopping or Stopping())
+    except BaseException:
+        file.close()
+        raise
     return _chunks(file)
 
 
@@ -64,7 +73,9 @@ def _chunks(file: Any) -> Iterator[bytes]:
             yield chunk
 
 
-def _write(foxglove: Any, walks: RecordedWalks, clock: Clock, file: Any) -> None:
+def _write(
+    foxglove: Any, walks: RecordedWalks, clock: Clock, file: Any, stopping: Stopping
+) -> None:
     step_s, robot = walks.problem.robot.step_s, walks.problem.built_robot
     names, links = joint_names(robot), _Links(compile_visual_model(robot))
     messages, context = foxglove.messages, foxglove.Context()
@@ -78,6 +89,7 @@ def _write(foxglove: Any, walks: RecordedWalks, clock: Clock, file: Any) -> None
         writer.write_metadata("agents", agents)
         tracks = [_frames(lane, n, step_s, clock) for n, lane in enumerate(walks.lanes)]
         for frame in heapq.merge(*tracks, key=lambda one: one.time_s):
+            stopping.check()
             time = _timestamp(messages, frame.time_s)
             nanoseconds = time.sec * 1_000_000_000 + time.nsec
             efforts = [None] * len(names)

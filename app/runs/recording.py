@@ -19,6 +19,8 @@ from app.domain.types import Action, FloatArray
 from app.runs.records import ActionValues, Evaluated, LaneStep, StepTaken
 
 Arrays = dict[str, NDArray[Any]]
+_STEP_OVERHEAD_BYTES = 1000
+"""Approximate size of a step in memory besides its motion."""
 _FUTURES = ("future_actions", "future_values", "future_counts")
 
 
@@ -49,6 +51,11 @@ class LaneRecording:
     def distance_m(self) -> float:
         """Distance covered so far [m]."""
         return self.steps[-1].distance_m if self.steps else 0.0
+
+    @property
+    def size(self) -> int:
+        """Approximate size in memory [bytes]."""
+        return sum(_size_of(step.motion, step.knowledge) for step in self.steps)
 
 
 FIRST_STEPS, NEWEST_STEPS = 20, 500
@@ -87,6 +94,26 @@ class PracticeRecording:
     def evaluations(self) -> list[Evaluated]:
         """All evaluations so far, in order."""
         return list(self._evaluations)
+
+    def without_evaluation_motions(self) -> "PracticeRecording":
+        """Return a copy that knows of its evaluations only what they reached.
+
+        It takes a fraction of the memory: an evaluation has the motion of 50 steps.
+        """
+        evaluations = [replace(one, motion=None) for one in self.evaluations]
+        return PracticeRecording(self.rest_qpos, self._first[:], self._newest.copy(), evaluations)
+
+    @property
+    def size(self) -> int:
+        """Approximate size in memory [bytes]."""
+        steps = sum(_size_of(step.motion, step.knowledge) for step in self.steps)
+        return steps + sum(_size_of(one.motion) for one in self.evaluations)
+
+
+def _size_of(motion: Motion | None, knowledge: ActionValues | None = None) -> int:
+    values = (knowledge.values, knowledge.visits) if knowledge else ()
+    arrays: tuple[NDArray[Any] | None, ...] = (*(motion or ()), *values)
+    return _STEP_OVERHEAD_BYTES + sum(array.nbytes for array in arrays if array is not None)
 
 
 def pose_at(start: NDArray[np.float32], motion: Motion, time_s: float) -> FloatArray:

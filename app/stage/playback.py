@@ -22,6 +22,7 @@ from app.domain.world import World
 from app.runs.clocks import Clock
 from app.runs.config import TrainingConfig
 from app.runs.race_config import RaceConfig
+from app.runs.recording import LaneRecording, PracticeRecording
 from app.stage.practice_show import PracticeShow
 from app.stage.race_show import RaceShow, original_of
 from app.stage.scene_spec import race_scene, training_scene
@@ -36,14 +37,16 @@ FRAMES_PER_S = 30.0
 SEGMENT_FRAMES = 64
 LOWEST_LEVEL, HIGHEST_LEVEL = -3, 7
 """From 240 frames a second of the run's time to one in 4.3 s."""
-_KEPT_REPLAYS = 4
-"""Number of replays that are kept, few because recordings are large."""
+_KEPT_REPLAYS, _KEPT_BYTES = 64, 50_000_000
+"""Replays that are kept at most, and the size of their recordings; the newest is always kept."""
+_RUNNING_BYTES = _KEPT_BYTES // 8
+"""Size that a replay of a run that is still computed counts as: its recording grows."""
 
 
 def show_of(
     run: Run,
     store: RunStore,
-    recordings: Recordings,
+    recordings: "Recordings | _HeldRecordings",
     clock: Clock,
     *,
     world: Callable[[], World],
@@ -93,12 +96,17 @@ class Replay:
         show: its show.
         ghost: another run of the same kind, complete, whose lanes are shown as ghosts, each at the
             same time of its own; in the end they stand still.
+        held: its recordings; None while the run is computed.
     """
 
     def __init__(
-        self, run: Run, show: RaceShow | PracticeShow, ghost: "Replay | None" = None
+        self,
+        run: Run,
+        show: RaceShow | PracticeShow,
+        ghost: "Replay | None" = None,
+        held: "_HeldRecordings | None" = None,
     ) -> None:
-        self.run, self.show, self.ghost = run, show, ghost
+        self.run, self.show, self.ghost, self._held = run, show, ghost, held
         self.is_complete = run.state not in NOT_ENDED
         """Whether the run will record no more."""
         self._lock = threading.Lock()
@@ -109,6 +117,12 @@ class Replay:
     def version(self) -> str:
         """Identifies what the frames are made from, but for the steps that are still to come."""
         return _version_of(self.run, self.ghost.run if self.ghost else None)
+
+    @property
+    def size(self) -> int:
+        """Approximate size of its recordings in memory [bytes], as far as they were read."""
+        own = _RUNNING_BYTES if self._held is None else self._held.size
+        return own + (self.ghost.size if self.ghost else 0)
 
     @property
     def recorded(self) -> tuple[tuple[float, float], ...]:
@@ -165,6 +179,35 @@ class Replay:
         return replace(frame, spec=self._spec, ghost_lanes=ghosts, shown_speed=1.0)
 
 
+class _HeldRecordings:
+    """Recordings of a run that has ended: read once, and kept as far as they are shown."""
+
+    def __init__(self, recordings: Recordings) -> None:
+        self._recordings = recordings
+        self._training: PracticeRecording | None = None
+        self._sizes: dict[str, int] = {}
+
+    @property
+    def size(self) -> int:
+        """Approximate size in memory [bytes]."""
+        return sum(list(self._sizes.values()))
+
+    def training(self, run_id: str) -> PracticeRecording | None:
+        """Return the recording of the training that is shown; None if there is none."""
+        if self._training is None:
+            recording = self._recordings.training(run_id)
+            if recording is not None:
+                self._training = recording.without_evaluation_motions()
+                self._sizes[run_id] = self._training.size
+        return self._training
+
+    def race(self, run_id: str) -> list[LaneRecording] | None:
+        """See `Recordings.race`; a show asks once, and keeps the lanes."""
+        lanes = self._recordings.race(run_id)
+        self._sizes[run_id] = sum(lane.size for lane in lanes or ())
+        return lanes
+
+
 class Replays:
     """Makes the replays of runs, and keeps the last few. Thread-safe.
 
@@ -177,6 +220,10 @@ class Replays:
         self._store, self._recordings = store, recordings
         self._kept: OrderedDict[tuple[str, Clock, str | None], Replay] = OrderedDict()
         self._lock = threading.Lock()
+
+    def version(self, run_id: str, ghost_id: str | None = None) -> str:
+        """Return the version that a replay would have; raises as `get`, but for a recording."""
+        return _version_of(*self._runs(run_id, ghost_id))
 
     def get(self, run_id: str, clock: Clock, ghost_id: str | None = None) -> Replay:
         """Return the replay of a run, of a race as timed by a clock.
@@ -191,28 +238,41 @@ class Replays:
             InvalidInput: if it is an experiment, or the ghost is the run itself or of another kind.
             Conflict: if it has no recording (yet), or the ghost still runs.
         """
-        run = self._store.get(run_id)
-        ghost = None if ghost_id is None else self._store.get(ghost_id)
-        if ghost is not None:
-            _check_ghost(run, ghost)
+        run, ghost = self._runs(run_id, ghost_id)
         key = (run_id, clock, ghost_id)
         with self._lock:
             replay = self._kept.pop(key, None)
             if replay is None or replay.version != _version_of(run, ghost):
-                beside = Replay(ghost, self._show(ghost, clock)) if ghost else None
-                replay = Replay(run, self._show(run, clock), beside)
+                replay = self._replay(run, clock, self._replay(ghost, clock) if ghost else None)
             self._kept[key] = replay
-            while len(self._kept) > _KEPT_REPLAYS:
+        missing = [one.run for one in (replay, replay.ghost) if one and not one.recorded]
+        with self._lock:
+            # Their size is known once they were read.
+            while len(self._kept) > 1 and self._is_over_capacity():
                 self._kept.popitem(last=False)
-        for one in filter(None, (replay, replay.ghost)):
-            if not one.recorded:
-                kind, state = one.run.kind, one.run.state
-                raise Conflict(f"{kind} {one.run.id} is {state} and has no recording", state)
+        for one in missing:
+            raise Conflict(f"{one.kind} {one.id} is {one.state} and has no recording", one.state)
         return replay
 
-    def _show(self, run: Run, clock: Clock) -> RaceShow | PracticeShow:
+    def _runs(self, run_id: str, ghost_id: str | None) -> tuple[Run, Run | None]:
+        run = self._store.get(run_id)
+        ghost = None if ghost_id is None else self._store.get(ghost_id)
+        if ghost is not None:
+            _check_ghost(run, ghost)
+        return run, ghost
+
+    def _replay(self, run: Run, clock: Clock, ghost: Replay | None = None) -> Replay:
         world = world_of(run)
-        return show_of(run, self._store, self._recordings, clock, world=lambda: world)
+        if run.state in NOT_ENDED:
+            show = show_of(run, self._store, self._recordings, clock, world=lambda: world)
+            return Replay(run, show, ghost)
+        held = _HeldRecordings(self._recordings)
+        show = show_of(run, self._store, held, clock, world=lambda: world)
+        return Replay(run, show, ghost, held)
+
+    def _is_over_capacity(self) -> bool:
+        size = sum(replay.size for replay in self._kept.values())
+        return len(self._kept) > _KEPT_REPLAYS or size > _KEPT_BYTES
 
 
 def _check_ghost(run: Run, ghost: Run) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from app.domain.errors import HexapodError
 from app.domain.world import UNDISTURBED, World
@@ -14,7 +14,6 @@ from app.stage.scene_spec import rest_pose
 from app.stage.show import Mark, RunLabel
 from app.stage.stage_frame import LaneView, Phase, SceneSpec, StageFrame
 from app.storage.database.store import RunStore
-from app.storage.recordings import Recordings
 from app.storage.run import world_of
 
 SPEED, LAST_LANE_SPEED = 2.0, 8.0
@@ -38,7 +37,14 @@ class Original(NamedTuple):
     lanes: Sequence[LaneRecording]
 
 
-def original_of(config: RaceConfig, store: RunStore, recordings: Recordings) -> Original | None:
+class RaceRecordings(Protocol):
+    """The recordings of races that can be read, such as `Recordings`."""
+
+    def race(self, run_id: str) -> Sequence[LaneRecording] | None:
+        """Return the recordings of a race's lanes; None if there are none."""
+
+
+def original_of(config: RaceConfig, store: RunStore, recordings: RaceRecordings) -> Original | None:
     """Return the race from which another branched off; None if there is none, or no longer."""
     branch = config.branch_from
     if branch is None:

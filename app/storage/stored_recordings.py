@@ -6,12 +6,12 @@ import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Iterator
+from operator import attrgetter
 from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
 from app.domain.errors import HexapodError
-from app.domain.simulator import Motion
 from app.runs.recording import (
     Arrays,
     LaneRecording,
@@ -33,12 +33,10 @@ from app.storage.errors import NotFound
 RACE, PRACTICE = "race.npz", "practice.npz"
 EVALUATIONS_PER_FILE, TRANSITIONS_PER_FILE = 20, 50_000
 """Evaluations and logged steps per file: a growing training rewrites only its last file."""
-CACHE_RECORDINGS, CACHE_BYTES = 4, 100_000_000
+CACHE_RECORDINGS, CACHE_BYTES = 16, 50_000_000
 """Capacity of each cache in recordings and in bytes; the newest entry is kept whatever its size."""
 _MISS_TTL_S = 1.0
 """Time for which a cached miss is valid before the store is read again."""
-_STEP_OVERHEAD_BYTES = 1000
-"""Approximate size of a step in memory besides its motion."""
 T = TypeVar("T")
 _logger = logging.getLogger(__name__)
 
@@ -49,10 +47,10 @@ class StoredRecordings:
     def __init__(self, store: RunStore) -> None:
         self._store = store
         self._trainings = _LruCache[PracticeRecording](
-            lambda run_id: _read_training(store, run_id), _size_of_training
+            lambda run_id: _read_training(store, run_id), attrgetter("size")
         )
         self._races = _LruCache[list[LaneRecording]](
-            lambda run_id: _read_race(store, run_id), _size_of_race
+            lambda run_id: _read_race(store, run_id), lambda lanes: sum(one.size for one in lanes)
         )
         self._logs = _LruCache[TransitionLog](
             lambda run_id: _read_transitions(store, run_id), lambda log: BYTES_PER_STEP * len(log)
@@ -217,22 +215,6 @@ def _read_transitions(store: RunStore, run_id: str) -> TransitionLog | None:
 def _read_race(store: RunStore, run_id: str) -> list[LaneRecording] | None:
     arrays = _arrays(store, run_id, RACE)
     return None if arrays is None else race_recording(arrays)
-
-
-def _size_of_training(recording: PracticeRecording) -> int:
-    motions = [step.motion for step in recording.steps]
-    motions += [evaluation.motion for evaluation in recording.evaluations]
-    return sum(_size_of(motion) for motion in motions if motion)
-
-
-def _size_of_race(lanes: list[LaneRecording]) -> int:
-    return sum(
-        _size_of(step.motion) + _STEP_OVERHEAD_BYTES for lane in lanes for step in lane.steps
-    )
-
-
-def _size_of(motion: Motion) -> int:
-    return sum(array.nbytes for array in motion if array is not None)
 
 
 def evaluations_file(number: int) -> str:

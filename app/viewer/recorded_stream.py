@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from app.jobs.stopping import Stopping
 from app.runs.clocks import Clock
 from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
@@ -23,6 +24,8 @@ def recorded_stream(
     name: str = "Race",
     clock: Clock = "paper",
     original: Original | None = None,
+    *,
+    stopping: Stopping | None = None,
 ) -> bytes:
     """Render a race as the stage shows it, photo finish included, with the camera on the leader.
 
@@ -32,15 +35,20 @@ def recorded_stream(
         name: name of the race.
         clock: clock that times it.
         original: the race from which it branched off, if it is known.
+        stopping: whether the server stops, which renders no more then.
 
     Returns:
         the file in the format of the installed viser, whose version is part of the file.
+
+    Raises:
+        Busy: if the server stops.
     """
     spec = race_scene(config)
     show = RaceShow(spec, config.steps, clock, lambda: lanes, world=config.world, original=original)
     show.advance(0.0, None, run_ended=True)
     duration_s = show.duration_s or 0.0
     speed = duration_s / MAX_LENGTH_S if duration_s > 2 * MAX_LENGTH_S else None
+    stopping = stopping or Stopping()
     frame_s, run_label = 1 / FRAMES_PER_S, RunLabel(None, name)
     with in_process_viser() as server:
         scene = StageScene(server)
@@ -48,6 +56,7 @@ def recorded_stream(
         serializer = server.get_scene_serializer()
         now = 0.0
         while not show.ended:
+            stopping.check()
             serializer.insert_sleep(frame_s)
             now += frame_s
             show.advance(frame_s, speed, run_ended=True)

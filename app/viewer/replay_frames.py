@@ -11,6 +11,7 @@ import gzip
 import struct
 import threading
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
@@ -19,6 +20,7 @@ import msgspec
 from app.cache import BytesCache
 from app.domain.errors import InvalidInput
 from app.domain.types import Cells
+from app.jobs.stopping import Stopping
 from app.runs.clocks import Clock
 from app.stage.playback import FRAMES_PER_S, SEGMENT_FRAMES, Replay, Replays
 from app.stage.stage_frame import StageFrame
@@ -48,11 +50,13 @@ class ReplayFrames:
 
     Args:
         replays: makes the replays.
+        stopping: whether the server stops, which encodes no more then.
     """
 
-    def __init__(self, replays: Replays) -> None:
+    def __init__(self, replays: Replays, stopping: Stopping | None = None) -> None:
         self._replays = replays
-        self._encoding = threading.Lock()
+        self._stopping = stopping or Stopping()
+        self._lock = threading.Lock()
         self._segments = BytesCache(_CACHE_BYTES)
 
     def plan(self, run_id: str, clock: Clock, ghost_id: str | None = None) -> dict[str, Any]:
@@ -71,9 +75,10 @@ class ReplayFrames:
 
         Raises:
             NotFound, InvalidInput, Conflict: see `Replays.get`.
+            Busy: if the server stops, as in the methods below.
         """
         replay = self._replays.get(run_id, "paper", ghost_id)
-        with self._encoding:
+        with self._encoding():
             return _encode(_frames(replay, ()), lifecycles=LIFECYCLES, world=WORLD)
 
     def moment(
@@ -85,7 +90,7 @@ class ReplayFrames:
             NotFound, InvalidInput, Conflict: see `Replays.get`.
         """
         replay = self._replays.get(run_id, clock, ghost_id)
-        with self._encoding:
+        with self._encoding():
             return _encode(_after_scene(replay, [time_s]))
 
     def posture(self, run_id: str, clock: Clock, time_s: float, lane: int, cells: Cells) -> bytes:
@@ -110,7 +115,7 @@ class ReplayFrames:
             raise InvalidInput(f"lane must be from 0 to {len(frame.lanes) - 1}, not {lane}")
         spec = replace(frame.spec, lane_specs=frame.spec.lane_specs[lane : lane + 1], ghosts=None)
         root = f"{grid_root(lane)}/posture"
-        with self._encoding, in_process_viser() as server, recorder(server) as recording:
+        with self._encoding(), in_process_viser() as server, recorder(server) as recording:
             draw_posture(server, root, spec, cells, frame.lanes[lane].conditions)
             messages, arrays = recording.take()
             own = [
@@ -134,12 +139,13 @@ class ReplayFrames:
             NotFound: if there is no such run, or the segment is past its end.
             InvalidInput, Conflict: see `Replays.get`.
         """
+        version = self._replays.version(run_id, ghost_id)
+        if (kept := self._segments.get((version, clock, level, number))) is not None:
+            return kept
         replay = self._replays.get(run_id, clock, ghost_id)
         key = (replay.version, clock, level, number)
-        if (kept := self._segments.get(key)) is not None:
-            return kept
         times_s = replay.segment_times_s(level, number)
-        with self._encoding:
+        with self._encoding():
             # Another request for it may have been encoded while this one waited.
             if (kept := self._segments.get(key)) is not None:
                 return kept
@@ -147,6 +153,12 @@ class ReplayFrames:
             if replay.is_complete or len(times_s) == SEGMENT_FRAMES:
                 self._segments.put(key, encoded)
         return encoded
+
+    @contextmanager
+    def _encoding(self) -> Iterator[None]:
+        with self._lock:
+            self._stopping.check()
+            yield
 
 
 def _after_scene(replay: Replay, times_s: Sequence[float]) -> Iterator[tuple[Recorded, Any]]:

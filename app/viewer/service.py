@@ -11,6 +11,7 @@ from starlette.responses import RedirectResponse, Response
 from starlette.routing import BaseRoute, Route, WebSocketRoute
 
 from app.events.bus import EventBus
+from app.jobs.stopping import Stopping
 from app.runs.clocks import Clock
 from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
@@ -29,7 +30,13 @@ class ViewerService:
     """Runs viser, the drawing thread and the hub within `async with`, for the app's lifespan."""
 
     def __init__(
-        self, stage: Stage, bus: EventBus, *, max_viewers: int, max_per_address: int
+        self,
+        stage: Stage,
+        bus: EventBus,
+        *,
+        max_viewers: int,
+        max_per_address: int,
+        stopping: Stopping,
     ) -> None:
         """Create the hub; entering the context starts the rest.
 
@@ -38,11 +45,12 @@ class ViewerService:
             bus: receives events with the scene and with the number of viewers.
             max_viewers: maximum number of viewers.
             max_per_address: maximum number of spectators per address.
+            stopping: whether the server stops.
         """
         self._stage, self._bus = stage, bus
         self._scene: StageScene | None = None
         self._resources = ExitStack()
-        self._recording_lock = threading.Lock()
+        self._stopping, self._recording_lock = stopping, threading.Lock()
         self.hub = Hub(
             follow_position=self._follow_position,
             max_viewers=max_viewers,
@@ -69,7 +77,7 @@ class ViewerService:
     ) -> bytes:
         """Return a race as a `.viser` file; only one is rendered at a time."""
         with self._recording_lock:
-            return recorded_stream(config, lanes, name, clock, original)
+            return recorded_stream(config, lanes, name, clock, original, stopping=self._stopping)
 
     def _open(self) -> None:
         server = self._resources.enter_context(in_process_viser())

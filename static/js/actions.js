@@ -7,6 +7,7 @@ import {
   chooseLearner, form, mistakes, raceBody, setField, setFields, trainingBody, validSteps,
 } from "./form.js";
 import { count, listed, whole } from "./format.js";
+import { goIfStillHere } from "./page.js";
 import {
   canPlay, isActive, isOperator, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, myWork, shownRun, work,
 } from "./selectors.js";
@@ -296,8 +297,9 @@ export const showOnStage = (run) =>
   attempt(run.id, async () => {
     closeReplay();
     const start = isActive(run) ? {} : { time_s: 0 };
+    const go = goIfStillHere();
     await requestStage(() => api.putStage({ run_id: run.id, playing: true, ...start }));
-    location.hash = "";
+    go("");
   });
 
 // ---- runs
@@ -322,8 +324,9 @@ export const deleteRun = (run) =>
  */
 export const runAgain = (run) =>
   attempt(run.id, async () => {
+    const go = goIfStillHere();
     const again = await adopt(() => api.startAgain(run.id));
-    location.hash = run.kind === "experiment" ? `#experiments?run=${again?.id}` : "";
+    go(run.kind === "experiment" ? `#experiments?run=${again?.id}` : "");
   });
 
 /**

@@ -128,13 +128,7 @@ const pathOf = ({ kind, id }) => `${collection(kind ?? "training")}/${encodeURIC
 /** @returns {Promise<Options>} */
 export const getOptions = () => call("GET", "options");
 
-/** @type {(run: RunKey) => Promise<Run>} */
-export const getRun = (run) => call("GET", pathOf(run));
-
-/**
- * A run of which only the id is known.
- * @type {(id: string) => Promise<Run>}
- */
+/** @type {(id: string) => Promise<Run>} */
 export const getAnyRun = (id) => call("GET", `runs/${encodeURIComponent(id)}`);
 
 /**
@@ -285,9 +279,10 @@ const exportOf = ({ id }, rest) => new URL(`runs/${encodeURIComponent(id)}/${res
 /**
  * The files of a run that can be downloaded: [label, address].
  * @param {RunKey & { started_at?: string | null }} run
+ * @param {boolean} [hasTable] whether a training has stored a table: not one that was interrupted, or failed
  * @returns {[string, string][]}
  */
-export function downloads(run) {
+export function downloads(run, hasTable = true) {
   if (run.kind === "experiment") {
     return [
       ["Every trial (CSV)", addressOf(run, "trials?format=csv")],
@@ -301,12 +296,12 @@ export function downloads(run) {
     ["Offline replay (HTML)", exportOf(run, "page")],
   ];
   if (run.kind === "race") return [["Recording", addressOf(run, "recording")], ...walk];
-  return [
-    ["Curve (CSV)", addressOf(run, "curve?format=csv")],
+  /** @type {[string, string][]} */
+  const table = hasTable ? [
     ["Q-table (CSV)", addressOf(run, "q-table?format=csv")],
     ["Q-table (npz)", addressOf(run, "q-table?format=npz")],
-    ...walk,
-  ];
+  ] : [];
+  return [["Curve (CSV)", addressOf(run, "curve?format=csv")], ...table, ...walk];
 }
 
 /**

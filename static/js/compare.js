@@ -5,7 +5,7 @@ import { happeningsOf, inTime, joinedBySteps } from "./disturbances.js";
 import { count, duration, listed, metres, percentage, sentence, whole } from "./format.js";
 import { followQuery, place } from "./page.js";
 import { formRobot } from "./robots.js";
-import { absentIds, followRuns } from "./runs.js";
+import { absentIds, distanceOf, followRuns } from "./runs.js";
 import { isActive } from "./selectors.js";
 import { agentOf, choiceTitle, fullTitle, laneTitle, settingsOf } from "./settings.js";
 import { damagedRuns, isDeleted, runs, served } from "./store.js";
@@ -200,15 +200,6 @@ function valueInWords(setting, value) {
 const lanesOf = ({ result }) => result?.lanes ?? [];
 /** @param {LaneResult} lane */
 const atTimeOut = ({ clocks }) => clocks.paper.finished_distance_m;
-/**
- * The distance of a training, or of the winner of a race by the paper clock.
- * @param {Run} run
- * @returns {number | null}
- */
-function distanceOf(run) {
-  if (run.kind === "training") return run.result?.distance_m ?? null;
-  return lanesOf(run).length ? Math.max(...lanesOf(run).map(atTimeOut)) : null;
-}
 /** @param {Run} run @returns {number | null} */
 const greedyOf = ({ kind, greedy_distance_m, result }) =>
   kind === "training" ? greedy_distance_m ?? result?.greedy_distance_m ?? null : null;

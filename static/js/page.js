@@ -132,6 +132,14 @@ export const viewOf = (hash) => VIEWS.find((name) => hash.slice(1).split("?")[0]
 export const place = signal(viewOf(location.hash));
 addEventListener("hashchange", () => (place.value = viewOf(location.hash)));
 
+/** Note the open view; the function that is returned goes to another one, unless the user has left this one since. */
+export function goIfStillHere() {
+  const before = place.peek();
+  return (/** @type {string} */ hash) => {
+    if (place.peek() === before) location.hash = hash;
+  };
+}
+
 /** The query after the view in a hash. @param {string} hash */
 const queryOf = (hash) => new URLSearchParams(hash.split("?")[1] ?? "");
 

@@ -1,18 +1,19 @@
 // The race in view at the moment that is shown: its timeline, its standings, and what is announced of it.
 import { computed, effect, signal } from "@preact/signals";
-import { getTimeline } from "./api.js";
+import { AGAIN_MS, getTimeline, isLasting } from "./api.js";
 import { count, listed, metres } from "./format.js";
 import { clock, isActive, isToCome, knowledgeIn, originalRace, raceInView, raceScene, shownRun } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { connection, scene, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
+/** @import { RequestError } from "./api.js" */
 /** @import { ClockResult, LaneConfig, LaneResult, Run, SceneLane, Timeline, TimelineLane } from "./types.js" */
 /** @import { TimelinePoint } from "./types.js" */
 
 // ---- the timeline under the chosen clock, which grows while the race is simulated
 
-const PAUSE_MS = 700;
+const PAUSE_MS = 350;
 
 /** @type {Signal<Timeline | null>} */
 const newest = signal(null);
@@ -72,31 +73,30 @@ export function timeSpent({ thinking, total_s }, time) {
   return { thought, walked: elapsed - thought };
 }
 
-/** Request the timeline whenever it has grown; one request at a time. */
+/** Request the timeline whenever it has grown, one request at a time, and after an error that may pass. */
 export function followTimeline() {
   const wanted = computed(() => {
     const race = raceInView.value;
     if (!race?.progress.done || connection.value !== "live") return "";
     return [race.id, clock.value, race.state, race.progress.done].join(" ");
   });
-  let isBusy = false;
-  let hasMissed = false;
+  let [isBusy, hasMissed, wait_ms] = [false, false, PAUSE_MS];
 
   const load = async () => {
-    if (isBusy) {
-      hasMissed = true;
-      return;
-    }
+    hasMissed = isBusy;
     const [id, shown] = wanted.peek().split(" ");
-    if (!id) return;
-    isBusy = true;
-    hasMissed = false;
-    const answer = await getTimeline(id, shown).catch(() => null);
-    if (answer) newest.value = { ...answer, id };
+    if (isBusy || !id) return;
+    [isBusy, wait_ms] = [true, PAUSE_MS];
+    try {
+      newest.value = { ...await getTimeline(id, shown), id };
+    } catch (error) {
+      wait_ms = AGAIN_MS;
+      hasMissed ||= !isLasting(/** @type {RequestError} */ (error));
+    }
     setTimeout(() => {
       isBusy = false;
       if (hasMissed) load();
-    }, answer ? PAUSE_MS / 2 : PAUSE_MS);
+    }, wait_ms);
   };
   effect(() => {
     if (wanted.value) load();

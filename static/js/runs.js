@@ -83,7 +83,7 @@ export const NO_FILTERS = { kind: "", state: "", search: "", tag: "", sort: "new
 export const folded = (text) => text.replaceAll(/[A-Z]/g, (letter) => letter.toLowerCase());
 
 /**
- * The distance by which runs are sorted [m]: a training's, or that of a race's winner by the paper clock; null if none.
+ * The distance of a training, or of a race's winner by the paper clock [m]; null if there is none.
  * @param {Run | DamagedRun} run
  * @returns {number | null}
  */

@@ -1,9 +1,9 @@
 // One step of a run and its table: which step is looked at, its explanation, and how the table is drawn and read.
 import { computed, effect, signal } from "@preact/signals";
-import { AGAIN_MS, getExplanation, getTable, needsLonger } from "./api.js";
+import { AGAIN_MS, getExplanation, getTable, isLasting, needsLonger } from "./api.js";
 import { count, THIN_SPACE } from "./format.js";
 import { isPlaying, shownRun } from "./selectors.js";
-import { connection, scene } from "./store.js";
+import { connection, runs, scene } from "./store.js";
 import { placeName } from "./training.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -109,8 +109,8 @@ export function keepAnswer(keyOf, ask, reply) {
       const error = /** @type {RequestError} */ (failure);
       const again = needsLonger(error);
       reply.value = { answer: again ? reply.value.answer : null, error, again };
-      if (again) wait = AGAIN_MS;
-      else known = key;
+      if (isLasting(error)) known = key;
+      else wait = AGAIN_MS;
     }
     setTimeout(() => {
       isBusy = false;
@@ -148,7 +148,7 @@ export function followMoment() {
     ),
     keepAnswer(
       () => (isLive() && tableMoment.value
-        ? JSON.stringify({ ...tableMoment.value, first: firstState.value, done: doneWhereNewest() })
+        ? JSON.stringify({ ...tableMoment.value, first: firstState.value, state: stateWhereNewest() })
         : null),
       (key) => getTable(JSON.parse(key)),
       table,
@@ -157,8 +157,9 @@ export function followMoment() {
   return () => stops.forEach((stop) => stop());
 }
 
-/** A table of a training at its end grows with it. */
-const doneWhereNewest = () => (tableMoment.value?.step === null ? shownRun.value?.progress.done : null);
+/** The newest table of a training is another one once that has ended. */
+const stateWhereNewest = () =>
+  (tableMoment.value?.step === null ? runs.value.get(tableMoment.value.training_id)?.state : null);
 
 // ---- states and moves
 

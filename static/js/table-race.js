@@ -2,6 +2,7 @@
 import { adopt, attempt } from "./actions.js";
 import { startRace } from "./api.js";
 import { count, listed } from "./format.js";
+import { goIfStillHere } from "./page.js";
 import { formRobot, isSame, numberOfLegs } from "./robots.js";
 import { hasTable } from "./selectors.js";
 import { limitsOf } from "./settings.js";
@@ -83,5 +84,6 @@ function bodyOf(trainings) {
 /** Start the race, and show it. @param {Run[]} trainings */
 export const raceThem = (trainings) =>
   attempt("table race", async () => {
-    if (await adopt(() => startRace(bodyOf(trainings)))) location.hash = "";
+    const go = goIfStillHere();
+    if (await adopt(() => startRace(bodyOf(trainings)))) go("");
   });

@@ -1,18 +1,21 @@
 // The training in view: its learning curve, with the trainings that it continues, and its action values.
 import { computed, effect, signal } from "@preact/signals";
-import { getCurve, getRun } from "./api.js";
+import { getCurve, isLasting } from "./api.js";
 import { rateChanges } from "./changes.js";
 import { happeningsOf, joinedBySteps } from "./disturbances.js";
+import { followRuns } from "./runs.js";
 import { trainingInView } from "./selectors.js";
-import { bestKnown, connection, evaluations, references, requestRun, runs, scene, setEntry } from "./store.js";
+import { bestKnown, connection, evaluations, references, runs, scene, setEntry } from "./store.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
+/** @import { RequestError } from "./api.js" */
 /** @import { RateChange } from "./changes.js" */
 /** @import { Disturbance, Evaluation, Knowledge, Run } from "./types.js" */
 
 /** A point of the curve; steps count all practice. @typedef {{ step: number, distance_m: number }} CurvePoint */
 
 const LONGEST_CHAIN = 20;
+const RETRY_MS = 3000;
 
 /** Run id → evaluations that were requested. @type {Signal<Record<string, Evaluation[]>>} */
 const requested = signal({});
@@ -112,10 +115,9 @@ const bestKnownOf = ({ id, result }) =>
 export const practisedSteps = (training) =>
   chainOf(training).reduce((total, { progress }) => total + (progress?.done ?? 0), 0);
 
-/** @param {string} id */
+/** @param {string} id @throws {RequestError} */
 async function load(id) {
-  const answer = await getCurve(id).catch(() => null);
-  if (!answer) return;
+  const answer = await getCurve(id);
   setEntry(requested, id, answer.evaluations);
   setEntry(requestedBest, id, answer.best_known_m);
   if (answer.greedy_distance_m !== null) setEntry(requestedReferences, id, answer.greedy_distance_m);
@@ -132,17 +134,13 @@ export function followCurves(trainings) {
     const ids = new Set(chains.value.flat().map(({ id }) => id));
     return connection.value === "live" ? [...ids].join(" ") : "";
   });
-  effect(() => wanted.value.split(" ").filter(Boolean).forEach(load));
-
-  const unknown = computed(() => {
-    const ids = chains.value.map(([first]) => first?.config?.continue_from ?? "");
-    return ids.filter((id) => id && !runs.value.has(id)).join(" ");
-  });
-  effect(() => {
-    for (const id of unknown.value.split(" ").filter(Boolean)) {
-      requestRun(() => getRun({ kind: "training", id })).catch(() => {});
-    }
-  });
+  const request = (/** @type {string} */ id) =>
+    load(id).catch((/** @type {RequestError} */ error) => {
+      if (isLasting(error)) return;
+      setTimeout(() => wanted.peek().split(" ").includes(id) && request(id), RETRY_MS);
+    });
+  effect(() => wanted.value.split(" ").filter(Boolean).forEach(request));
+  followRuns(computed(() => chains.value.flatMap(([first]) => first.config.continue_from ?? [])));
 }
 
 /** The training in view, if any. */

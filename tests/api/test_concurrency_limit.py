@@ -4,7 +4,9 @@ import asyncio
 
 from starlette.types import Message, Receive, Scope, Send
 
+from app.api.auth import Role
 from app.api.concurrency_limit import (
+    ENCODING_SLOTS,
     PROBE_SLOTS,
     SLOTS,
     WHAT_IF_SLOTS,
@@ -12,6 +14,8 @@ from app.api.concurrency_limit import (
     RoundRobinSemaphore,
 )
 from app.api.rate_limit import WHAT_IF
+
+STOP = "/api/v1/trainings/x/stop"
 
 
 def scope(role: str, address: str, method: str = "GET", path: str = "/") -> Scope:
@@ -117,6 +121,36 @@ def test_requests_do_not_delay_probes() -> None:
         return probed
 
     assert asyncio.run(scenario()) == PROBE_SLOTS
+
+
+def test_files_that_take_long_delay_nothing_else() -> None:
+    async def scenario() -> dict[str, int]:
+        working = {"file": 0, "command": 0, "read": 0}
+
+        async def work(scope: Scope, receive: Receive, send: Send) -> None:
+            kinds = {"/": "read", STOP: "command"}
+            working[kinds.get(scope["path"], "file")] += 1
+            await asyncio.Event().wait()
+
+        app = ConcurrencyLimit(work)
+        paths = ["/api/v1/runs/x/mcap", "/api/v1/runs/x/page", "/api/v1/races/x/recording"]
+        roles: list[Role] = ["spectator", "operator"]
+        requests: list[Scope] = [
+            {**scope(role, str(n), path=path), "query_string": b"format=vise%72"}
+            for role in roles
+            for n in range(10)
+            for path in paths
+        ]
+        requests += [scope("spectator", "a"), scope("operator", "a", "POST", STOP)]
+        tasks = [asyncio.ensure_future(app(one, nothing, ignore)) for one in requests]
+        await asyncio.sleep(0.01)
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        return working
+
+    files = sum(ENCODING_SLOTS.values())
+    assert asyncio.run(scenario()) == {"file": files, "command": 1, "read": 1}
 
 
 def test_slow_readers_and_streams_hold_no_slot() -> None:

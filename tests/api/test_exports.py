@@ -66,6 +66,19 @@ def test_video_of_a_race(api: Api, raced: dict[str, Any]) -> None:
     refused(film(fps=60, playback_speed=0.05), 422, "more than 900 pictures; choose a higher speed")
 
 
+def test_a_stopped_race_has_the_files_of_what_it_walked(api: Api) -> None:
+    race = api.race(lanes=[{"agent": "two-step"}], divisions=4, steps=5000)
+    api.until(race, lambda now: now["progress"]["done"] > 0)
+    api.stop(race)
+    stopped = api.ended(race)
+    assert stopped["state"] == "stopped"
+
+    rows = csv.DictReader(io.StringIO(api.call("GET", f"/runs/{race['id']}/trajectory").text))
+    assert max(int(row["step"]) for row in rows) >= stopped["progress"]["done"] > 0
+    for path in (f"/runs/{race['id']}/page", f"/races/{race['id']}/recording"):
+        assert api.call("GET", path).status_code == 200
+
+
 def test_what_has_no_trajectory_is_refused(api: Api, raced: dict[str, Any]) -> None:
     def trajectory(run_id: str, **query: Any) -> Any:
         return api.call("GET", f"/runs/{run_id}/trajectory", params=query)

@@ -130,7 +130,7 @@ def test_invalid_idempotency_key_is_refused(api: Api) -> None:
         refused(api.call("POST", "/trainings", json=WALK, headers=headers), 422, "idempotency-key")
 
 
-def test_pools_of_processes_are_closed_with_the_server(tmp_path: Path) -> None:
+def test_long_requests_end_with_the_server(tmp_path: Path) -> None:
     with temporary_store() as store:
         app = create_app(Settings(data=tmp_path), store)
         with TestClient(app, base_url=ADDRESS):
@@ -138,3 +138,5 @@ def test_pools_of_processes_are_closed_with_the_server(tmp_path: Path) -> None:
         for user in (services.what_if, services.estimates, services.videos):
             with pytest.raises(Busy, match="the server is stopping"):
                 user._pool.map(abs, [-1])
+        with pytest.raises(Busy, match="the server is stopping"):
+            services.stopping.check()

@@ -6,7 +6,7 @@ import json
 import pytest
 from starlette.requests import Request
 
-from app.api.problems import _hexapod_error
+from app.api.problems import hexapod_error
 from app.domain.errors import DamagedFile, HexapodError, InvalidInput
 from app.storage.errors import Busy, Conflict, NotFound, StorageFailed, StorageFull
 
@@ -29,7 +29,7 @@ def test_error_is_mapped_to_its_status(
     error: HexapodError, status: int, headers: dict[str, str]
 ) -> None:
     request = Request({"type": "http", "method": "GET", "path": "/", "headers": []})
-    response = asyncio.run(_hexapod_error(request, error))
+    response = asyncio.run(hexapod_error(request, error))
     assert response.status_code == status
     assert response.headers["content-type"] == "application/problem+json"
     assert headers.items() <= dict(response.headers).items()

@@ -5,13 +5,17 @@ import contextlib
 import io
 import json
 import shlex
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from app.api.run_code import MAX_CONTINUED, run_code
+from app.storage.run import Run
 from tests.api.calls import Api, refused
 from tests.cli.running import in_process
+from tests.storage.stores import temporary_store, training
 
 ROBOT = {"preset": "stiff", "femur_m": 0.09}
 GAIT = {"right_leg": 1, "left_leg": 4, "pairs": [[1, 4], [2, 6], [3, 5]]}
@@ -165,3 +169,23 @@ def test_a_run_is_started_again_with_the_same_outcome(api: Api) -> None:
     [training_id] = [i for i in (one["training_id"] for one in race["config"]["lanes"]) if i]
     api.call("DELETE", f"/runs?id={training_id}")
     refused(api.call("POST", f"/runs/{race['id']}/again"), 422, training_id)
+
+
+def test_a_long_row_of_trainings_begins_with_a_table() -> None:
+    began = datetime.now(UTC)
+
+    def continued(run_id: str, continued_from: str | None) -> Run:
+        given = {"started_at": began, "continued_from": continued_from}
+        return training(run_id, state="finished", **given)
+
+    with temporary_store() as store:
+        ids = [f"{number:04}" for number in range(600)]
+        before = [None, *ids]
+        store.create(*(continued(*one) for one in zip(ids, before, strict=False)))
+        store.create(continued("a", "b"), continued("b", "a"))
+        lines = commands_of(run_code(store.get(ids[-1]), store, "http://x/").command)
+        commands_of(run_code(store.get("a"), store, "http://x/").command)
+
+    assert [line[0] for line in lines] == ["curl", *["hexapods"] * MAX_CONTINUED]
+    assert f"/{ids[-1 - MAX_CONTINUED]}/" in lines[0][-1]
+    assert f"q-{ids[-1]}.npz" in lines[-1]

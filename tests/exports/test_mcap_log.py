@@ -12,6 +12,8 @@ from app.domain.kinematics import foot_positions, rotation_matrices
 from app.exports.mcap_log import mcap_log
 from app.exports.recorded_lanes import RecordedWalks
 from app.exports.trajectory import joint_names
+from app.jobs.stopping import Stopping
+from app.storage.errors import Busy
 
 Messages = dict[str, list[Any]]
 
@@ -51,6 +53,13 @@ def test_schemas_are_those_that_foxglove_knows(data: bytes) -> None:
     }
     (agents,) = reader.iter_metadata()
     assert agents.metadata == {"lane0": "Greedy", "lane1": "Wave"}
+
+
+def test_a_server_that_stops_writes_no_log(raced: RecordedWalks) -> None:
+    stopping = Stopping()
+    stopping.set()
+    with pytest.raises(Busy, match="stopping"):
+        mcap_log(raced, "paper", stopping)
 
 
 def test_joint_states_are_the_recorded_angles(raced: RecordedWalks, messages: Messages) -> None:

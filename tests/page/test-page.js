@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { downloads, fileAddress, refusal } from "../../static/js/api.js";
-import { viewOf } from "../../static/js/page.js";
+import { goIfStillHere, place, viewOf } from "../../static/js/page.js";
 import { options } from "../../static/js/store.js";
 import { choicesOf, clockTitle, gaitTitle, observationTitle, simulatorTitle } from "../../static/js/titles.js";
 import { OPTIONS } from "./options.js";
@@ -12,6 +12,16 @@ beforeEach(() => (options.value = OPTIONS));
 test("the hash names the view", () => {
   assert.deepEqual(["", "#", "#runs", "#experiments?run=1", "#nothing"].map(viewOf),
     ["race", "race", "runs", "experiments", "race"]);
+});
+
+test("an action goes to its view only from the one in which it was begun", () => {
+  place.value = "runs";
+  const go = goIfStillHere();
+  place.value = "experiments";
+  go("#late");
+  assert.notEqual(location.hash, "#late");
+  goIfStillHere()("#there");
+  assert.equal(location.hash, "#there");
 });
 
 test("a problem document becomes a message and the fields that it is about", () => {
@@ -32,6 +42,8 @@ test("addresses of files are escaped part by part", () => {
     ["Recording", "Joints and feet (CSV)", "Offline replay (HTML)"]);
   assert.equal(downloads({ ...run, kind: "training" }).length, 5);
   assert.equal(downloads({ ...run, kind: "training", started_at: null }).length, 3);
+  assert.deepEqual(downloads({ ...run, kind: "training" }, false).map(([label]) => label),
+    ["Curve (CSV)", "Joints and feet (CSV)", "Offline replay (HTML)"]);
 });
 
 test("names of the vocabulary, unless the server has a title", () => {

@@ -3,10 +3,11 @@ import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
 import { signal } from "@preact/signals";
 import {
-  cellInWords, cellKind, chosenLane, chosenMoment, chooseStep, columnOf, comparedNumber, fineMillimetres, followStage,
-  keepAnswer, lastStep, moment, moveOf, ruleNumber, stateCells, stateIndex, tableMoment, triedMoves, valueRange,
+  cellInWords, cellKind, chosenLane, chosenMoment, chooseStep, columnOf, comparedNumber, fineMillimetres, followMoment,
+  followStage, keepAnswer, lastStep, moment, moveOf, ruleNumber, stateCells, stateIndex, tableMoment, triedMoves,
+  valueRange,
 } from "../../static/js/steps.js";
-import { applyEvent, options } from "../../static/js/store.js";
+import { applyEvent, connection, options } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 /** @import { StateTable } from "../../static/js/types.js" */
@@ -95,12 +96,12 @@ test("one answer is asked for at a time, always the newest", async () => {
   mock.timers.reset();
 });
 
-test("a server that needs longer is asked again, another refusal is not", async () => {
+test("a server that needs longer, or is out of order, is asked again, another refusal is not", async () => {
   mock.timers.enable({ apis: ["setTimeout"] });
   const key = signal("1");
   /** @type {Signal<Reply<string>>} */
   const reply = signal({ answer: null, error: null, again: false });
-  const statuses = [429, 429, 409];
+  const statuses = [429, 503, 409];
   /** @type {string[]} */
   const asked = [];
   const stop = keepAnswer(() => key.value, (one) => {
@@ -109,10 +110,33 @@ test("a server that needs longer is asked again, another refusal is not", async 
   }, reply);
   for (let round = 0; round < 5; round += 1) {
     await settled();
-    assert.equal(reply.value.again, round < 2);
+    assert.equal(reply.value.again, round < 1);
     mock.timers.tick(1000);
   }
   assert.deepEqual([asked.length, reply.value.error?.message], [3, "no"]);
+  stop();
+  mock.timers.reset();
+});
+
+test("the table of a lane's training is asked for once, however far its race is", async () => {
+  mock.timers.enable({ apis: ["setTimeout"] });
+  /** @type {string[]} */
+  const asked = [];
+  globalThis.fetch = (address) => {
+    asked.push(String(address));
+    return Promise.resolve(new Response("{}"));
+  };
+  const lanes = [{ agent: "learner", training_id: "t1" }];
+  const race = makeRun({ kind: "race", state: "running", config: { steps: 50, lanes } });
+  show(race, [{ step: 0, steps: 50 }]);
+  connection.value = "live";
+  const stop = followMoment();
+  for (const done of [1, 2]) {
+    applyEvent("run", { ...race, progress: { done, total: 50 } });
+    for (let turn = 0; turn < 3; turn += 1) await settled();
+    mock.timers.tick(1000);
+  }
+  assert.equal(asked.length, 1);
   stop();
   mock.timers.reset();
 });

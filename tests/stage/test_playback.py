@@ -10,6 +10,7 @@ from app.runs.clocks import CLOCKS
 from app.runs.lane import LaneConfig
 from app.runs.race_config import RaceConfig
 from app.runs.results import finish_s
+from app.stage import playback
 from app.stage.playback import FRAMES_PER_S, Replays
 from app.storage.errors import Conflict, NotFound
 from tests.stage.stage_parts import StageParts
@@ -75,6 +76,32 @@ def test_a_practice_has_its_evaluations_and_the_steps_that_are_kept(parts: Stage
     ]
     in_gap = replay.frame_at(50 * step_s)
     assert in_gap.time_s == pytest.approx(100 * step_s), "the next that is recorded"
+
+
+def test_replays_are_kept_up_to_the_size_of_their_recordings(
+    parts: StageParts, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    runs = [parts.finished_training(40, evaluate_every=20) for _ in range(3)]
+    runs += [parts.finished_race(LANES, steps=10) for _ in range(3)]
+    for run in runs:
+        parts.recordings.finish(run.id)
+    recording = parts.recordings.training(runs[0].id)
+    assert recording is not None
+    replays = replays_of(parts)
+    kept = [replays.get(run.id, "paper") for run in runs]
+    assert [replays.get(run.id, "paper") for run in runs] == kept
+    assert 40 * 25 * 4 < kept[0].size < recording.size / 2, "it shows no evaluation's motion"
+    with_ghost = replays.get(runs[0].id, "paper", runs[1].id)
+    assert with_ghost.size == kept[0].size + kept[1].size
+
+    assert replays.get(runs[-2].id, "paper") is kept[-2]
+    monkeypatch.setattr(playback, "_KEPT_BYTES", sum(one.size for one in kept[-2:]))
+    assert replays.get(runs[-1].id, "paper") is kept[-1]
+    assert replays.get(runs[-2].id, "paper") is kept[-2]
+    assert replays.get(runs[0].id, "paper") is not kept[0]
+    monkeypatch.setattr(playback, "_KEPT_BYTES", 0)
+    newest = replays.get(runs[1].id, "paper")
+    assert replays.get(runs[1].id, "paper") is newest
 
 
 def test_a_renamed_run_is_replayed_under_its_new_name(parts: StageParts) -> None:

@@ -5,8 +5,10 @@ import pytest
 import viser
 import zstandard
 
+from app.jobs.stopping import Stopping
 from app.runs.race_config import Branch, RaceConfig
 from app.stage.race_show import original_of
+from app.storage.errors import Busy
 from app.viewer.recorded_stream import MAX_LENGTH_S, recorded_stream
 from tests.stage.stage_parts import StageParts
 
@@ -24,6 +26,14 @@ def node_names(data: bytes) -> set[str]:
     messages = decoded_header(data)["messages"]
     assert isinstance(messages, list)
     return {message.get("name", "") for _, message in messages}
+
+
+def test_a_server_that_stops_renders_no_more(parts: StageParts) -> None:
+    run, stopping = parts.finished_race(steps=6), Stopping()
+    assert isinstance(run.config, RaceConfig)
+    stopping.set()
+    with pytest.raises(Busy, match="stopping"):
+        recorded_stream(run.config, parts.recordings.race(run.id) or [], stopping=stopping)
 
 
 def test_file_has_the_whole_race_and_visers_version(parts: StageParts) -> None:

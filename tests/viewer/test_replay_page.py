@@ -7,8 +7,9 @@ import re
 import numpy as np
 import pytest
 
+from app.jobs.stopping import Stopping
 from app.stage.playback import FRAMES_PER_S, SEGMENT_FRAMES, Replays
-from app.storage.errors import Conflict
+from app.storage.errors import Busy, Conflict
 from app.viewer.replay_frames import ReplayFrames
 from app.viewer.replay_page import MAX_SEGMENTS, _notes, _recorded_segments, replay_page
 from app.viewer.robot_mesh import RobotMesh
@@ -95,6 +96,16 @@ def test_a_run_of_years_is_not_enumerated(parts: StageParts) -> None:
     hour = {**plan, "recorded_s": [[0.0, 3600.0]]}
     assert len(_recorded_segments(hour, 0)) > MAX_SEGMENTS
     assert _recorded_segments(hour, 1) == list(range(844))
+
+
+def test_a_server_that_stops_encodes_no_more(parts: StageParts) -> None:
+    run, stopping = parts.finished_race(LANES), Stopping()
+    frames = ReplayFrames(Replays(parts.store, parts.recordings), stopping)
+    known = frames.segment(run.id, "paper", 0, 0)
+    stopping.set()
+    with pytest.raises(Busy, match="stopping"):
+        page_of(frames, run.id)
+    assert frames.segment(run.id, "paper", 0, 0) == known
 
 
 def test_a_race_under_way_has_no_page(parts: StageParts) -> None:

@@ -24,7 +24,7 @@ from app.experiments.formatting import counted, gait_name, listed
 from app.experiments.report import figure_worlds, tables
 from app.experiments.report.drawing import Picture, agent_colours, inline_svg
 from app.experiments.report.figures import panels
-from app.runs.best_known import COVERAGE
+from app.runs.best_known import COVERAGE, DEFINITION
 
 TITLES: Mapping[str, str] = {
     "table1": "Table 1, many times over",
@@ -64,7 +64,7 @@ def page(summary: Mapping[str, Any]) -> str:
         "world_agents": figure_worlds.colours(summary),
         "colors": agent_colours([]),
         "units": tables.UNITS,
-        "about_best_known": COVERAGE,
+        "about_best_known": f"{DEFINITION} {COVERAGE}",
         "has_best_known": any(one["best_known_m"] for one in summary["settings"]),
         "table1": _tables_of("table1", tables.table1, summary, cases),
         "plain_tables": _tables_of("figure4", tables.curves, summary, cases)

@@ -28,6 +28,7 @@ from app.experiments.tuning.ranges import declared_range
 from app.experiments.tuning.summary import gains
 from app.experiments.tuning.tuning import Tuning, objective_m
 from app.files import write_atomically
+from app.runs.best_known import DEFINITION
 from app.runs.config import agent_settings
 
 PAGE = "report.html"
@@ -95,6 +96,7 @@ def tuning_page(summary: Mapping[str, Any]) -> str:
         "policy": POLICY,
         "lead": _lead(config),
         "objective": OBJECTIVES[config["objective"]],
+        "about_best_known": DEFINITION,
         "held_out": _held_out_table(summary),
         "gains": gains(summary),
         "figures": inlined_figures(pictures),

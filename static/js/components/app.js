@@ -1,4 +1,4 @@
-// The page: header, the three views, the first lesson, keyboard shortcuts, the help dialog and messages.
+// The page: header, the views, the first lesson, keyboard shortcuts, the help dialog and messages.
 import { effect, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { primaryAction, runPrimaryAction, togglePause } from "../actions.js";

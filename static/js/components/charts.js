@@ -5,6 +5,7 @@ import { metres, sentence, whole as wholeNumber } from "../format.js";
 import { placeCaptions } from "../labels.js";
 import { isPresenting } from "../page.js";
 import { thinned, ticks } from "../scale.js";
+import { served } from "../store.js";
 import { Crosshair, readIndex, zoomBy } from "./crosshair.js";
 import { html, useWidth } from "./elements.js";
 import { cssColour, LineLabels, MarkLines, roomFor, widthOf } from "./line-labels.js";
@@ -189,9 +190,9 @@ export const bestKnownMark = (y, more = {}) => ({
 
 /** Note on the thin line, where its caption has no room. */
 export const BestKnownKey = ({ distance }) => html`
-  <p class="line-key dim">
+  <p class="line-key dim" title=${served().help.best_known}>
     <i class="thin-line" aria-hidden="true"></i>
-    ${" "}Best known: ${metres(distance)}, found by a wide search
+    ${" "}Best known: ${metres(distance)}
   </p>
 `;
 

@@ -30,7 +30,7 @@ export function LazyPanel({ title, style = "", load }) {
     <section class=${`panel chart ${style}`} aria-labelledby=${id} ref=${panel}>
       <h2 id=${id}>${title}</h2>
       ${loaded && html`<${loaded.Content} isNear=${isNear} />`}
-      ${hasFailed && html`<p role="alert">This could not be loaded. Load the page again.</p>`}
+      ${hasFailed && !loaded && html`<p role="alert">This could not be loaded. Load the page again.</p>`}
     </section>
   `;
 }

@@ -6,7 +6,7 @@ import { clockTime, count, decision, metres, sentence, whole } from "../format.j
 import { clipped, distanceAt, headline, isTimedOut, ruleOf, shownTime, standings, timeline } from "../race.js";
 import { clock, isActive, originalRace, raceInView, raceScene, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
-import { runs } from "../store.js";
+import { runs, served } from "../store.js";
 import { clockTitle, flatParts, knowledgeTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
 import { BestKnownKey, bestKnownMark, Chart, Empty } from "./charts.js";
@@ -73,12 +73,11 @@ function Board({ rows }) {
   `;
 }
 
-/** Best known distance: that of a wide search over the whole walk. */
 function BestKnown() {
   const best_m = raceInView.value?.best_known_m ?? null;
   return best_m !== null && html`
     <tfoot>
-      <tr title="The furthest walk that a wide search over all steps has found">
+      <tr title=${served().help.best_known}>
         <td></td><th scope="row" class="agent">Best known</th><td></td><td>${metres(best_m)}</td>
         <td class="aside"></td><td class="aside"></td>
       </tr>

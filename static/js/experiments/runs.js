@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { attempt, deleteRun } from "../actions.js";
 import * as api from "../api.js";
-import { getSummary } from "../api.js";
+import { getSummary, isLasting } from "../api.js";
 import { makeEstimate } from "../estimate.js";
 import { count, duration, whole } from "../format.js";
 import { followQuery, place } from "../page.js";
@@ -98,7 +98,7 @@ async function loadSummary(id) {
   }
 }
 
-/** Request at most one summary every two seconds, and one more for changes in between. */
+/** Request at most one summary every two seconds, and one more for changes in between, or after an error. */
 export function followSummary() {
   const wanted = computed(() => {
     const run = chosenRun.value;
@@ -120,6 +120,8 @@ export function followSummary() {
     hasMissed = false;
     last = id;
     await loadSummary(id);
+    const error = errors.peek()[id];
+    if (error && !isLasting(error)) hasMissed = true;
     setTimeout(() => {
       isBusy = false;
       if (hasMissed) next();

@@ -3,6 +3,7 @@ import { computed, effect, signal } from "@preact/signals";
 import { adopt, attempt } from "../actions.js";
 import * as api from "../api.js";
 import { isLasting } from "../api.js";
+import { goIfStillHere } from "../page.js";
 import { isActive } from "../selectors.js";
 import { connection, requestRuns, runs } from "../store.js";
 import { messageOf } from "../titles.js";
@@ -164,8 +165,9 @@ export function seedsOf(id, setting) {
 /** Run a trial here, and go to the stage, which shows it. @type {(experiment: Run, key: string) => unknown} */
 export const runTrial = ({ id }, key) =>
   attempt("trials", async () => {
+    const go = goIfStillHere();
     await adopt(() => api.startTrial(id, key));
-    location.hash = "";
+    go("");
   });
 
 /** Whether a run can be replayed: it has ended and not failed. @param {Run | null} run */

@@ -2,7 +2,7 @@
 import { unit, UNITS } from "../../experiments/distances.js";
 import { sentence } from "../../format.js";
 import { agentOf } from "../../settings.js";
-import { options } from "../../store.js";
+import { options, served } from "../../store.js";
 import { observationTitle, robotTitle } from "../../titles.js";
 import { html, Segments } from "../elements.js";
 
@@ -58,21 +58,15 @@ export const StripKey = ({ signs = Object.keys(SIGNS), color }) => html`
   <p class="strip-key" style=${color && { "--agent": color }}>${signs.map((name) => html`<${Sign} name=${name} />`)}</p>
 `;
 
-const BEST_KNOWN =
-  "Best known is the farthest walk that a wide search found for the robot as designed; nothing proves that none is " +
-  "farther.";
-const WHERE_KNOWN =
-  "It was computed in MuJoCo for preset robots in named gaits and worlds on the usual grid; elsewhere a dash stands.";
-
 /**
  * What the best known distance is, and where it is known if some lack one.
  * @param {{ distances: (number | null | undefined)[] }} props
  */
-export const BestKnownWords = ({ distances }) => html`
-  <p class="dim table-note">
-    ${BEST_KNOWN} ${distances.every((one) => typeof one === "number") ? "" : WHERE_KNOWN}
-  </p>
-`;
+export function BestKnownWords({ distances }) {
+  const { best_known, best_known_where } = served().help;
+  const isEverywhere = distances.every((one) => typeof one === "number");
+  return html`<p class="dim table-note">${best_known} ${isEverywhere ? "" : best_known_where}</p>`;
+}
 
 /**
  * The lines of references, after the colours of agents.

@@ -5,7 +5,7 @@ import { downloads, fileAddress, reportAddress } from "../../api.js";
 import { command, deleteExperiment, paceOf, summary, summaryError } from "../../experiments/runs.js";
 import { count, duration } from "../../format.js";
 import { isActive, isOperator } from "../../selectors.js";
-import { describeRun, runTitle, simulatorTitle } from "../../titles.js";
+import { describeRun, messageOf, runTitle, simulatorTitle } from "../../titles.js";
 import { html, Icon, Problem, ProgressBar } from "../elements.js";
 import { FigureFour } from "./figure-four.js";
 import { AtAGlance, Claims, FairClocks, Story, Versus } from "./findings.js";
@@ -25,7 +25,7 @@ export function Report({ run }) {
   const hasSeeds = known?.settings?.some(({ n }) => n > 0);
   return html`
     <${ReportHead} run=${run} />
-    ${summaryError.value && html`<p class="problem" role="alert">${summaryError.value.message}</p>`}
+    ${summaryError.value && html`<p class="problem" role="alert">${messageOf(summaryError.value)}</p>`}
     ${hasSeeds ? findings : html`<${Waiting} run=${run} />`}
   `;
 }

@@ -5,6 +5,7 @@ import { showSeed } from "../../experiments/seeds.js";
 import { count, percentage } from "../../format.js";
 import { largest } from "../../scale.js";
 import { agentOf } from "../../settings.js";
+import { served } from "../../store.js";
 import { fieldTitle, isNamedByValue, valueTitle, variedFields } from "../../titles.js";
 import { DotStrip } from "../dot-strip.js";
 import { html, Segments } from "../elements.js";
@@ -88,7 +89,7 @@ const Head = ({ columns }) => html`
       <th role="columnheader" scope="col" class="wide-cell">${STRIP_TITLE}</th>
       <th role="columnheader" scope="col" title="Interquartile mean, with its 95 % interval">Typical</th>
       <th role="columnheader" scope="col" title="Get at least half as far as greedy">Walk</th>
-      <th role="columnheader" scope="col" title="The farthest walk that a wide search found">Best known</th>
+      <th role="columnheader" scope="col" title=${served().help.best_known}>Best known</th>
     </tr>
   </thead>
 `;

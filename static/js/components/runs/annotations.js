@@ -87,7 +87,9 @@ function Editor({ label, text, maximum, save, isLong = false }) {
   };
   const submit = async (event) => {
     event.preventDefault();
-    if (draft === text || (await save(draft))) close();
+    const isSaved = draft === text || (await save(draft));
+    // Not if another text is edited by now.
+    if (isSaved && field.current) close();
   };
   const onKeyDown = (event) => {
     if (event.key === "Escape") close();

@@ -163,10 +163,11 @@ function Menu({ run }) {
 }
 
 function Downloads({ run }) {
-  const hasFiles = run.kind === "race" ? run.state === "finished" : run.kind === "experiment" || hasTable(run);
+  const hasEnded = !isActive(run);
+  const hasBegun = run.progress.done > 0 || hasTable(run);
   const files = [
-    ...(hasFiles ? downloads(run) : []),
-    ...(isActive(run) ? [] : [["Archive (zip)", archiveAddress(run)]]),
+    ...(run.kind === "experiment" || (hasEnded && hasBegun) ? downloads(run, hasTable(run)) : []),
+    ...(hasEnded ? [["Archive (zip)", archiveAddress(run)]] : []),
   ];
   if (files.length === 0) return html`<p class="dim">Nothing to download.</p>`;
   return files.map(([label, href]) => html`<a href=${href} download>${label}</a>`);

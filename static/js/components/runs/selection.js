@@ -53,7 +53,7 @@ function TagThem() {
   const [tag, setTag] = useState("");
   const submit = async (event) => {
     event.preventDefault();
-    if (tag.trim() && (await tagSelected(tag))) setTag("");
+    if (tag.trim() && (await tagSelected(tag))) setTag((now) => (now === tag ? "" : now));
   };
   return html`
     <form class="in-place" onSubmit=${submit}>

@@ -1,0 +1,55 @@
+"""Ends responses that cannot be completed, without a traceback in the log."""
+
+import asyncio
+import logging
+
+from starlette.requests import Request
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.api.problems import hexapod_error, problem
+from app.domain.errors import HexapodError
+
+_logger = logging.getLogger(__name__)
+
+
+class Unfinished:
+    """Middleware for errors that no exception handler can answer.
+
+    A stream may fail after its start, as when its run is deleted. It is cut off, so that its client
+    takes it for no whole file; if none of it was sent yet, the client gets the problem. A request
+    that uvicorn cancels, since it does not end in time when the server stops, gets 503.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        """Wrap an app; to be installed outside `HeldBodies`, which holds back a stream's start."""
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Call the app."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        is_started = False
+
+        async def send_noting_start(message: Message) -> None:
+            nonlocal is_started
+            is_started = True
+            await send(message)
+
+        try:
+            await self._app(scope, receive, send_noting_start)
+        except asyncio.CancelledError:
+            if not is_started:
+                detail = "The server is stopping; try again later."
+                refusal = problem(503, detail, headers={"Retry-After": "1"})
+                await refusal(scope, receive, send)
+        except RuntimeError as error:
+            # Starlette's, of a handled exception after the start of a response.
+            cause = error.__cause__
+            if not isinstance(cause, HexapodError):
+                raise
+            if is_started:
+                _logger.warning("%s %s was cut off: %s", scope["method"], scope["path"], cause)
+            else:
+                answer = await hexapod_error(Request(scope), cause)
+                await answer(scope, receive, send)

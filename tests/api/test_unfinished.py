@@ -1,0 +1,111 @@
+"""Responses that cannot be completed: an error after their start, and the end of the server."""
+
+import asyncio
+import logging
+from collections.abc import Iterator
+
+import pytest
+from fastapi import FastAPI
+from starlette.responses import StreamingResponse
+from starlette.types import Message, Scope
+
+from app.api import problems
+from app.api.memory_limit import HeldBodies
+from app.api.unfinished import Unfinished
+from app.storage.errors import NotFound
+
+SCOPE: Scope = {
+    "type": "http",
+    "method": "GET",
+    "path": "/",
+    "query_string": b"",
+    "headers": [],
+    "state": {"role": "operator"},
+}
+
+
+async def receive() -> Message:
+    await asyncio.Event().wait()
+    raise AssertionError
+
+
+def streaming(chunks: int) -> FastAPI:
+    """An app whose stream fails after some chunks: its run was deleted."""
+    app = FastAPI()
+
+    def parts() -> Iterator[bytes]:
+        for _ in range(chunks):
+            yield b"x"
+        raise NotFound("there is no run 'r' (any more)")
+
+    @app.get("/")
+    def stream() -> StreamingResponse:
+        return StreamingResponse(parts())
+
+    problems.install(app)
+    app.add_middleware(HeldBodies)
+    app.add_middleware(Unfinished)
+    return app
+
+
+def sent_by(app: FastAPI) -> list[Message]:
+    sent: list[Message] = []
+
+    async def send(message: Message) -> None:
+        sent.append(message)
+
+    asyncio.run(app(dict(SCOPE), receive, send))
+    return sent
+
+
+def test_an_error_before_the_first_chunk_is_a_problem() -> None:
+    start, body = sent_by(streaming(0))
+    assert start["status"] == 404
+    assert b"There is no run" in body["body"]
+
+
+def test_an_error_in_a_stream_cuts_it_off_without_a_traceback(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    start, *chunks = sent_by(streaming(2))
+    assert start["status"] == 200
+    assert [chunk["more_body"] for chunk in chunks] == [True, True], "not complete"
+    (record,) = caplog.records
+    assert record.levelno == logging.WARNING
+    assert record.exc_info is None
+    assert "there is no run 'r'" in record.getMessage()
+
+
+def test_a_request_that_is_cancelled_is_answered() -> None:
+    """Uvicorn cancels those that do not end in time when the server stops."""
+
+    async def scenario() -> list[Message]:
+        sent: list[Message] = []
+
+        async def wait(scope: Scope, receive: object, send: object) -> None:
+            await asyncio.Event().wait()
+
+        async def send(message: Message) -> None:
+            sent.append(message)
+
+        task = asyncio.ensure_future(Unfinished(wait)(dict(SCOPE), receive, send))
+        await asyncio.sleep(0)
+        task.cancel()
+        await task
+        return sent
+
+    start, body = asyncio.run(scenario())
+    assert start["status"] == 503
+    assert (b"retry-after", b"1") in start["headers"]
+    assert b"The server is stopping" in body["body"]
+
+
+def test_other_errors_are_raised() -> None:
+    async def broken(scope: Scope, receive: object, send: object) -> None:
+        raise RuntimeError("unexpected")
+
+    async def send(message: Message) -> None:
+        del message
+
+    with pytest.raises(RuntimeError, match="unexpected"):
+        asyncio.run(Unfinished(broken)(dict(SCOPE), receive, send))
