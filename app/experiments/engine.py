@@ -211,7 +211,8 @@ class _Engine:
         self._counted_s = now_s
         try:
             self._threads = sum(self._client.nthreads().values())
-        except (OSError, TimeoutError) as error:
+        # Tornado raises a ValueError if the connection is closed as it begins to be encrypted.
+        except (OSError, TimeoutError, ValueError) as error:
             raise ClusterLost(_CONNECTION_LOST) from error
         if self._threads:
             self._without_workers_since_s = None

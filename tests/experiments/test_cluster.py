@@ -111,9 +111,12 @@ def test_an_existing_cluster_gives_the_same_results_until_its_scheduler_dies(
             list(running)
 
 
+@pytest.mark.parametrize("workers_are_counted_every_s", [60.0, 0.0])
 def test_a_scheduler_that_dies_as_the_client_reconnects_is_lost(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, workers_are_counted_every_s: float
 ) -> None:
+    monkeypatch.setattr("app.experiments.engine._WORKER_COUNT_S", workers_are_counted_every_s)
+
     def connection_that_closed_meanwhile(stream: IOStream, *_: object, **__: object) -> None:
         stream.close()
         raise ValueError("IOStream is not idle; cannot convert to SSL")
