@@ -143,10 +143,10 @@ export const listRuns = (query) => {
 const RETRY_MS = 500;
 
 /**
- * Start a run. Where no answer comes the request is repeated once; its idempotency key makes both one run.
+ * Make a run, or several. Where no answer comes the request is repeated once; its idempotency key makes both one.
  * @param {string} path
  * @param {unknown} body
- * @returns {Promise<Run>}
+ * @returns {Promise<any>}
  */
 async function start(path, body) {
   const key = { "Idempotency-Key": randomKey() };
@@ -212,7 +212,7 @@ export const exportAddress = (ids) => new URL(`runs/export?${idQuery(ids)}`, bas
  * Take in an archive of one run or several.
  * @type {(file: Blob) => Promise<{ items: Run[] }>}
  */
-export const importRuns = (file) => call("POST", "runs/import", file);
+export const importRuns = (file) => start("runs/import", file);
 /**
  * Add a training out of the file of a Q-table.
  * @type {(file: Blob, name: string) => Promise<Run>}
