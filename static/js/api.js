@@ -98,10 +98,10 @@ const parse = (text) => {
  * @param {string} path
  * @param {unknown} [body] a file as it is, all else as JSON
  * @param {Record<string, string>} [headers]
- * @returns {Promise<any>} the answer's JSON, null where there is none
+ * @returns {Promise<Response>}
  * @throws {RequestError}
  */
-async function call(method, path, body, headers = {}) {
+async function request(method, path, body, headers = {}) {
   /** @type {Record<string, string>} */
   const type = body === undefined || body instanceof Blob ? {} : { "Content-Type": "application/json" };
   const response = await fetch(new URL(path, base()), {
@@ -112,10 +112,16 @@ async function call(method, path, body, headers = {}) {
   }).catch(() => {
     throw new Unreachable();
   });
-  const text = await response.text();
-  if (!response.ok) throw refusal(response.status, parse(text) ?? {});
-  return parse(text);
+  if (!response.ok) throw refusal(response.status, parse(await response.text()) ?? {});
+  return response;
 }
+
+/**
+ * As `request`.
+ * @param {Parameters<typeof request>} given
+ * @returns {Promise<any>} the answer's JSON, null where there is none
+ */
+const call = async (...given) => parse(await (await request(...given)).text());
 
 /** @param {Kind} kind */
 const collection = (kind) => `${kind}s`;
@@ -239,12 +245,12 @@ export const getReplay = (id, clock, ghost) => {
  */
 export async function getReplayFrames(id, address, query) {
   const path = `runs/${encodeURIComponent(id)}/replay/${address}?${new URLSearchParams(query)}`;
-  const response = await fetch(new URL(path, base())).catch(() => {
-    throw new Unreachable();
-  });
-  if (!response.ok) throw refusal(response.status, parse(await response.text()) ?? {});
-  return response.arrayBuffer();
+  return (await request("GET", path)).arrayBuffer();
 }
+
+/** Render a film of a run, which takes up to minutes. @type {(id: string, playback_speed: number) => Promise<Blob>} */
+export const getFilm = async (id, playback_speed) =>
+  (await request("POST", `runs/${encodeURIComponent(id)}/video?playback_speed=${playback_speed}`)).blob();
 
 /**
  * The gait of a race, or of a part of a training; from a moment of robot time on, or all that is analysed at once.

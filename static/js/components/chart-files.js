@@ -1,5 +1,6 @@
 // A chart as a file: SVG as it is drawn, the same as PNG, and its numbers as CSV. Loaded when one is asked for.
 import { csvOf, tableOf } from "../chart.js";
+import { saveFile } from "../files.js";
 import { sentence } from "../format.js";
 import { widthOf } from "./line-labels.js";
 
@@ -48,11 +49,7 @@ export async function saveChart(kind, chart) {
     svg: () => new Blob([pictureOf(chart).text], { type: "image/svg+xml" }),
     png: () => asPng(pictureOf(chart)),
   };
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(await blobs[kind]());
-  link.download = `${chart.file}.${kind}`;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+  saveFile(await blobs[kind](), `${chart.file}.${kind}`);
 }
 
 const numbersOf = ({ lines, marks, xs, x, y }) =>

@@ -1,7 +1,7 @@
 // A run in the list: what it is, what came of it, what users say of it, and what can be done with it.
 import { useState } from "preact/hooks";
 import {
-  copySettings, deleteRun, isShown, pending, resumeRun, runAgain, showOnStage,
+  attempt, copySettings, deleteRun, isShown, pending, resumeRun, runAgain, showOnStage,
 } from "../../actions.js";
 import { archiveAddress, downloads } from "../../api.js";
 import { changesInWords, rateChanges } from "../../changes.js";
@@ -142,6 +142,9 @@ function Menu({ run }) {
       <summary class="quiet square" aria-label=${`More for this ${run.kind}`}>⋯</summary>
       <div class="menu-body">
         <${Downloads} run=${run} />
+        ${isOperator.value && run.kind !== "experiment" && !isActive(run) && run.progress.done > 0 && html`
+          <${FilmButton} run=${run} />
+        `}
         ${isOperator.value && run.kind !== "experiment" && html`
           <a href="#" onClick=${() => copySettings(run)}>Use its settings</a>
         `}
@@ -159,6 +162,21 @@ function Menu({ run }) {
         `}
       </div>
     </details>
+  `;
+}
+
+/** Have a film rendered; the menu says so until it is there, or why there is none stands in the row. */
+function FilmButton({ run }) {
+  const [isRendering, setRendering] = useState(false);
+  const onClick = async () => {
+    setRendering(true);
+    await attempt(run.id, async () => (await import("../../files.js")).saveFilm(run));
+    setRendering(false);
+  };
+  return html`
+    <button disabled=${pending.value[run.id]} onClick=${onClick} aria-live="polite">
+      ${isRendering ? "Rendering a film…" : "Film (MP4)"}
+    </button>
   `;
 }
 
