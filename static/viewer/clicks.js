@@ -33,7 +33,6 @@
     }
   };
 
-  // After that of labels.js, which draws them.
-  addEventListener("hexapods:draw", ({ detail }) =>
-    window.__viserMutable?.messageQueue.push(...bindingsOf(detail.messages)));
+  // Before that of labels.js, which draws them.
+  addEventListener("hexapods:draw", ({ detail }) => detail.messages.push(...bindingsOf(detail.messages)));
 })();

@@ -79,8 +79,14 @@
     }
   };
 
-  // The messages of a playback, which has no worker, and of a page that draws by itself are the same objects again each
-  // time that they are drawn, so they are copied.
+  // ---- messages that come by the client's queue: those of a playback, and those that a page draws by itself
+
+  const isPlayback = new URLSearchParams(location.search).has("playbackPath");
+  let client;
+  /** Drawn before the client has a queue: nobody sends them again. */
+  const early = [];
+
+  // Both push the same objects whenever they draw them again, so they are copied.
   const copyOf = (message) => {
     const copy = { ...message };
     for (const part of ["props", "updates"]) if (message[part]) copy[part] = { ...message[part] };
@@ -104,25 +110,29 @@
     queue.push(...waiting);
   };
 
-  if (new URLSearchParams(location.search).has("playbackPath")) {
-    let mutable;
-    Object.defineProperty(window, "__viserMutable", {
-      configurable: true,
-      get: () => mutable,
-      set: (value) => {
-        mutable = value;
-        watchQueue(value.messageQueue);
-      },
-    });
-  }
-
   const draw = (messages) => {
-    messages.forEach(take);
-    window.__viserMutable?.messageQueue.push(...messages);
-    window.__viserMutable?.requestRender();
+    if (!client) {
+      early.push(...messages);
+      return;
+    }
+    const copies = messages.map(copyOf);
+    copies.forEach(take);
+    client.messageQueue.push(...copies);
+    client.requestRender?.();
   };
 
-  addEventListener("hexapods:draw", ({ detail }) => draw(detail.messages.map(copyOf)));
+  Object.defineProperty(window, "__viserMutable", {
+    configurable: true,
+    get: () => client,
+    set: (value) => {
+      client = value;
+      if (!client?.messageQueue) return;
+      if (isPlayback) watchQueue(client.messageQueue);
+      else draw(early.splice(0));
+    },
+  });
+
+  addEventListener("hexapods:draw", ({ detail }) => draw(detail.messages));
   addEventListener("hexapods:show", ({ detail }) => {
     covered = detail.covered ?? covered;
     lanes = detail.lanes ?? lanes;

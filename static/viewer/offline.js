@@ -3,12 +3,6 @@
 (() => {
   "use strict";
 
-  /** The client connects before it has a queue to draw from. */
-  const announce = () => {
-    if (window.__viserMutable?.messageQueue) dispatchEvent(new Event("hexapods:connected"));
-    else requestAnimationFrame(announce);
-  };
-
   window.Worker = class extends Worker {
     postMessage(message, ...rest) {
       if (message?.type !== "set_server") return super.postMessage(message, ...rest);
@@ -19,7 +13,7 @@
         ]) {
           this.dispatchEvent(new MessageEvent("message", { data }));
         }
-        announce();
+        dispatchEvent(new Event("hexapods:connected"));
       });
       return undefined;
     }

@@ -24,7 +24,7 @@ from starlette.responses import Response
 
 from app import assets
 
-STAGE_SCRIPTS = ("client.js", "patch.js", "labels.js", "clicks.js")
+STAGE_SCRIPTS = ("client.js", "patch.js", "clicks.js", "labels.js")
 OFFLINE_SCRIPTS = ("client.js", "offline.js", "labels.js")
 """The scripts of the page `/viewer/`, and of a page that is a file."""
 _HEAD = "<head>"
