@@ -6,7 +6,7 @@ common), `gait`, `replays`, `exports`, `stage`, `spectators`, `events`, `options
 `experiment_body`, `fields`, `descriptions`, `formats`. Answers: `answers`, `experiment_answers`,
 `gait_answers`, `explanation_answers`, `option_answers`, `curves`, `problems` (RFC 9457),
 `templates` (web pages), `compression`. `contract` completes the OpenAPI document.
-Middleware: `auth` (roles), `cookies`, `host_check`, `wellformed`, `problem_pages`,
-`security_headers`, `memory_limit`, `concurrency_limit`, `rate_limit`, `disconnects`. `deps` injects
-the services into the routes.
+Middleware, on the base in `middleware`: `auth` (roles), `cookies`, `host_check`, `wellformed`,
+`problem_pages`, `unfinished`, `security_headers`, `memory_limit`, `concurrency_limit`,
+`rate_limit`, `disconnects`. `deps` injects the services into the routes.
 """

@@ -13,6 +13,7 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.auth import PUBLIC_PATHS, Role
+from app.api.middleware import HttpMiddleware
 from app.api.rate_limit import is_encoding, is_spectators_what_if
 from app.limits.addresses import client_of
 
@@ -75,22 +76,19 @@ class RoundRobinSemaphore:
         self._free += 1
 
 
-class ConcurrencyLimit:
+class ConcurrencyLimit(HttpMiddleware):
     """Middleware that limits concurrent requests by role; requests beyond the limit wait."""
 
     def __init__(self, app: ASGIApp) -> None:
         """Wrap an app; to be installed inside `TokenGuard`, which sets the role."""
-        self._app = app
+        super().__init__(app)
         self._semaphores = {role: RoundRobinSemaphore(size) for role, size in SLOTS.items()}
         self._encodings = {role: RoundRobinSemaphore(n) for role, n in ENCODING_SLOTS.items()}
         self._what_ifs = RoundRobinSemaphore(WHAT_IF_SLOTS)
         self._probes = RoundRobinSemaphore(PROBE_SLOTS)
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Wait for a slot, and call the app."""
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
         slot = _Slot(self._semaphore_of(scope), client_of(scope))
         await slot.acquire()
         try:

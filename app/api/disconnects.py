@@ -3,27 +3,22 @@
 import logging
 
 import anyio
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import Message, Receive, Scope, Send
+
+from app.api.middleware import HttpMiddleware
 
 _STREAM_ERRORS = (anyio.BrokenResourceError, anyio.ClosedResourceError)
 _logger = logging.getLogger(__name__)
 
 
-class Disconnects:
+class Disconnects(HttpMiddleware):
     """Middleware that suppresses broken-stream errors after the client has disconnected.
 
     FastAPI's event stream sometimes raises them when it is cancelled.
     """
 
-    def __init__(self, app: ASGIApp) -> None:
-        """Wrap an app."""
-        self._app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app; suppress broken-stream errors after a disconnect."""
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
         is_disconnected = False
 
         async def receive_noting_disconnect() -> Message:

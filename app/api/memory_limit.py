@@ -10,6 +10,7 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.auth import Role
+from app.api.middleware import HttpMiddleware
 from app.api.problems import problem
 from app.limits.addresses import client_of
 from app.limits.memory_budget import MemoryBudget, Refusal
@@ -25,18 +26,11 @@ _SMALL_BYTES = 64 << 10
 _RETRY_AFTER_S = 5
 
 
-class BodyLimit:
+class BodyLimit(HttpMiddleware):
     """Middleware that refuses a large body by its Content-Length, or once it exceeds the limit."""
 
-    def __init__(self, app: ASGIApp) -> None:
-        """Wrap an app."""
-        self._app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app with a counting `receive`; refuse with 413."""
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
         limit = MAX_FILE_BYTES if scope["path"] in _FILE_ROUTES else MAX_BODY_BYTES
         refusal = problem(413, f"The request's body may have at most {limit:,} bytes here.")
         length = Headers(scope=scope).get("content-length", "")
@@ -68,21 +62,18 @@ class BodyLimit:
             await refusal(scope, receive, send)
 
 
-class HeldBodies:
+class HeldBodies(HttpMiddleware):
     """Middleware that budgets large bodies by role; to be installed inside `TokenGuard`."""
 
     def __init__(self, app: ASGIApp) -> None:
         """Wrap an app."""
-        self._app = app
+        super().__init__(app)
         roles: tuple[Role, ...] = ("operator", "spectator")
         self._answers = {r: MemoryBudget(ANSWERS_BYTES, ANSWERS_SHARE_BYTES) for r in roles}
         self._bodies = {r: MemoryBudget(BODIES_BYTES, BODIES_SHARE_BYTES) for r in roles}
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app, or refuse with 429 or 503."""
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
         role: Role = scope["state"]["role"]
         body = _RequestBody(receive, self._bodies[role], client_of(scope))
         answer = _Response(send, self._answers[role], client_of(scope), body)

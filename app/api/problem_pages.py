@@ -5,13 +5,14 @@ from http import HTTPStatus
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import HTMLResponse
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import Message, Receive, Scope, Send
 
+from app.api.middleware import HttpMiddleware
 from app.api.problems import MEDIA_TYPE
 from app.api.templates import render
 
 
-class ProblemPages:
+class ProblemPages(HttpMiddleware):
     """Middleware that sends a problem document as a page where the request prefers HTML.
 
     Browsers ask for `text/html` first when a person opens an address, and never in a script's
@@ -19,15 +20,8 @@ class ProblemPages:
     outside all middleware.
     """
 
-    def __init__(self, app: ASGIApp) -> None:
-        """Wrap an app."""
-        self._app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app, and rewrite its answer if it is a problem document."""
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
         is_page = _prefers_html(Headers(scope=scope))
         start: Message | None = None
         body = b""

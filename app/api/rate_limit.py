@@ -7,6 +7,7 @@ from starlette.datastructures import QueryParams
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from app.api.middleware import HttpMiddleware
 from app.api.problems import problem
 from app.limits.addresses import client_of
 from app.limits.token_bucket import RateLimiter
@@ -20,7 +21,7 @@ WHAT_IF = "/api/v1/what-if"
 """Path of what-ifs: its POST changes nothing, so spectators may use it, too."""
 
 
-class RateLimit:
+class RateLimit(HttpMiddleware):
     """Middleware that limits starts per minute, by client address and role.
 
     Besides runs it counts imports, resumes, and what takes seconds to encode: a race's recorded
@@ -30,13 +31,13 @@ class RateLimit:
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
         """Wrap an app; to be installed inside `TokenGuard`, which sets the role."""
-        self._app = app
+        super().__init__(app)
         self._per_minute = settings.starts_per_minute
         self._buckets = RateLimiter(self._per_minute, self._per_minute / 60)
         self._what_ifs_per_minute = settings.what_ifs_per_minute
         self._what_ifs = RateLimiter(self._what_ifs_per_minute, self._what_ifs_per_minute / 60)
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app, or respond 429."""
         refusal = self._refusal(scope)
         await (self._app if refusal is None else refusal)(scope, receive, send)
@@ -62,8 +63,6 @@ class RateLimit:
 
 def is_what_if(scope: Scope) -> bool:
     """Whether a request asks for a what-if."""
-    if scope["type"] != "http":
-        return False
     return (scope["method"], scope["path"]) == ("POST", WHAT_IF)
 
 
@@ -82,8 +81,6 @@ def _whole_seconds(wait_s: float) -> int:
 
 
 def _starts_work(scope: Scope) -> bool:
-    if scope["type"] != "http":
-        return False
     if scope["method"] == "POST" and _STARTS_NOTHING.fullmatch(scope["path"]) is None:
         return True
     return is_encoding(scope)
@@ -91,8 +88,6 @@ def _starts_work(scope: Scope) -> bool:
 
 def is_encoding(scope: Scope) -> bool:
     """Whether a request asks for a file that takes seconds to minutes to encode."""
-    if scope["type"] != "http":
-        return False
     if _ENCODED.fullmatch(scope["path"]) is not None:
         return True
     if _RECORDING.fullmatch(scope["path"]) is None:

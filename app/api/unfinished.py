@@ -4,31 +4,26 @@ import asyncio
 import logging
 
 from starlette.requests import Request
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import Message, Receive, Scope, Send
 
+from app.api.middleware import HttpMiddleware
 from app.api.problems import hexapod_error, problem
 from app.domain.errors import HexapodError
 
 _logger = logging.getLogger(__name__)
 
 
-class Unfinished:
-    """Middleware for errors that no exception handler can answer.
+class Unfinished(HttpMiddleware):
+    """Middleware for errors that no exception handler can answer; installed outside `HeldBodies`.
 
     A stream may fail after its start, as when its run is deleted. It is cut off, so that its client
-    takes it for no whole file; if none of it was sent yet, the client gets the problem. A request
-    that uvicorn cancels, since it does not end in time when the server stops, gets 503.
+    takes it for no whole file; if none of it was sent yet (`HeldBodies` holds back its start), the
+    client gets the problem. A request that uvicorn cancels, since it does not end in time when the
+    server stops, gets 503.
     """
 
-    def __init__(self, app: ASGIApp) -> None:
-        """Wrap an app; to be installed outside `HeldBodies`, which holds back a stream's start."""
-        self._app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app."""
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
         is_started = False
 
         async def send_noting_start(message: Message) -> None:

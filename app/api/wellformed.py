@@ -1,25 +1,19 @@
 """Refuses malformed requests before parsers can disagree on them (request smuggling)."""
 
 from starlette.datastructures import Headers
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import Message, Receive, Scope, Send
 
+from app.api.middleware import HttpMiddleware
 from app.api.problems import problem
 
 MAX_TARGET_BYTES = 8 << 10
 
 
-class WellFormed:
+class WellFormed(HttpMiddleware):
     """Middleware: refuse ambiguous framing and malformed targets; serve HEAD by GET."""
 
-    def __init__(self, app: ASGIApp) -> None:
-        """Wrap an app."""
-        self._app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app, or refuse with 400 or 414 and close the connection."""
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
         status, detail = _fault(scope)
         if status:
             # The bytes that follow on the connection may belong to this request.
