@@ -49,4 +49,4 @@ def test_no_browser_to_be_had_is_said_clearly(
     monkeypatch.setattr(install_browser, "_install_playwrights_own", lambda: None)
 
     assert install_browser.main() == 1
-    assert "apt-get install chromium" in capfd.readouterr().err
+    assert "apt-get install chromium-headless-shell" in capfd.readouterr().err
