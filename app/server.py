@@ -20,15 +20,13 @@ from app.api import (
     experiments,
     exports,
     gait,
-    health,
-    metrics,
+    monitoring,
     options,
     pages,
     problems,
     races,
     replays,
     runs,
-    spectators,
     stage,
     trainings,
     transfer,
@@ -39,9 +37,9 @@ from app.api.deps import Services
 from app.api.disconnects import Disconnects
 from app.api.host_check import HostGuard
 from app.api.memory_limit import BodyLimit, HeldBodies
+from app.api.middleware import SecurityHeaders
 from app.api.problem_pages import ProblemPages
 from app.api.rate_limit import RateLimit
-from app.api.security_headers import SecurityHeaders
 from app.api.starts import start_routes
 from app.api.unfinished import Unfinished
 from app.api.wellformed import WellFormed
@@ -138,7 +136,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         stopping=stopping,
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
-    app.state.metrics = metrics.registry_of(app.state.services)
+    app.state.metrics = monitoring.registry_of(app.state.services)
     _add_routes(app, viewer, app.state.services.agents)
     problems.install(app)
     contract.install(app, app.state.services.agents, settings)
@@ -163,14 +161,13 @@ def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) ->
     # First, so that no other route matches `import` as a run's id.
     modules = (
         *(transfer, trainings, races, experiments, runs, exports, replays, gait),
-        *(stage, spectators, events, options),
+        *(stage, events, options),
     )
     for module in modules:
         versioned.include_router(module.router)
     versioned.include_router(start_routes(agents))
     app.include_router(versioned)
-    app.include_router(health.router)
-    app.include_router(metrics.router)
+    app.include_router(monitoring.router)
     app.include_router(docs.router)
     app.router.routes += [*viewer_routes(viewer.hub), *pages.page_routes(assets.static_dir())]
 

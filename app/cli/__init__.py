@@ -6,19 +6,19 @@ checks in `data_diagnostics` and `physics_diagnostics`), `bench` (with the measu
 `benchmarks`). Their module docstrings are the descriptions in `--help`.
 Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments
 and sweeps), `files` (files that users name), `stored_runs` (runs of a data folder),
-`server_client` (requests to a running server), `terminal` (progress bars and tables), `startup` (a
-faster start).
+`server_client` (requests to a running server), `terminal` (progress bars and tables).
 """
 
 import argparse
+import gc
 import importlib
 import io
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 from app import __version__
 from app.cli.options import CommandParser
-from app.cli.startup import without_garbage_collection
 from app.domain.errors import HexapodError
 
 COMMANDS = {
@@ -58,6 +58,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("interrupted", file=sys.stderr)
         return 130
     return code
+
+
+@contextmanager
+def without_garbage_collection() -> Iterator[None]:
+    """Disable garbage collection during imports, and exempt the imported objects from it.
+
+    Modules last as long as the process. Their objects are so many that looking for garbage among
+    them takes up to a third of the time in which a server starts, and again when it ends.
+    """
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        if was_enabled:
+            gc.enable()
 
 
 def _parser(arguments: Sequence[str] = ()) -> argparse.ArgumentParser:

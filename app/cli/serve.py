@@ -7,8 +7,8 @@ import sys
 from functools import partial
 from typing import Any
 
+from app.cli import without_garbage_collection
 from app.cli.options import CommandParser, integer
-from app.cli.startup import without_garbage_collection
 from app.settings import Settings, read_settings
 
 

@@ -1,4 +1,4 @@
-"""Prometheus metrics, collected from the services at each scrape."""
+"""Probes of liveness and readiness, and metrics for Prometheus, collected at each scrape."""
 
 from collections.abc import Iterable
 
@@ -17,15 +17,32 @@ from prometheus_client.metrics_core import (
     Metric,
 )
 from prometheus_client.registry import Collector
-from starlette.responses import Response
+from starlette.responses import JSONResponse, Response
 
 from app import __version__
+from app.api.answers import HealthView
 from app.api.contract import TEXT, answers
-from app.api.deps import Services
+from app.api.deps import Services, ServicesDep
+from app.api.problems import problem
 from app.events.damage import DamageCount
 from app.storage.run import STATES
 
 router = APIRouter(tags=["health"])
+
+
+@router.get("/healthz", response_model=HealthView, summary="Whether the server lives")
+async def get_health() -> Response:
+    """Liveness probe: return 200 as long as the server responds at all."""
+    return JSONResponse({"status": "ok", "version": __version__})
+
+
+@router.get("/readyz", response_model=HealthView, summary="Whether the server is ready to work")
+def get_readiness(services: ServicesDep) -> Response:
+    """Readiness probe: return 503 with the reason while something that runs need is unavailable."""
+    trouble = services.ready()
+    if trouble is not None:
+        return problem(503, trouble, headers={"Retry-After": "1"})
+    return JSONResponse({"status": "ready", "version": __version__})
 
 
 @router.get(
