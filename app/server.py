@@ -27,6 +27,7 @@ from app.api import (
     races,
     replays,
     runs,
+    spectators,
     stage,
     trainings,
     transfer,
@@ -161,7 +162,7 @@ def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) ->
     # First, so that no other route matches `import` as a run's id.
     modules = (
         *(transfer, trainings, races, experiments, runs, exports, replays, gait),
-        *(stage, events, options),
+        *(stage, spectators, events, options),
     )
     for module in modules:
         versioned.include_router(module.router)

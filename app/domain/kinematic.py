@@ -1,5 +1,6 @@
 """The kinematic simulator: steps without slip by the law of `app.domain.feet`, without physics."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -106,6 +107,12 @@ class KinematicSimulator:
         pose: FloatArray = self._qpos(np.array([state.distance_m]), angles.reshape(1, -1))[0]
         return pose
 
+    def torso(self, state: KinematicState) -> Sequence[float]:
+        # Upright at body height, facing forward.
+        half = math.radians(90 - self.gait.forward_deg) / 2
+        height_m = self.robot.body_height_m + self.robot.foot_radius_m
+        return 0.0, state.distance_m, height_m, math.cos(half), 0.0, 0.0, math.sin(half)
+
     def dump(self, state: KinematicState) -> dict[str, FloatArray]:
         return {
             "feet": state.feet.as_array(),
@@ -127,16 +134,14 @@ class KinematicSimulator:
         return Motion(time_s.astype(np.float32), qpos.astype(np.float32))
 
     def _qpos(self, distance_m: FloatArray, angles: FloatArray) -> FloatArray:
-        """Return generalised positions (k, 7 + 3 · legs): the torso upright at body height.
+        """Return generalised positions (k, 7 + 3 · legs).
 
         Args:
             distance_m: displacement along the track (world +y), (k,).
             angles: joint angles [rad], (k, 3 · legs).
         """
         qpos = np.zeros((len(distance_m), 7 + angles.shape[1]))
+        qpos[:, :7] = self.torso(self.rest())
         qpos[:, 1] = distance_m
-        qpos[:, 2] = self.robot.body_height_m + self.robot.foot_radius_m
-        half = np.deg2rad(90 - self.gait.forward_deg) / 2
-        qpos[:, 3], qpos[:, 6] = np.cos(half), np.sin(half)
         qpos[:, 7:] = angles
         return qpos

@@ -8,6 +8,7 @@ z up), joint angles in rad.
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -157,12 +158,13 @@ def rotation_matrices(poses: FloatArray) -> FloatArray:
     return np.moveaxis(np.array(rows), -1, 0)
 
 
+@lru_cache(maxsize=64)
 def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> None:
     """Check that every foot offset that can occur is within each leg's reach and joint limits.
 
     A foot's actual forward offset drifts as the body re-centres. With P pairs it stays strictly
     within (P − 1) h of home, since the offsets sum to zero and each was last commanded to within
-    h (half the grid's side).
+    h (half the grid's side). Cached, since every run of an experiment asks it again.
 
     Raises:
         Unreachable: naming the leg and the cell.

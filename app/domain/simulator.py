@@ -132,6 +132,9 @@ class Simulator(Protocol[S]):
     def pose(self, state: S) -> FloatArray:
         """Return torso position [m], rotation (wxyz) and joint angles [rad], (7 + 3 · legs,)."""
 
+    def torso(self, state: S) -> Sequence[float]:
+        """Return the first seven numbers of `pose`, which may take less time than all."""
+
     def dump(self, state: S) -> dict[str, FloatArray]:
         """Serialise a state as named arrays, for storage."""
 

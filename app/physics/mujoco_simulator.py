@@ -400,6 +400,10 @@ class MujocoSimulator:
         pose[:2] += state.origin_m
         return pose
 
+    def torso(self, state: MujocoState) -> Sequence[float]:
+        torso: list[float] = self.pose(state)[:7].tolist()
+        return torso
+
     def dump(self, state: MujocoState) -> dict[str, FloatArray]:
         return {
             "row": state.row.copy(),

@@ -163,8 +163,8 @@ def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> S
         after = walker.observed, walker.measured
         learner.logged.append(Logged(observation, measured, action, step.reward_m, *after))
     if learner.fell_at_step is None:
-        pose, ground_m = walker.simulator.pose(walker.state), learner.world.ground_m(learner.step)
-        if has_fallen(walker.simulator.robot, pose.tolist(), ground_m):
+        torso, ground_m = walker.simulator.torso(walker.state), learner.world.ground_m(learner.step)
+        if has_fallen(walker.simulator.robot, torso, ground_m):
             learner.fell_at_step = learner.step
     learner.step += 1
     learner.episode_reward_m += step.reward_m
