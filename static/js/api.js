@@ -6,6 +6,9 @@
 
 const base = () => new URL("api/v1/", document.baseURI);
 
+/** Where something is that the browser loads by itself. @param {string} path of the API */
+export const addressOf = (path) => new URL(path, base()).href;
+
 /** A run, or enough of one to address it. @typedef {{ kind: Kind | null, id: string }} RunKey */
 /** An entry of a problem document. @typedef {{ field?: string, loc?: string[], pointer?: string }} FieldError */
 /** @typedef {{ title?: string, detail?: string, errors?: FieldError[] }} ProblemDocument */
@@ -129,7 +132,7 @@ const collection = (kind) => `${kind}s`;
  * A damaged run whose kind cannot be read is found under any.
  * @param {RunKey} run
  */
-const pathOf = ({ kind, id }) => `${collection(kind ?? "training")}/${encodeURIComponent(id)}`;
+export const pathOf = ({ kind, id }) => `${collection(kind ?? "training")}/${encodeURIComponent(id)}`;
 
 /** @returns {Promise<Options>} */
 export const getOptions = () => call("GET", "options");
@@ -210,10 +213,8 @@ export const getCode = (id) => call("GET", `runs/${encodeURIComponent(id)}/code`
 const idQuery = (ids) => new URLSearchParams(ids.map((id) => ["id", id]));
 /** @type {(ids: string[]) => Promise<{ deleted: string[], kept: { id: string, reason: string }[] }>} */
 export const deleteRuns = (ids) => call("DELETE", `runs?${idQuery(ids)}`);
-/** Where the archive of a run is. @param {RunKey} run */
-export const archiveAddress = (run) => addressOf(run, "export");
 /** Where the archive of several runs is. @param {string[]} ids */
-export const exportAddress = (ids) => new URL(`runs/export?${idQuery(ids)}`, base()).href;
+export const exportAddress = (ids) => addressOf(`runs/export?${idQuery(ids)}`);
 /**
  * Take in an archive of one run or several.
  * @type {(file: Blob) => Promise<{ items: Run[] }>}
@@ -275,50 +276,6 @@ export const getSpectators = () => call("GET", "spectators");
 export const getStage = () => call("GET", "stage");
 /** @type {(changes: Partial<Stage> & { time_s?: number }) => Promise<Stage | null>} */
 export const putStage = (changes) => call("PUT", "stage", changes);
-
-/** @type {(run: RunKey, rest: string) => string} */
-const addressOf = (run, rest) => new URL(`${pathOf(run)}/${rest}`, base()).href;
-
-/** A file of a run's walk, for other programs. @type {(run: RunKey, rest: string) => string} */
-const exportOf = ({ id }, rest) => new URL(`runs/${encodeURIComponent(id)}/${rest}`, base()).href;
-
-/**
- * The files of a run that can be downloaded: [label, address].
- * @param {RunKey & { started_at?: string | null }} run
- * @param {boolean} [hasTable] whether a training has stored a table: not one that was interrupted, or failed
- * @returns {[string, string][]}
- */
-export function downloads(run, hasTable = true) {
-  if (run.kind === "experiment") {
-    return [
-      ["Every trial (CSV)", addressOf(run, "trials?format=csv")],
-      ["Summary (JSON)", addressOf(run, "summary")],
-    ];
-  }
-  // Nothing was recorded of an imported table.
-  /** @type {[string, string][]} */
-  const walk = run.started_at === null ? [] : [
-    ["Joints and feet (CSV)", exportOf(run, "trajectory?format=csv")],
-    ["Offline replay (HTML)", exportOf(run, "page")],
-  ];
-  if (run.kind === "race") return [["Recording", addressOf(run, "recording")], ...walk];
-  /** @type {[string, string][]} */
-  const table = hasTable ? [
-    ["Q-table (CSV)", addressOf(run, "q-table?format=csv")],
-    ["Q-table (npz)", addressOf(run, "q-table?format=npz")],
-  ] : [];
-  return [["Curve (CSV)", addressOf(run, "curve?format=csv")], ...table, ...walk];
-}
-
-/**
- * The printable report of an experiment that has ended.
- * @param {RunKey} run
- */
-export const reportAddress = (run) => addressOf(run, "report");
-
-/** @type {(run: RunKey, name: string) => string} */
-export const fileAddress = (run, name) =>
-  addressOf(run, `files/${name.split("/").map(encodeURIComponent).join("/")}`);
 
 /**
  * A step of a run, explained.

@@ -3,10 +3,10 @@ import { useState } from "preact/hooks";
 import {
   attempt, copySettings, deleteRun, isShown, pending, resumeRun, runAgain, showOnStage,
 } from "../../actions.js";
-import { archiveAddress, downloads } from "../../api.js";
 import { changesInWords, rateChanges } from "../../changes.js";
 import { happeningsOf, inTime, joinedBySteps } from "../../disturbances.js";
 import { paceOf } from "../../experiments/runs.js";
+import { archiveAddress, downloads, saveFilm } from "../../files.js";
 import { ago, count, listed, metres, sentence, whole } from "../../format.js";
 import { formRobot, isSame } from "../../robots.js";
 import { isSelected, setSelected } from "../../run-selection.js";
@@ -170,7 +170,7 @@ function FilmButton({ run }) {
   const [isRendering, setRendering] = useState(false);
   const onClick = async () => {
     setRendering(true);
-    await attempt(run.id, async () => (await import("../../files.js")).saveFilm(run));
+    await attempt(run.id, () => saveFilm(run));
     setRendering(false);
   };
   return html`
