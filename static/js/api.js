@@ -1,4 +1,5 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
+import { computed, effect, untracked } from "@preact/signals";
 
 /** @import { Annotations, Curve, Disturbance, Explanation, GaitAnalysis, Kind, Options, Page } from "./types.js" */
 /** @import { Rates, ReplayPlan, Run, Spectators, Stage, StateTable, Summary, Timeline, Trial } from "./types.js" */
@@ -60,6 +61,56 @@ export async function patiently(ask, isWanted) {
     setTimeout(resolve, AGAIN_MS);
   });
   return patiently(ask, isWanted);
+}
+
+/**
+ * Keep an answer to the newest question: one request at a time, then always for the newest key, and again after an
+ * error that may pass; until the function that is returned is called.
+ * @param {object} question
+ * @param {() => string} question.key reads signals; "" where nothing is wanted
+ * @param {(key: string) => Promise<void>} question.ask keeps the answer, or the error, and throws that
+ * @param {() => void} [question.forget] the answer: nothing is wanted any more
+ * @param {() => number} question.pause_ms after an answer
+ */
+export function askForNewest({ key, ask, forget = () => {}, pause_ms }) {
+  const wanted = computed(key);
+  /** The key of what is known; null after an error that may pass. @type {string | null} */
+  let known = "";
+  let [isBusy, isOver] = [false, false];
+
+  /** @param {string} now */
+  async function send(now) {
+    isBusy = true;
+    try {
+      await ask(now);
+      known = now;
+    } catch (failure) {
+      known = isLasting(/** @type {RequestError} */ (failure)) ? now : null;
+    }
+    setTimeout(() => {
+      isBusy = false;
+      look();
+    }, Math.max(known === null ? AGAIN_MS : 0, pause_ms()));
+  }
+
+  function look() {
+    const now = wanted.peek();
+    if (isBusy || isOver || now === known) return;
+    if (now) {
+      send(now);
+      return;
+    }
+    known = "";
+    forget();
+  }
+
+  const stop = effect(() => {
+    if (wanted.value !== known) untracked(look);
+  });
+  return () => {
+    isOver = true;
+    stop();
+  };
 }
 
 /** No answer came: the server or the network is down. */
@@ -210,11 +261,9 @@ export const startAgain = (id) => start(`runs/${encodeURIComponent(id)}/again`, 
 export const getCode = (id) => call("GET", `runs/${encodeURIComponent(id)}/code`);
 
 /** @param {string[]} ids */
-const idQuery = (ids) => new URLSearchParams(ids.map((id) => ["id", id]));
+export const idQuery = (ids) => new URLSearchParams(ids.map((id) => ["id", id]));
 /** @type {(ids: string[]) => Promise<{ deleted: string[], kept: { id: string, reason: string }[] }>} */
 export const deleteRuns = (ids) => call("DELETE", `runs?${idQuery(ids)}`);
-/** Where the archive of several runs is. @param {string[]} ids */
-export const exportAddress = (ids) => addressOf(`runs/export?${idQuery(ids)}`);
 /**
  * Take in an archive of one run or several.
  * @type {(file: Blob) => Promise<{ items: Run[] }>}
@@ -297,19 +346,16 @@ export const getTable = ({ training_id, step, first }) => {
 
 // ---- the stream of server-sent events
 
-const NAMES = [
-  "snapshot", "run", "run-deleted", "evaluation", "reference", "rates", "stage", "viewers", "scene",
-  "summary",
-];
 const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 8000;
 
 /**
  * Open the stream, and open it again after every break with exponential back-off.
+ * @param {string[]} names of events that are wanted
  * @param {(name: string, data: any) => void} onEvent
  * @param {(state: "connecting" | "live" | "reconnecting") => void} onState
  */
-export function openEvents(onEvent, onState) {
+export function openEvents(names, onEvent, onState) {
   /** @type {EventSource | null} */
   let source = null;
   let wait = FIRST_WAIT_MS;
@@ -321,7 +367,7 @@ export function openEvents(onEvent, onState) {
     source?.close();
     const opened = new EventSource(new URL("api/v1/events", document.baseURI));
     source = opened;
-    for (const name of NAMES) {
+    for (const name of names) {
       opened.addEventListener(name, ({ data }) => {
         if (name === "snapshot") {
           wait = FIRST_WAIT_MS;

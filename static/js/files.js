@@ -1,5 +1,5 @@
 // Files that the browser downloads: the addresses of a run's, and those that the page makes.
-import { addressOf, getFilm, getReplay, pathOf } from "./api.js";
+import { addressOf, getFilm, getReplay, idQuery, pathOf } from "./api.js";
 
 /** @import { RunKey } from "./api.js" */
 /** @import { Run } from "./types.js" */
@@ -14,6 +14,8 @@ const exportOf = ({ id }, rest) => addressOf(`runs/${encodeURIComponent(id)}/${r
 
 /** @param {RunKey} run */
 export const archiveAddress = (run) => partOf(run, "export");
+/** Where the archive of several runs is. @param {string[]} ids */
+export const exportAddress = (ids) => addressOf(`runs/export?${idQuery(ids)}`);
 
 /**
  * The files of a run that can be downloaded: [label, address].

@@ -10,7 +10,7 @@ import { followPresenter, followTheme } from "./page.js";
 import { announceOutcomes, followTimeline } from "./race.js";
 import { followReplay, readReplayAddress } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
-import { applyEvent, connection, isLockedOut, options, role, version } from "./store.js";
+import { applyEvent, connection, eventNames, isLockedOut, options, role, version } from "./store.js";
 import { followCurves, trainingsInView } from "./training.js";
 import { followWhatIf } from "./what-if.js";
 
@@ -63,7 +63,7 @@ announceOutcomes();
 announceExperiments();
 listenForKeys();
 listenForMenus();
-openEvents(applyEvent, (state) => {
+openEvents(eventNames, applyEvent, (state) => {
   connection.value = state;
   if (state === "live") isLockedOut.value = false;
   // The stream does not say why it ended: the server may have come back with a token.

@@ -1,13 +1,12 @@
 // The race in view at the moment that is shown: its timeline, its standings, and what is announced of it.
 import { computed, effect, signal } from "@preact/signals";
-import { AGAIN_MS, getTimeline, isLasting } from "./api.js";
+import { askForNewest, getTimeline } from "./api.js";
 import { count, listed, metres } from "./format.js";
 import { clock, isActive, isToCome, knowledgeIn, originalRace, raceInView, raceScene, shownRun } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { connection, scene, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { RequestError } from "./api.js" */
 /** @import { ClockResult, LaneConfig, LaneResult, Run, SceneLane, Timeline, TimelineLane } from "./types.js" */
 /** @import { TimelinePoint } from "./types.js" */
 
@@ -73,35 +72,19 @@ export function timeSpent({ thinking, total_s }, time) {
   return { thought, walked: elapsed - thought };
 }
 
-/** Request the timeline whenever it has grown, one request at a time, and after an error that may pass. */
-export function followTimeline() {
-  const wanted = computed(() => {
+/** Request the timeline whenever it has grown. */
+export const followTimeline = () => askForNewest({
+  key: () => {
     const race = raceInView.value;
     if (!race?.progress.done || connection.value !== "live") return "";
     return [race.id, clock.value, race.state, race.progress.done].join(" ");
-  });
-  let [isBusy, hasMissed, wait_ms] = [false, false, PAUSE_MS];
-
-  const load = async () => {
-    hasMissed = isBusy;
-    const [id, shown] = wanted.peek().split(" ");
-    if (isBusy || !id) return;
-    [isBusy, wait_ms] = [true, PAUSE_MS];
-    try {
-      newest.value = { ...await getTimeline(id, shown), id };
-    } catch (error) {
-      wait_ms = AGAIN_MS;
-      hasMissed ||= !isLasting(/** @type {RequestError} */ (error));
-    }
-    setTimeout(() => {
-      isBusy = false;
-      if (hasMissed) load();
-    }, wait_ms);
-  };
-  effect(() => {
-    if (wanted.value) load();
-  });
-}
+  },
+  ask: async (key) => {
+    const [id, shown] = key.split(" ");
+    newest.value = { ...await getTimeline(id, shown), id };
+  },
+  pause_ms: () => PAUSE_MS,
+});
 
 // ---- the standings at the moment that is shown, and nothing later
 
