@@ -1,12 +1,14 @@
 // The race in view at the moment that is shown: its timeline, its standings, and what is announced of it.
 import { computed, effect, signal } from "@preact/signals";
-import { askForNewest, getTimeline } from "./api.js";
+import { askForNewest, getTimeline, isLasting } from "./api.js";
 import { count, listed, metres } from "./format.js";
 import { clock, isActive, isToCome, knowledgeIn, originalRace, raceInView, raceScene, shownRun } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { connection, scene, stage } from "./store.js";
+import { messageOf } from "./titles.js";
 
 /** @import { Signal } from "@preact/signals" */
+/** @import { RequestError } from "./api.js" */
 /** @import { ClockResult, LaneConfig, LaneResult, Run, SceneLane, Timeline, TimelineLane } from "./types.js" */
 /** @import { TimelinePoint } from "./types.js" */
 
@@ -22,6 +24,16 @@ export const timeline = computed(() => {
   const race = raceInView.value;
   const known = newest.value;
   return race && known?.id === race.id && known.clock === clock.value ? known : null;
+});
+
+/** The error of the last request, which was for a race and a clock. @type {Signal<[string, RequestError] | null>} */
+const refused = signal(null);
+
+/** Why the timeline cannot be had, or not any more; null where it can be, or will be once the server answers again. */
+export const timelineProblem = computed(() => {
+  const [of, error] = refused.value ?? [];
+  const isAbout = of === `${raceInView.value?.id} ${clock.value}`;
+  return error && isAbout && isLasting(error) ? messageOf(error) : null;
 });
 
 /** The race time that is shown [s]: null before the race begins, Infinity after its show. */
@@ -81,7 +93,13 @@ export const followTimeline = () => askForNewest({
   },
   ask: async (key) => {
     const [id, shown] = key.split(" ");
-    newest.value = { ...await getTimeline(id, shown), id };
+    try {
+      newest.value = { ...await getTimeline(id, shown), id };
+      refused.value = null;
+    } catch (error) {
+      refused.value = [`${id} ${shown}`, /** @type {RequestError} */ (error)];
+      throw error;
+    }
   },
   pause_ms: () => PAUSE_MS,
 });

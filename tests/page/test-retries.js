@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
 import { followSummary, summary, summaryError, wantedRun } from "../../static/js/experiments/runs.js";
 import { place } from "../../static/js/page.js";
-import { followTimeline, timeline } from "../../static/js/race.js";
+import { followTimeline, timeline, timelineProblem } from "../../static/js/race.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
 import { curve, followCurves, trainingsInView } from "../../static/js/training.js";
 import { makeRun, OPTIONS } from "./options.js";
@@ -65,9 +65,13 @@ const RACE = { kind: "race", config: { steps: 50, lanes: [] } };
 test("the timeline of a race", async () => {
   await show(RACE, 503, 503);
   assert.deepEqual([asked, timeline.value?.lanes], [["timeline", "timeline", "timeline"], []]);
+  assert.equal(timelineProblem.value, null);
   asked = [];
   await show(RACE, 409);
   assert.deepEqual([asked, timeline.value], [["timeline"], null]);
+  assert.equal(timelineProblem.value, "The server answered 409.");
+  await show(RACE);
+  assert.equal(timelineProblem.value, null);
 });
 
 test("the curve of a training, and the training that it continues", async () => {
