@@ -19,11 +19,10 @@ export const exportAddress = (ids) => addressOf(`runs/export?${idQuery(ids)}`);
 
 /**
  * The files of a run that can be downloaded: [label, address].
- * @param {RunKey & { started_at?: string | null }} run
- * @param {boolean} [hasTable] whether a training has stored a table: not one that was interrupted, or failed
+ * @param {RunKey & Partial<Run>} run
  * @returns {[string, string][]}
  */
-export function downloads(run, hasTable = true) {
+export function downloads(run) {
   if (run.kind === "experiment") {
     return [
       ["Every trial (CSV)", partOf(run, "trials?format=csv")],
@@ -37,12 +36,19 @@ export function downloads(run, hasTable = true) {
     ["Offline replay (HTML)", exportOf(run, "page")],
   ];
   if (run.kind === "race") return [["Recording", partOf(run, "recording")], ...walk];
-  /** @type {[string, string][]} */
-  const table = hasTable ? [
-    ["Q-table (CSV)", partOf(run, "q-table?format=csv")],
-    ["Q-table (npz)", partOf(run, "q-table?format=npz")],
-  ] : [];
-  return [["Curve (CSV)", partOf(run, "curve?format=csv")], ...table, ...walk];
+  return [["Curve (CSV)", partOf(run, "curve?format=csv")], ...learned(run), ...walk];
+}
+
+/**
+ * What a training has learned. One that was interrupted, failed or never began has no result, and has stored nothing.
+ * @param {RunKey & Partial<Run>} run
+ * @returns {[string, string][]}
+ */
+function learned(run) {
+  if (!run.result) return [];
+  const npz = partOf(run, "q-table?format=npz");
+  if (!run.result.q_table_sha256) return [["What it learned (npz)", npz]];
+  return [["Q-table (CSV)", partOf(run, "q-table?format=csv")], ["Q-table (npz)", npz]];
 }
 
 /**

@@ -10,7 +10,7 @@ import { archiveAddress, downloads, saveFilm } from "../../files.js";
 import { ago, count, listed, metres, sentence, whole } from "../../format.js";
 import { formRobot, isSame } from "../../robots.js";
 import { isSelected, setSelected } from "../../run-selection.js";
-import { hasTable, isActive, isOperator } from "../../selectors.js";
+import { isActive, isOperator } from "../../selectors.js";
 import { agentOf, laneTitle, ratesInWords } from "../../settings.js";
 import { served } from "../../store.js";
 import { describeRun, gaitTitle, observationTitle, robotTitle, runTitle, simulatorTitle } from "../../titles.js";
@@ -182,9 +182,9 @@ function FilmButton({ run }) {
 
 function Downloads({ run }) {
   const hasEnded = !isActive(run);
-  const hasBegun = run.progress.done > 0 || hasTable(run);
+  const hasBegun = run.progress.done > 0 || run.result;
   const files = [
-    ...(run.kind === "experiment" || (hasEnded && hasBegun) ? downloads(run, hasTable(run)) : []),
+    ...(run.kind === "experiment" || (hasEnded && hasBegun) ? downloads(run) : []),
     ...(hasEnded ? [["Archive (zip)", archiveAddress(run)]] : []),
   ];
   if (files.length === 0) return html`<p class="dim">Nothing to download.</p>`;
