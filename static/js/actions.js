@@ -295,10 +295,10 @@ export const skipToEnd = () => setStage({ time_s: scene.value?.duration_s ?? und
 /** @param {Run} run */
 export const showOnStage = (run) =>
   attempt(run.id, async () => {
-    closeReplay();
     const start = isActive(run) ? {} : { time_s: 0 };
     const go = goIfStillHere();
     await requestStage(() => api.putStage({ run_id: run.id, playing: true, ...start }));
+    closeReplay();
     go("");
   });
 

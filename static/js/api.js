@@ -1,10 +1,14 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
+import { computed, effect, untracked } from "@preact/signals";
 
 /** @import { Annotations, Curve, Disturbance, Explanation, GaitAnalysis, Kind, Options, Page } from "./types.js" */
 /** @import { Rates, ReplayPlan, Run, Spectators, Stage, StateTable, Summary, Timeline, Trial } from "./types.js" */
 /** @import { Verb, WhatIfAnswer } from "./types.js" */
 
 const base = () => new URL("api/v1/", document.baseURI);
+
+/** Where something is that the browser loads by itself. @param {string} path of the API */
+export const addressOf = (path) => new URL(path, base()).href;
 
 /** A run, or enough of one to address it. @typedef {{ kind: Kind | null, id: string }} RunKey */
 /** An entry of a problem document. @typedef {{ field?: string, loc?: string[], pointer?: string }} FieldError */
@@ -57,6 +61,56 @@ export async function patiently(ask, isWanted) {
     setTimeout(resolve, AGAIN_MS);
   });
   return patiently(ask, isWanted);
+}
+
+/**
+ * Keep an answer to the newest question: one request at a time, then always for the newest key, and again after an
+ * error that may pass; until the function that is returned is called.
+ * @param {object} question
+ * @param {() => string} question.key reads signals; "" where nothing is wanted
+ * @param {(key: string) => Promise<void>} question.ask keeps the answer, or the error, and throws that
+ * @param {() => void} [question.forget] the answer: nothing is wanted any more
+ * @param {() => number} question.pause_ms after an answer
+ */
+export function askForNewest({ key, ask, forget = () => {}, pause_ms }) {
+  const wanted = computed(key);
+  /** The key of what is known; null after an error that may pass. @type {string | null} */
+  let known = "";
+  let [isBusy, isOver] = [false, false];
+
+  /** @param {string} now */
+  async function send(now) {
+    isBusy = true;
+    try {
+      await ask(now);
+      known = now;
+    } catch (failure) {
+      known = isLasting(/** @type {RequestError} */ (failure)) ? now : null;
+    }
+    setTimeout(() => {
+      isBusy = false;
+      look();
+    }, Math.max(known === null ? AGAIN_MS : 0, pause_ms()));
+  }
+
+  function look() {
+    const now = wanted.peek();
+    if (isBusy || isOver || now === known) return;
+    if (now) {
+      send(now);
+      return;
+    }
+    known = "";
+    forget();
+  }
+
+  const stop = effect(() => {
+    if (wanted.value !== known) untracked(look);
+  });
+  return () => {
+    isOver = true;
+    stop();
+  };
 }
 
 /** No answer came: the server or the network is down. */
@@ -129,7 +183,7 @@ const collection = (kind) => `${kind}s`;
  * A damaged run whose kind cannot be read is found under any.
  * @param {RunKey} run
  */
-const pathOf = ({ kind, id }) => `${collection(kind ?? "training")}/${encodeURIComponent(id)}`;
+export const pathOf = ({ kind, id }) => `${collection(kind ?? "training")}/${encodeURIComponent(id)}`;
 
 /** @returns {Promise<Options>} */
 export const getOptions = () => call("GET", "options");
@@ -207,13 +261,9 @@ export const startAgain = (id) => start(`runs/${encodeURIComponent(id)}/again`, 
 export const getCode = (id) => call("GET", `runs/${encodeURIComponent(id)}/code`);
 
 /** @param {string[]} ids */
-const idQuery = (ids) => new URLSearchParams(ids.map((id) => ["id", id]));
+export const idQuery = (ids) => new URLSearchParams(ids.map((id) => ["id", id]));
 /** @type {(ids: string[]) => Promise<{ deleted: string[], kept: { id: string, reason: string }[] }>} */
 export const deleteRuns = (ids) => call("DELETE", `runs?${idQuery(ids)}`);
-/** Where the archive of a run is. @param {RunKey} run */
-export const archiveAddress = (run) => addressOf(run, "export");
-/** Where the archive of several runs is. @param {string[]} ids */
-export const exportAddress = (ids) => new URL(`runs/export?${idQuery(ids)}`, base()).href;
 /**
  * Take in an archive of one run or several.
  * @type {(file: Blob) => Promise<{ items: Run[] }>}
@@ -276,50 +326,6 @@ export const getStage = () => call("GET", "stage");
 /** @type {(changes: Partial<Stage> & { time_s?: number }) => Promise<Stage | null>} */
 export const putStage = (changes) => call("PUT", "stage", changes);
 
-/** @type {(run: RunKey, rest: string) => string} */
-const addressOf = (run, rest) => new URL(`${pathOf(run)}/${rest}`, base()).href;
-
-/** A file of a run's walk, for other programs. @type {(run: RunKey, rest: string) => string} */
-const exportOf = ({ id }, rest) => new URL(`runs/${encodeURIComponent(id)}/${rest}`, base()).href;
-
-/**
- * The files of a run that can be downloaded: [label, address].
- * @param {RunKey & { started_at?: string | null }} run
- * @param {boolean} [hasTable] whether a training has stored a table: not one that was interrupted, or failed
- * @returns {[string, string][]}
- */
-export function downloads(run, hasTable = true) {
-  if (run.kind === "experiment") {
-    return [
-      ["Every trial (CSV)", addressOf(run, "trials?format=csv")],
-      ["Summary (JSON)", addressOf(run, "summary")],
-    ];
-  }
-  // Nothing was recorded of an imported table.
-  /** @type {[string, string][]} */
-  const walk = run.started_at === null ? [] : [
-    ["Joints and feet (CSV)", exportOf(run, "trajectory?format=csv")],
-    ["Offline replay (HTML)", exportOf(run, "page")],
-  ];
-  if (run.kind === "race") return [["Recording", addressOf(run, "recording")], ...walk];
-  /** @type {[string, string][]} */
-  const table = hasTable ? [
-    ["Q-table (CSV)", addressOf(run, "q-table?format=csv")],
-    ["Q-table (npz)", addressOf(run, "q-table?format=npz")],
-  ] : [];
-  return [["Curve (CSV)", addressOf(run, "curve?format=csv")], ...table, ...walk];
-}
-
-/**
- * The printable report of an experiment that has ended.
- * @param {RunKey} run
- */
-export const reportAddress = (run) => addressOf(run, "report");
-
-/** @type {(run: RunKey, name: string) => string} */
-export const fileAddress = (run, name) =>
-  addressOf(run, `files/${name.split("/").map(encodeURIComponent).join("/")}`);
-
 /**
  * A step of a run, explained.
  * @type {(of: { run_id: string, lane: number, step: number }) => Promise<Explanation>}
@@ -340,19 +346,16 @@ export const getTable = ({ training_id, step, first }) => {
 
 // ---- the stream of server-sent events
 
-const NAMES = [
-  "snapshot", "run", "run-deleted", "evaluation", "reference", "rates", "stage", "viewers", "scene",
-  "summary",
-];
 const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 8000;
 
 /**
  * Open the stream, and open it again after every break with exponential back-off.
+ * @param {string[]} names of events that are wanted
  * @param {(name: string, data: any) => void} onEvent
  * @param {(state: "connecting" | "live" | "reconnecting") => void} onState
  */
-export function openEvents(onEvent, onState) {
+export function openEvents(names, onEvent, onState) {
   /** @type {EventSource | null} */
   let source = null;
   let wait = FIRST_WAIT_MS;
@@ -364,7 +367,7 @@ export function openEvents(onEvent, onState) {
     source?.close();
     const opened = new EventSource(new URL("api/v1/events", document.baseURI));
     source = opened;
-    for (const name of NAMES) {
+    for (const name of names) {
       opened.addEventListener(name, ({ data }) => {
         if (name === "snapshot") {
           wait = FIRST_WAIT_MS;

@@ -1,7 +1,67 @@
-// Files that the page hands to the browser's downloads.
-import { getFilm, getReplay } from "./api.js";
+// Files that the browser downloads: the addresses of a run's, and those that the page makes.
+import { addressOf, getFilm, getReplay, idQuery, pathOf } from "./api.js";
 
+/** @import { RunKey } from "./api.js" */
 /** @import { Run } from "./types.js" */
+
+// ---- files of the server
+
+/** @type {(run: RunKey, rest: string) => string} */
+const partOf = (run, rest) => addressOf(`${pathOf(run)}/${rest}`);
+
+/** A file of a run's walk, for other programs. @type {(run: RunKey, rest: string) => string} */
+const exportOf = ({ id }, rest) => addressOf(`runs/${encodeURIComponent(id)}/${rest}`);
+
+/** @param {RunKey} run */
+export const archiveAddress = (run) => partOf(run, "export");
+/** Where the archive of several runs is. @param {string[]} ids */
+export const exportAddress = (ids) => addressOf(`runs/export?${idQuery(ids)}`);
+
+/**
+ * The files of a run that can be downloaded: [label, address].
+ * @param {RunKey & Partial<Run>} run
+ * @returns {[string, string][]}
+ */
+export function downloads(run) {
+  if (run.kind === "experiment") {
+    return [
+      ["Every trial (CSV)", partOf(run, "trials?format=csv")],
+      ["Summary (JSON)", partOf(run, "summary")],
+    ];
+  }
+  // Nothing was recorded of an imported table.
+  /** @type {[string, string][]} */
+  const walk = run.started_at === null ? [] : [
+    ["Joints and feet (CSV)", exportOf(run, "trajectory?format=csv")],
+    ["Offline replay (HTML)", exportOf(run, "page")],
+  ];
+  if (run.kind === "race") return [["Recording", partOf(run, "recording")], ...walk];
+  return [["Curve (CSV)", partOf(run, "curve?format=csv")], ...learned(run), ...walk];
+}
+
+/**
+ * What a training has learned. One that was interrupted, failed or never began has no result, and has stored nothing.
+ * @param {RunKey & Partial<Run>} run
+ * @returns {[string, string][]}
+ */
+function learned(run) {
+  if (!run.result) return [];
+  const npz = partOf(run, "q-table?format=npz");
+  if (!run.result.q_table_sha256) return [["What it learned (npz)", npz]];
+  return [["Q-table (CSV)", partOf(run, "q-table?format=csv")], ["Q-table (npz)", npz]];
+}
+
+/**
+ * The printable report of an experiment that has ended.
+ * @param {RunKey} run
+ */
+export const reportAddress = (run) => partOf(run, "report");
+
+/** @type {(run: RunKey, name: string) => string} */
+export const fileAddress = (run, name) =>
+  partOf(run, `files/${name.split("/").map(encodeURIComponent).join("/")}`);
+
+// ---- files of the page
 
 const KEPT_MS = 60_000;
 /** A film that the server renders at once has at most 900 pictures, 30 a second. */

@@ -1,8 +1,8 @@
 // The gait of the run in view: its analysis by the server, the moment of each lane that is shown, and its figures in
 // words. Times are robot time: motion only, without the time that decisions take.
-import { computed, effect, signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { setStage } from "./actions.js";
-import { getGait, isLasting } from "./api.js";
+import { askForNewest, getGait, isLasting } from "./api.js";
 import { count } from "./format.js";
 import { shownTime, timeline, timeSpent } from "./race.js";
 import { canPlay, raceInView, shownRun } from "./selectors.js";
@@ -120,47 +120,28 @@ const partShown = computed(() => {
 /** The beginning of what is requested of such a walk [s]. @param {number} shown */
 const beginOf = (shown) => Math.max(0, (shown - 0.5) * partLength());
 
-/** Next request: one each time the run has grown, or the moment that is shown has left the part that is known. */
-const wanted = computed(() => {
-  const about = subject.value;
-  if (!isWatched.value || !about?.run.progress.done || connection.value !== "live") return "";
-  const { run } = about;
-  return [run.id, about.part, run.state, run.progress.done, partShown.value].join(" ");
-});
-
-/** Request the analysis whenever it has changed, one at a time, until the function that is returned is called. */
-export function followGait() {
-  let isBusy = false;
-  let isStale = false;
-  let isOver = false;
-  const load = async () => {
-    isStale = isBusy;
-    const about = subject.peek();
-    if (isBusy || isOver || !wanted.peek() || !about) return;
-    isBusy = true;
-    const [{ id }, shown] = [about.run, partShown.peek()];
+/** Request the analysis whenever the run has grown, or the moment that is shown has left the part that is known. */
+export const followGait = () => askForNewest({
+  key: () => {
+    const about = subject.value;
+    if (!isWatched.value || !about?.run.progress.done || connection.value !== "live") return "";
+    const { run } = about;
+    return [run.id, about.part, partShown.value, run.state, run.progress.done].join(" ");
+  },
+  ask: async (key) => {
+    const [id, asked, shown] = key.split(" ");
+    const number = shown === "" ? null : Number(shown);
     try {
-      const answer = await getGait(id, about.part, shown === null ? null : beginOf(shown));
-      newest.value = { id, number: shown, answer };
+      newest.value = { id, number, answer: await getGait(id, asked, number === null ? null : beginOf(number)) };
       failure.value = null;
     } catch (refused) {
       const error = /** @type {RequestError} */ (refused);
-      failure.value = { id, part: about.part, error };
-      isStale ||= !isLasting(error);
+      failure.value = { id, part: asked, error };
+      throw error;
     }
-    setTimeout(() => {
-      isBusy = false;
-      if (isStale) load();
-    }, PAUSE_MS);
-  };
-  const stop = effect(() => {
-    if (wanted.value) load();
-  });
-  return () => {
-    isOver = true;
-    stop();
-  };
-}
+  },
+  pause_ms: () => PAUSE_MS,
+});
 
 // ---- what is drawn
 

@@ -1,5 +1,5 @@
 // Entry point: loads the options, opens the event stream, renders the page.
-import { effect } from "@preact/signals";
+import { effect, signal, untracked } from "@preact/signals";
 import { render } from "preact";
 import { getOptions, getStage, openEvents, RequestError } from "./api.js";
 import { App, listenForKeys, listenForMenus } from "./components/app.js";
@@ -10,7 +10,7 @@ import { followPresenter, followTheme } from "./page.js";
 import { announceOutcomes, followTimeline } from "./race.js";
 import { followReplay, readReplayAddress } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
-import { applyEvent, connection, isLockedOut, options, role, version } from "./store.js";
+import { applyEvent, connection, eventNames, isLockedOut, options, role, version } from "./store.js";
 import { followCurves, trainingsInView } from "./training.js";
 import { followWhatIf } from "./what-if.js";
 
@@ -32,11 +32,21 @@ async function loadOptions(attempt = 0) {
   }
   readAddress();
   writeAddress();
-  effect(() => {
-    if (role.value === "spectator") import("./spectators.js").then((module) => module.followStageSettings());
-  });
+  followSpectators();
   followAddress();
   followWhatIf();
+}
+
+/** What only spectators' pages need; if it could not be loaded, again once the connection is back. */
+function followSpectators() {
+  const loaded = signal(/** @type {typeof import("./spectators.js") | null} */ (null));
+  effect(() => {
+    const isMissing = role.value === "spectator" && connection.value === "live" && loaded.value === null;
+    if (isMissing) import("./spectators.js").then((module) => (loaded.value = module), () => {});
+  });
+  effect(() => {
+    if (role.value === "spectator" && loaded.value) untracked(loaded.value.followStageSettings);
+  });
 }
 
 /** Reload when the server comes back in another version, which these scripts may not fit. */
@@ -63,7 +73,7 @@ announceOutcomes();
 announceExperiments();
 listenForKeys();
 listenForMenus();
-openEvents(applyEvent, (state) => {
+openEvents(eventNames, applyEvent, (state) => {
   connection.value = state;
   if (state === "live") isLockedOut.value = false;
   // The stream does not say why it ended: the server may have come back with a token.

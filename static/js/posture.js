@@ -124,7 +124,7 @@ function answerClick() {
 const keepGhost = () => keepAnswer(
   () => {
     const chosen = chosenState.value;
-    if (chosen?.from !== "table" || whyNoGhost.value !== null) return null;
+    if (chosen?.from !== "table" || whyNoGhost.value !== null) return "";
     // Legs may be lost meanwhile.
     return JSON.stringify({ ...chosen, clock: clock.value, conditions: conditionsShown.value });
   },

@@ -1,10 +1,11 @@
 // The race in view at the moment that is shown: its timeline, its standings, and what is announced of it.
 import { computed, effect, signal } from "@preact/signals";
-import { AGAIN_MS, getTimeline, isLasting } from "./api.js";
+import { askForNewest, getTimeline, isLasting } from "./api.js";
 import { count, listed, metres } from "./format.js";
 import { clock, isActive, isToCome, knowledgeIn, originalRace, raceInView, raceScene, shownRun } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { connection, scene, stage } from "./store.js";
+import { messageOf } from "./titles.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
@@ -23,6 +24,16 @@ export const timeline = computed(() => {
   const race = raceInView.value;
   const known = newest.value;
   return race && known?.id === race.id && known.clock === clock.value ? known : null;
+});
+
+/** The error of the last request, which was for a race and a clock. @type {Signal<[string, RequestError] | null>} */
+const refused = signal(null);
+
+/** Why the timeline cannot be had, or not any more; null where it can be, or will be once the server answers again. */
+export const timelineProblem = computed(() => {
+  const [of, error] = refused.value ?? [];
+  const isAbout = of === `${raceInView.value?.id} ${clock.value}`;
+  return error && isAbout && isLasting(error) ? messageOf(error) : null;
 });
 
 /** The race time that is shown [s]: null before the race begins, Infinity after its show. */
@@ -73,35 +84,25 @@ export function timeSpent({ thinking, total_s }, time) {
   return { thought, walked: elapsed - thought };
 }
 
-/** Request the timeline whenever it has grown, one request at a time, and after an error that may pass. */
-export function followTimeline() {
-  const wanted = computed(() => {
+/** Request the timeline whenever it has grown. */
+export const followTimeline = () => askForNewest({
+  key: () => {
     const race = raceInView.value;
     if (!race?.progress.done || connection.value !== "live") return "";
     return [race.id, clock.value, race.state, race.progress.done].join(" ");
-  });
-  let [isBusy, hasMissed, wait_ms] = [false, false, PAUSE_MS];
-
-  const load = async () => {
-    hasMissed = isBusy;
-    const [id, shown] = wanted.peek().split(" ");
-    if (isBusy || !id) return;
-    [isBusy, wait_ms] = [true, PAUSE_MS];
+  },
+  ask: async (key) => {
+    const [id, shown] = key.split(" ");
     try {
       newest.value = { ...await getTimeline(id, shown), id };
+      refused.value = null;
     } catch (error) {
-      wait_ms = AGAIN_MS;
-      hasMissed ||= !isLasting(/** @type {RequestError} */ (error));
+      refused.value = [`${id} ${shown}`, /** @type {RequestError} */ (error)];
+      throw error;
     }
-    setTimeout(() => {
-      isBusy = false;
-      if (hasMissed) load();
-    }, wait_ms);
-  };
-  effect(() => {
-    if (wanted.value) load();
-  });
-}
+  },
+  pause_ms: () => PAUSE_MS,
+});
 
 // ---- the standings at the moment that is shown, and nothing later
 

@@ -2,6 +2,7 @@
 import { computed, signal } from "@preact/signals";
 import { attempt } from "./actions.js";
 import * as api from "./api.js";
+import { exportAddress } from "./files.js";
 import { listed } from "./format.js";
 import { shownRuns } from "./run-list.js";
 import { isActive } from "./selectors.js";
@@ -53,7 +54,7 @@ export const exported = computed(() => {
   const [, most] = served().limits.archive_runs;
   const { length } = exportable.value;
   const isPossible = length > 0 && length <= (most ?? Infinity);
-  return { count: length, most, address: isPossible ? api.exportAddress(exportable.value.map(({ id }) => id)) : null };
+  return { count: length, most, address: isPossible ? exportAddress(exportable.value.map(({ id }) => id)) : null };
 });
 
 /** Delete the selected runs; those that are kept stay selected, and the reasons are told. */

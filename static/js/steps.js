@@ -1,6 +1,6 @@
 // One step of a run and its table: which step is looked at, its explanation, and how the table is drawn and read.
-import { computed, effect, signal } from "@preact/signals";
-import { AGAIN_MS, getExplanation, getTable, isLasting, needsLonger } from "./api.js";
+import { computed, signal } from "@preact/signals";
+import { askForNewest, getExplanation, getTable, needsLonger } from "./api.js";
 import { count, THIN_SPACE } from "./format.js";
 import { isPlaying, shownRun } from "./selectors.js";
 import { connection, runs, scene } from "./store.js";
@@ -86,70 +86,41 @@ export const tableMoment = computed(() => {
 });
 
 /**
- * Ask for what a key stands for, one request at a time, always for the newest key, and keep the answer in a signal.
+ * Keep the answer to the newest question in a signal.
  * @template Answer
- * @param {() => string | null} keyOf null: there is nothing to ask for
+ * @param {() => string} key "" where there is nothing to ask for
  * @param {(key: string) => Promise<Answer>} ask
  * @param {Signal<Reply<Answer>>} reply
  */
-export function keepAnswer(keyOf, ask, reply) {
-  let isBusy = false;
-  /** @type {string | null} */
-  let known = null;
-  let isOver = false;
-
-  /** @param {string} key */
-  async function answer(key) {
-    isBusy = true;
-    let wait = isPlaying.value && isFollowing.value ? EVERY_MS : 0;
+export const keepAnswer = (key, ask, reply) => askForNewest({
+  key,
+  ask: async (of) => {
     try {
-      reply.value = { answer: await ask(key), error: null, again: false };
-      known = key;
+      reply.value = { answer: await ask(of), error: null, again: false };
     } catch (failure) {
       const error = /** @type {RequestError} */ (failure);
       const again = needsLonger(error);
       reply.value = { answer: again ? reply.value.answer : null, error, again };
-      if (isLasting(error)) known = key;
-      else wait = AGAIN_MS;
+      throw error;
     }
-    setTimeout(() => {
-      isBusy = false;
-      look();
-    }, wait);
-  }
-
-  function look() {
-    if (isBusy || isOver) return;
-    const key = keyOf();
-    if (key === null) {
-      if (known !== null) reply.value = { answer: null, error: null, again: false };
-      known = null;
-    } else if (key !== known) answer(key);
-  }
-
-  const stop = effect(() => {
-    keyOf();
-    look();
-  });
-  return () => {
-    isOver = true;
-    stop();
-  };
-}
+  },
+  forget: () => (reply.value = { answer: null, error: null, again: false }),
+  pause_ms: () => (isPlaying.value && isFollowing.value ? EVERY_MS : 0),
+});
 
 /** Keep the explanation and the table of the moment, until the function that is returned is called. */
 export function followMoment() {
   const isLive = () => connection.value === "live";
   const stops = [
     keepAnswer(
-      () => (isLive() && moment.value && moment.value.step > 0 ? JSON.stringify(moment.value) : null),
+      () => (isLive() && moment.value && moment.value.step > 0 ? JSON.stringify(moment.value) : ""),
       (key) => getExplanation(JSON.parse(key)),
       explanation,
     ),
     keepAnswer(
       () => (isLive() && tableMoment.value
         ? JSON.stringify({ ...tableMoment.value, first: firstState.value, state: stateWhereNewest() })
-        : null),
+        : ""),
       (key) => getTable(JSON.parse(key)),
       table,
     ),

@@ -115,6 +115,9 @@ const handlers = {
   scene: (data) => (commonScene.value = data),
 };
 
+/** The names of the events that are applied. */
+export const eventNames = Object.keys(handlers);
+
 /**
  * Apply a server-sent event. Unknown names are ignored.
  * @param {string} name

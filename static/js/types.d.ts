@@ -264,6 +264,8 @@ export interface RunResult {
   distance_m: number;
   greedy_distance_m: number;
   best_known_m?: number | null;
+  /** Null for a learner that keeps no table. */
+  q_table_sha256?: string | null;
   /** Counted from 0. */
   fell_at_step?: number | null;
   lanes: LaneResult[];

@@ -140,7 +140,6 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
     opened = {
         *(f"static/js/components/{name}.js" for name in (*lazy, "chart-files")),
         "static/js/spectators.js",
-        "static/js/files.js",
         # Of files that play a replay offline.
         "static/js/offline/player.js",
     }

@@ -37,3 +37,25 @@ def test_the_last_picture_stays_until_it_is_back(dashboard: Dashboard, tmp_path:
         expect(page.get_by_text("Reconnecting.")).to_have_count(0)
         dashboard.wait_for_stage()
         dashboard.complaints.clear()
+
+
+def test_what_could_not_be_loaded_is_loaded_when_it_is_back(
+    dashboard: Dashboard, tmp_path: Path
+) -> None:
+    page = dashboard.page
+    first = Serving(tmp_path, token="for-the-operator")
+    page.route("**/spectators.js", lambda route: route.abort())
+    with page.expect_event("requestfailed", lambda one: one.url.endswith("/spectators.js")):
+        dashboard.open(first.address)
+    page.unroute_all(behavior="wait")
+    assert dashboard.complaints == []
+    first.kill()
+    expect(page.locator(".live")).to_have_text("reconnecting")
+
+    with (
+        page.expect_response("**/spectators.js") as loaded,
+        serving(tmp_path, first.port, token="for-the-operator"),
+    ):
+        expect(page.locator(".live")).to_contain_text("live")
+        assert loaded.value.ok
+    dashboard.complaints.clear()

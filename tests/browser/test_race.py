@@ -248,6 +248,25 @@ def test_a_refusal_stands_beside_the_button(dashboard: Dashboard, server: Servin
     expect(problem).to_have_count(0)
 
 
+def test_a_chart_tells_why_it_stays_empty(dashboard: Dashboard, server: Serving) -> None:
+    page = dashboard.page
+    problem = {"title": "Gone", "detail": "The recording was deleted to make room."}
+    answer = {"status": 410, "content_type": "application/problem+json", "json": problem}
+    page.route("**/timeline?*", lambda route: route.fulfill(**answer))
+    dashboard.open(f"{server.address}?{urlencode({'lanes': 'greedy', 'race_steps': 2})}")
+    chart = page.get_by_role("region", name="The race", exact=True)
+    expect(chart).to_contain_text("Each robot draws a line here")
+    dashboard.primary.click()
+    expect(chart.get_by_role("alert")).to_have_text(problem["detail"])
+    expect(chart.locator(".empty")).to_have_count(0)
+    assert {c.split()[0] for c in dashboard.complaints} == {"410"}
+    dashboard.complaints.clear()
+    page.unroute_all(behavior="wait")
+    page.get_by_label("Clock").select_option("free")
+    expect(chart.get_by_role("img", name=re.compile("^The race after .*Greedy"))).to_be_visible()
+    expect(chart.get_by_role("alert")).to_have_count(0)
+
+
 def test_two_operators_and_one_stage(
     dashboard: Dashboard, browser: Browser, server: Serving
 ) -> None:

@@ -1,7 +1,26 @@
-// Files that the page hands to the browser's downloads.
+// Files that the browser downloads.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { filmSpeed } from "../../static/js/files.js";
+import { downloads, fileAddress, filmSpeed } from "../../static/js/files.js";
+import { makeRun } from "./options.js";
+
+test("addresses of files are escaped part by part", () => {
+  const run = { kind: /** @type {const} */ ("experiment"), id: "a b" };
+  assert.equal(fileAddress(run, "figures/one two.png"),
+    "http://page.test/api/v1/experiments/a%20b/files/figures/one%20two.png");
+});
+
+test("each run offers the files that it has", () => {
+  const labels = (/** @type {object} */ changes) => downloads(makeRun(changes)).map(([label]) => label);
+  const walk = ["Joints and feet (CSV)", "Offline replay (HTML)"];
+  const withTable = { result: { q_table_sha256: "ab" } };
+  assert.deepEqual(labels({ kind: "race" }), ["Recording", ...walk]);
+  assert.deepEqual(labels(withTable), ["Curve (CSV)", "Q-table (CSV)", "Q-table (npz)", ...walk]);
+  assert.deepEqual(labels({ ...withTable, started_at: null }), ["Curve (CSV)", "Q-table (CSV)", "Q-table (npz)"],
+    "nothing was recorded of an imported table");
+  assert.deepEqual(labels({ result: { q_table_sha256: null } }), ["Curve (CSV)", "What it learned (npz)", ...walk]);
+  assert.deepEqual(labels({ state: "interrupted" }), ["Curve (CSV)", ...walk]);
+});
 
 test("a film shows all that is recorded, faster where that would be too long for one", () => {
   assert.equal(filmSpeed([[0, 12]]), 1);

@@ -1,7 +1,7 @@
 // Views, errors of the API, and titles.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { downloads, fileAddress, refusal } from "../../static/js/api.js";
+import { refusal } from "../../static/js/api.js";
 import { goIfStillHere, place, viewOf } from "../../static/js/page.js";
 import { options } from "../../static/js/store.js";
 import { choicesOf, clockTitle, gaitTitle, observationTitle, simulatorTitle } from "../../static/js/titles.js";
@@ -32,18 +32,6 @@ test("a problem document becomes a message and the fields that it is about", () 
   assert.deepEqual([refused.message, refused.status, refused.fields],
     ["alpha must be above 0", 422, ["alpha", "steps", "agent"]]);
   assert.equal(refusal(502, {}).message, "The server answered 502.");
-});
-
-test("addresses of files are escaped part by part", () => {
-  const run = { kind: /** @type {const} */ ("experiment"), id: "a b" };
-  assert.equal(fileAddress(run, "figures/one two.png"),
-    "http://page.test/api/v1/experiments/a%20b/files/figures/one%20two.png");
-  assert.deepEqual(downloads({ ...run, kind: "race" }).map(([label]) => label), 
-    ["Recording", "Joints and feet (CSV)", "Offline replay (HTML)"]);
-  assert.equal(downloads({ ...run, kind: "training" }).length, 5);
-  assert.equal(downloads({ ...run, kind: "training", started_at: null }).length, 3);
-  assert.deepEqual(downloads({ ...run, kind: "training" }, false).map(([label]) => label),
-    ["Curve (CSV)", "Joints and feet (CSV)", "Offline replay (HTML)"]);
 });
 
 test("names of the vocabulary, unless the server has a title", () => {

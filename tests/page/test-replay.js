@@ -1,13 +1,14 @@
 // A replay of the page's own: what it asks the server for, and what it draws.
 import assert from "node:assert/strict";
 import { afterEach, test } from "node:test";
-import { problems, setStage } from "../../static/js/actions.js";
+import { problems, setStage, showOnStage } from "../../static/js/actions.js";
 import { view } from "../../static/js/page.js";
 import {
   closeReplay, drawIn, endTime, followReplay, openReplay, ownRunId, playReplay, replayProblem, replayTime, seekReplay,
   setReplaySpeed, tick,
 } from "../../static/js/replay.js";
 import { stage } from "../../static/js/store.js";
+import { makeRun } from "./options.js";
 
 const PLAN = {
   run_id: "a", kind: "race", complete: true, duration_s: 4, recorded_s: [[0, 4]], step_ends_s: [[1, 2, 3, 4]],
@@ -37,6 +38,8 @@ let plan = recordedPlan;
 function recordedPlan() {
   return new Response(JSON.stringify({ ...PLAN, ...recorded }));
 }
+/** Answer to a change of the stage. */
+let stageAnswer = new Response("null");
 
 /** @type {(level: number, number: number) => Response} */
 function segment(level, number) {
@@ -50,6 +53,7 @@ function segment(level, number) {
 function answerTo({ pathname, searchParams }) {
   const [level, last] = pathname.split("/").slice(-2);
   asked.push(last);
+  if (pathname.endsWith("/stage")) return stageAnswer;
   if (pathname.endsWith("/replay")) return plan(searchParams.get("clock") ?? "");
   if (pathname.endsWith("/scene")) return new Response(encoded(0));
   if (pathname.includes("/segments/")) return segment(Number(level), Number(last));
@@ -212,4 +216,17 @@ test("a clock whose plan cannot be had leaves the clock and the moment as they w
   assert.deepEqual([stage.value?.clock, replayTime.value], ["paper", 2.5]);
   setStage({ speed: 2 });
   assert.equal(problems.value.stage, null);
+});
+
+test("a replay stays open until the server shows another run on the stage", async () => {
+  const run = makeRun({});
+  await openReplay("a");
+  stageAnswer = new Response(JSON.stringify({ detail: "It has no recording." }), { status: 409 });
+  await showOnStage(run);
+  assert.deepEqual([problems.value[run.id]?.message, ownRunId.value], ["It has no recording.", "a"]);
+  stageAnswer = new Response("null");
+  const shown = showOnStage(run);
+  assert.equal(ownRunId.value, "a");
+  await shown;
+  assert.equal(ownRunId.value, null);
 });

@@ -1,9 +1,9 @@
 // What the page follows is requested again after an error that may pass, and not after one that lasts.
 import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
-import { followSummary, summary, summaryError } from "../../static/js/experiments/runs.js";
+import { followSummary, summary, summaryError, wantedRun } from "../../static/js/experiments/runs.js";
 import { place } from "../../static/js/page.js";
-import { followTimeline, timeline } from "../../static/js/race.js";
+import { followTimeline, timeline, timelineProblem } from "../../static/js/race.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
 import { curve, followCurves, trainingsInView } from "../../static/js/training.js";
 import { makeRun, OPTIONS } from "./options.js";
@@ -65,9 +65,13 @@ const RACE = { kind: "race", config: { steps: 50, lanes: [] } };
 test("the timeline of a race", async () => {
   await show(RACE, 503, 503);
   assert.deepEqual([asked, timeline.value?.lanes], [["timeline", "timeline", "timeline"], []]);
+  assert.equal(timelineProblem.value, null);
   asked = [];
   await show(RACE, 409);
   assert.deepEqual([asked, timeline.value], [["timeline"], null]);
+  assert.equal(timelineProblem.value, "The server answered 409.");
+  await show(RACE);
+  assert.equal(timelineProblem.value, null);
 });
 
 test("the curve of a training, and the training that it continues", async () => {
@@ -83,4 +87,25 @@ test("the summary of an experiment", async () => {
   await show({ kind: "experiment", config: {} }, 503);
   assert.equal(asked.filter((one) => one === "summary").length, 2);
   assert.deepEqual([summaryError.value, summary.value?.settings], [null, []]);
+});
+
+test("the summary of another experiment is requested at once, that of the same one after a pause", async () => {
+  place.value = "experiments";
+  const [first, other] = [1, 2].map(() => makeRun({ kind: "experiment", config: {} }));
+  const summaries = () => asked.filter((one) => one === "summary").length;
+  const tell = (/** @type {number} */ done) => applyEvent("summary", { run_id: first.id, done });
+  wantedRun.value = first.id;
+  applyEvent("snapshot", { runs: [first, other], stage: STAGE, scene: null, role: "operator" });
+  tell(1);
+  assert.equal(summaries(), 1);
+  wantedRun.value = other.id;
+  assert.equal(summaries(), 2);
+  wantedRun.value = first.id;
+  assert.equal(summaries(), 3);
+  await pass();
+  assert.equal(summaries(), 3);
+  tell(2);
+  assert.equal(summaries(), 4);
+  wantedRun.value = null;
+  await pass();
 });

@@ -3,7 +3,9 @@ import { seekIn } from "../actions.js";
 import { happeningsOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
-import { clipped, distanceAt, headline, isTimedOut, ruleOf, shownTime, standings, timeline } from "../race.js";
+import {
+  clipped, distanceAt, headline, isTimedOut, ruleOf, shownTime, standings, timeline, timelineProblem,
+} from "../race.js";
 import { clock, isActive, originalRace, raceInView, raceScene, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs, served } from "../store.js";
@@ -214,12 +216,15 @@ const FIRST_VIEW_S = 20;
 export function RaceChart() {
   const known = timeline.value;
   const time = shownTime.value;
+  const problem = timelineProblem.value;
   const isOn = known && time !== null && known.lanes.some(({ points }) => points.length > 1);
   return html`
     <section class="panel chart" aria-labelledby="race-title">
       <h2 id="race-title">The race</h2>
       <p class="dim">${flatParts(clock.value)}</p>
-      ${isOn ? html`<${Lines} known=${known} time=${time} />` : html`<${Empty} shape="lines" words=${invitation()} />`}
+      ${problem && html`<p class="problem" role="alert">${problem}</p>`}
+      ${isOn && html`<${Lines} known=${known} time=${time} />`}
+      ${!isOn && !problem && html`<${Empty} shape="lines" words=${invitation()} />`}
     </section>
   `;
 }

@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { attempt, deleteRun } from "../actions.js";
 import * as api from "../api.js";
-import { getSummary, isLasting } from "../api.js";
+import { askForNewest, getSummary } from "../api.js";
 import { makeEstimate } from "../estimate.js";
 import { count, duration, whole } from "../format.js";
 import { followQuery, place } from "../page.js";
@@ -95,40 +95,24 @@ async function loadSummary(id) {
     setEntry(errors, id, null);
   } catch (error) {
     setEntry(errors, id, /** @type {RequestError} */ (error));
+    throw error;
   }
 }
 
-/** Request at most one summary every two seconds, and one more for changes in between, or after an error. */
+/** Request at most one summary of an experiment every two seconds, and that of another at once. */
 export function followSummary() {
-  const wanted = computed(() => {
-    const run = chosenRun.value;
-    if (!run || place.value !== "experiments" || connection.value !== "live") return "";
-    return [run.id, run.state, summarised.value[run.id] ?? ""].join(" ");
-  });
-  let isBusy = false;
-  let hasMissed = false;
-  let last = "";
-
-  const next = async () => {
-    const [id] = wanted.peek().split(" ");
-    if (!id) return;
-    if (isBusy && id === last) {
-      hasMissed = true;
-      return;
-    }
-    isBusy = true;
-    hasMissed = false;
-    last = id;
-    await loadSummary(id);
-    const error = errors.peek()[id];
-    if (error && !isLasting(error)) hasMissed = true;
-    setTimeout(() => {
-      isBusy = false;
-      if (hasMissed) next();
-    }, PAUSE_MS);
-  };
+  const chosenId = computed(() => chosenRun.value?.id ?? "");
   effect(() => {
-    if (wanted.value) next();
+    const id = chosenId.value;
+    return askForNewest({
+      key: () => {
+        const run = chosenRun.value;
+        if (run?.id !== id || place.value !== "experiments" || connection.value !== "live") return "";
+        return [id, run.state, summarised.value[id] ?? ""].join(" ");
+      },
+      ask: () => loadSummary(id),
+      pause_ms: () => PAUSE_MS,
+    });
   });
 }
 

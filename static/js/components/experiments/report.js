@@ -1,8 +1,8 @@
 // The report of one experiment. It fills while trials end.
 import { useMemo, useState } from "preact/hooks";
 import { pending } from "../../actions.js";
-import { downloads, fileAddress, reportAddress } from "../../api.js";
 import { command, deleteExperiment, paceOf, summary, summaryError } from "../../experiments/runs.js";
+import { downloads, fileAddress, reportAddress } from "../../files.js";
 import { count, duration } from "../../format.js";
 import { isActive, isOperator } from "../../selectors.js";
 import { describeRun, messageOf, runTitle, simulatorTitle } from "../../titles.js";

@@ -3,14 +3,14 @@ import { useState } from "preact/hooks";
 import {
   attempt, copySettings, deleteRun, isShown, pending, resumeRun, runAgain, showOnStage,
 } from "../../actions.js";
-import { archiveAddress, downloads } from "../../api.js";
 import { changesInWords, rateChanges } from "../../changes.js";
 import { happeningsOf, inTime, joinedBySteps } from "../../disturbances.js";
 import { paceOf } from "../../experiments/runs.js";
+import { archiveAddress, downloads, saveFilm } from "../../files.js";
 import { ago, count, listed, metres, sentence, whole } from "../../format.js";
 import { formRobot, isSame } from "../../robots.js";
 import { isSelected, setSelected } from "../../run-selection.js";
-import { hasTable, isActive, isOperator } from "../../selectors.js";
+import { isActive, isOperator } from "../../selectors.js";
 import { agentOf, laneTitle, ratesInWords } from "../../settings.js";
 import { served } from "../../store.js";
 import { describeRun, gaitTitle, observationTitle, robotTitle, runTitle, simulatorTitle } from "../../titles.js";
@@ -170,7 +170,7 @@ function FilmButton({ run }) {
   const [isRendering, setRendering] = useState(false);
   const onClick = async () => {
     setRendering(true);
-    await attempt(run.id, async () => (await import("../../files.js")).saveFilm(run));
+    await attempt(run.id, () => saveFilm(run));
     setRendering(false);
   };
   return html`
@@ -182,9 +182,9 @@ function FilmButton({ run }) {
 
 function Downloads({ run }) {
   const hasEnded = !isActive(run);
-  const hasBegun = run.progress.done > 0 || hasTable(run);
+  const hasBegun = run.progress.done > 0 || run.result;
   const files = [
-    ...(run.kind === "experiment" || (hasEnded && hasBegun) ? downloads(run, hasTable(run)) : []),
+    ...(run.kind === "experiment" || (hasEnded && hasBegun) ? downloads(run) : []),
     ...(hasEnded ? [["Archive (zip)", archiveAddress(run)]] : []),
   ];
   if (files.length === 0) return html`<p class="dim">Nothing to download.</p>`;
