@@ -3,9 +3,9 @@
 Routes: `starts` (whose bodies name agents), `trainings`, `races`, `experiments` (with `runs` in
 common), `gait`, `replays`, `exports`, `stage`, `spectators`, `events`, `options`, `transfer`
 (export and import), `monitoring`, `pages`, `docs`. Requests: `agent_bodies`, `schemas`,
-`experiment_body`, `fields`, `descriptions`, `formats`. Answers: `answers`, `experiment_answers`,
-`gait_answers`, `explanation_answers`, `option_answers`, `curves`, `problems` (RFC 9457),
-`templates` (web pages), `compression`. `contract` completes the OpenAPI document.
+`experiment_body`, `fields`, `descriptions`, `formats`. Answers: `answers`, `recorded_answers`,
+`experiment_answers`, `gait_answers`, `explanation_answers`, `option_answers`, `curves`, `problems`
+(RFC 9457), `templates` (web pages), `compression`. `contract` completes the OpenAPI document.
 Middleware: `middleware` (its base, security headers), `auth` (roles), `cookies`, `host_check`,
 `wellformed`, `problem_pages`, `unfinished`, `memory_limit`, `concurrency_limit`, `rate_limit`,
 `disconnects`. `deps` injects the services into the routes.

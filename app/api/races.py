@@ -5,10 +5,10 @@ from typing import Annotated, Literal
 from fastapi import Query, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
-from app.api.answers import RecordingView, TimelineView
 from app.api.contract import BINARY, answers
 from app.api.deps import Services, ServicesDep
 from app.api.formats import attachment, negotiated
+from app.api.recorded_answers import RecordingView, TimelineView
 from app.api.runs import RunPath, find, run_routes
 from app.runs.clocks import Clock
 from app.runs.race_config import RaceConfig

@@ -6,12 +6,12 @@ from typing import Annotated, NamedTuple
 from fastapi import APIRouter, Depends, Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
-from app.api.answers import ReplayView
 from app.api.compression import accepts_gzip
 from app.api.contract import BINARY, answers
 from app.api.deps import ServicesDep
 from app.api.descriptions import VALID
 from app.api.fields import RunId
+from app.api.recorded_answers import ReplayView
 from app.api.runs import RunPath
 from app.runs.clocks import Clock
 from app.stage.playback import HIGHEST_LEVEL, LOWEST_LEVEL

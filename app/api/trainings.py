@@ -6,13 +6,14 @@ from fastapi import Query, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from app.api import curves
-from app.api.answers import CurveView, DisturbanceView, QTableView, TrainingView
+from app.api.answers import DisturbanceView, TrainingView
 from app.api.contract import BINARY, LOCATION, TEXT, answers, takes_file
 from app.api.deps import ServicesDep, StartRequestDep
 from app.api.disturbance_body import AnyDisturbance
 from app.api.explanation_answers import TableView
 from app.api.fields import Name
 from app.api.formats import attachment, negotiated
+from app.api.recorded_answers import CurveView, QTableView
 from app.api.runs import RunPath, find, run_routes
 from app.archive import table_import
 from app.domain.disturbances import as_mapping

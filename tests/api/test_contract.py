@@ -10,14 +10,10 @@ from fastapi.routing import iter_route_contexts
 from pydantic import TypeAdapter
 
 from app.api.answers import (
-    CurveView,
     ExperimentView,
-    QTableView,
     RaceView,
-    RecordingView,
     RunPage,
     StageView,
-    TimelineView,
     TrainingPage,
     TrainingView,
     WhatIfView,
@@ -27,6 +23,7 @@ from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.option_answers import OptionsView
 from app.api.problems import STATUSES
 from app.api.rate_limit import WHAT_IF
+from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
 from app.domain.errors import HexapodError
 from app.server import create_app
 from app.settings import Settings

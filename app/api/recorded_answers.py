@@ -1,0 +1,132 @@
+"""Response models of what runs recorded: curves, tables, walks, timelines and replays."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from app.api.answers import Answer, Count, Gait
+from app.runs.clocks import Clock
+from app.stage.show import MarkKind
+
+
+class Evaluation(Answer):
+    """Evaluation of a training: the distance walked [m] after `step` steps of practice."""
+
+    step: Count
+    distance_m: float
+    epsilon: float
+
+
+class CurveView(Answer):
+    """A learning curve with its references: greedy's distance, and the best known one [m].
+
+    Both are of the world as it is now; the best known is null where it was not computed.
+    """
+
+    evaluations: list[Evaluation]
+    greedy_distance_m: float | None
+    best_known_m: float | None
+
+
+class ActionValue(Answer):
+    """Value of an action, [pair, cell], in a state, which is the cell of each pair."""
+
+    state: list[int]
+    action: tuple[int, int]
+    value: float
+    visits: Count
+
+
+class QTableView(Answer):
+    """Q-table: all legal actions in all states; `cells` are the (x, y) of each cell [m]."""
+
+    gait: Gait
+    divisions: int
+    grid_side_m: float
+    cells: list[tuple[float, float]]
+    values: list[ActionValue]
+
+
+class RecordedStep(Answer):
+    """A recorded step, with the joint positions `qpos` at `time_s` since the motion began."""
+
+    step: Count
+    observation: list[int]
+    action: tuple[int, int]
+    reward_m: float
+    distance_m: float
+    transitions: Count
+    decision_s: float
+    time_s: list[float]
+    qpos: list[list[float]]
+
+
+class RecordedLane(Answer):
+    """A lane of a recording; `rest_qpos` are the joint positions before the first step."""
+
+    agent: str
+    training_id: str | None
+    failure: str | None
+    rest_qpos: list[float]
+    steps: list[RecordedStep]
+
+
+class RecordingView(Answer):
+    """Recording of a race, sufficient to replay it."""
+
+    steps: int
+    lanes: list[RecordedLane]
+
+
+class TimelineLane(Answer):
+    """A lane's distance over time: points are [s, m], decision intervals are [from s, to s]."""
+
+    agent: str
+    training_id: str | None
+    color: str
+    points: list[tuple[float, float]]
+    thinking: list[tuple[float, float]]
+    futures: list[int]
+    crossed_s: float | None
+    total_s: float
+    failure: str | None
+
+
+class TimelineView(Answer):
+    """Timeline of a race under one clock."""
+
+    clock: Clock
+    steps: int
+    finish_line_m: float
+    first_finish_s: float | None
+    lanes: list[TimelineLane]
+
+
+class ReplayMark(Answer):
+    """Something that happened in a run, as a point on its timeline."""
+
+    kind: MarkKind
+    time_s: float
+    lane: int | None = Field(description="from 0; null if it concerns all lanes")
+    step: int | None = Field(description="that begins then, or in which a robot fell, from 0")
+    distance_m: float | None = Field(description="that an evaluation reached")
+
+
+class ReplayView(Answer):
+    """Plan by which a page plays a run by itself; times are the run's own [s]."""
+
+    run_id: str
+    ghost_id: str | None = Field(description="of the run whose lanes are shown as ghosts")
+    kind: Literal["training", "race"]
+    clock: Clock | None = Field(description="that times a race; null for a training")
+    complete: bool = Field(description="whether the run will record no more")
+    duration_s: float | None = Field(description="null while it is not known")
+    recorded_s: list[tuple[float, float]] = Field(
+        description="intervals that can be shown; of a long practice the first and newest steps"
+    )
+    step_ends_s: list[list[float]] = Field(description="for each lane, of its recorded steps")
+    marks: list[ReplayMark]
+    frame_s: float = Field(description="time between two frames of level 0")
+    segment_frames: int = Field(description="number of frames in a segment")
+    lowest_level: int = Field(description="each level has half as many frames as the one below")
+    highest_level: int
