@@ -1,5 +1,3 @@
 """Racing Hexapods: hexapods that learn to walk, and race against look-ahead search."""
 
-from importlib.metadata import version
-
-__version__ = version("racing-hexapods")
+__version__ = "0.1.0"

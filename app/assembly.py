@@ -17,7 +17,6 @@ from app.domain.observation import Observation
 from app.domain.settings import complete
 from app.domain.simulator import Simulator
 from app.domain.world import UNDISTURBED, World
-from app.physics.mujoco_simulator import MujocoSimulator
 from app.runs.best_known import best_known_m
 from app.runs.config import TrainingConfig, WalkingProblem, agent_settings
 from app.runs.lane import LaneConfig, check_lane
@@ -45,6 +44,9 @@ def build_simulator(walk: WalkingProblem, threads: int = 1) -> Simulator[Any]:
     gait, grid = walk.resolved_gait, walk.grid
     if walk.simulator == "kinematic":
         return KinematicSimulator(walk.robot, gait, grid, walk.world)
+    # Only here: importing MuJoCo takes as long as a short kinematic training.
+    from app.physics.mujoco_simulator import MujocoSimulator  # noqa: PLC0415
+
     built = walk.built_robot
     return MujocoSimulator(walk.robot, gait, grid, threads, walk.world, built=built)
 

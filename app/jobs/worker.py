@@ -20,7 +20,6 @@ from app.assembly import build_learner, build_walkers, finish_training
 from app.domain.disturbances import as_mapping, disturbance
 from app.domain.errors import HexapodError
 from app.events import logs
-from app.jobs.experiment_worker import experiment
 from app.jobs.job_control import InterruptibleAgent, JobControl, Stopped
 from app.jobs.messages import (
     Began,
@@ -62,6 +61,9 @@ def main(pipe: Connection, niceness: int) -> None:
         if isinstance(task, TrainingTask):
             _train(task, control)
         elif isinstance(task, ExperimentTask):
+            # Only here: no other job needs the engine of experiments.
+            from app.jobs.experiment_worker import experiment  # noqa: PLC0415
+
             experiment(task, control.send, commands)
         else:
             _race(task, control, stopping)
