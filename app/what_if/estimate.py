@@ -5,14 +5,11 @@ import time
 from collections import OrderedDict
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import chain
 from typing import NamedTuple
 
-import numpy as np
-
 from app.agents.registry import learns
-from app.assembly import build_learner, build_walkers
 from app.experiments.config import ExperimentConfig
 from app.experiments.plan import Plan
 from app.jobs.process_pool import ProcessPool
@@ -25,16 +22,10 @@ from app.jobs.submissions import (
     check_walk,
     plan_of,
 )
-from app.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem, training_config
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.runs.racing import race
-from app.runs.records import StepTaken
-from app.runs.training import train
+from app.runs.config import RACE_STEPS, TrainingConfig, training_config
 from app.storage.errors import Busy
+from app.what_if.step_time import Steps, step_s_of
 
-MEASURE_S = 0.25
-"""For how long the steps of an agent are timed [s]."""
 MAX_MEASURED = 12
 """Agents and walking problems of an experiment that are timed; others count as their mean."""
 MAX_CACHED = 256
@@ -42,19 +33,6 @@ CACHED_S = 600.0
 """After this time the machine may be busier, or less."""
 MAX_AT_ONCE = 4
 """Requests whose steps are timed, or wait for that; each holds a thread of the server."""
-
-
-@dataclass(frozen=True)
-class Steps:
-    """Steps of one kind, whose time is measured once.
-
-    Attributes:
-        training: agent, settings and walking problem.
-        practises: whether the agent learns; else it walks as in a race.
-    """
-
-    training: TrainingConfig
-    practises: bool
 
 
 class _Part(NamedTuple):
@@ -156,34 +134,6 @@ class Estimates:
 
 def _seconds(parts: Iterable[_Part], measured: Mapping[Steps, float]) -> float:
     return sum(one.number * max(one.paced_s, measured[one.steps]) for one in parts)
-
-
-def step_s_of(steps: Steps) -> float:
-    """Time the steps of a kind, without the first one, and return a trimmed mean [s].
-
-    The slowest tenth is left out: the system has interrupted them.
-    """
-    records = _practised(steps.training) if steps.practises else _raced(steps.training)
-    next(records)  # compiles, and fills caches
-    moments = [time.perf_counter()]
-    for _ in records:
-        moments.append(time.perf_counter())
-        if moments[-1] - moments[0] > MEASURE_S:
-            break
-    durations = np.sort(np.diff(moments))
-    return float(durations[: max(1, len(durations) * 9 // 10)].mean()) if len(durations) else 0.0
-
-
-def _practised(config: TrainingConfig) -> Iterator[object]:
-    records = train(build_learner(config), config)
-    return (record for record in records if isinstance(record, StepTaken))
-
-
-def _raced(config: TrainingConfig) -> Iterator[object]:
-    lane = LaneConfig(agent=config.agent, settings=config.settings)
-    walk = {name: getattr(config, name) for name in WalkingProblem.__dataclass_fields__}
-    problem = RaceConfig(**walk, lanes=(lane,))
-    return race(build_walkers(problem, [None]), problem.steps, time.perf_counter)
 
 
 def _kind(config: TrainingConfig) -> Steps:

@@ -17,7 +17,8 @@ from app.jobs.submissions import ExperimentStart, LaneStart, RaceStart, Training
 from app.runs.config import WalkingProblem, training_config
 from app.runs.training import train
 from app.storage.errors import Busy
-from app.what_if.estimate import MAX_AT_ONCE, Estimates, Steps
+from app.what_if.estimate import MAX_AT_ONCE, Estimates
+from app.what_if.step_time import Steps
 from tests.jobs.waiting import wait_until
 
 WALK = WalkingProblem(gait="left-right-origin", simulator="kinematic")

@@ -1,0 +1,63 @@
+"""The time that a step of an agent takes on this machine.
+
+A module of its own for the processes that time steps: what `estimate` imports besides, such as the
+database, takes them longer than the steps.
+"""
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.assembly import build_learner, build_walkers
+from app.runs.config import TrainingConfig, WalkingProblem
+from app.runs.lane import LaneConfig
+from app.runs.race_config import RaceConfig
+from app.runs.racing import race
+from app.runs.records import StepTaken
+from app.runs.training import train
+
+MEASURE_S = 0.25
+"""For how long the steps of an agent are timed [s]."""
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Steps of one kind, whose time is measured once.
+
+    Attributes:
+        training: agent, settings and walking problem.
+        practises: whether the agent learns; else it walks as in a race.
+    """
+
+    training: TrainingConfig
+    practises: bool
+
+
+def step_s_of(steps: Steps) -> float:
+    """Time the steps of a kind, without the first one, and return a trimmed mean [s].
+
+    The slowest tenth is left out: the system has interrupted them.
+    """
+    records = _practised(steps.training) if steps.practises else _raced(steps.training)
+    next(records)  # compiles, and fills caches
+    moments = [time.perf_counter()]
+    for _ in records:
+        moments.append(time.perf_counter())
+        if moments[-1] - moments[0] > MEASURE_S:
+            break
+    durations = np.sort(np.diff(moments))
+    return float(durations[: max(1, len(durations) * 9 // 10)].mean()) if len(durations) else 0.0
+
+
+def _practised(config: TrainingConfig) -> Iterator[object]:
+    records = train(build_learner(config), config)
+    return (record for record in records if isinstance(record, StepTaken))
+
+
+def _raced(config: TrainingConfig) -> Iterator[object]:
+    lane = LaneConfig(agent=config.agent, settings=config.settings)
+    walk = {name: getattr(config, name) for name in WalkingProblem.__dataclass_fields__}
+    problem = RaceConfig(**walk, lanes=(lane,))
+    return race(build_walkers(problem, [None]), problem.steps, time.perf_counter)
