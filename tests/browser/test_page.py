@@ -151,7 +151,17 @@ def test_keys(dashboard: Dashboard, server: Serving) -> None:
     expect(page.get_by_role("dialog")).to_have_count(0)
 
     follow = page.get_by_label("Follow")
-    page.keyboard.press("2")
+    page.keyboard.press("3")
+    expect(follow).to_have_value("3")
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog", name="Keys")).to_be_visible()
+    # A key that follows before the page is told that the dialog was closed.
+    page.evaluate(
+        """() => {
+            document.querySelector("dialog[open]").close();
+            dispatchEvent(new KeyboardEvent("keydown", {key: "2"}));
+        }"""
+    )
     expect(follow).to_have_value("2")
     page.keyboard.press("0")
     expect(follow).to_have_value("free")

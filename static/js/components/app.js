@@ -313,12 +313,14 @@ const leaveIfPresenting = () => isPresenting.value && leavePresenter();
 export function listenForKeys() {
   addEventListener("keydown", (event) => {
     const { key, target, repeat } = event;
-    if (key === "Escape" && !event.defaultPrevented && !helpIsOpen.value) leaveIfPresenting();
+    // The dialog itself, since it tells of its end only later.
+    const isInDialog = document.querySelector("dialog[open]") !== null;
+    if (key === "Escape" && !event.defaultPrevented && !isInDialog) leaveIfPresenting();
     if (event.ctrlKey || event.altKey || event.metaKey || repeat || !shortcuts.value) return;
     const isIn = (/** @type {string} */ selector) => target instanceof Element && target.closest(selector);
     if (isIn(TEXT)) return;
     if (key === " " && isIn(PRESSED_BY_SPACE)) return;
-    if (helpIsOpen.value && key !== "?") return;
+    if (isInDialog && key !== "?") return;
     if (press(key)) event.preventDefault();
   });
   addEventListener("message", ({ origin, data }) => {
