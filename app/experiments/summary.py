@@ -33,6 +33,7 @@ from app.experiments.setting_results import (
 )
 from app.experiments.statistics import bootstrap_exceeds, improvement
 from app.experiments.trial import TrialResult
+from app.experiments.worker import versions
 from app.experiments.worlds import compare_in_worlds
 
 FORMAT = 1
@@ -267,6 +268,4 @@ def _trial_label(settings: Mapping[str, Setting], key: str, varied: Iterable[str
 
 @lru_cache(maxsize=1)
 def _versions() -> dict[str, str]:
-    packages = ("racing-hexapods", "numpy", "scipy", "matplotlib")
-    installed = {name: version(name) for name in packages}
-    return {**installed, "python": platform.python_version(), "mujoco": version("mujoco-core")}
+    return {**versions(), "scipy": version("scipy"), "matplotlib": version("matplotlib")}
