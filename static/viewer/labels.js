@@ -126,7 +126,6 @@
     get: () => client,
     set: (value) => {
       client = value;
-      if (!client?.messageQueue) return;
       if (isPlayback) watchQueue(client.messageQueue);
       else draw(early.splice(0));
     },

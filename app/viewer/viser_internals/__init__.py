@@ -57,7 +57,8 @@ Assumed by `client`:
   `static/viewer/labels.js` has emptied the labels in it, and `__viserMutable` has the camera, the
   canvas, the scene, of which `onAfterRender` is free, and the poses and objects of scene nodes by
   name. A playback pushes its messages to the `messageQueue` there, the first one again whenever it
-  begins again; it is assigned to the window before the queue is read.
+  begins again; it is assigned to the window once, with its queue, before that is read. What is
+  pushed before has to be kept.
 - clicks_go_through_the_worker: `SetSceneNodeClickBindingsMessage` makes a node clickable, by button
   and modifier; a click without a drag is sent through the worker as a `SceneNodeClickMessage`,
   with the number of the instance of a batched mesh, so that `static/viewer/clicks.js` can keep it.
