@@ -163,6 +163,18 @@ def test_keys(dashboard: Dashboard, server: Serving) -> None:
         }"""
     )
     expect(follow).to_have_value("2")
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog", name="Keys")).to_be_visible()
+    # As by Escape, and again a key before the page is told.
+    page.evaluate(
+        """() => {
+            document.querySelector("dialog[open]").requestClose();
+            dispatchEvent(new KeyboardEvent("keydown", {key: "?"}));
+        }"""
+    )
+    expect(page.get_by_role("dialog", name="Keys")).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_have_count(0)
     page.keyboard.press("0")
     expect(follow).to_have_value("free")
 

@@ -134,6 +134,7 @@ def test_no_payload_in_a_run_name_is_executed(
     watched = Watched(page)
     page.goto(f"{server.address}#runs")
     rows = page.locator("li.run")
+    expect(rows.first).to_be_visible()
     while (shown := rows.count()) < len(payload_runs):
         page.get_by_role("button", name="Show older runs").click()
         expect(rows).not_to_have_count(shown)

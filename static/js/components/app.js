@@ -1,5 +1,5 @@
 // The page: header, the views, the first lesson, keyboard shortcuts, the help dialog and messages.
-import { effect, signal } from "@preact/signals";
+import { effect, signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { primaryAction, runPrimaryAction, togglePause } from "../actions.js";
 import {
@@ -225,7 +225,7 @@ const Header = () => html`
         aria-label=${`Theme: ${theme.value}. Change it`}>
         <${Icon} name=${theme.value} />
       </button>
-      <button class="quiet square" onClick=${() => (helpIsOpen.value = true)}
+      <button class="quiet square" onClick=${toggleHelp}
         title="Keys and help" aria-label="Keys and help">?</button>
     </div>
   </header>
@@ -279,9 +279,16 @@ function press(key) {
   else if (key === "0") view.value = "free";
   else if (ownRunId.value !== null && (key === "," || key === ".")) stepReplay(key === "." ? 1 : -1);
   else if (key === "p" || key === "P") (isPresenting.value ? leavePresenter : present)();
-  else if (key === "?") helpIsOpen.value = !helpIsOpen.value;
+  else if (key === "?") toggleHelp();
   else return false;
   return true;
+}
+
+/** Open the help, or close it. The dialog itself is asked: it tells of its end only later. */
+function toggleHelp() {
+  const wasOpen = document.querySelector("#help[open]") !== null;
+  helpIsOpen.value = false;
+  helpIsOpen.value = !wasOpen;
 }
 
 /** Close the open menus in which a target is not. @param {EventTarget | null} target */
@@ -334,15 +341,16 @@ export function listenForKeys() {
 
 function HelpDialog() {
   const dialog = useRef(/** @type {HTMLDialogElement | null} */ (null));
-  const isOpen = helpIsOpen.value;
-  useEffect(() => {
-    if (isOpen && !dialog.current?.open) dialog.current?.showModal();
-    if (!isOpen) dialog.current?.close();
-  }, [isOpen]);
+  // At once, not with the next picture: a key may open it again before that.
+  useSignalEffect(() => {
+    if (!helpIsOpen.value) dialog.current?.close();
+    else if (!dialog.current?.open) dialog.current?.showModal();
+  });
   const close = () => (helpIsOpen.value = false);
+  const onClose = () => !dialog.current?.open && close();
   const onBackdrop = (event) => event.target === dialog.current && close();
   return html`
-    <dialog class="help" ref=${dialog} onClose=${close} onClick=${onBackdrop} aria-labelledby="help-title">
+    <dialog class="help" id="help" ref=${dialog} onClose=${onClose} onClick=${onBackdrop} aria-labelledby="help-title">
       <div class="help-body">
         <h2 id="help-title">Keys</h2>
         <dl class="keys">
