@@ -1,5 +1,5 @@
 // The page: header, the views, the first lesson, keyboard shortcuts, the help dialog and messages.
-import { effect, signal, useSignalEffect } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { primaryAction, runPrimaryAction, togglePause } from "../actions.js";
 import {
@@ -341,11 +341,12 @@ export function listenForKeys() {
 
 function HelpDialog() {
   const dialog = useRef(/** @type {HTMLDialogElement | null} */ (null));
-  // At once, not with the next picture: a key may open it again before that.
-  useSignalEffect(() => {
+  // An effect of the signal itself, at once: those of hooks wait for the next picture, and a key may
+  // open the dialog again before that.
+  useEffect(() => effect(() => {
     if (!helpIsOpen.value) dialog.current?.close();
     else if (!dialog.current?.open) dialog.current?.showModal();
-  });
+  }), []);
   const close = () => (helpIsOpen.value = false);
   const onClose = () => !dialog.current?.open && close();
   const onBackdrop = (event) => event.target === dialog.current && close();
