@@ -49,6 +49,7 @@ from app.events import logs
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
 from app.exports.video_renderer import VideoRenderer
+from app.jobs.fork_server import start_fork_server
 from app.jobs.jobs import Jobs
 from app.jobs.process_pool import ProcessPool
 from app.jobs.stopping import Stopping
@@ -219,6 +220,7 @@ def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> 
         OwnershipLost: if another server took over the database.
     """
     settings.prepare_data()
+    start_fork_server()
     sys.setswitchinterval(SWITCH_S)
     connections = connection_table(settings, raise_file_limit())
     listener = listen(settings, connections)

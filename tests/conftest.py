@@ -11,6 +11,7 @@ import pytest
 from playwright.sync_api import Browser, BrowserType, Page, sync_playwright
 from xdist.remote import Producer
 
+from tests.forked import start_fork_server
 from tests.in_parallel import FileByFile
 from tests.install_browser import HOW_TO_GET_ONE, find_browser
 from tests.postgresql import PostgresServer, postgres_server
@@ -49,9 +50,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Take imported modules out of garbage collection, which would scan them again and again."""
+    """Take imported modules out of garbage collection, which would scan them again and again.
+
+    The processes of servers and jobs are forked from one that has imported what they need.
+    """
     gc.collect()
     gc.freeze()
+    start_fork_server()
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> FileByFile:

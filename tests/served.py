@@ -4,7 +4,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -15,11 +14,11 @@ import httpx2
 import psutil
 
 from tests import patience
+from tests.forked import HEXAPODS, start_hexapods
 
 LONG_S = patience.LONG_S
 BODY = {"gait": "left-right-origin", "simulator": "kinematic"}
 ENDLESS = {**BODY, "steps": 10_000_000, "pace": 20, "evaluate_every": 0}
-HEXAPODS = [sys.executable, "-c", "import sys; from app.cli import main; sys.exit(main())"]
 Events = Iterator[tuple[str, Any, str]]
 
 
@@ -51,9 +50,18 @@ class Served:
             before: what to put before its command.
             variables: of its environment.
         """
-        command = [*before, *HEXAPODS, "serve", "--port", "0", "--data", str(data)]
-        self.process = subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=log, text=True, env=environ(**variables)
+        command = ["serve", "--port", "0", "--data", str(data)]
+        env = environ(**variables)
+        self.process = (
+            subprocess.Popen(
+                [*before, *HEXAPODS, *command],
+                stdout=subprocess.PIPE,
+                stderr=log,
+                text=True,
+                env=env,
+            )
+            if before
+            else start_hexapods(command, env, log)
         )
         assert self.process.stdout is not None
         line = self.process.stdout.readline()
@@ -105,7 +113,7 @@ class Served:
     def jobs(self) -> list[psutil.Process]:
         """The processes of its jobs."""
         family = psutil.Process(self.process.pid).children(recursive=True)
-        return [one for one in family if "spawn_main" in _command_line(one)]
+        return [one for one in family if is_job(one)]
 
     def events(self, query: str = "", last: str | None = None) -> Events:
         headers = {} if last is None else {"Last-Event-ID": last}
@@ -131,12 +139,12 @@ class Served:
         return code
 
 
-def _command_line(process: psutil.Process) -> str:
-    """Of a process; empty if it is gone, or about to be."""
+def is_job(process: psutil.Process) -> bool:
+    """Whether it is that of a job, by its name; not so if it is gone, or about to be."""
     try:
-        return " ".join(process.cmdline())
+        return process.name().startswith(("training ", "race ", "experiment "))
     except psutil.NoSuchProcess:
-        return ""
+        return False
 
 
 @contextmanager

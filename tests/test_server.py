@@ -14,7 +14,8 @@ import viser
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from tests.served import BODY, ENDLESS, HEXAPODS, LONG_S, Events, Served, environ, serving_from
+from tests.forked import HEXAPODS
+from tests.served import BODY, ENDLESS, LONG_S, Events, Served, environ, is_job, serving_from
 
 TOKEN = "a-token-for-tests"
 
@@ -135,7 +136,7 @@ def test_killed_server_leaves_no_process(serve: Callable[..., Served]) -> None:
     server = serve()
     server.moving(server.start(ENDLESS))
     children = psutil.Process(server.process.pid).children(recursive=True)
-    assert any("multiprocessing.spawn" in " ".join(p.cmdline()) for p in children)
+    assert any(is_job(process) for process in children)
     assert server.end(signal.SIGKILL) == -signal.SIGKILL
     _, alive = psutil.wait_procs(children, timeout=LONG_S)
     assert not alive

@@ -14,6 +14,7 @@ from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 from app.domain.errors import HexapodError, InvalidInput
+from app.jobs.fork_server import process_context
 from app.jobs.process_setup import set_up_process
 from app.storage.errors import Busy
 
@@ -59,8 +60,6 @@ class ProcessPool:
         self._timeout_s = timeout_s
         self._requests: queue.SimpleQueue[_Request | None] = queue.SimpleQueue()
         self._executor: ProcessPoolExecutor | None = None
-        # PR_SET_PDEATHSIG kills a child when the *thread* that started it ends. The executor starts
-        # processes in the thread that submits, so one long-lived thread submits all calls.
         self._thread: threading.Thread | None = None
         self._lock = threading.Lock()
         self._closed = False
@@ -138,7 +137,7 @@ class ProcessPool:
     def _run(self, function: Callable[[Any], Any], arguments: Sequence[Any]) -> list[Any]:
         if self._executor is None:
             self._executor = ProcessPoolExecutor(
-                self._count, multiprocessing.get_context("spawn"), initializer=_set_up_worker
+                self._count, process_context(), initializer=_set_up_worker
             )
         results = []
         guarded = partial(_guarded, function)

@@ -75,8 +75,6 @@ class Supervisor:
         self._shutdown = threading.Event()
         self._last_progress_s = time.monotonic()
         """When a run was started last, or no run could be started; monotonic clock."""
-        # PR_SET_PDEATHSIG kills a child when the *thread* that started it ends, so one long-lived
-        # thread starts all of them.
         self._thread = threading.Thread(target=self._supervise, name="supervisor", daemon=True)
 
     @property
@@ -155,8 +153,6 @@ class Supervisor:
                 except Exception:
                     _logger.exception("the supervisor goes on after an error of its own")
                     self.changed.wait(_CHECK_EVERY_S)
-            # This thread must outlive its child processes, or PR_SET_PDEATHSIG kills them.
-            self.changed.wait_for(lambda: not self._jobs)
 
     def _start_next(self) -> bool:
         """Start the first ready run if a core is free; False if none can be started now."""

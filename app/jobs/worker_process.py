@@ -1,17 +1,17 @@
 """The server's handle on a worker process: starts it, sends commands, detects stall and exit."""
 
 import logging
-import multiprocessing
-import os
 import queue
 import signal
 import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from pathlib import Path
 from typing import NamedTuple
 
 from app.jobs import worker
+from app.jobs.fork_server import process_context
 from app.jobs.messages import Command, Heartbeat, Message, Task
 
 _EXIT_S = 5.0
@@ -28,11 +28,7 @@ class Exit(NamedTuple):
 
 
 class WorkerProcess:
-    """One process that computes one task, with a sending and a receiving thread.
-
-    Start it from a thread that lives as long as the server: on Linux the kernel kills the process
-    when the thread that started it ends (PR_SET_PDEATHSIG).
-    """
+    """One process that computes one task, with a sending and a receiving thread."""
 
     def __init__(
         self, name: str, task: Task, on_message: Callable[[Message], None], niceness: int
@@ -44,8 +40,11 @@ class WorkerProcess:
             task: the first item sent through the pipe.
             on_message: called with each message, one at a time, in the receiving thread.
             niceness: added to the server's nice value.
+
+        Raises:
+            OSError: if the system cannot create a process.
         """
-        context = multiprocessing.get_context("spawn")
+        context = process_context()
         self._pipe, self._child_pipe = context.Pipe()
         # A pipe's buffer is small: a queue and a thread keep `send` from blocking its caller.
         self._to_send: queue.SimpleQueue[Task | Command | None] = queue.SimpleQueue()
@@ -70,7 +69,10 @@ class WorkerProcess:
         Raises:
             OSError: if the system cannot create another process.
         """
-        self._process.start()
+        try:
+            self._process.start()
+        except EOFError as error:
+            raise OSError("the process that forks others has ended") from error
         self._last_message_s = time.monotonic()
         # With the server's copy of the child's end closed, `recv` raises EOFError at its exit.
         self._child_pipe.close()
@@ -111,14 +113,12 @@ class WorkerProcess:
         return now - self._stopped_since_s
 
     def _is_stopped(self) -> bool:
-        if not hasattr(os, "waitid") or self.pid is None:
-            return False
         try:
-            # WNOWAIT leaves the child waitable for `join`.
-            status = os.waitid(os.P_PID, self.pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT)
-        except OSError:
+            status = Path(f"/proc/{self.pid}/stat").read_bytes()
+        except OSError:  # it has exited, or this is not Linux
             return False
-        return status is not None
+        # The state follows the name, which is in parentheses and may contain any.
+        return status.rpartition(b") ")[2][:1] == b"T"
 
     def _send_loop(self) -> None:
         while (item := self._to_send.get()) is not None:

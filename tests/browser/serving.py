@@ -4,11 +4,12 @@ import os
 import re
 import signal
 import subprocess
-import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+from tests.forked import start_hexapods
 
 _ADDRESS = re.compile(r"is at (http://\S+)")
 _STARTS_WITHIN_S = 60
@@ -34,9 +35,9 @@ class Serving:
         """Start it, with further settings by their names, and wait until it says where it is."""
         self.data = data
         environment = {k: v for k, v in os.environ.items() if not k.startswith("HEXAPODS_")}
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "app.cli", "serve", "--port", str(port), "--data", str(data)],
-            env={
+        self._process = start_hexapods(
+            ["serve", "--port", str(port), "--data", str(data)],
+            {
                 **environment,
                 # A busy machine would starve jobs of a lower priority than the tests have.
                 "HEXAPODS_JOB_NICENESS": "0",
@@ -44,9 +45,7 @@ class Serving:
                 "HEXAPODS_SPECTATORS": spectators,
                 **{f"HEXAPODS_{name.upper()}": str(value) for name, value in settings.items()},
             },
-            stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
-            text=True,
         )
         self._said: list[str] = []
         self._found = threading.Event()

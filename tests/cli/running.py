@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from typing import Any
 import pytest
 
 from app.cli import main
+from tests.forked import start_hexapods
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "docs" / "examples"
@@ -22,15 +24,15 @@ Run = Callable[..., subprocess.CompletedProcess[str]]
 
 def hexapods(*arguments: str, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
     """Run a command to its end, with additional environment variables."""
-    return subprocess.run(
-        [sys.executable, "-m", "app.cli", *arguments],
-        cwd=folder,
-        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin", **variables},
-        capture_output=True,
-        text=True,
-        timeout=100,
-        check=False,
-    )
+    with tempfile.TemporaryFile("w+", encoding="utf-8") as errors:
+        env = {"PATH": "/usr/bin:/bin", **variables}
+        process = start_hexapods(arguments, env, errors, folder)
+        assert process.stdout is not None
+        with process.stdout as printed:
+            text = printed.read()
+        code = process.wait()
+        errors.seek(0)
+        return subprocess.CompletedProcess(arguments, code, text, errors.read())
 
 
 def in_process(*arguments: str, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:

@@ -116,7 +116,8 @@ def test_full_disk_ends_the_sweep_and_finished_trials_are_stored(tmp_path: Path)
     done = subprocess.run(
         ["sh", "-c", 'ulimit -f 8; exec "$0" "$@"', *sweep],
         cwd=tmp_path,
-        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin"},
+        # Python would keep the compiled modules that it can write only in part.
+        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin", "PYTHONDONTWRITEBYTECODE": "1"},
         capture_output=True,
         text=True,
         timeout=100,

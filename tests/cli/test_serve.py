@@ -6,7 +6,8 @@ from pathlib import Path
 
 import httpx2
 
-from tests.served import HEXAPODS, LONG_S, environ
+from tests.forked import HEXAPODS
+from tests.served import LONG_S, environ
 
 
 def test_shared_links_are_printed_when_the_server_answers(tmp_path: Path) -> None:

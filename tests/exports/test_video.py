@@ -6,6 +6,7 @@ import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from multiprocessing import get_context
 from pathlib import Path
 
 import av
@@ -20,6 +21,7 @@ from app.exports.extras import MissingExtra
 from app.exports.recorded_lanes import RecordedWalks, recorded_walks
 from app.exports.video import VideoOptions, check_length, render_video
 from app.exports.video_renderer import VideoRenderer
+from app.jobs import process_pool
 from app.storage.errors import Busy
 from tests.jobs.waiting import wait_until
 from tests.patience import LONG_S
@@ -101,6 +103,8 @@ def test_a_film_that_takes_too_long_or_cannot_be_encoded_fails_alone(
     encoder.write_text(f"#!/bin/sh\necho $$ > {tmp_path / 'pid'}\nexec sleep 600")
     encoder.chmod(0o700)
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(encoder))
+    # The fork server has the environment that was there when it was started.
+    monkeypatch.setattr(process_pool, "process_context", lambda: get_context("spawn"))
     stuck = VideoRenderer(timeout_s=2.0)
     with pytest.raises(Busy, match="it took over 2 s"):
         stuck.render(raced, SMALL)

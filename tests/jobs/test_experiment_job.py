@@ -23,6 +23,7 @@ from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, REPORT, SUMMARY, Run
 from tests.jobs.experiments import stored_results, sweep, tried
 from tests.jobs.waiting import wait_until, wait_until_ended
+from tests.served import is_job
 from tests.storage.stores import of_type
 
 
@@ -41,11 +42,11 @@ def wait_until_settled(store: RunStore, run: Run) -> Sequence[Mapping[str, Any]]
 
 
 def worker_pids() -> set[int]:
-    """Return ids of all spawned descendants, without `multiprocessing`'s resource tracker."""
+    """Return ids of the processes of jobs, and of those of their clusters."""
     pids = set()
     for process in psutil.Process().children(recursive=True):
         with suppress(psutil.Error):  # it may exit meanwhile
-            if "spawn_main" in " ".join(process.cmdline()):
+            if is_job(process) or "spawn_main" in " ".join(process.cmdline()):
                 pids.add(process.pid)
     return pids
 

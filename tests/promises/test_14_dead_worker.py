@@ -81,7 +81,7 @@ def test_a_dead_servers_experiment_can_be_resumed_and_leaves_no_process(
     run = server.start({**body, "seeds": SEEDS, "steps": 3000, "workers": 1}, "/experiments")
     server.after_step(run, 1)
     below = psutil.Process(server.process.pid).children(recursive=True)
-    assert len(below) > 2, "the job's process, and its cluster's"
+    assert len(below) > 2, "the fork server, the job's process, and its cluster's"
     server.end(signal.SIGKILL)
     _, left = psutil.wait_procs(below, timeout=LONG_S)
     assert not left

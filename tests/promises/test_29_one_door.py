@@ -139,7 +139,8 @@ def wait_for_trials(server: Served, run: dict[str, Any]) -> None:
     Its processes run at nice 15: on a busy machine it takes minutes.
     """
     deadline = time.monotonic() + 600
-    while server.look(run)["progress"]["done"] < run["progress"]["total"]:
+    while (now := server.look(run))["progress"]["done"] < run["progress"]["total"]:
+        assert now["state"] != "failed", now["error"]
         assert time.monotonic() < deadline
         time.sleep(0.2)
 

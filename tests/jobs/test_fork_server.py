@@ -1,0 +1,52 @@
+"""The fork server: jobs are its forks, share what it has imported, and end with the server."""
+
+import signal
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import psutil
+import pytest
+
+from tests.served import BODY, ENDLESS, LONG_S, Served, serving_from
+
+
+@pytest.fixture
+def launch(tmp_path: Path) -> Iterator[Callable[..., Served]]:
+    with serving_from(tmp_path) as make:
+        yield make
+
+
+def fork_server(server: Served) -> psutil.Process:
+    children = psutil.Process(server.process.pid).children()
+    (found,) = [child for child in children if child.name() == "fork server"]
+    return found
+
+
+def test_jobs_are_forked_from_what_the_server_has_imported(launch: Callable[..., Served]) -> None:
+    server = launch()
+    parent = fork_server(server)
+    run = server.moving(server.start(ENDLESS))
+    (job,) = server.jobs()
+    assert job.parent() == parent
+    assert run["id"].startswith(job.name().removeprefix("training "))
+    memory = job.memory_full_info()
+    assert memory.uss < memory.rss / 2, "most of its memory is shared"
+    assert job.open_files() == [], "not one of the server's, as its database"
+
+
+def test_a_dead_fork_server_ends_its_jobs_and_is_replaced(launch: Callable[..., Served]) -> None:
+    server = launch()
+    run = server.start({**BODY, "steps": 200, "pace": 20, "evaluate_every": 0})
+    server.moving(run)
+    (job,) = server.jobs()
+    fork_server(server).send_signal(signal.SIGKILL)
+    ended = server.in_state(run, "failed")
+    assert "its process ended" in ended["error"]
+    assert ended["can_resume"]
+    psutil.wait_procs([job], timeout=LONG_S)
+    assert not job.is_running()
+
+    assert server.tell(run, "resume").status_code == 202
+    server.hurry(run["id"])
+    again = server.in_state(run, "finished", "failed")
+    assert again["state"] == "finished", again
