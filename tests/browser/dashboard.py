@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import ConsoleMessage, FloatRect, Locator, Page, Response, expect
+from playwright.sync_api import ConsoleMessage, FloatRect, Locator, Page, expect
 
 PATIENCE_MS = 60_000
 """A race in software WebGL beside the browser that shows it, on two cores, takes its time."""
@@ -18,6 +18,10 @@ _AXE = Path(__file__).with_name("vendor") / "axe.min.js"
 _TRANSITIONS_HAVE_ENDED = """() => Promise.all(document.getAnimations()
     .filter(({effect}) => effect.getComputedTiming().endTime !== Infinity)
     .map(animation => animation.finished.catch(() => {})))"""
+# A route of Playwright would stop each request of the page, to look at its address.
+_WITHOUT_3D = """Object.defineProperty(HTMLIFrameElement.prototype, "src", {set() {}})"""
+_STATUS = re.compile(r"status of (\d+)")
+"""In what Chromium says of an answer of 400 and above."""
 _METRES = re.compile(r"−?\d+\.\d\d\sm")
 
 
@@ -35,12 +39,11 @@ class Dashboard:
         self.page = page
         self._has_3d = has_3d
         if not has_3d:
-            page.route("**/viewer/**", lambda route: route.abort())
+            page.add_init_script(_WITHOUT_3D)
         self.complaints: list[str] = []
         page.set_default_timeout(PATIENCE_MS)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.on("console", self._heard)
-        page.on("response", self._answered)
 
     def open(self, address: str) -> None:
         """Open it, and wait until it is live and the stage has a picture, if it is to have one."""
@@ -117,10 +120,9 @@ class Dashboard:
         return self.page.evaluate("path => fetch(path).then(r => r.json())", path)
 
     def _heard(self, message: ConsoleMessage) -> None:
-        # Answers of 400 and above are told by `_answered`, with their address.
-        if message.type == "error" and "Failed to load resource" not in message.text:
+        if message.type != "error":
+            return
+        if "Failed to load resource" not in message.text:
             self.complaints.append(message.text)
-
-    def _answered(self, response: Response) -> None:
-        if response.status >= 400:
-            self.complaints.append(f"{response.status} {response.url}")
+        elif status := _STATUS.search(message.text):
+            self.complaints.append(f"{status[1]} {message.location['url']}")
