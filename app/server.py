@@ -6,11 +6,12 @@ import socket
 import sys
 import threading
 from collections.abc import AsyncIterator, Callable
-from functools import partial
+from functools import cache, partial
 from types import FrameType
 
 import uvicorn
 from fastapi import APIRouter, FastAPI
+from starlette.routing import BaseRoute
 
 from app import __version__, assets
 from app.api import (
@@ -159,7 +160,14 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
 
 
 def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) -> None:
-    versioned = APIRouter(prefix="/api/v1")
+    app.router.routes += _api_routes(agents)
+    app.router.routes += [*viewer_routes(viewer.hub), *pages.page_routes(assets.static_dir())]
+
+
+@cache
+def _api_routes(agents: tuple[str, ...]) -> tuple[BaseRoute, ...]:
+    """Return the routes that are the same in all apps; FastAPI takes long to build them."""
+    router, versioned = APIRouter(), APIRouter(prefix="/api/v1")
     # First, so that no other route matches `import` as a run's id.
     modules = (
         *(transfer, trainings, races, experiments, runs, exports, replays, gait),
@@ -168,10 +176,9 @@ def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) ->
     for module in modules:
         versioned.include_router(module.router)
     versioned.include_router(start_routes(agents))
-    app.include_router(versioned)
-    app.include_router(monitoring.router)
-    app.include_router(docs.router)
-    app.router.routes += [*viewer_routes(viewer.hub), *pages.page_routes(assets.static_dir())]
+    for included in (versioned, monitoring.router, docs.router):
+        router.include_router(included)
+    return tuple(router.routes)
 
 
 def _unready_reason(jobs: Jobs, store: RunStore) -> str | None:

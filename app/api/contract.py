@@ -6,6 +6,7 @@ here from its method, path and parameters, so that a new route has them without 
 
 import threading
 from collections.abc import Iterator, Mapping
+from copy import deepcopy
 from typing import Any
 
 from fastapi import FastAPI
@@ -111,6 +112,11 @@ def takes_file(*media_types: str) -> Schema:
     return {"requestBody": {"content": content, "required": True}}
 
 
+_generated: dict[tuple[tuple[str, ...], int], Schema] = {}
+"""What FastAPI says of routes, by the agents and the number of routes: all apps have the same."""
+_lock = threading.Lock()
+
+
 def install(app: FastAPI, agents: tuple[str, ...], settings: Settings) -> None:
     """Make the app complete its OpenAPI document on first use, and cache it.
 
@@ -119,13 +125,15 @@ def install(app: FastAPI, agents: tuple[str, ...], settings: Settings) -> None:
         agents: names of the registered agents.
         settings: decide which operations need the token.
     """
-    generate, lock = app.openapi, threading.Lock()
-    cache: list[Schema] = []
+    generate, cache = app.openapi, list[Schema]()
 
     def openapi() -> Schema:
-        with lock:
+        with _lock:
             if not cache:
-                cache.append(_completed(generate(), agents, settings))
+                key = (agents, len(app.routes))
+                if key not in _generated:
+                    _generated[key] = generate()
+                cache.append(_completed(deepcopy(_generated[key]), agents, settings))
             return cache[0]
 
     app.openapi = openapi  # type: ignore[method-assign]

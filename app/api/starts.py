@@ -1,6 +1,5 @@
 """Routes whose bodies depend on the registered agents: starts, live changes, what-ifs."""
 
-from functools import cache
 from typing import Annotated
 
 from fastapi import APIRouter, Request
@@ -17,7 +16,6 @@ from app.api.schemas import BranchBody, ChangeBody, RaceBody, TrainingBody
 from app.domain.errors import InvalidInput
 
 
-@cache
 def start_routes(agents: tuple[str, ...]) -> APIRouter:
     """Return the routes, with the request bodies of the registered agents.
 

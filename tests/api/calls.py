@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import httpx2
+from httpx2 import ByteStream
 from starlette.testclient import TestClient
 
 from tests.patience import Patience
@@ -12,6 +13,33 @@ from tests.patience import Patience
 ADDRESS = "http://127.0.0.1:8000"
 WALK = {"gait": "left-right-origin", "simulator": "kinematic"}
 ENDED = ("finished", "stopped", "failed", "interrupted")
+
+
+class WholeAnswers(httpx2.BaseTransport):
+    """Gets each answer of an app to its end in one call into the thread of its event loop.
+
+    A `TestClient` makes eight, to have the beginning of an answer while the app still sends the
+    rest. It keeps websockets.
+    """
+
+    def __init__(self, client: TestClient) -> None:
+        """Wrap the transport of a client, which has a portal to its app's event loop."""
+        assert client.portal is not None
+        self._portal, self._websockets = client.portal, client._transport
+        self._app = httpx2.ASGITransport(client.app, client=("testclient", 50000))
+
+    def handle_request(self, request: httpx2.Request) -> httpx2.Response:
+        """Return the answer, with its body as it was sent."""
+        if request.url.scheme in ("ws", "wss"):
+            return self._websockets.handle_request(request)
+        request.read()
+        return self._portal.call(self._answer, request)
+
+    async def _answer(self, request: httpx2.Request) -> httpx2.Response:
+        answer = await self._app.handle_async_request(request)
+        assert isinstance(answer.stream, httpx2.AsyncByteStream)
+        body = b"".join([part async for part in answer.stream])
+        return httpx2.Response(answer.status_code, headers=answer.headers, stream=ByteStream(body))
 
 
 @dataclass

@@ -13,7 +13,7 @@ from starlette.testclient import TestClient
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
-from tests.api.calls import ADDRESS, Api
+from tests.api.calls import ADDRESS, Api, WholeAnswers
 from tests.storage.stores import temporary_store
 
 
@@ -29,6 +29,7 @@ def api(data: Path) -> Iterator[Api]:
     with open_store(settings) as store:
         app = create_app(settings, store)
         with TestClient(app, base_url=ADDRESS) as client:
+            client._transport = WholeAnswers(client)
             yield Api(client)
 
 
@@ -66,6 +67,7 @@ def serving(data: Path) -> Iterator[Callable[..., Api]]:
             client = TestClient(app, base_url=ADDRESS, follow_redirects=False)
             # One event loop for all requests; by default each has a new one in a new thread.
             client.portal = stack.enter_context(start_blocking_portal())
+            client._transport = WholeAnswers(client)
             stack.callback(client.close)
             return Api(client)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, TypeVar
@@ -14,7 +15,8 @@ from app.runs.config import TrainingConfig, training_config
 from app.runs.lane import LaneConfig
 from app.runs.race_config import RaceConfig
 from app.settings import Settings
-from app.storage.database.opening import open_store
+from app.storage.database.opening import DATABASE_FILE, open_store
+from app.storage.database.sqlite_file import create_file
 from app.storage.database.store import RunStore
 from app.storage.run import Run
 from tests.postgresql import PostgresServer
@@ -110,8 +112,19 @@ def opened(folder: Path, url: str | None) -> Iterator[RunStore]:
 @contextmanager
 def temporary_store() -> Iterator[RunStore]:
     """Open an empty SQLite store in a temporary folder, which is deleted at the end."""
-    with TemporaryDirectory() as folder, opened(Path(folder), None) as store:
-        yield store
+    with TemporaryDirectory() as folder:
+        (Path(folder) / DATABASE_FILE).write_bytes(_new_database())
+        with opened(Path(folder), None) as store:
+            yield store
+
+
+@cache
+def _new_database() -> bytes:
+    """Return a database file that no server has owned: migrations take longer than most tests."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / DATABASE_FILE
+        create_file(path, lambda: False)
+        return path.read_bytes()
 
 
 def of_type(kind: type[StoreT], store: RunStore) -> StoreT:
