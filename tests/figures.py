@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 from typing import Any, TypeVar
 
 import numpy as np
@@ -11,6 +10,7 @@ from app.assembly import build_learner, build_walkers
 from app.domain.observation import Observation
 from app.domain.robot import robot
 from app.domain.types import FloatArray
+from app.jobs.fork_server import process_context
 from app.runs.config import TrainingConfig, training_config
 from app.runs.lane import LaneConfig
 from app.runs.race_config import RaceConfig
@@ -33,7 +33,7 @@ WORKERS = 2
 
 def in_a_pool(run: Callable[[T], R], over: Iterable[T], chunk: int = 1) -> list[R]:
     """`run` of each, in order."""
-    with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(WORKERS, mp_context=process_context()) as pool:
         return list(pool.map(run, over, chunksize=chunk))
 
 

@@ -83,7 +83,8 @@ class ViewerService:
         server = self._resources.enter_context(in_process_viser())
         self.hub.upstream = server.frames
         self._scene = StageScene(server)
-        self._resources.enter_context(StageLoop(self._stage, self._scene, self._bus))
+        loop = StageLoop(self._stage, self._scene, self._bus, lambda: self.hub.counters.viewers > 0)
+        self._resources.enter_context(loop)
 
     def _follow_position(self, view: str) -> Position | None:
         return None if self._scene is None else self._scene.follow_position(view)

@@ -4,6 +4,7 @@ import asyncio
 import json
 import logging
 import threading
+import time
 from typing import Any
 
 import pytest
@@ -12,7 +13,7 @@ from app.events.bus import EventBus
 from app.stage.stage import Stage
 from app.stage.stage_frame import StageFrame
 from app.viewer.scene import StageScene
-from app.viewer.stage_loop import StageLoop
+from app.viewer.stage_loop import IDLE_FRAMES_PER_S, StageLoop
 from app.viewer.viser_internals.server import in_process_viser
 from tests.stage.stage_parts import StageParts
 from tests.viewer.serving import wait_until
@@ -30,10 +31,20 @@ class FailingScene(StageScene):
         return super().draw(frame, now)
 
 
+class CountingScene(StageScene):
+    """A scene that counts its frames."""
+
+    frames = 0
+
+    def draw(self, frame: StageFrame, now: float = 0.0) -> bool:
+        self.frames += 1
+        return super().draw(frame, now)
+
+
 def test_loop_draws_within_its_block(parts: StageParts) -> None:
     with in_process_viser() as server:
         scene = StageScene(server)
-        with StageLoop(parts.stage, scene, EventBus()):
+        with StageLoop(parts.stage, scene, EventBus(), lambda: True):
             wait_until(lambda: scene.follow_position("leader"))
 
     assert "stage" not in {thread.name for thread in threading.enumerate()}
@@ -44,7 +55,7 @@ def test_error_in_a_frame_is_logged_once_and_drawing_continues(
 ) -> None:
     with in_process_viser() as server, caplog.at_level(logging.INFO):
         scene = FailingScene(server)
-        with StageLoop(parts.stage, scene, EventBus()):
+        with StageLoop(parts.stage, scene, EventBus(), lambda: True):
             wait_until(lambda: scene.follow_position("leader"))
 
     messages = [record.message for record in caplog.records if "stage" in record.name]
@@ -67,7 +78,7 @@ def test_moving_race_publishes_scenes(parts: StageParts) -> None:
 
     with in_process_viser() as server:
         scene = StageScene(server)
-        with StageLoop(stage, scene, parts.bus):
+        with StageLoop(stage, scene, parts.bus, lambda: True):
             scenes = asyncio.run(first_scenes())
             wait_until(lambda: (scene.follow_position("1") or (0, 0))[1] > 0.001)
 
@@ -75,3 +86,16 @@ def test_moving_race_publishes_scenes(parts: StageParts) -> None:
     times = [scene["time_s"] for scene in scenes]
     assert times == sorted(times)
     assert len(set(times)) == 3
+
+
+def test_without_viewers_a_motion_is_drawn_at_the_rate_of_stillness(parts: StageParts) -> None:
+    run = parts.finished_race()
+    stage = Stage(parts.store, parts.recordings, parts.bus)
+    stage.set(run_id=run.id)
+    with in_process_viser() as server:
+        scene = CountingScene(server)
+        began = time.monotonic()
+        with StageLoop(stage, scene, parts.bus, lambda: False):
+            wait_until(lambda: (scene.follow_position("1") or (0, 0))[1] > 0.001)
+        # With one frame at the start, and one that is caught up.
+        assert scene.frames <= (time.monotonic() - began) * IDLE_FRAMES_PER_S + 2
