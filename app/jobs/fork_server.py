@@ -1,7 +1,7 @@
 """The fork server: a process from which those of jobs and pools are forked, with all imported.
 
-Importing what a job needs takes most of a second of a core. A fork starts in some hundredths of it,
-and shares the memory of what is imported.
+Importing what a job needs takes near half a second of a core. A fork starts in some hundredths of
+it, and shares the memory of what is imported.
 """
 
 import multiprocessing
