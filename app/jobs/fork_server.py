@@ -6,8 +6,10 @@ it, and shares the memory of what is imported.
 
 import multiprocessing
 import os
+import signal
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import partial
 from multiprocessing import forkserver, resource_tracker, util
 from multiprocessing.context import ForkServerContext, SpawnContext
@@ -25,10 +27,15 @@ def process_context() -> "ForkServerContext | SpawnContext":
     """Return the `multiprocessing` context that creates processes.
 
     On Linux it starts a fork server where none runs. Elsewhere, where the libraries that are used
-    do not all survive a fork, each process is started anew.
+    do not all survive a fork, each process is started anew. A fork server that a signal has stopped
+    is continued, since whoever starts a process waits for it.
     """
     if sys.platform != "linux":
         return multiprocessing.get_context("spawn")
+    pid = vars(forkserver._forkserver)["_forkserver_pid"]  # noqa: SLF001 - it is told nowhere else
+    if pid is not None:
+        with suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGCONT)
     forkserver.set_forkserver_preload(_PRELOADED)
     return multiprocessing.get_context("forkserver")
 

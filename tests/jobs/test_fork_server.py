@@ -50,3 +50,11 @@ def test_a_dead_fork_server_ends_its_jobs_and_is_replaced(launch: Callable[..., 
     server.hurry(run["id"])
     again = server.in_state(run, "finished", "failed")
     assert again["state"] == "finished", again
+
+
+def test_a_stopped_fork_server_keeps_no_run_waiting(launch: Callable[..., Served]) -> None:
+    server = launch()
+    server.moving(server.start(ENDLESS))
+    fork_server(server).suspend()
+    run = server.start({**BODY, "steps": 50})
+    assert server.in_state(run, "finished", "failed")["state"] == "finished"
