@@ -125,7 +125,7 @@ class ProcessPool:
                 request.future.set_result(self._run(request.function, request.arguments))
             except HexapodError as error:
                 request.future.set_exception(error)
-            except (BrokenProcessPool, TimeoutError, OSError) as error:
+            except (BrokenProcessPool, TimeoutError, OSError, EOFError) as error:
                 self._stop_workers()
                 timed_out = isinstance(error, TimeoutError)
                 reason = f"it took over {self._timeout_s:g} s" if timed_out else "one of them ended"

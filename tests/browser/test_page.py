@@ -141,6 +141,12 @@ def test_a_number_that_is_none_holds_the_button_back(
     expect(dashboard.primary).not_to_have_attribute("aria-disabled", "true")
 
 
+_CLOSE_AND_PRESS = """([how, key]) => {
+    document.querySelector("dialog[open]")[how]();
+    dispatchEvent(new KeyboardEvent("keydown", {key}));
+}"""
+
+
 @pytest.mark.looks_at_3d
 def test_keys(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
@@ -156,22 +162,12 @@ def test_keys(dashboard: Dashboard, server: Serving) -> None:
     page.keyboard.press("?")
     expect(page.get_by_role("dialog", name="Keys")).to_be_visible()
     # A key that follows before the page is told that the dialog was closed.
-    page.evaluate(
-        """() => {
-            document.querySelector("dialog[open]").close();
-            dispatchEvent(new KeyboardEvent("keydown", {key: "2"}));
-        }"""
-    )
+    page.evaluate(_CLOSE_AND_PRESS, ["close", "2"])
     expect(follow).to_have_value("2")
     page.keyboard.press("?")
     expect(page.get_by_role("dialog", name="Keys")).to_be_visible()
     # As by Escape, and again a key before the page is told.
-    page.evaluate(
-        """() => {
-            document.querySelector("dialog[open]").requestClose();
-            dispatchEvent(new KeyboardEvent("keydown", {key: "?"}));
-        }"""
-    )
+    page.evaluate(_CLOSE_AND_PRESS, ["requestClose", "?"])
     expect(page.get_by_role("dialog", name="Keys")).to_be_visible()
     page.keyboard.press("Escape")
     expect(page.get_by_role("dialog")).to_have_count(0)
