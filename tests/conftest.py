@@ -5,6 +5,8 @@
 
 import gc
 from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
 
 import hypothesis
 import pytest
@@ -104,16 +106,22 @@ def _launched(chromium: BrowserType, options: list[str]) -> Browser:
 @pytest.fixture
 def page(browser: Browser) -> Iterator[Page]:
     """An empty tab with cookies and storage of its own."""
-    yield from new_page(browser)
+    with new_page(browser) as page:
+        yield page
 
 
-def new_page(browser: Browser) -> Iterator[Page]:
+@contextmanager
+def new_page(browser: Browser, **options: Any) -> Iterator[Page]:
     """Yield an empty tab with cookies and storage of its own, and close it.
 
     It has half as many pixels as it says, and the 3D view in the dashboard draws ten pictures a
     second: WebGL in software takes most of the time of these tests.
+
+    Args:
+        browser: with WebGL or without.
+        options: of `Browser.new_context`.
     """
-    with browser.new_context(device_scale_factor=0.5) as context:
+    with browser.new_context(device_scale_factor=0.5, **options) as context:
         context.add_init_script(_FEW_PICTURES)
         yield context.new_page()
 

@@ -29,7 +29,8 @@ def server(tmp_path: Path) -> Iterator[Serving]:
 def page(chromium: BrowserType, request: pytest.FixtureRequest) -> Iterator[Page]:
     """An empty tab, of a browser that can draw in 3D only in tests marked `looks_at_3d`."""
     name = "browser" if _looks_at_3d(request) else "flat_browser"
-    yield from new_page(request.getfixturevalue(name))
+    with new_page(request.getfixturevalue(name)) as page:
+        yield page
 
 
 @pytest.fixture

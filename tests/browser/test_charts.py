@@ -11,6 +11,7 @@ from playwright.sync_api import Browser, FloatRect, Locator, Page, ViewportSize,
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving, serving
+from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -25,7 +26,7 @@ PHONE: ViewportSize = {"width": 360, "height": 780}
 PNG = b"\x89PNG"
 
 
-def test_charts_answer(dashboard: Dashboard, browser: Browser, tmp_path: Path) -> None:
+def test_charts_answer(dashboard: Dashboard, flat_browser: Browser, tmp_path: Path) -> None:
     with serving(tmp_path / "data", token="for-the-operator") as server:
         dashboard.open(f"{server.address}?{urlencode({'token': 'for-the-operator', **SHORT})}")
         dashboard.primary.click()
@@ -37,7 +38,7 @@ def test_charts_answer(dashboard: Dashboard, browser: Browser, tmp_path: Path) -
         answers_keys(dashboard, race)
         is_saved(dashboard, tmp_path)
         assert dashboard.violations() == []
-        on_a_spectators_phone(browser, server)
+        on_a_spectators_phone(flat_browser, server)
         seeks_in_the_practice_on_stage(dashboard)
 
 
@@ -172,9 +173,8 @@ def is_saved(dashboard: Dashboard, folder: Path) -> None:
 
 
 def on_a_spectators_phone(browser: Browser, server: Serving) -> None:
-    with browser.new_context(viewport=PHONE, has_touch=True, color_scheme="dark") as context:
-        dashboard = Dashboard(context.new_page(), has_3d=False)
-        page = dashboard.page
+    with new_page(browser, viewport=PHONE, has_touch=True, color_scheme="dark") as page:
+        dashboard = Dashboard(page, has_3d=False)
         dashboard.open(server.address)
         race = values_of(page, "the race")
         expect(race).to_be_visible()

@@ -10,6 +10,7 @@ from playwright.sync_api import Browser, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving
+from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -26,7 +27,7 @@ def changes(dashboard: Dashboard) -> list[dict[str, Any]]:
 
 
 def test_a_leg_is_broken_while_a_robot_practises(
-    dashboard: Dashboard, browser: Browser, shared_server: Serving
+    dashboard: Dashboard, flat_browser: Browser, shared_server: Serving
 ) -> None:
     page = dashboard.page
     dashboard.open(f"{shared_server.address}?{LONG}")
@@ -47,7 +48,7 @@ def test_a_leg_is_broken_while_a_robot_practises(
     expect(happened).to_contain_text(re.compile(r"^Happened: legs?\s3.* limp from step \d+"))
     expect(curve).to_have_accessible_name(re.compile(r": −?0\.[012]\d\sm after"))
 
-    tells_others(browser, shared_server)
+    tells_others(flat_browser, shared_server)
     kind = page.get_by_label("A press on a leg")
     kind.select_option("Stuck joint")
     page.get_by_label("Joint").select_option("tibia")
@@ -91,8 +92,8 @@ def changes_its_ground(dashboard: Dashboard) -> None:
 
 def tells_others(browser: Browser, server: Serving) -> None:
     """Conditions are told over the picture, on a phone too."""
-    with browser.new_context(viewport={"width": 360, "height": 780}) as context:
-        other = Dashboard(context.new_page(), has_3d=False)
+    with new_page(browser, viewport={"width": 360, "height": 780}) as page:
+        other = Dashboard(page, has_3d=False)
         other.open(server.address)
         chip = other.page.locator(".chip.happening")
         expect(chip).to_contain_text(re.compile(r"^Legs\s3, 6 limp"))

@@ -13,6 +13,7 @@ from playwright.sync_api import Browser, Locator, ViewportSize, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving, serving
+from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -211,10 +212,9 @@ def test_a_league_takes_worlds_by_their_pictures_and_as_a_text(
     expect(head(dashboard).locator(".state")).to_have_text("stopped")
 
 
-def test_reports_fit_a_phone(browser: Browser, small_runs: list[str]) -> None:
-    with browser.new_context(viewport=PHONE, color_scheme="light") as context:
-        dashboard = Dashboard(context.new_page(), has_3d=False)
-        page = dashboard.page
+def test_reports_fit_a_phone(flat_browser: Browser, small_runs: list[str]) -> None:
+    with new_page(flat_browser, viewport=PHONE, color_scheme="light") as page:
+        dashboard = Dashboard(page, has_3d=False)
         for address in small_runs:
             page.set_viewport_size(PHONE)
             page.goto(address)
@@ -309,15 +309,15 @@ def call(server: Serving, body: object = None, path: str = "") -> dict[str, Any]
 
 
 def test_spectators_see_the_report_without_controls(
-    dashboard: Dashboard, browser: Browser, tmp_path: Path
+    dashboard: Dashboard, flat_browser: Browser, tmp_path: Path
 ) -> None:
     page = dashboard.page
     with serving(tmp_path, token="for-the-operator") as guarded:
         page.goto(f"{guarded.address}#experiments")
         expect(page.get_by_text("No experiment has been run here.")).to_be_visible()
 
-        with browser.new_context() as context:
-            operator = Dashboard(context.new_page(), has_3d=False)
+        with new_page(flat_browser) as operators_page:
+            operator = Dashboard(operators_page, has_3d=False)
             operator.page.goto(f"{guarded.address}?token=for-the-operator")
             expect(operator.primary).to_be_visible()
             visit(operator, guarded, **SMALL)

@@ -8,6 +8,7 @@ from playwright.sync_api import Browser, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import serving
+from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -24,16 +25,16 @@ PAUSE = """time_s => fetch("api/v1/stage", {method: "PUT",
     headers: {"Content-Type": "application/json", "X-Requested-With": "hexapods"}})"""
 
 
-def test_footfalls_of_a_race(dashboard: Dashboard, browser: Browser, tmp_path: Path) -> None:
+def test_footfalls_of_a_race(dashboard: Dashboard, flat_browser: Browser, tmp_path: Path) -> None:
     with serving(tmp_path, token=TOKEN) as server:
         follows_and_seeks(dashboard, f"{server.address}?token={TOKEN}")
-        spectator = Dashboard(browser.new_page(), has_3d=False)
-        spectator.open(server.address)
-        panel = spectator.page.get_by_role("region", name="Gait analysis", exact=True)
-        panel.scroll_into_view_if_needed()
-        expect(panel.get_by_role("img", name=re.compile("^Footfalls of Greedy"))).to_be_visible()
-        expect(panel.get_by_role("slider")).to_have_count(0)
-        spectator.page.close()
+        with new_page(flat_browser) as page:
+            Dashboard(page, has_3d=False).open(server.address)
+            panel = page.get_by_role("region", name="Gait analysis", exact=True)
+            panel.scroll_into_view_if_needed()
+            footfalls = panel.get_by_role("img", name=re.compile("^Footfalls of Greedy"))
+            expect(footfalls).to_be_visible()
+            expect(panel.get_by_role("slider")).to_have_count(0)
 
 
 def follows_and_seeks(dashboard: Dashboard, address: str) -> None:

@@ -9,6 +9,7 @@ from playwright.sync_api import Browser, ViewportSize, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving, serving
+from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -185,13 +186,12 @@ def test_keys(dashboard: Dashboard, server: Serving) -> None:
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_a_phone_needs_no_scrolling_sideways(
-    browser: Browser, shared_server: Serving, theme: str
+    flat_browser: Browser, shared_server: Serving, theme: str
 ) -> None:
     scheme: Literal["light", "dark"] = "light" if theme == "light" else "dark"
-    with browser.new_context(viewport=PHONE, color_scheme=scheme) as context:
-        dashboard = Dashboard(context.new_page(), has_3d=False)
+    with new_page(flat_browser, viewport=PHONE, color_scheme=scheme) as page:
+        dashboard = Dashboard(page, has_3d=False)
         dashboard.open(shared_server.address)
-        page = dashboard.page
         stage = page.locator(".stage")
         top, below = stage.bounding_box(), dashboard.primary.bounding_box()
         assert top is not None

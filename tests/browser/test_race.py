@@ -9,6 +9,7 @@ from playwright.sync_api import Browser, Page, Route, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving
+from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -268,15 +269,15 @@ def test_a_chart_tells_why_it_stays_empty(dashboard: Dashboard, server: Serving)
 
 
 def test_two_operators_and_one_stage(
-    dashboard: Dashboard, browser: Browser, server: Serving
+    dashboard: Dashboard, flat_browser: Browser, server: Serving
 ) -> None:
     dashboard.open(f"{server.address}?{LONG}")
     dashboard.button("Train, don’t race").click()
     expect(dashboard.page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
     held = dashboard.get("/api/v1/stage")["run_id"]
 
-    with browser.new_context() as context:
-        other = Dashboard(context.new_page(), has_3d=False)
+    with new_page(flat_browser) as page:
+        other = Dashboard(page, has_3d=False)
         other.open(f"{server.address}?{LONG}")
         other.button("Train, don’t race").click()
         expect(other.page.get_by_text("Another run is live on the stage")).to_be_visible()

@@ -75,6 +75,8 @@ def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_serve
     step.fill("120")
     step.press("Enter")
     expect(panel.locator(".values-key")).to_contain_text(re.compile(r"[1-9] % of 1500"))
+    # Its explanation, which comes apart from its table, has the move that was made.
+    expect(panel.get_by_role("heading", name="Step 120, explained")).to_be_visible()
 
     # The table by keys and by pointer; without either it is at the move that was made.
     grid, made = panel.get_by_role("grid"), read.inner_text()
