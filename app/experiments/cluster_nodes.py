@@ -10,6 +10,8 @@ from typing import Any
 
 from distributed import Scheduler, Worker
 
+from app.process_setup import set_process_name
+
 
 class NoHttpServer:
     """Mixin that starts no HTTP server: only the port of Dask's own protocol is open."""
@@ -23,4 +25,9 @@ class SchedulerWithoutHttp(NoHttpServer, Scheduler):
 
 
 class WorkerWithoutHttp(NoHttpServer, Worker):
-    """A worker whose only port requires a client certificate."""
+    """A worker, in a process of its own, whose only port requires a client certificate."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        """Take Dask's arguments, and name the process."""
+        set_process_name("dask worker")
+        super().__init__(*args, **options)

@@ -2,7 +2,9 @@
 
 import logging
 import multiprocessing.resource_tracker
+import os
 import signal
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
@@ -34,6 +36,7 @@ def own_cluster(workers: int) -> "Iterator[Client]":
     import dask  # noqa: PLC0415
     from distributed import Client, Nanny, SpecCluster  # noqa: PLC0415
     from distributed.security import Security  # noqa: PLC0415
+    from distributed.utils import get_mp_context  # noqa: PLC0415
     from distributed.worker_memory import parse_memory_limit  # noqa: PLC0415
 
     from app.experiments.cluster_nodes import SchedulerWithoutHttp, WorkerWithoutHttp  # noqa: PLC0415
@@ -43,6 +46,10 @@ def own_cluster(workers: int) -> "Iterator[Client]":
         stack.enter_context(folder)
         settings = {**_DASK_SETTINGS, "temporary-directory": folder.name}
         stack.enter_context(dask.config.set(settings))
+        context = get_mp_context()
+        if context.get_start_method() == "forkserver":
+            # Instead of Dask's choice; a fork server that already runs keeps what it has imported.
+            context.set_forkserver_preload(_PRELOADED)
         with _sigint_blocked():
             # Without client certificates any local user could send code to the ports.
             security = Security.temporary()
@@ -56,8 +63,9 @@ def own_cluster(workers: int) -> "Iterator[Client]":
                     "memory_limit": parse_memory_limit("auto", 1, workers, logger=_logger),
                     "dashboard": False,
                     "local_directory": folder.name,
-                    # A killed worker's temporary files are deleted with this folder.
-                    "env": {"TMPDIR": folder.name},
+                    # A fork server has the environment of its start. A killed worker's temporary
+                    # files are deleted with this folder.
+                    "env": {**os.environ, "TMPDIR": folder.name},
                     "silence_logs": logging.CRITICAL,
                 },
             }
@@ -84,7 +92,16 @@ def own_cluster(workers: int) -> "Iterator[Client]":
         yield client
 
 
-_DASK_SETTINGS = {
+_PRELOADED = [
+    "app.experiments.cluster_nodes",
+    "app.experiments.worker",
+    "app.physics.mujoco_simulator",
+]
+_DASK_SETTINGS: dict[str, object] = {
+    # Forked from one process that has imported all they need, workers start in a tenth of the time.
+    "distributed.worker.multiprocessing-method": (
+        "forkserver" if sys.platform == "linux" else "spawn"
+    ),
     "distributed.scheduler.http.routes": [],
     "distributed.worker.http.routes": [],
     "distributed.worker.profile.enabled": False,

@@ -12,5 +12,5 @@ In the server:
 Between both: `messages` defines the commands and messages on the pipe.
 In the worker process:
 - `worker` is the entry point and runs the loop; `experiment_worker` runs an experiment's trials.
-- `job_control` executes commands between two steps; `process_setup` sets name, priority, signals.
+- `job_control` executes commands between two steps.
 """

@@ -16,7 +16,7 @@ from multiprocessing.context import ForkServerContext, SpawnContext
 from pathlib import Path
 from typing import Any
 
-from app.jobs.process_setup import die_with_parent, set_process_name
+from app.process_setup import die_with_parent, set_process_name
 
 _PRELOADED = ["app.jobs.worker", "app.physics.mujoco_simulator"]
 """Modules that most processes need, those included that are otherwise imported late."""

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from app.domain.errors import HexapodError, InvalidInput
 from app.jobs.fork_server import process_context
-from app.jobs.process_setup import set_up_process
+from app.process_setup import set_up_process
 from app.storage.errors import Busy
 
 IDLE_S = 60.0

@@ -35,7 +35,7 @@ from app.jobs.messages import (
     Task,
     TrainingTask,
 )
-from app.jobs.process_setup import set_up_process
+from app.process_setup import set_up_process
 from app.runs.racing import race
 from app.runs.records import LaneStep, StepTaken
 from app.runs.tables import restore, snapshot, to_bytes

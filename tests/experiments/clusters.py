@@ -1,6 +1,7 @@
 """Helpers for tests on a cluster: small experiments, and the cluster's processes."""
 
 from collections.abc import Iterable
+from contextlib import suppress
 
 import psutil
 
@@ -44,12 +45,10 @@ def results(outcomes: Iterable[Outcome]) -> dict[str, TrialResult]:
 
 
 def workers_of(process: psutil.Process) -> list[psutil.Process]:
-    """Return the worker processes among a process's descendants."""
+    """Return the worker processes among a process's descendants, by their name."""
     found = []
     for child in process.children(recursive=True):
-        try:
-            if "spawn_main" in " ".join(child.cmdline()):
+        with suppress(psutil.NoSuchProcess):
+            if child.name() == "dask worker":
                 found.append(child)
-        except psutil.NoSuchProcess:
-            continue
     return found

@@ -5,7 +5,6 @@ import os
 import signal
 import time
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from typing import Any
 
 import psutil
@@ -21,6 +20,7 @@ from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, REPORT, SUMMARY, Run
+from tests.experiments.clusters import workers_of
 from tests.jobs.experiments import stored_results, sweep, tried
 from tests.jobs.waiting import wait_until, wait_until_ended
 from tests.served import is_job
@@ -43,12 +43,9 @@ def wait_until_settled(store: RunStore, run: Run) -> Sequence[Mapping[str, Any]]
 
 def worker_pids() -> set[int]:
     """Return ids of the processes of jobs, and of those of their clusters."""
-    pids = set()
-    for process in psutil.Process().children(recursive=True):
-        with suppress(psutil.Error):  # it may exit meanwhile
-            if is_job(process) or "spawn_main" in " ".join(process.cmdline()):
-                pids.add(process.pid)
-    return pids
+    me = psutil.Process()
+    jobs = filter(is_job, me.children(recursive=True))
+    return {process.pid for process in (*jobs, *workers_of(me))}
 
 
 @pytest.mark.timeout(300)

@@ -1,4 +1,4 @@
-"""Set-up shared by all worker processes: name, priority, SIGINT, death with the parent."""
+"""Set-up shared by worker processes: name, priority, SIGINT, death with the parent."""
 
 import ctypes
 import multiprocessing
