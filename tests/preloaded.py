@@ -1,12 +1,26 @@
 """Imported once by the fork server of the tests, for all the servers that it forks."""
 
 import importlib
-from tempfile import TemporaryDirectory
+import tempfile
 
 from app.cli import without_garbage_collection
 
-with without_garbage_collection(), TemporaryDirectory() as folder:
-    importlib.import_module("app.physics.mujoco_simulator")
+_IMPORTED_LATE = (
+    "anyio._backends._asyncio",
+    "app.experiments.cluster_nodes",
+    "app.experiments.report.files",
+    "app.experiments.summary",
+    "app.jobs.experiment_worker",
+    "app.physics.mujoco_simulator",
+    "matplotlib.backends.backend_svg",
+    "numpy.ma",
+    "rich.console",
+)
+"""What commands and jobs import when they first need it."""
+
+with without_garbage_collection(), tempfile.TemporaryDirectory() as folder:
+    for late in _IMPORTED_LATE:
+        importlib.import_module(late)
     from app.server import create_app
     from app.settings import read_settings
     from app.storage.database.opening import open_store
@@ -15,3 +29,5 @@ with without_garbage_collection(), TemporaryDirectory() as folder:
     # What is built once in a process: the routes and their description.
     with open_store(settings) as store:
         create_app(settings, store).openapi()
+# It was found by now; each fork has a TMPDIR of its own.
+tempfile.tempdir = None
