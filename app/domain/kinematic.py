@@ -48,6 +48,7 @@ class KinematicSimulator:
         world.check(robot, "kinematic")
         self.robot, self.gait, self.grid, self.world = robot, gait, grid, world
         self._motion = StepMotion(robot, gait, grid)
+        self._recorded_substeps = recorded_substeps(robot)
 
     def rest(self) -> KinematicState:
         return KinematicState(self._motion.at_home())
@@ -129,7 +130,7 @@ class KinematicSimulator:
         phase = np.arange(1, robot.shift_substeps + 1) / robot.shift_substeps
         place = np.full(len(angles), distance_m)
         place[robot.swing_substeps :] += plan.advance_m * ease(phase)
-        indices = recorded_substeps(robot)
+        indices = self._recorded_substeps
         time_s, qpos = (indices + 1) * robot.dt_s, self._qpos(place[indices], angles[indices])
         return Motion(time_s.astype(np.float32), qpos.astype(np.float32))
 

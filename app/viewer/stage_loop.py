@@ -20,8 +20,8 @@ _logger = logging.getLogger(__name__)
 class StageLoop:
     """Draws the stage 30 times a second, and publishes a `scene` event at most five times a second.
 
-    `with loop:` runs it, once. Without motion the frame rate drops and no events are published. It
-    drops without viewers too: drawing a race takes a tenth of a core.
+    `with loop:` runs it, once. Without motion the frame rate drops and no events are published.
+    Without viewers it drops to that of the events: drawing a race takes a tenth of a core.
 
     Args:
         stage: advanced by each frame.
@@ -52,8 +52,8 @@ class StageLoop:
         due_s, still = time.monotonic(), 0
         while not self._stop.is_set():
             still = 0 if self._draw() else still + 1
-            is_seen = still < _STILL_FRAMES and self._has_viewers()
-            due_s += 1 / (FRAMES_PER_S if is_seen else IDLE_FRAMES_PER_S)
+            rate_if_seen = FRAMES_PER_S if still < _STILL_FRAMES else IDLE_FRAMES_PER_S
+            due_s += 1 / (rate_if_seen if self._has_viewers() else SCENES_PER_S)
             # One late frame is caught up; more are skipped, since playback follows the clock.
             due_s = max(due_s, time.monotonic() - 1 / FRAMES_PER_S)
             self._stop.wait(max(0.0, due_s - time.monotonic()))

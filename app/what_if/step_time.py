@@ -18,7 +18,7 @@ from app.runs.racing import race
 from app.runs.records import StepTaken
 from app.runs.training import train
 
-MEASURE_S, MEASURED_STEPS = 0.25, 200
+MEASURE_S, MEASURED_STEPS = 0.1, 200
 """For how long the steps of an agent are timed at most [s], and how many of them."""
 
 
