@@ -76,6 +76,8 @@ def _fork(
         return pid
     try:
         util.spawnv_passfds = _start_interpreter
+        # Its lock is held. A process that is forked here may start a fork server of its own.
+        vars(forkserver._forkserver).update(vars(forkserver.ForkServer()))  # noqa: SLF001
         die_with_parent()
         set_process_name("fork server")
         # Its own copy of the pipe at whose end it notices that no other process has one any more.

@@ -52,6 +52,14 @@ def test_a_dead_fork_server_ends_its_jobs_and_is_replaced(launch: Callable[..., 
     assert again["state"] == "finished", again
 
 
+def test_a_job_may_fork_processes_of_its_own(launch: Callable[..., Served]) -> None:
+    server = launch()
+    sweep = {"experiment": "sweep", "simulator": "kinematic", "gaits": ["left-right-origin"]}
+    run = server.start({**sweep, "seeds": 20, "steps": 50, "workers": 1}, "/experiments")
+    server.in_state(run, "running", "finished")
+    assert server.in_state(run, "finished", "failed")["state"] == "finished"
+
+
 def test_a_stopped_fork_server_keeps_no_run_waiting(launch: Callable[..., Served]) -> None:
     server = launch()
     server.moving(server.start(ENDLESS))
