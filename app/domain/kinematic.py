@@ -47,8 +47,12 @@ class KinematicSimulator:
         check_reach(robot, gait, grid)
         world.check(robot, "kinematic")
         self.robot, self.gait, self.grid, self.world = robot, gait, grid, world
-        self._motion = StepMotion(robot, gait, grid)
-        self._recorded_substeps = recorded_substeps(robot)
+        recorded = recorded_substeps(robot)
+        self._motion = StepMotion(robot, gait, grid, recorded)
+        self._times_s = ((recorded + 1) * robot.dt_s).astype(np.float32)
+        self._times_s.setflags(write=False)  # all motions have this array
+        shift_phase = (recorded - robot.swing_substeps + 1) / robot.shift_substeps
+        self._share_of_advance = np.where(shift_phase > 0, ease(shift_phase), 0.0)
 
     def rest(self) -> KinematicState:
         return KinematicState(self._motion.at_home())
@@ -125,14 +129,9 @@ class KinematicSimulator:
         return KinematicState(Feet.from_array(arrays["feet"]), distance, int(steps))
 
     def _record(self, plan: StepPlan, distance_m: float) -> Motion:
-        robot = self.robot
-        angles = self._motion.joint_targets([plan])[0]  # (substeps, 3 · legs)
-        phase = np.arange(1, robot.shift_substeps + 1) / robot.shift_substeps
-        place = np.full(len(angles), distance_m)
-        place[robot.swing_substeps :] += plan.advance_m * ease(phase)
-        indices = self._recorded_substeps
-        time_s, qpos = (indices + 1) * robot.dt_s, self._qpos(place[indices], angles[indices])
-        return Motion(time_s.astype(np.float32), qpos.astype(np.float32))
+        angles = self._motion.joint_targets([plan])[0]  # (recorded substeps, 3 · legs)
+        place = distance_m + plan.advance_m * self._share_of_advance
+        return Motion(self._times_s, self._qpos(place, angles).astype(np.float32))
 
     def _qpos(self, distance_m: FloatArray, angles: FloatArray) -> FloatArray:
         """Return generalised positions (k, 7 + 3 · legs).

@@ -35,12 +35,24 @@ class StepPlan(NamedTuple):
 class StepMotion:
     """Plans steps and their joint targets, for one robot, gait and foot grid."""
 
-    def __init__(self, robot: Robot, gait: Gait, grid: FootGrid) -> None:
+    def __init__(
+        self, robot: Robot, gait: Gait, grid: FootGrid, substeps: IntArray | None = None
+    ) -> None:
+        """Compute what all steps have in common.
+
+        Args:
+            robot: the robot.
+            gait: the gait.
+            grid: the foot grid.
+            substeps: indices of those whose joint targets are computed, ascending; None for all.
+        """
         self.legs = Legs(robot, gait)
         self._places = grid.places_m
         self._pairs = len(gait.pairs)
-        self._samples = _samples(robot, gait, self.legs.frames)
-        self._substeps = robot.swing_substeps + robot.shift_substeps
+        total = robot.swing_substeps + robot.shift_substeps
+        wanted = np.arange(total) if substeps is None else substeps
+        self._samples = _samples(robot, gait, self.legs.frames, wanted)
+        self._substeps = len(wanted)
 
     def at_home(self) -> Feet:
         """Return the offsets with every foot at home."""
@@ -54,7 +66,7 @@ class StepMotion:
         return StepPlan(pair, start, landed, end, advance)
 
     def joint_targets(self, plans: Sequence[StepPlan]) -> FloatArray:
-        """Compute the commands of the position servos over the substeps of each step.
+        """Compute the commands of the position servos over the wanted substeps of each step.
 
         Args:
             plans: the n steps.
@@ -108,21 +120,25 @@ class _Samples(NamedTuple):
     lift: FloatArray
     """Height of each sample above the ground [m], (samples,)."""
     order: IntArray
-    """Index of the sample that commands each leg at each substep, (pairs, substeps · legs)."""
+    """Index of the sample that commands each leg at each wanted substep,
+    (pairs, substeps · legs)."""
 
 
-def _samples(robot: Robot, gait: Gait, frames: FloatArray) -> _Samples:
+def _samples(robot: Robot, gait: Gait, frames: FloatArray, substeps: IntArray) -> _Samples:
     """Sample the trajectory of a step: easing by half a cosine, lifting by half a sine.
 
     Args:
         robot: for the number of substeps and the step height.
         gait: for the pairs.
         frames: `Legs.frames`.
+        substeps: indices of the wanted ones.
     """
-    count, swing, shift = len(robot.legs), robot.swing_substeps, robot.shift_substeps
+    count, is_swing = len(robot.legs), substeps < robot.swing_substeps
     all_legs, swinging_legs = np.arange(count), np.array(gait.pairs) - 1
-    swing_phase = np.repeat(np.arange(1, swing + 1) / swing, 2)
-    shift_phase = np.repeat(np.arange(1, shift + 1) / shift, count)
+    swing_times = (substeps[is_swing] + 1) / robot.swing_substeps
+    shift_times = (substeps[~is_swing] - robot.swing_substeps + 1) / robot.shift_substeps
+    swing, shift = len(swing_times), len(shift_times)
+    swing_phase, shift_phase = np.repeat(swing_times, 2), np.repeat(shift_times, count)
     zeros = np.zeros(count)
     legs, order = [], []
     for pair in swinging_legs:

@@ -36,19 +36,20 @@ class Steps:
 
 
 def step_s_of(steps: Steps) -> float:
-    """Time the steps of a kind, without the first one, and return a trimmed mean [s].
+    """Time the steps of a kind, and return a trimmed mean [s].
 
-    The slowest tenth is left out: the system has interrupted them.
+    The first one, which fills caches, counts only if there is no time for a second. The slowest
+    tenth is left out: the system has interrupted them.
     """
     records = _practised(steps.training) if steps.practises else _raced(steps.training)
-    next(records)  # compiles, and fills caches
     moments = [time.perf_counter()]
     for _ in records:
         moments.append(time.perf_counter())
         if moments[-1] - moments[0] > MEASURE_S or len(moments) > MEASURED_STEPS:
             break
-    durations = np.sort(np.diff(moments))
-    return float(durations[: max(1, len(durations) * 9 // 10)].mean()) if len(durations) else 0.0
+    durations = np.diff(moments)
+    others = np.sort(durations[1:] if len(durations) > 1 else durations)
+    return float(others[: max(1, len(others) * 9 // 10)].mean()) if len(others) else 0.0
 
 
 def _practised(config: TrainingConfig) -> Iterator[object]:

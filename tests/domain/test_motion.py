@@ -122,6 +122,20 @@ def test_commands_start_and_end_each_phase_at_rest() -> None:
     assert speed[-1] < 0.2 * speed[SWING:].max()
 
 
+def test_wanted_substeps_have_the_commands_of_all_to_the_last_bit() -> None:
+    robot, whole = Robot(shift_s=0.128), motion_of("left-right-origin", Robot(shift_s=0.128))
+    gait, wanted = resolve("left-right-origin", robot.azimuths_deg), recorded_substeps(robot)
+    part = StepMotion(robot, gait, FootGrid(), wanted)
+    plans = [
+        whole.plan(whole.at_home(), Action(pair, cell)) for pair in (0, 1, 2) for cell in (1, 4)
+    ]
+
+    for plan in plans:
+        one, all_of_it = part.joint_targets([plan]), whole.joint_targets([plan])
+        assert np.array_equal(one, all_of_it[:, wanted])
+    assert np.array_equal(part.joint_targets(plans), whole.joint_targets(plans)[:, wanted])
+
+
 def test_ease_runs_from_0_to_1() -> None:
     assert ease(np.array([0, 0.5, 1])) == pytest.approx([0, 0.5, 1])
 
