@@ -138,6 +138,32 @@ def test_reference_is_yielded_once_before_the_first_evaluation() -> None:
     assert isinstance(records[-1], Evaluated)
 
 
+def test_the_baseline_walks_once_in_a_process_for_what_it_depends_on() -> None:
+    config = replace(CONFIG, grid_side_m=0.0337, tolerance=0.0, steps=1, evaluate_every=1)
+    noisy = replace(config, world=World((SensorNoise(sd_m=0.006),)))
+    walks: list[World] = []
+
+    def measured(config: TrainingConfig) -> float | None:
+        learner = build_learner(config)
+        baseline = learner.baseline
+
+        def counted(world: World) -> Walker:
+            walks.append(world)
+            return baseline(world)
+
+        learner.baseline = counted
+        list(train(learner, config))
+        return learner.greedy_distance_m
+
+    assert measured(config) == measured(replace(config, seed=4, steps=2)) != 0
+    assert len(walks) == 1
+    assert measured(replace(config, grid_side_m=0.0338)) != measured(config)
+    assert len(walks) == 2
+    # Noise is of a seed, as is a robot that was built with a tolerance.
+    assert measured(noisy) != measured(replace(noisy, seed=4))
+    assert len(walks) == 4
+
+
 @on_both
 def test_evaluation_does_not_change_the_learner(simulator: SimulatorName) -> None:
     config = replace(CONFIG, simulator=simulator, steps=70)
