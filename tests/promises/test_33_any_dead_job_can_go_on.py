@@ -11,7 +11,6 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
-import httpx2
 import pytest
 
 from tests.promises.length import at_length
@@ -58,17 +57,17 @@ def test_a_change_to_a_stopped_process_delays_no_other_request(
     server.after_step(run, 5)
     (job,) = server.jobs()
     job.send_signal(signal.SIGSTOP)
-    path = f"{server.address}/api/v1/trainings/{run['id']}"
+    path = f"/api/v1/trainings/{run['id']}"
 
     def change(_: int) -> int:
-        return httpx2.patch(path, json={"alpha": 0.9}, timeout=LONG_S).status_code
+        return server.client.patch(path, json={"alpha": 0.9}).status_code
 
     with ThreadPoolExecutor(30) as pool:
         changing = [pool.submit(change, n) for n in range(30)]
         slowest_s = 0.0
         for _ in range(20):
             began = time.monotonic()
-            assert server.client.get(f"/api/v1/trainings/{run['id']}").status_code == 200
+            assert server.client.get(path).status_code == 200
             slowest_s = max(slowest_s, time.monotonic() - began)
             time.sleep(0.02)
         assert {one.result(LONG_S) for one in changing} <= {503, 429}
