@@ -43,8 +43,8 @@ venv: $(DQN_STAMP) $(PAGE_STAMP) ## Make or update .venv with everything a devel
 
 .PHONY: test
 test: ## Run every check; this is the gate
-	@$(MAKE) --no-print-directory --jobs=4 lint test-page browser $(DQN_STAMP) docs
-	@$(MAKE) --no-print-directory --jobs=2 types pytest
+	@$(MAKE) --no-print-directory --jobs=3 lint browser $(DQN_STAMP)
+	@$(MAKE) --no-print-directory --jobs=4 test-page types docs pytest
 
 .PHONY: check
 check: lint types ## Check the Python code: format, linter, types, import contracts

@@ -93,11 +93,12 @@ def experiment(run_id: str, **fields: Any) -> Run:
 
 
 @contextmanager
-def database_url(backend: str, server: PostgresServer) -> Iterator[str | None]:
+def database_url(backend: str, server: PostgresServer | None) -> Iterator[str | None]:
     """Create a database, and yield the setting for its URL; None for SQLite."""
     if backend == "sqlite":
         yield None
         return
+    assert server is not None
     with server.database() as url:
         yield url
 
@@ -113,14 +114,18 @@ def opened(folder: Path, url: str | None) -> Iterator[RunStore]:
 def temporary_store() -> Iterator[RunStore]:
     """Open an empty SQLite store in a temporary folder, which is deleted at the end."""
     with TemporaryDirectory() as folder:
-        (Path(folder) / DATABASE_FILE).write_bytes(_new_database())
+        copy_new_database(Path(folder))
         with opened(Path(folder), None) as store:
             yield store
 
 
+def copy_new_database(folder: Path) -> None:
+    """Make a SQLite database that no server has owned: migrations take longer than most tests."""
+    (folder / DATABASE_FILE).write_bytes(_new_database())
+
+
 @cache
 def _new_database() -> bytes:
-    """Return a database file that no server has owned: migrations take longer than most tests."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / DATABASE_FILE
         create_file(path, lambda: False)

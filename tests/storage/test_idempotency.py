@@ -1,10 +1,8 @@
 """Idempotency keys: a repeated request returns the same run, for a day and across restarts."""
 
 import threading
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 
 import pytest
 
@@ -15,16 +13,9 @@ from app.storage.errors import Busy, Gone
 from app.storage.idempotency import Idempotency
 from app.storage.run import KEY_LIFETIME, Content, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
-from tests.storage.stores import BACKENDS, database_url, opened, training
+from tests.storage.stores import training
 
 new_id = RunIds()
-
-
-@pytest.fixture(params=BACKENDS)
-def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RunStore]:
-    server = request.param == "postgresql" and request.getfixturevalue("postgresql")
-    with database_url(request.param, server) as url, opened(tmp_path, url) as opened_store:
-        yield opened_store
 
 
 class Starts:

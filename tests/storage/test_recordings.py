@@ -14,11 +14,12 @@ from app.storage.recordings import Recordings
 from app.storage.stored_recordings import CACHE_RECORDINGS
 from tests.runs.made_up import lane, step
 from tests.runs.test_stored_practice import assert_same, practise
-from tests.storage.stores import opened, race, training
+from tests.storage.stores import copy_new_database, opened, race, training
 
 
 @pytest.fixture
 def store(tmp_path: Path) -> Iterator[RunStore]:
+    copy_new_database(tmp_path)
     with opened(tmp_path, None) as opened_store:
         yield opened_store
 

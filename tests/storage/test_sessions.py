@@ -1,23 +1,11 @@
 """Operators' sessions: persistence, expiry, binding to the token, and their maximum number."""
 
-from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
-
-import pytest
 
 from app.storage.database.store import RunStore
 from app.storage.sessions import MAX_SESSIONS, SESSION_S, Sessions
-from tests.storage.stores import BACKENDS, database_url, opened
 
 TOKEN, OTHER = "a-token-for-tests", "another-token-for-tests"
-
-
-@pytest.fixture(params=BACKENDS)
-def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RunStore]:
-    server = request.param == "postgresql" and request.getfixturevalue("postgresql")
-    with database_url(request.param, server) as url, opened(tmp_path, url) as opened_store:
-        yield opened_store
 
 
 def test_sessions_survive_a_restart_but_not_a_new_token(store: RunStore) -> None:

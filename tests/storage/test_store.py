@@ -5,11 +5,10 @@ import contextlib
 import json
 import math
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta, timezone
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -22,25 +21,15 @@ from app.storage.errors import Conflict, NotFound
 from app.storage.run import LIVE, NOT_ENDED, QUEUED, RUNNING, SORTS, AnyRun, Run, State
 from app.storage.run_ids import RunIds
 from tests.storage.stores import (
-    BACKENDS,
     ODD,
     RACE,
     TRIALS,
-    database_url,
     experiment,
-    opened,
     race,
     training,
 )
 
 new_id = RunIds()
-
-
-@pytest.fixture(params=BACKENDS)
-def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RunStore]:
-    server = request.param == "postgresql" and request.getfixturevalue("postgresql")
-    with database_url(request.param, server) as url, opened(tmp_path, url) as opened_store:
-        yield opened_store
 
 
 def queued_run(store: RunStore, name: str = "it") -> Run:
