@@ -21,12 +21,18 @@ _IMPORTED_LATE = (
 with without_garbage_collection(), tempfile.TemporaryDirectory() as folder:
     for late in _IMPORTED_LATE:
         importlib.import_module(late)
+    from app.domain.robot import Robot
+    from app.physics.mjcf import compile_model
     from app.server import create_app
     from app.settings import read_settings
     from app.storage.database.opening import open_store
+    from app.viewer.robot_mesh import RobotMesh
 
+    # What is built once in a process: models of the default robot, pages, routes and their
+    # description.
+    compile_model(Robot())
+    RobotMesh(Robot())
     settings = read_settings(data=folder)
-    # What is built once in a process: the routes and their description.
     with open_store(settings) as store:
         create_app(settings, store).openapi()
 # It was found by now; each fork has a TMPDIR of its own.

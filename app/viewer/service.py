@@ -22,7 +22,7 @@ from app.viewer.recorded_stream import recorded_stream
 from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop
 from app.viewer.track import Position
-from app.viewer.viser_internals.client import ViewerPage, sanitized_query
+from app.viewer.viser_internals.client import sanitized_query, viewer_page
 from app.viewer.viser_internals.server import in_process_viser
 
 
@@ -91,12 +91,12 @@ class ViewerService:
 
 
 def viewer_routes(hub: Hub) -> list[BaseRoute]:
-    """Return the routes of `/viewer/`, which spectators may use. Reads viser's client once.
+    """Return the routes of `/viewer/`, which spectators may use.
 
     Raises:
         RuntimeError: The patch does not fit the client of the installed viser.
     """
-    page = ViewerPage()
+    page = viewer_page()
 
     async def show(request: Request) -> Response:
         cleaned = sanitized_query(request.query_params)

@@ -11,6 +11,7 @@ import gzip
 import hashlib
 import re
 from collections.abc import Mapping, Sequence
+from functools import cache
 from html import escape
 from pathlib import Path
 from urllib.parse import urlencode
@@ -81,7 +82,7 @@ def sanitized_query(query: QueryParams) -> str | None:
 
 
 class ViewerPage:
-    """The patched page, plain and compressed; built once, because it is large."""
+    """The patched page, plain and compressed."""
 
     def __init__(self) -> None:
         """Read viser's client and inject the patch.
@@ -113,6 +114,16 @@ class ViewerPage:
         if accepts_gzip:
             response_headers["Content-Encoding"] = "gzip"
         return Response(body, media_type="text/html", headers=response_headers)
+
+
+@cache
+def viewer_page() -> ViewerPage:
+    """Return the page of this process: building it takes a tenth of a second.
+
+    Raises:
+        RuntimeError: as `ViewerPage`.
+    """
+    return ViewerPage()
 
 
 def content_policy(page: str, *, is_file: bool = False) -> str:
