@@ -43,19 +43,35 @@ _FEW_PICTURES = """if (window !== top) {
 }"""
 _WITHOUT_WEBGL = ["--disable-gpu", "--disable-software-rasterizer"]
 """A page without a 3D view is drawn with a sixth less work of the processor."""
+_WITHOUT_EVENT_LOOPS = ("agents", "domain", "runs")
+"""Folders whose tests start none in the main thread."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put browser tests last, the longest files of them first.
+    """Order the files so that the processes that run them have work until the end.
 
-    Playwright's synchronous interface keeps an event loop running in the main thread for as long
-    as it is open, and in that time no other test can `asyncio.run` there. A long file at the very
-    end would leave the other processes without work.
+    Promises wait a lot, for servers and time-outs: they are spread among the others. Then come
+    browser tests. Playwright's synchronous interface keeps an event loop running in the main thread
+    for as long as it is open, and in that time no other test can `asyncio.run` there: what follows
+    are tests that need no event loop. Of both kinds the longest files are first, since a long one
+    at the very end would leave the other processes without work.
     """
+    files = list(dict.fromkeys(item.path for item in items))
+    promises = [file for file in files if "promises" in file.parts]
+    others = [file for file in files if "promises" not in file.parts]
+    turns = {
+        file: number / len(group)
+        for group in (promises, others)
+        for number, file in enumerate(group)
+    }
 
-    def place(item: pytest.Item) -> tuple[bool, int]:
-        is_last = "chromium" in getattr(item, "fixturenames", ())
-        return is_last, -item.path.stat().st_size if is_last else 0
+    def place(item: pytest.Item) -> tuple[int, float, str]:
+        size = item.path.stat().st_size
+        if "chromium" in getattr(item, "fixturenames", ()):
+            return 1, -size, str(item.path)
+        if item.path.parent.name in _WITHOUT_EVENT_LOOPS:
+            return 2, -size, str(item.path)
+        return 0, turns[item.path], str(item.path)
 
     items.sort(key=place)
 
