@@ -73,6 +73,7 @@ class JobControl:
         """
         self._pace, self._step_s = pace, step_s
         self._due_s = time.monotonic()
+        self._set_due()  # the first step begins now
 
     def checkpoint_regularly(self, save: Callable[[], Checkpointed]) -> None:
         """Send a checkpoint every few seconds of progress, and before a long wait.

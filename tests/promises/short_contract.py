@@ -2,8 +2,8 @@
 
 from typing import Any
 
-AGENTS = ("QLearning",)
-"""The default one."""
+AGENTS = ("QLearning", "Beam")
+"""The default one, which learns, and a search with settings of its own."""
 DISTURBANCES = ("Limp", "Patch")
 """One of the robot, with a list, and one of the ground."""
 
