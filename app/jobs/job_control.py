@@ -54,7 +54,8 @@ class JobControl:
         self._paused = False
         self._pace: float | Literal["max"] = "max"
         self._step_s = 0.0
-        self._due_s = time.monotonic()
+        self._began_s = time.monotonic()
+        """Scheduled begin of the present step [s]."""
         self._records: list[TrainingRecord | RaceRecord] = []
         self._done = 0
         self._sent_s = 0.0
@@ -65,15 +66,14 @@ class JobControl:
         self._to_replay: list[Mapping[str, Any]] = []
 
     def keep_pace(self, pace: float | Literal["max"], step_s: float) -> None:
-        """Limit the speed to `pace` times real time.
+        """Limit the speed to `pace` times real time; the first step begins now.
 
         Args:
             pace: times real time, or `max` for no limit.
             step_s: duration of one step of the robot [s].
         """
         self._pace, self._step_s = pace, step_s
-        self._due_s = time.monotonic()
-        self._set_due()  # the first step begins now
+        self._began_s = time.monotonic()
 
     def checkpoint_regularly(self, save: Callable[[], Checkpointed]) -> None:
         """Send a checkpoint every few seconds of progress, and before a long wait.
@@ -108,7 +108,7 @@ class JobControl:
         self.changes = [dict(change) for change in included]
         for change in self.changes:
             if "pace" in change:
-                self.keep_pace(change["pace"], self._step_s)
+                self._pace = change["pace"]
         self._to_replay = list(later)
         self._saved = (step, len(self.changes))
         self._replay_due(step, agent)
@@ -152,7 +152,7 @@ class JobControl:
             try:
                 command = self._next_command(wait_s)
             except queue.Empty:
-                self._set_due()
+                self._begin_step()
                 return True
             self._execute(command, step, agent)
             if self.stopped or self.exiting:
@@ -199,14 +199,15 @@ class JobControl:
         """Return the time until the next step is due [s]; None while paused."""
         if self._paused:
             return None
-        return 0.0 if self._pace == "max" else self._due_s - time.monotonic()
+        return self._began_s + self._interval_s() - time.monotonic()
 
-    def _set_due(self) -> None:
-        """Set when the step after the next is due; the next one begins now."""
-        if self._pace != "max":
-            # From the scheduled start, since the time to compute steps would add up to a drift.
-            began = max(self._due_s, time.monotonic() - self._step_s / self._pace)
-            self._due_s = began + self._step_s / self._pace
+    def _interval_s(self) -> float:
+        return 0.0 if self._pace == "max" else self._step_s / self._pace
+
+    def _begin_step(self) -> None:
+        # From the scheduled start, since the time to compute steps would add up to a drift.
+        due_s = self._began_s + self._interval_s()
+        self._began_s = max(due_s, time.monotonic() - self._interval_s())
 
     def _execute(self, command: Command, step: int, agent: object) -> None:
         if command.verb == "stop":
@@ -217,7 +218,7 @@ class JobControl:
             self._tune(command, step, agent)
         else:
             self._paused = command.verb == "pause"
-            self._due_s = time.monotonic()
+            self._began_s = time.monotonic() - self._interval_s()  # the next step begins now
 
     def _tune(self, command: Command, step: int, agent: object) -> None:
         if time.monotonic() > command.expires_s:
@@ -243,7 +244,7 @@ class JobControl:
         if rates and isinstance(agent, Tunable):
             agent.tune(**rates)
         if "pace" in changes:
-            self.keep_pace(changes["pace"], self._step_s)
+            self._pace = changes["pace"]
         self.changes.append({"step": step, **changes})
 
 

@@ -69,17 +69,29 @@ def test_paused_job_can_be_stopped(pipe: FakePipe) -> None:
     assert pipe.control.stopped
 
 
-def test_pace_is_kept_and_a_new_pace_ends_the_wait(pipe: FakePipe) -> None:
+def test_pace_is_kept_from_the_first_step_on(pipe: FakePipe) -> None:
     pipe.control.keep_pace(2.0, step_s=0.1)
     began = time.monotonic()
-    for number in range(5):
+    for number in range(1, 6):
         assert pipe.control.wait_for_turn(number)
-    assert time.monotonic() - began >= 4 * 0.05 - 0.01
+        assert time.monotonic() - began >= number * 0.05 - 0.01
+
+
+def test_new_pace_ends_the_wait(pipe: FakePipe) -> None:
     pipe.control.keep_pace(0.01, step_s=100.0)
-    assert pipe.control.wait_for_turn(5)
     run_later(lambda: pipe.commands.put(Command("tune", 7, {"pace": "max"})))
-    assert pipe.control.wait_for_turn(6), "three hours, were it not for the new pace"
-    assert pipe.sent == [Changed(7, 6, {"pace": "max"})]
+    assert pipe.control.wait_for_turn(1), "three hours, were it not for the new pace"
+    assert pipe.sent == [Changed(7, 1, {"pace": "max"})]
+
+
+def test_step_does_not_begin_because_its_pace_was_moved(pipe: FakePipe) -> None:
+    pipe.control.keep_pace(0.01, step_s=0.1)
+    began = time.monotonic()
+    for token, pace in enumerate([0.02, 0.05, 0.4]):
+        pipe.commands.put(Command("tune", token, {"pace": pace}))
+    assert pipe.control.wait_for_turn(1)
+    assert len(pipe.sent) == 3
+    assert time.monotonic() - began >= 0.24
 
 
 def test_tune_changes_rates_and_records_the_change(pipe: FakePipe) -> None:
