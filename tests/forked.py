@@ -16,6 +16,7 @@ from typing import IO
 from unittest import mock
 
 from app.cli import main
+from app.process_setup import die_with_parent
 
 HEXAPODS = [sys.executable, "-c", "import sys; from app.cli import main; sys.exit(main())"]
 _ROOT = str(Path(__file__).parents[1])
@@ -121,7 +122,10 @@ def _run(
     printed: Connection,
     failed: Connection,
 ) -> None:
-    """Be the command, in the fork."""
+    """Be the command, in the fork, and end with a test run that is killed."""
+    # The fork server ends when no process has this descriptor any more, and this one with it.
+    os.close(vars(forkserver._forkserver)["_forkserver_alive_fd"])
+    die_with_parent()
     os.dup2(printed.fileno(), 1)
     os.dup2(failed.fileno(), 2)
     printed.close()
