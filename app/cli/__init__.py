@@ -2,8 +2,8 @@
 
 Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `tune`, `best-known`, `runs` (list,
 show, delete; `run_files` has its verbs that write files), `export`, `imports`, `doctor` (with
-checks in `data_diagnostics` and `physics_diagnostics`), `bench` (with the measurements in
-`benchmarks`). Their module docstrings are the descriptions in `--help`.
+checks of the data in `data_diagnostics`), `bench` (with the measurements in `benchmarks`). Their
+module docstrings are the descriptions in `--help`.
 Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments
 and sweeps), `files` (files that users name), `stored_runs` (runs of a data folder),
 `server_client` (requests to a running server), `terminal` (progress bars and tables).
@@ -13,9 +13,13 @@ import argparse
 import gc
 import importlib
 import io
+import os
+import select
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
+from typing import TextIO
 
 from app import __version__
 from app.cli.options import CommandParser
@@ -36,16 +40,36 @@ COMMANDS = {
     "bench": "bench",
 }
 """Name of the module of each command."""
+_OUTPUT_CLOSED = 128 + 13
+"""Exit code that a shell reports of a tool that SIGPIPE ended."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command and return its exit code: 2 after a `HexapodError`, 130 after SIGINT."""
+    """Run one command and return its exit code.
+
+    It is 2 after a `HexapodError`, 130 after SIGINT, and 141 if the reader of standard output has
+    gone, as of `| head`: what a shell reports of its own tools.
+    """
     # Replace characters that the terminal cannot encode, rather than fail.
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
     sys.path.insert(0, "")  # so that --agent my_agent:Agent finds my_agent.py in this folder
     given = sys.argv[1:] if arguments is None else arguments
+    try:
+        try:
+            return _run(given)
+        finally:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        if not _has_no_reader(sys.stdout):
+            raise
+        with Path(os.devnull).open("w") as nowhere:  # for what Python still writes when it ends
+            os.dup2(nowhere.fileno(), sys.stdout.fileno())
+        return _OUTPUT_CLOSED
+
+
+def _run(given: Sequence[str]) -> int:
     with without_garbage_collection():
         parser = _parser(given)
     options = parser.parse_args(given)
@@ -58,6 +82,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("interrupted", file=sys.stderr)
         return 130
     return code
+
+
+def _has_no_reader(output: TextIO) -> bool:
+    poll = select.poll()
+    poll.register(output.fileno(), 0)  # errors and the other end's closing are always told
+    return bool(poll.poll(0))
 
 
 @contextmanager
